@@ -1,0 +1,32 @@
+# kadans_layer(NAME SOURCES file... [LINKS target...] [PRIVATE_LINKS target...] [PRECOMPILE header...])
+# A static library kadans_NAME, known as kadans::NAME; "/" in a name becomes "_" (plant/bullet -> kadans_plant_bullet).
+function(kadans_layer name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
+  string(REPLACE "/" "_" target "kadans_${name}")
+  string(REPLACE "/" "_" export "${name}")
+  add_library(${target} STATIC ${arg_SOURCES})
+  add_library(kadans::${export} ALIAS ${target})
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} PUBLIC kadans_flags ${arg_LINKS}
+                                  PRIVATE ${arg_PRIVATE_LINKS} $<BUILD_INTERFACE:kadans_warnings>)
+  if(arg_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILE})
+  endif()
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${export})
+  set_property(GLOBAL APPEND PROPERTY KADANS_LAYERS ${target})
+endfunction()
+
+# kadans_test(LAYER SOURCES file... [LINKS target...]): one program of doctest cases, each case a ctest test.
+function(kadans_test name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
+  string(REPLACE "/" "_" target "${name}_test")
+  add_executable(${target} ${arg_SOURCES})
+  target_link_libraries(${target} PRIVATE kadans_test_main ${arg_LINKS} kadans_warnings)
+  target_precompile_headers(${target} REUSE_FROM kadans_test_main)
+  target_compile_definitions(${target} PRIVATE KADANS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                               KADANS_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  include(doctest)
+  doctest_discover_tests(${target} TEST_PREFIX "${name}: ")
+endfunction()

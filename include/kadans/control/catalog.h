@@ -1,0 +1,56 @@
+// What the control side offers to the outside, by name: objects, control sets, poses, presets and the tables. Made
+// before the loop, read by any thread after, never changed. Scripts, viewers and `check` need nothing else.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kadans/model/robot_model.h"
+#include "kadans/signal/parameter.h"
+#include "kadans/signal/setpoint.h"
+#include "kadans/signal/signal.h"
+
+namespace kadans {
+
+// Named values for some of an object's parameters: gains "soft", gains "stiff".
+struct Preset {
+  std::string name;
+  std::vector<std::pair<ParameterId, double>> values;
+};
+
+struct ObjectInfo {
+  std::string name;
+  std::string type;
+  std::vector<std::size_t> joints;
+  std::vector<ParameterId> parameters;
+  std::vector<SetpointId> setpoints;
+  std::vector<Preset> presets;
+  std::uint32_t divisor = 1;             // low level every n-th control tick
+  std::uint32_t high_level_divisor = 1;  // high level every n-th behavior tick
+};
+
+struct ControlSetInfo {
+  std::string name;
+  std::vector<std::uint32_t> objects;  // in the order of computing
+};
+
+// Positions for some joints, by name; what a behavior moves to.
+struct PoseInfo {
+  std::string name;
+  std::vector<std::pair<std::size_t, double>> position_rad;  // joint index, position
+};
+
+struct Catalog {
+  const RobotModel* model = nullptr;
+  ParameterTable parameters;
+  SetpointTable setpoints;
+  SignalTable signals;
+  std::vector<ObjectInfo> objects;
+  std::vector<ControlSetInfo> sets;
+  std::vector<PoseInfo> poses;
+  std::uint32_t initial_set = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,92 @@
+// A control object: an algorithm for one joint or many, in two levels.
+//
+// The low level, step(), runs in the control thread each tick: bounded, no allocation, no lock, no exception. The high
+// level, update(), runs in the behavior thread and may be costly; what it computes reaches the low level through a
+// Latest<> that the object owns. Neither reads a clock: dt comes in.
+//
+// An object declares its tunables, its recorded state and its set-points once, in declare(); configuration, scripts,
+// recorder and viewers know it only through those tables.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kadans/model/robot_model.h"
+#include "kadans/signal/frames.h"
+#include "kadans/signal/parameter.h"
+#include "kadans/signal/setpoint.h"
+#include "kadans/signal/signal.h"
+#include "kadans/signal/status.h"
+
+namespace kadans {
+
+// What the low level sees. References hold for the call.
+struct ControlInput {
+  const JointStates& joints;
+  const RobotStatus& status;
+  const ActuationFrame& last;  // the actuation written in this tick: computed in the last one, after safety
+  std::int64_t time_ns;
+  double dt_s;
+};
+
+// Where an object declares what it has; names get the object's name in front.
+class Declaration {
+ public:
+  Declaration(std::string object, std::uint32_t owner, ParameterTable& parameters, SetpointTable& setpoints,
+              SignalTable& signals)
+      : object_(std::move(object)), owner_(owner), parameters_(parameters), setpoints_(setpoints), signals_(signals) {}
+
+  // `parameter.name` without the object: "l_knee.kp_Nm_per_rad". Throws std::invalid_argument as the tables do.
+  ParameterId parameter(Parameter parameter, double* value);
+  SetpointId setpoint(Setpoint setpoint);
+  template <typename T>
+  SignalId signal(Signal signal, const T* source) {
+    signal.name = "control." + object_ + "." + signal.name;
+    return signals_.add(std::move(signal), source);
+  }
+
+ private:
+  std::string object_;
+  std::uint32_t owner_;
+  ParameterTable& parameters_;
+  SetpointTable& setpoints_;
+  SignalTable& signals_;
+};
+
+// What every object is made from.
+struct ObjectSetup {
+  const RobotModel& model;
+  std::vector<std::size_t> joints;  // the joints it drives, indices into the model; at least one, none twice
+};
+
+class ControlObject {
+ public:
+  virtual ~ControlObject() = default;
+  ControlObject() = default;
+  ControlObject(const ControlObject&) = delete;
+  ControlObject& operator=(const ControlObject&) = delete;
+
+  // Before the loop, once.
+  virtual void declare(Declaration& declaration) = 0;
+
+  // Control thread, in the tick that makes the object active: takes over without a jump from the measured state and the
+  // last actuation.
+  virtual void start(const ControlInput& input) noexcept = 0;
+  // Control thread: writes the actuation of its joints.
+  virtual void step(const ControlInput& input, ActuationFrame& actuation) noexcept = 0;
+  // Control thread. The value is in the set-point's range. duration_s >= 0; 0 is at once. False: refused.
+  [[nodiscard]] virtual bool set_point(std::uint32_t channel, double value, double duration_s) noexcept = 0;
+  // Control thread: comes to rest where its motion is now.
+  virtual void cancel_motion(std::uint32_t channel) noexcept = 0;
+  // Control thread: until the last motion under way has arrived; 0 when all is at rest.
+  virtual double motion_remaining_s() const noexcept = 0;
+  // Control thread: one or more of its parameters have new values.
+  virtual void parameters_changed() noexcept {}
+
+  // Behavior thread: the high level.
+  virtual void update(const Snapshot& snapshot) { (void)snapshot; }
+};
+
+}  // namespace kadans

@@ -1,0 +1,38 @@
+// The seam between the behavior engine and whatever plays behaviors. engine does not know Lua; script implements this.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "kadans/engine/transaction.h"
+#include "kadans/signal/status.h"
+
+namespace kadans {
+
+class BehaviorHost {
+ public:
+  virtual ~BehaviorHost() = default;
+  // Behavior thread, once a behavior tick. The snapshot holds for the call. Each behavior collects its commands in a
+  // transaction of its own from `commands` and commits it.
+  virtual void tick(const Snapshot& snapshot, CommandSender& commands) noexcept = 0;
+};
+
+// One change of state of a behavior, for the record and the console.
+struct Transition {
+  std::int64_t time_ns = 0;
+  std::string behavior;
+  std::string from;  // path of the state, "stand.wait"; "" when entering
+  std::string to;
+  std::string why;
+};
+
+// Where a behavior speaks to people. Behavior thread.
+class BehaviorLog {
+ public:
+  virtual ~BehaviorLog() = default;
+  enum class Severity : std::uint8_t { info, warning, error };
+  virtual void transition(const Transition& transition) = 0;
+  virtual void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) = 0;
+};
+
+}  // namespace kadans

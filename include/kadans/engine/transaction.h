@@ -1,0 +1,39 @@
+// How commands reach the control engine: collected in a transaction, sent whole or not at all.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "kadans/signal/command.h"
+
+namespace kadans {
+
+// One producer's end of the command queue. Behavior thread only.
+class CommandSender {
+ public:
+  explicit CommandSender(CommandQueue& queue) noexcept : queue_(queue) {}
+
+  void begin(std::int64_t time_ns) noexcept;  // of the behavior tick; drops what was added and not committed
+  // False when the transaction would not fit into the queue or into one tick; the whole transaction is then refused
+  // by commit().
+  [[nodiscard]] bool add(const Command& command) noexcept;
+  // The number of the transaction, from 1; 0 when it was refused; the last number again when nothing was added.
+  std::uint32_t commit() noexcept;
+  void discard() noexcept;
+
+  std::uint32_t last_sequence() const noexcept { return sequence_; }
+  std::uint64_t sent() const noexcept { return sent_; }        // commands, headers not counted
+  std::uint64_t refused() const noexcept { return refused_; }  // commands in refused transactions
+
+ private:
+  CommandQueue& queue_;
+  std::array<Command, max_transaction> batch_{};
+  std::size_t size_ = 1;  // batch_[0] is the header
+  std::int64_t time_ns_ = 0;
+  std::uint32_t sequence_ = 0;
+  std::uint64_t sent_ = 0, refused_ = 0;
+  std::uint64_t overflow_ = 0;  // commands that did not fit
+};
+
+}  // namespace kadans

@@ -1,0 +1,76 @@
+// The newest value of something, from one writer to a fixed number of readers.
+//
+// Each reader owns a triple buffer: three slots of which the writer holds one, the reader holds one, and the third is
+// in the middle. Writing fills the writer's slot and swaps it with the middle; reading swaps the middle, if it is
+// newer, with the reader's slot. One atomic exchange each, no loop, so both sides are wait-free and a reader that
+// stops forever disturbs nobody. A write costs one copy a reader; what nobody read is overwritten: this is not a queue.
+//
+// Latest is trivially copyable and holds no pointer, so it may live in memory shared between two processes. Copy it
+// only while nobody reads or writes.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace kadans {
+
+template <typename T, std::size_t Readers = 1>
+class Latest {
+  static_assert(std::is_trivially_copyable_v<T>, "T crosses threads by plain copy");
+  static_assert(Readers >= 1);
+  static_assert(std::atomic_ref<std::uint32_t>::is_always_lock_free, "also on 32-bit machines");
+
+ public:
+  explicit Latest(const T& first = T{}) noexcept {
+    for (Channel& channel : channels_) channel.slots.fill(first);
+  }
+
+  // Writer thread only. Wait-free.
+  void publish(const T& value) noexcept {
+    for (Channel& channel : channels_) {
+      channel.slots[channel.write_slot] = value;
+      const std::uint32_t previous = middle(channel).exchange(channel.write_slot | fresh, std::memory_order_acq_rel);
+      channel.write_slot = previous & slot_mask;
+    }
+  }
+
+  // Thread of reader `reader` only; a reader index belongs to one thread. Wait-free.
+  // The reference holds its value until the same reader reads again.
+  const T& read(std::size_t reader = 0) noexcept {
+    Channel& channel = channels_[reader];
+    if (has_news(reader)) {
+      const std::uint32_t newest = middle(channel).exchange(channel.read_slot, std::memory_order_acq_rel);
+      channel.read_slot = newest & slot_mask;
+    }
+    return channel.slots[channel.read_slot];
+  }
+
+  // Thread of reader `reader` only: whether read() would bring a value that this reader has not seen.
+  bool has_news(std::size_t reader = 0) noexcept {
+    return (middle(channels_[reader]).load(std::memory_order_acquire) & fresh) != 0;
+  }
+
+  static constexpr std::size_t readers() noexcept { return Readers; }
+
+ private:
+  static constexpr std::size_t cache_line = 64;
+  static constexpr std::uint32_t slot_mask = 3;
+  static constexpr std::uint32_t fresh = 4;
+
+  struct Channel {
+    alignas(cache_line) std::array<T, 3> slots;
+    alignas(cache_line) std::uint32_t write_slot = 0;  // writer
+    alignas(cache_line) std::uint32_t middle = 1;      // both, through atomic_ref
+    alignas(cache_line) std::uint32_t read_slot = 2;   // reader
+  };
+
+  // A plain integer seen through atomic_ref keeps the type trivially copyable, which std::atomic would not.
+  static std::atomic_ref<std::uint32_t> middle(Channel& channel) noexcept { return std::atomic_ref(channel.middle); }
+
+  std::array<Channel, Readers> channels_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,31 @@
+// A plant without physics, for tests: each joint is a double integrator of its own inertia; position and velocity modes
+// are obeyed at once. The base stands still and upright.
+#pragma once
+
+#include "kadans/plant/plant.h"
+#include "kadans/plant/settings.h"
+
+namespace kadans {
+
+class IdealPlant final : public ModelPlant {
+ public:
+  // settings.position_rad is where the joints start. Each joint's inertia is its rotor's, or 1 kg m2 where that is 0.
+  IdealPlant(const RobotModel& model, const PlantSettings& settings);
+
+  void read(SensorFrame& sensors) noexcept override;
+  void write(const ActuationFrame& actuation) noexcept override;
+  void step(std::int64_t dt_ns) override;
+  const PlantTruth& truth() const noexcept override { return truth_; }
+  void push(std::size_t, const Vec3&, const Vec3&) override {}
+  void hash(StateHash& hash) const noexcept override;
+
+ private:
+  std::array<double, max_joints> inertia_kg_m2_{};
+  std::array<double, max_joints> lower_rad_{}, upper_rad_{};
+  ActuationFrame actuation_;
+  PlantTruth truth_;
+  std::int64_t time_ns_ = 0;
+  std::uint32_t sequence_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,58 @@
+// The seam between the control engine and what it controls.
+//
+// read and write are called once a tick by the control thread: sample first, actuate a constant time later. Both are
+// bounded and make no system call that may block. step belongs to models alone: it lets `dt_ns` pass. Hardware lives
+// on its own and leaves step empty.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/model/robot_model.h"
+#include "kadans/signal/frames.h"
+#include "kadans/signal/signal.h"
+#include "kadans/signal/state_hash.h"
+
+namespace kadans {
+
+class Plant {
+ public:
+  virtual ~Plant() = default;
+  Plant() = default;
+  Plant(const Plant&) = delete;
+  Plant& operator=(const Plant&) = delete;
+
+  // Control thread. Fills sensors as they are now, counts included.
+  virtual void read(SensorFrame& sensors) noexcept = 0;
+  // Control thread. Holds until the next write.
+  virtual void write(const ActuationFrame& actuation) noexcept = 0;
+  // The thread that owns the model; outside the tick, so it may allocate. Throws std::runtime_error when the model
+  // fails (a state that is not finite).
+  virtual void step(std::int64_t dt_ns) = 0;
+};
+
+// What a model knows and hardware does not: the truth, for checks and pictures, and hands to push the robot with.
+struct PlantTruth {
+  Pose base;
+  Vec3 base_velocity_m_s{};            // of the base frame's origin, world axes
+  Vec3 base_angular_velocity_rad_s{};  // world axes
+  Vec3 com_m{};
+  Vec3 com_velocity_m_s{};
+  std::uint32_t joint_count = 0;
+  std::array<double, max_joints> position_rad{};
+  std::array<double, max_joints> velocity_rad_s{};
+  std::array<double, max_joints> drive_torque_Nm{};  // what each drive put on its joint in the last step
+  std::uint32_t foot_count = 0;
+  std::array<Pose, max_feet> feet{};
+  std::array<Vec3, max_feet> foot_force_N{};         // from the ground, world axes
+};
+
+class ModelPlant : public Plant {
+ public:
+  virtual const PlantTruth& truth() const noexcept = 0;  // as of the last step
+  // A force in world axes at a point of a link, for the next step only.
+  virtual void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) = 0;
+  // Everything that decides how the model goes on.
+  virtual void hash(StateHash& hash) const noexcept = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,16 @@
+// The fixed sizes of everything that crosses a seam: the tick never allocates, so its frames are as large as the
+// largest robot. Counts in the frames say how much of them is in use.
+#pragma once
+
+#include <cstddef>
+
+namespace kadans {
+
+inline constexpr std::size_t max_joints = 64;
+inline constexpr std::size_t max_feet = 4;
+inline constexpr std::size_t sensors_per_foot = 4;   // heel/toe x inner/outer
+inline constexpr std::size_t max_objects = 32;       // control objects, over all control sets
+inline constexpr std::size_t max_transaction = 256;  // commands in one transaction, its header included
+inline constexpr std::size_t command_capacity = 1024;
+
+}  // namespace kadans

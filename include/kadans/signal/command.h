@@ -1,0 +1,35 @@
+// Commands: how a behavior configures the control engine. A transaction is a header followed by its commands; it goes
+// through the queue in one piece and is applied whole, in one tick, or not at all.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "kadans/exchange/ring.h"
+#include "kadans/signal/capacity.h"
+
+namespace kadans {
+
+enum class CommandKind : std::uint8_t {
+  transaction,    // header: `count` commands follow, `sequence` numbers the transaction from 1, `time_ns` it was made
+  set_parameter,  // index = ParameterId, value
+  set_point,      // index = SetpointId, value to be reached in duration_s (0 = at once)
+  cancel_motion,  // index = SetpointId: stays where its motion is now, coming to rest
+  switch_set,     // index = control set
+  clear_faults,
+};
+
+struct Command {
+  CommandKind kind = CommandKind::transaction;
+  std::uint32_t index = 0;
+  std::uint32_t count = 0;
+  std::uint32_t sequence = 0;
+  std::int64_t time_ns = 0;
+  double value = 0;
+  double duration_s = 0;
+};
+static_assert(std::is_trivially_copyable_v<Command>);
+
+using CommandQueue = Ring<Command, command_capacity>;
+
+}  // namespace kadans

@@ -1,0 +1,80 @@
+// The frames that cross the seams of the control engine. Plain, fixed-size data: they are copied between threads and
+// processes as they are. Joints are numbered as in the robot's model; only the first `joint_count` entries count.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "kadans/signal/capacity.h"
+
+namespace kadans {
+
+using Vec3 = std::array<double, 3>;  // x, y, z
+using Quat = std::array<double, 4>;  // w, x, y, z; rotates body coordinates into world coordinates
+
+// What one joint's sensors say. `sequence` grows by one with each new reading, so silence can be told from standstill.
+struct JointSample {
+  double position_rad = 0;        // at the joint, behind the gear and the spring
+  double motor_position_rad = 0;  // before the spring, reflected to the joint
+  double motor_effort_Nm = 0;     // from the motor's current, reflected to the joint
+  std::uint32_t sequence = 0;
+};
+
+struct ImuSample {
+  Vec3 angular_velocity_rad_s{};  // in the base frame
+  Vec3 acceleration_m_s2{};       // specific force in the base frame: +9.81 up when at rest
+  std::uint32_t sequence = 0;
+};
+
+struct FootSample {
+  std::array<double, sensors_per_foot> force_N{};  // heel inner, heel outer, toe inner, toe outer; >= 0
+  std::uint32_t sequence = 0;
+};
+
+// Filled by Plant::read.
+struct SensorFrame {
+  std::int64_t time_ns = 0;  // of the sampling, on the engine's clock
+  std::uint32_t joint_count = 0;
+  std::uint32_t foot_count = 0;
+  std::array<JointSample, max_joints> joints{};
+  ImuSample imu;
+  std::array<FootSample, max_feet> feet{};
+};
+
+// Estimated from the sensors, each tick.
+struct JointState {
+  double position_rad = 0;
+  double velocity_rad_s = 0;
+  double effort_Nm = 0;  // torque at the joint: spring deflection where there is a spring, else the motor's effort
+};
+
+struct JointStates {
+  std::uint32_t count = 0;
+  std::array<JointState, max_joints> joints{};
+};
+
+enum class ActuationMode : std::uint8_t { off, effort, position, velocity };
+
+// What a drive is asked for. Which fields count is the mode's matter:
+//   off       no torque
+//   effort    effort_Nm
+//   position  position_rad, velocity_rad_s as feed-forward, effort_Nm added
+//   velocity  velocity_rad_s, effort_Nm added
+struct JointActuation {
+  double effort_Nm = 0;
+  double position_rad = 0;
+  double velocity_rad_s = 0;
+  ActuationMode mode = ActuationMode::off;
+};
+
+// Taken by Plant::write.
+struct ActuationFrame {
+  std::uint32_t joint_count = 0;
+  std::array<JointActuation, max_joints> joints{};
+};
+
+static_assert(std::is_trivially_copyable_v<SensorFrame> && std::is_trivially_copyable_v<JointStates> &&
+              std::is_trivially_copyable_v<ActuationFrame>);
+
+}  // namespace kadans

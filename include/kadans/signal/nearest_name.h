@@ -1,0 +1,17 @@
+// "unknown joint 'l_kne', did you mean 'l_knee'?": the known name that is nearest to a mistyped one.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace kadans {
+
+// The candidate with the smallest edit distance (insertions, deletions, substitutions, swaps of neighbours; case
+// counts half), or "" when none is near enough to be what was meant.
+std::string nearest_name(std::string_view wrong, std::span<const std::string> candidates);
+
+// ", did you mean 'NAME'?" or "" when nothing is near: to be appended to a message.
+std::string did_you_mean(std::string_view wrong, std::span<const std::string> candidates);
+
+}  // namespace kadans

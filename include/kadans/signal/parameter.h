@@ -1,0 +1,55 @@
+// The parameter table: every tunable of the control side, declared once. Names are for people, configuration and
+// scripts; the tick addresses parameters by number. The value itself lives in its owner, a control object or a filter.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace kadans {
+
+using ParameterId = std::uint32_t;
+
+struct Parameter {
+  std::string name;  // "posture.l_knee.kp_Nm_per_rad": owner, part, quantity with its unit
+  std::string unit;  // "" for a pure number
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  double initial = 0;
+  std::string doc;  // one sentence
+};
+
+class ParameterTable {
+ public:
+  // Before the loop. `value` is the owner's variable and is set to the initial value; it must outlive the table's use.
+  // `owner` is told apart by the engine (the control object's index). Throws std::invalid_argument on a name taken,
+  // an empty range or an initial value outside it.
+  ParameterId add(Parameter parameter, double* value, std::uint32_t owner = 0);
+
+  // Control thread. False, and nothing changes, on an unknown id or a value outside [min, max] (NaN included).
+  [[nodiscard]] bool set(ParameterId id, double value) noexcept;
+  // Control thread.
+  double get(ParameterId id) const noexcept { return *entries_[id].value; }
+  std::uint32_t owner(ParameterId id) const noexcept { return entries_[id].owner; }
+
+  // Any thread: the declarations do not change once the loop runs.
+  std::optional<ParameterId> find(std::string_view name) const;
+  const Parameter& info(ParameterId id) const { return entries_.at(id).info; }
+  std::size_t size() const noexcept { return entries_.size(); }
+  std::vector<std::string> names() const;
+
+ private:
+  struct Entry {
+    Parameter info;
+    double* value;
+    std::uint32_t owner;
+  };
+  std::vector<Entry> entries_;
+  std::unordered_map<std::string, ParameterId> ids_;
+};
+
+}  // namespace kadans

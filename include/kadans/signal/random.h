@@ -1,0 +1,27 @@
+// Random numbers that repeat. Every use has a stream of its own, named, so that adding one disturbs no other; all
+// streams of a run come from the run's one seed. The same seed gives the same numbers with every compiler.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace kadans {
+
+// xoshiro256** (Blackman and Vigna, 2018), seeded by splitmix64 from the run's seed and the stream's name.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::string_view name) noexcept;
+
+  std::uint64_t next() noexcept;
+  double uniform() noexcept;                        // [0, 1)
+  double uniform(double low, double high) noexcept;  // [low, high)
+  double normal() noexcept;                         // mean 0, standard deviation 1 (polar method, Marsaglia 1964)
+
+ private:
+  std::array<std::uint64_t, 4> state_;
+  double spare_ = 0;
+  bool has_spare_ = false;
+};
+
+}  // namespace kadans

@@ -1,0 +1,48 @@
+// The set-point table: what control objects can be told to reach. Names are for people and scripts; commands address
+// set-points by number. Each set-point is a channel of its owner, a control object.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+using SetpointId = std::uint32_t;
+
+struct Setpoint {
+  std::string name;  // "posture.l_knee.position_rad"
+  std::string unit;
+  double min = 0, max = 0;
+  std::string doc;
+  std::uint32_t owner = 0;    // the control object's index
+  std::uint32_t channel = 0;  // the object's own number for it
+  std::uint32_t joint = 0;    // the joint it moves, or no_joint
+};
+
+class SetpointTable {
+ public:
+  // Before the loop. Throws std::invalid_argument on a name taken or an empty range.
+  SetpointId add(Setpoint setpoint);
+
+  // Control thread: whether the id is known and the value within the range (NaN is not).
+  bool accepts(SetpointId id, double value) const noexcept {
+    return id < entries_.size() && value >= entries_[id].min && value <= entries_[id].max;
+  }
+  const Setpoint& operator[](SetpointId id) const noexcept { return entries_[id]; }
+
+  std::optional<SetpointId> find(std::string_view name) const;
+  std::size_t size() const noexcept { return entries_.size(); }
+  std::vector<std::string> names() const;
+
+ private:
+  std::vector<Setpoint> entries_;
+  std::unordered_map<std::string, SetpointId> ids_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,55 @@
+// The signal table: every recorded quantity, declared once with a name and a unit. The control thread gathers all of
+// them into one row of numbers a tick; recorder, checks, viewers and scripts know them by name.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace kadans {
+
+using SignalId = std::uint32_t;
+
+struct Signal {
+  std::string name;  // "joint.l_knee.position_rad": topic, part, quantity with its unit
+  std::string unit;
+  std::string doc;  // one sentence
+};
+
+class SignalTable {
+ public:
+  // Before the loop. The source is read by the control thread and must outlive the table's use.
+  // Throws std::invalid_argument on a name taken.
+  SignalId add(Signal signal, const double* source);
+  SignalId add(Signal signal, const bool* source);
+  SignalId add(Signal signal, const std::uint32_t* source);
+
+  // Control thread. row.size() == size(); booleans become 0 and 1. No allocation.
+  void gather(std::span<double> row) const noexcept;
+
+  // Any thread: the declarations do not change once the loop runs.
+  std::optional<SignalId> find(std::string_view name) const;
+  const Signal& info(SignalId id) const { return infos_.at(id); }
+  std::size_t size() const noexcept { return infos_.size(); }
+  std::vector<std::string> names() const;
+
+ private:
+  SignalId add_info(Signal signal);
+
+  template <typename T>
+  struct Source {
+    SignalId id;
+    const T* value;
+  };
+  std::vector<Signal> infos_;
+  std::unordered_map<std::string, SignalId> ids_;
+  std::vector<Source<double>> doubles_;
+  std::vector<Source<bool>> bools_;
+  std::vector<Source<std::uint32_t>> counts_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,65 @@
+// Robot status: what the control engine knows of the robot as a whole, and the snapshot that it publishes each tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "kadans/signal/fault.h"
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+// The degradation ladder: each rung lets the robot do less. Order matters: worse is larger.
+enum class SafetyLevel : std::uint8_t { normal, limited, hold, damp, off };
+const char* name(SafetyLevel level) noexcept;
+
+struct BaseStatus {
+  Quat orientation{1, 0, 0, 0};
+  double roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
+  double tilt_rad = 0;            // between the base's z axis and up; >= 0
+  Vec3 angular_velocity_rad_s{};  // in the base frame
+  double height_m = 0;            // of the base frame over the lowest sole, through the legs; holds when no foot bears
+};
+
+struct FootStatus {
+  bool contact = false;
+  double force_N = 0;             // sum of the foot's sensors
+  double cop_x_m = 0, cop_y_m = 0;  // centre of pressure in the foot's frame; holds without contact
+};
+
+struct SafetyStatus {
+  SafetyLevel level = SafetyLevel::normal;
+  std::uint32_t fault_count = 0;  // since the start or the last clearing
+  Fault first_fault;              // kept until cleared
+};
+
+struct RobotStatus {
+  BaseStatus base;
+  std::uint32_t foot_count = 0;
+  std::array<FootStatus, max_feet> feet{};
+  SafetyStatus safety;
+};
+
+// What control objects tell of themselves to the behaviors.
+struct ObjectStatus {
+  bool active = false;
+  double motion_remaining_s = 0;  // until the last of its set-points is reached; 0 at rest
+};
+
+// One tick of the control engine as the other threads see it.
+struct Snapshot {
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  std::uint32_t transactions_applied = 0;  // number of the last transaction applied; they are numbered from 1
+  std::uint32_t commands_refused = 0;      // not finite, out of range, unknown or too old
+  std::uint32_t control_set = 0;           // the active one
+  JointStates joints;
+  RobotStatus status;
+  std::uint32_t object_count = 0;
+  std::array<ObjectStatus, max_objects> objects{};
+};
+
+static_assert(std::is_trivially_copyable_v<Snapshot>);
+
+}  // namespace kadans

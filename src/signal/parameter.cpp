@@ -1,0 +1,45 @@
+#include "kadans/signal/parameter.h"
+
+#include <stdexcept>
+#include <utility>
+
+namespace kadans {
+
+ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_t owner) {
+  if (!(parameter.min <= parameter.max)) throw std::invalid_argument("parameter " + parameter.name + ": empty range");
+  if (!(parameter.initial >= parameter.min && parameter.initial <= parameter.max)) {
+    throw std::invalid_argument("parameter " + parameter.name + ": initial value " +
+                                std::to_string(parameter.initial) + " is outside " + std::to_string(parameter.min) +
+                                ".." + std::to_string(parameter.max));
+  }
+  const auto id = static_cast<ParameterId>(entries_.size());
+  if (!ids_.emplace(parameter.name, id).second) {
+    throw std::invalid_argument("parameter " + parameter.name + " is declared twice");
+  }
+  *value = parameter.initial;
+  entries_.push_back({std::move(parameter), value, owner});
+  return id;
+}
+
+bool ParameterTable::set(ParameterId id, double value) noexcept {
+  if (id >= entries_.size()) return false;
+  const Entry& entry = entries_[id];
+  if (!(value >= entry.info.min && value <= entry.info.max)) return false;
+  *entry.value = value;
+  return true;
+}
+
+std::optional<ParameterId> ParameterTable::find(std::string_view name) const {
+  const auto found = ids_.find(std::string(name));
+  if (found == ids_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::vector<std::string> ParameterTable::names() const {
+  std::vector<std::string> all;
+  all.reserve(entries_.size());
+  for (const Entry& entry : entries_) all.push_back(entry.info.name);
+  return all;
+}
+
+}  // namespace kadans
