@@ -1,0 +1,45 @@
+#include "kadans/engine/transaction.h"
+
+#include <span>
+
+namespace kadans {
+
+void CommandSender::begin(std::int64_t time_ns) noexcept {
+  discard();
+  time_ns_ = time_ns;
+}
+
+bool CommandSender::add(const Command& command) noexcept {
+  // Places in the queue only grow until this producer pushes, so what fits now fits at the commit.
+  const bool fits = overflow_ == 0 && size_ < max_transaction && size_ + 1 <= queue_.free();
+  if (!fits) {
+    ++overflow_;
+    return false;
+  }
+  batch_[size_++] = command;
+  return true;
+}
+
+std::uint32_t CommandSender::commit() noexcept {
+  const std::size_t wanted = size_ - 1 + overflow_;
+  if (wanted == 0) return sequence_;
+  batch_[0] = Command{.kind = CommandKind::transaction,
+                      .count = static_cast<std::uint32_t>(size_ - 1),
+                      .sequence = sequence_ + 1,
+                      .time_ns = time_ns_};
+  const bool sent = overflow_ == 0 && queue_.try_push(std::span<const Command>(batch_.data(), size_));
+  discard();
+  if (!sent) {
+    refused_ += wanted;
+    return 0;
+  }
+  sent_ += wanted;
+  return ++sequence_;
+}
+
+void CommandSender::discard() noexcept {
+  size_ = 1;
+  overflow_ = 0;
+}
+
+}  // namespace kadans
