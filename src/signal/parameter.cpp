@@ -22,10 +22,8 @@ ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_
 }
 
 bool ParameterTable::set(ParameterId id, double value) noexcept {
-  if (id >= entries_.size()) return false;
-  const Entry& entry = entries_[id];
-  if (!(value >= entry.info.min && value <= entry.info.max)) return false;
-  *entry.value = value;
+  if (!accepts(id, value)) return false;
+  *entries_[id].value = value;
   return true;
 }
 

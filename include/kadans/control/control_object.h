@@ -76,8 +76,8 @@ class ControlObject {
   virtual void start(const ControlInput& input) noexcept = 0;
   // Control thread: writes the actuation of its joints.
   virtual void step(const ControlInput& input, ActuationFrame& actuation) noexcept = 0;
-  // Control thread. The value is in the set-point's range. duration_s >= 0; 0 is at once. False: refused.
-  [[nodiscard]] virtual bool set_point(std::uint32_t channel, double value, double duration_s) noexcept = 0;
+  // Control thread. The caller has checked the value against the set-point's range and duration_s >= 0; 0 is at once.
+  virtual void set_point(std::uint32_t channel, double value, double duration_s) noexcept = 0;
   // Control thread: comes to rest where its motion is now.
   virtual void cancel_motion(std::uint32_t channel) noexcept = 0;
   // Control thread: until the last motion under way has arrived; 0 when all is at rest.

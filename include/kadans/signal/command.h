@@ -30,6 +30,8 @@ struct Command {
 };
 static_assert(std::is_trivially_copyable_v<Command>);
 
+inline constexpr double motion_duration_max_s = 3600;
+
 using CommandQueue = Ring<Command, command_capacity>;
 
 }  // namespace kadans

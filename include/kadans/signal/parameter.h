@@ -30,6 +30,10 @@ class ParameterTable {
   // an empty range or an initial value outside it.
   ParameterId add(Parameter parameter, double* value, std::uint32_t owner = 0);
 
+  // Any thread: whether the id is known and the value within the range (NaN is not).
+  bool accepts(ParameterId id, double value) const noexcept {
+    return id < entries_.size() && value >= entries_[id].info.min && value <= entries_[id].info.max;
+  }
   // Control thread. False, and nothing changes, on an unknown id or a value outside [min, max] (NaN included).
   [[nodiscard]] bool set(ParameterId id, double value) noexcept;
   // Control thread.

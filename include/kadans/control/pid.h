@@ -1,0 +1,51 @@
+// The PID law for one joint, in parallel form (Astrom and Hagglund, Advanced PID Control, ISA 2006, ch. 3):
+//
+//   u = feedforward + kp e + I + kd (b v_ref - v_f),   dI/dt = ki e,   e = reference - position
+//
+// The derivative acts on the measured velocity, low-passed at kd_cutoff; the reference's own velocity, which a motion
+// delivers exactly and is never differentiated, enters with the weight b. The integral is kept as a torque, so changing
+// ki does not step u. Anti-windup: the integral does not grow in the direction in which u is limited, nor beyond
+// integral_max. The output is limited to +-effort_max.
+//
+// One owner, the control thread; step() neither allocates, locks nor throws.
+#pragma once
+
+namespace kadans {
+
+class Pid {
+ public:
+  struct Config {
+    double kp_Nm_per_rad = 0;            // 0..5000
+    double ki_Nm_per_rads = 0;           // 0..50000
+    double kd_Nms_per_rad = 0;           // 0..500
+    double kd_cutoff_Hz = 0;             // 0..1000; 0: no filter of its own
+    double velocity_weight = 1;          // b, 0..1
+    double integral_max_Nm = 0;          // >= 0
+    double feedforward_Nm = 0;           // within +-effort_max
+    double effort_max_Nm = 0;            // >= 0
+  };
+  struct State {
+    double reference_rad = 0, reference_velocity_rad_s = 0;
+    double error_rad = 0;
+    double velocity_rad_s = 0;  // measured, filtered
+    double integral_Nm = 0;
+    double effort_Nm = 0;
+    bool saturated = false;
+  };
+
+  // Takes over at the measured state so that the next output is effort_Nm, as far as the integral's limit allows.
+  void start(double position_rad, double velocity_rad_s, double effort_Nm) noexcept;
+  // Returns the effort. Values that are not finite give a result that is not finite; the safety layer stops it.
+  double step(double reference_rad, double reference_velocity_rad_s, double position_rad, double velocity_rad_s,
+              double dt_s) noexcept;
+
+  Config& config() noexcept { return config_; }
+  const Config& config() const noexcept { return config_; }
+  const State& state() const noexcept { return state_; }
+
+ private:
+  Config config_;
+  State state_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,34 @@
+// The behavior engine: the soft-real-time side, 100 Hz. A tick runs the high level of the active control objects, then
+// the behaviors, and tells the control engine that it is alive.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/control/control_sets.h"
+#include "kadans/engine/behavior_host.h"
+#include "kadans/engine/control_engine.h"
+#include "kadans/engine/transaction.h"
+
+namespace kadans {
+
+class BehaviorEngine {
+ public:
+  // Keeps references. Without a host only the high levels run.
+  BehaviorEngine(ControlSets& sets, EngineExchange& exchange, BehaviorHost* host) noexcept
+      : sets_(sets), exchange_(exchange), host_(host), commands_(exchange.commands) {}
+
+  // Behavior thread. Throws what the high level of a control object throws.
+  void tick(std::int64_t time_ns);
+
+  std::uint64_t ticks() const noexcept { return tick_; }
+  const CommandSender& commands() const noexcept { return commands_; }
+
+ private:
+  ControlSets& sets_;
+  EngineExchange& exchange_;
+  BehaviorHost* host_;
+  CommandSender commands_;
+  std::uint64_t tick_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,44 @@
+// The control engine's end of the command queue: whole transactions only, checked before the first effect, at most a
+// fixed number of commands a tick. A transaction with one bad command is refused whole and counted.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/control/control_sets.h"
+#include "kadans/safety/safety.h"
+#include "kadans/signal/command.h"
+
+namespace kadans {
+
+class CommandInbox {
+ public:
+  CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& sets, std::uint32_t commands_per_tick_max,
+               std::int64_t age_max_ns);
+
+  // Control thread. Applies what arrived, oldest first; what exceeds the tick's share waits for the next. A fault of the
+  // safety layer says when something was refused.
+  void apply(std::uint64_t tick, std::int64_t now_ns, Safety& safety) noexcept;
+
+  struct State {
+    std::uint32_t last_transaction = 0;  // number of the last one applied
+    std::uint32_t applied = 0;           // commands, headers not counted
+    std::uint32_t refused = 0;           // commands of refused transactions
+  };
+  const State& state() const noexcept { return state_; }
+
+ private:
+  bool acceptable(const Command& command) const noexcept;
+  bool transaction_acceptable(std::uint32_t count) const noexcept;
+  void execute(const Command& command, Safety& safety) noexcept;
+  void notify_owners() noexcept;
+
+  CommandQueue& queue_;
+  Catalog& catalog_;
+  ControlSets& sets_;
+  std::uint32_t commands_per_tick_max_;
+  std::int64_t age_max_ns_;
+  State state_;
+  std::array<bool, max_objects> retuned_{};
+};
+
+}  // namespace kadans

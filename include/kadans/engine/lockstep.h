@@ -1,0 +1,35 @@
+// Virtual time on one thread: the plant's time leads, everything else follows in a fixed order, so that the same seed
+// gives the same run bit for bit. One step is a control period: control tick, behavior tick when it is due, plant.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/engine/behavior_engine.h"
+#include "kadans/engine/clock.h"
+#include "kadans/engine/control_engine.h"
+#include "kadans/plant/plant.h"
+
+namespace kadans {
+
+class Lockstep {
+ public:
+  // Keeps references. Throws std::invalid_argument unless the behavior period is a whole multiple of the control period.
+  Lockstep(const EngineSettings& settings, Plant& plant, ControlEngine& control, BehaviorEngine& behaviors);
+
+  // Throws what the plant's step throws.
+  void step();
+
+  std::int64_t time_ns() const noexcept { return clock_.now_ns(); }
+  std::int64_t control_period_ns() const noexcept { return control_period_ns_; }
+  const Clock& clock() const noexcept { return clock_; }
+
+ private:
+  Plant& plant_;
+  ControlEngine& control_;
+  BehaviorEngine& behaviors_;
+  VirtualClock clock_;
+  std::int64_t control_period_ns_;
+  std::uint64_t control_ticks_per_behavior_tick_;
+};
+
+}  // namespace kadans

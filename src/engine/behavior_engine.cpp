@@ -1,0 +1,13 @@
+#include "kadans/engine/behavior_engine.h"
+
+namespace kadans {
+
+void BehaviorEngine::tick(std::int64_t time_ns) {
+  const Snapshot& snapshot = exchange_.snapshot.read(0);
+  sets_.update(tick_, snapshot);
+  if (host_ != nullptr) host_->tick(snapshot, commands_);
+  exchange_.heartbeat.publish(time_ns);
+  ++tick_;
+}
+
+}  // namespace kadans

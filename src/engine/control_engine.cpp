@@ -1,0 +1,58 @@
+#include "kadans/engine/control_engine.h"
+
+#include <cmath>
+
+namespace kadans {
+namespace {
+
+std::int64_t to_ns(double time_s) { return std::llround(time_s * 1e9); }
+
+}  // namespace
+
+ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estimator& estimator, Safety& safety,
+                             ControlSets& sets, Catalog& catalog, EngineExchange& exchange)
+    : settings_(settings),
+      plant_(plant),
+      estimator_(estimator),
+      safety_(safety),
+      sets_(sets),
+      exchange_(exchange),
+      inbox_(exchange.commands, catalog, sets, settings.commands_per_tick_max, to_ns(settings.command_age_max_s)),
+      signals_(catalog.signals),
+      dt_s_(settings.control_period_s) {
+  actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
+  written_ = actuation_;
+  declare_signals(catalog);
+  row_.resize(catalog.signals.size());
+}
+
+void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed) noexcept {
+  plant_.read(sensors_);
+  estimator_.update(sensors_, dt_s, tick_, snapshot_.joints, snapshot_.status);
+  safety_.check({.tick = tick_,
+                 .dt_s = dt_s,
+                 .missed_ticks = missed,
+                 .heartbeat_age_s = 1e-9 * static_cast<double>(time_ns - exchange_.heartbeat.read()),
+                 .joints = snapshot_.joints,
+                 .health = estimator_.health()},
+                actuation_, snapshot_.status.safety);
+  plant_.write(actuation_);
+  written_ = actuation_;
+  inbox_.apply(tick_, time_ns, safety_);
+  sets_.step(tick_, {snapshot_.joints, snapshot_.status, written_, time_ns, dt_s}, actuation_);
+  publish(time_ns);
+  ++tick_;
+}
+
+void ControlEngine::publish(std::int64_t time_ns) noexcept {
+  snapshot_.tick = tick_;
+  snapshot_.time_ns = time_ns;
+  snapshot_.transactions_applied = inbox_.state().last_transaction;
+  snapshot_.commands_refused = inbox_.state().refused;
+  sets_.fill(snapshot_.control_set, snapshot_.object_count, snapshot_.objects);
+  exchange_.snapshot.publish(snapshot_);
+  signals_.gather(row_);
+  if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);
+}
+
+}  // namespace kadans

@@ -1,0 +1,20 @@
+#include "kadans/engine/control_engine.h"
+
+namespace kadans {
+
+void ControlEngine::declare_signals(Catalog& catalog) {
+  SignalTable& table = catalog.signals;
+  for (std::size_t i = 0; i < catalog.model->joints.size(); ++i) {
+    table.add({"actuation." + catalog.model->joints[i].name + ".effort_Nm", "Nm", "Torque asked of the drive."},
+              &written_.joints[i].effort_Nm);
+  }
+  table.add({"engine.commands.applied", "", "Commands applied since the start."}, &inbox_.state().applied);
+  table.add({"engine.commands.refused", "", "Commands refused since the start."}, &inbox_.state().refused);
+  table.add({"engine.control_set", "", "Number of the active control set."}, &snapshot_.control_set);
+  table.add({"safety.faults", "", "Faults since the start or the last clearing."},
+            &snapshot_.status.safety.fault_count);
+  table.add({"safety.level", "", "Rung of the ladder: 0 normal, 1 limited, 2 hold, 3 damp, 4 off."},
+            &safety_.level_signal());
+}
+
+}  // namespace kadans
