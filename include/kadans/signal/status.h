@@ -28,6 +28,13 @@ struct FootStatus {
   double cop_x_m = 0, cop_y_m = 0;  // centre of pressure in the foot's frame; holds without contact
 };
 
+// Where the ground bears the robot: over all feet in contact. In the heading frame: below the base frame's origin, x
+// forward along the ground where the base points, z up.
+struct SupportStatus {
+  double force_N = 0;               // sum over the feet in contact; 0 without contact
+  double cop_x_m = 0, cop_y_m = 0;  // centre of pressure; holds without contact
+};
+
 struct SafetyStatus {
   SafetyLevel level = SafetyLevel::normal;
   std::uint32_t fault_count = 0;  // since the start or the last clearing
@@ -39,6 +46,7 @@ struct RobotStatus {
   std::uint32_t foot_count = 0;
   std::array<FootStatus, max_feet> feet{};
   SafetyStatus safety;
+  SupportStatus support;
 };
 
 // What control objects tell of themselves to the behaviors.

@@ -1,0 +1,86 @@
+// Second step of the tick: from what the sensors say to what the robot does.
+//
+// Each joint's position is the encoder's, its velocity the filtered difference quotient (velocity_filter.h), its effort
+// the spring's deflection times its stiffness, or the motor's own effort where there is no spring. The base's
+// orientation comes from the IMU (orientation_filter.h). Contact and centre of pressure come from the soles
+// (contact_detector.h); through the legs that bear the base's height over the lowest sole is known, and where the
+// ground bears the robot as a whole.
+//
+// Sensors fail. A reading counts as new when its `sequence` changed (0: none yet); without a new one everything that
+// depends on it holds, and the next one is used with the time that truly passed. A value that is not finite is not
+// used. Both are reported in health(), for the safety layer. A joint with a sample_divisor of n is looked at in every
+// n-th tick only (tick % n == 0), and in the first.
+//
+// Copies carry the whole state: an estimator that is copied goes on as its original would.
+//
+// One owner, the control thread. update neither allocates nor throws.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kadans/estimate/contact_detector.h"
+#include "kadans/estimate/leg_chain.h"
+#include "kadans/estimate/orientation_filter.h"
+#include "kadans/estimate/sensor_health.h"
+#include "kadans/estimate/settings.h"
+#include "kadans/estimate/velocity_filter.h"
+#include "kadans/model/robot_model.h"
+#include "kadans/signal/frames.h"
+#include "kadans/signal/status.h"
+
+namespace kadans {
+
+class Estimator {
+ public:
+  // dt_s: the nominal period of the tick. Keeps no reference to the model. Throws std::invalid_argument naming the key,
+  // the joint or foot, the value and the range.
+  Estimator(const RobotModel& model, const EstimateSettings& settings, double dt_s);
+
+  // dt_s: since the last update. Fills joints, and status but for its safety part.
+  void update(const SensorFrame& sensors, double dt_s, std::uint64_t tick, JointStates& joints,
+              RobotStatus& status) noexcept;
+
+  const SensorHealth& health() const noexcept { return health_; }  // as of the last update
+  const OrientationFilter::State& orientation() const noexcept { return orientation_.state(); }
+
+  // Of one joint's velocity filter. False, and nothing changes, for an unknown joint or outside (0, 0.45 / its period).
+  [[nodiscard]] bool set_velocity_cutoff(std::size_t joint, double cutoff_Hz) noexcept;
+
+ private:
+  struct JointTrack {
+    VelocityFilter velocity;
+    double spring_Nm_per_rad = 0;
+    std::uint32_t last_sequence = 0;
+    double elapsed_s = 0;  // since the last position that was used
+    JointState state;
+  };
+  struct FootTrack {
+    ContactDetector detector;
+    LegChain leg;
+    std::uint32_t last_sequence = 0;
+    std::array<double, sensors_per_foot> force_N{};  // the last finite ones
+  };
+
+  void add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s);
+  void add_feet(const RobotModel& model, const EstimateSettings& settings);
+  void update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept;
+  void update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept;
+  void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
+  void update_support(const JointStates& joints, const Axes& base, RobotStatus& status) noexcept;
+
+  OrientationFilter orientation_;
+  std::vector<JointTrack> joints_;
+  std::vector<FootTrack> feet_;
+  SensorHealth health_;
+  double dt_s_;
+  bool started_ = false;
+  std::uint32_t last_imu_sequence_ = 0;
+  double imu_elapsed_s_ = 0;
+  double height_m_ = 0;
+  double heading_x_ = 1, heading_y_ = 0;  // the base's x axis on the ground, a unit vector; holds while x is upright
+  SupportStatus support_;
+};
+
+}  // namespace kadans

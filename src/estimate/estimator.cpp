@@ -1,0 +1,138 @@
+#include "kadans/estimate/estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kadans/model/kinematics.h"
+
+namespace kadans {
+namespace {
+
+bool is_finite(const Vec3& v) noexcept { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+// Whether the sensor has a new reading, counting the ticks without.
+bool is_new(std::uint32_t sequence, std::uint32_t& last_sequence, bool look, SensorState& health) noexcept {
+  if (look && sequence != last_sequence) {
+    last_sequence = sequence;
+    health.silent_ticks = 0;
+    return true;
+  }
+  if (health.silent_ticks < std::numeric_limits<std::uint32_t>::max()) ++health.silent_ticks;
+  return false;
+}
+
+}  // namespace
+
+void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t tick, JointStates& joints,
+                       RobotStatus& status) noexcept {
+  if (!(dt_s > 0 && std::isfinite(dt_s))) dt_s = dt_s_;
+  joints.count = health_.joint_count;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const std::uint32_t period_ticks = health_.joints[i].period_ticks;
+    const bool due = period_ticks == 1 || !started_ || tick % period_ticks == 0;
+    update_joint(i, sensors.joints[i], due && i < sensors.joint_count, dt_s);
+    joints.joints[i] = joints_[i].state;
+  }
+  update_base(sensors.imu, dt_s, status.base);
+  status.foot_count = health_.foot_count;
+  for (std::size_t i = 0; i < feet_.size(); ++i) update_foot(i, sensors.feet[i], status.feet[i]);
+  update_support(joints, axes_of(status.base.orientation), status);
+  started_ = true;
+}
+
+void Estimator::update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept {
+  JointTrack& track = joints_[joint];
+  SensorState& health = health_.joints[joint];
+  track.elapsed_s += dt_s;
+  if (!is_new(sample.sequence, track.last_sequence, look, health)) return;
+
+  const bool position_ok = std::isfinite(sample.position_rad);
+  const bool motor_ok = std::isfinite(sample.motor_position_rad) && std::isfinite(sample.motor_effort_Nm);
+  health.finite = position_ok && motor_ok;
+  if (position_ok) {
+    track.state.position_rad = sample.position_rad;
+    track.state.velocity_rad_s = track.velocity.update(sample.position_rad, track.elapsed_s);
+    track.elapsed_s = 0;
+  }
+  if (track.spring_Nm_per_rad > 0) {
+    const double deflection_rad = sample.motor_position_rad - sample.position_rad;
+    if (std::isfinite(deflection_rad)) track.state.effort_Nm = track.spring_Nm_per_rad * deflection_rad;
+  } else if (std::isfinite(sample.motor_effort_Nm)) {
+    track.state.effort_Nm = sample.motor_effort_Nm;
+  }
+}
+
+void Estimator::update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept {
+  imu_elapsed_s_ += dt_s;
+  if (is_new(sample.sequence, last_imu_sequence_, true, health_.imu)) {
+    const bool gyro_ok = is_finite(sample.angular_velocity_rad_s);
+    health_.imu.finite = gyro_ok && is_finite(sample.acceleration_m_s2);
+    orientation_.update(sample.angular_velocity_rad_s, sample.acceleration_m_s2, imu_elapsed_s_);
+    if (gyro_ok) imu_elapsed_s_ = 0;
+  }
+  const OrientationFilter::State& state = orientation_.state();
+  base.orientation = state.orientation;
+  base.angular_velocity_rad_s = state.angular_velocity_rad_s;
+  const Vec3 angles_rad = roll_pitch_yaw(state.orientation);
+  base.roll_rad = angles_rad[0];
+  base.pitch_rad = angles_rad[1];
+  base.yaw_rad = angles_rad[2];
+  // cos(tilt) = 1 - 2 (x^2 + y^2): half the tilt has this sine and this cosine.
+  const auto [w, x, y, z] = state.orientation;
+  base.tilt_rad = 2 * std::atan2(std::sqrt(x * x + y * y), std::sqrt(w * w + z * z));
+}
+
+void Estimator::update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept {
+  FootTrack& track = feet_[foot];
+  SensorState& health = health_.feet[foot];
+  if (is_new(sample.sequence, track.last_sequence, true, health)) {
+    health.finite = true;
+    for (std::size_t s = 0; s < sensors_per_foot; ++s) {
+      if (std::isfinite(sample.force_N[s]))
+        track.force_N[s] = sample.force_N[s];
+      else
+        health.finite = false;
+    }
+    track.detector.update(track.force_N);
+  }
+  const ContactDetector::State& state = track.detector.state();
+  status = {state.contact, state.force_N, state.cop_m[0], state.cop_m[1]};
+}
+
+// The legs that bear: how high the base is, and where the ground bears the robot.
+void Estimator::update_support(const JointStates& joints, const Axes& base, RobotStatus& status) noexcept {
+  const double level = std::sqrt(base.x[0] * base.x[0] + base.x[1] * base.x[1]);
+  if (level > 0.1) {  // else the base's x points up or down and says little of a heading
+    heading_x_ = base.x[0] / level;
+    heading_y_ = base.x[1] / level;
+  }
+  double lowest_m = std::numeric_limits<double>::infinity();
+  double moment_x_Nm = 0, moment_y_Nm = 0;
+  support_.force_N = 0;
+  for (FootTrack& foot : feet_) {
+    const ContactDetector::State& contact = foot.detector.state();
+    if (!contact.contact) continue;
+    foot.leg.update(joints, base);
+    for (const Vec3& corner_m : foot.detector.config().sensors_m)
+      lowest_m = std::fmin(lowest_m, foot.leg.point(corner_m)[2]);
+    const Vec3 cop_m = foot.leg.point(contact.cop_m);
+    moment_x_Nm += contact.force_N * cop_m[0];
+    moment_y_Nm += contact.force_N * cop_m[1];
+    support_.force_N += contact.force_N;
+  }
+  if (support_.force_N > 0) {
+    const double x_m = moment_x_Nm / support_.force_N, y_m = moment_y_Nm / support_.force_N;
+    support_.cop_x_m = heading_x_ * x_m + heading_y_ * y_m;
+    support_.cop_y_m = heading_x_ * y_m - heading_y_ * x_m;
+    height_m_ = -lowest_m;
+  }
+  status.base.height_m = height_m_;
+  status.support = support_;
+}
+
+bool Estimator::set_velocity_cutoff(std::size_t joint, double cutoff_Hz) noexcept {
+  return joint < joints_.size() && joints_[joint].velocity.set_cutoff(cutoff_Hz);
+}
+
+}  // namespace kadans

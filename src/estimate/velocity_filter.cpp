@@ -1,0 +1,86 @@
+#include "kadans/estimate/velocity_filter.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace kadans {
+namespace {
+
+constexpr double cutoff_max_in_rates = 0.45;  // of the sampling rate; the warping grows without bound at 0.5
+constexpr double steps_max = 32;              // a longer gap is crossed in longer steps
+
+bool is_cutoff(double cutoff_Hz, double dt_s) noexcept {
+  return cutoff_Hz > 0 && cutoff_Hz * dt_s < cutoff_max_in_rates;
+}
+
+}  // namespace
+
+VelocityFilter::VelocityFilter(const Config& config) : config_(config) {
+  if (!(config.dt_s > 0 && std::isfinite(config.dt_s)))
+    throw std::invalid_argument("dt_s = " + std::to_string(config.dt_s) + " must be > 0");
+  if (!is_cutoff(config.cutoff_Hz, config.dt_s))
+    throw std::invalid_argument("cutoff_Hz = " + std::to_string(config.cutoff_Hz) + " is outside (0, " +
+                                std::to_string(cutoff_max_in_rates / config.dt_s) + ")");
+  set_step(config.dt_s);
+}
+
+bool VelocityFilter::set_cutoff(double cutoff_Hz) noexcept {
+  if (!is_cutoff(cutoff_Hz, config_.dt_s)) return false;
+  config_.cutoff_Hz = cutoff_Hz;
+  set_step(config_.dt_s);
+  return true;
+}
+
+void VelocityFilter::set_step(double step_s) noexcept {
+  step_s_ = step_s;
+  const double g = std::tan(std::numbers::pi * config_.cutoff_Hz * step_s);
+  a1_ = 1 / (1 + g * (g + std::numbers::sqrt2));  // damping sqrt(2) / 2: Butterworth
+  a2_ = g * a1_;
+  a3_ = g * a2_;
+}
+
+void VelocityFilter::reset() noexcept {
+  state_ = {};
+  band_rad_s_ = low_rad_s_ = 0;
+  started_ = false;
+}
+
+double VelocityFilter::update(double position_rad, double elapsed_s) noexcept {
+  if (!std::isfinite(position_rad)) return state_.velocity_rad_s;
+  if (!started_) {
+    started_ = true;
+    state_.position_rad = position_rad;
+    return state_.velocity_rad_s;
+  }
+  if (!(elapsed_s > 0 && std::isfinite(elapsed_s))) return state_.velocity_rad_s;
+
+  const double quotient_rad_s = (position_rad - state_.position_rad) / elapsed_s;
+  state_.position_rad = position_rad;
+  state_.quotient_rad_s = quotient_rad_s;
+
+  double steps = 1;
+  if (elapsed_s != config_.dt_s) {
+    steps = std::fmin(steps_max, std::fmax(1, std::round(elapsed_s / config_.dt_s)));
+    if (!is_cutoff(config_.cutoff_Hz, elapsed_s / steps)) steps += 1;
+  }
+  const double step_s = elapsed_s / steps;
+  if (!is_cutoff(config_.cutoff_Hz, step_s)) {  // so long that the filter has forgotten everything before
+    band_rad_s_ = 0;
+    low_rad_s_ = state_.velocity_rad_s = quotient_rad_s;
+    return quotient_rad_s;
+  }
+  if (step_s != step_s_) set_step(step_s);
+  for (int step = 0; step < static_cast<int>(steps); ++step) {
+    const double high = quotient_rad_s - low_rad_s_;
+    const double band = a1_ * band_rad_s_ + a2_ * high;
+    const double low = low_rad_s_ + a2_ * band_rad_s_ + a3_ * high;
+    band_rad_s_ = 2 * band - band_rad_s_;
+    low_rad_s_ = 2 * low - low_rad_s_;
+    state_.velocity_rad_s = low;
+  }
+  return state_.velocity_rad_s;
+}
+
+}  // namespace kadans
