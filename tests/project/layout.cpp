@@ -1,0 +1,178 @@
+#include "layout.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <sstream>
+
+namespace kadans::layout {
+namespace {
+
+// A library that only some layers may see. `prefixes` begin the names of its headers.
+struct Fence {
+  std::string_view library;
+  std::vector<std::string_view> prefixes;
+  std::vector<std::string_view> folders;  // below src/ or include/kadans/
+};
+
+const std::vector<Fence>& fences() {
+  static const std::vector<Fence> all{
+      {"Lua", {"lua.h", "lauxlib.h", "lualib.h", "luajit.h", "lua.hpp", "luajit-2.1/"}, {"script/"}},
+      {"Bullet", {"bt", "Bullet", "LinearMath/", "bullet/"}, {"plant/bullet/", "model/"}},
+      {"JSON", {"nlohmann/"}, {"config/", "telemetry/", "scenario/", "campaign/", "remote/", "app/"}},
+  };
+  return all;
+}
+
+std::vector<std::string> words(std::string_view text) {
+  std::istringstream stream{std::string(text)};
+  std::vector<std::string> result;
+  for (std::string word; stream >> word;) result.push_back(word);
+  return result;
+}
+
+std::vector<std::string> lines(std::string_view text) {
+  std::istringstream stream{std::string(text)};
+  std::vector<std::string> result;
+  for (std::string line; std::getline(stream, line);) result.push_back(line);
+  return result;
+}
+
+struct Include {
+  std::string header;
+  bool quoted = false;
+};
+
+std::optional<Include> include_in(std::string_view line) {
+  const auto skip_blanks = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
+  skip_blanks();
+  if (!line.starts_with('#')) return std::nullopt;
+  line.remove_prefix(1);
+  skip_blanks();
+  if (!line.starts_with("include")) return std::nullopt;
+  line.remove_prefix(7);
+  skip_blanks();
+  if (line.empty() || (line.front() != '"' && line.front() != '<')) return std::nullopt;
+  const bool quoted = line.front() == '"';
+  const auto end = line.find(quoted ? '"' : '>', 1);
+  return Include{std::string(line.substr(1, end - 1)), quoted};
+}
+
+std::size_t rank(std::string_view layer, const std::vector<std::string>& layers) {
+  return static_cast<std::size_t>(std::ranges::find(layers, layer) - layers.begin());
+}
+
+std::string place(std::string_view path, std::size_t line) {
+  return std::string(path) + ":" + std::to_string(line) + ": ";
+}
+
+std::string check_layer(std::string_view own, std::string_view header, const std::vector<std::string>& layers) {
+  const std::string other = layer_of(header, layers);
+  if (other.empty()) return "includes kadans/" + std::string(header) + ", which belongs to no layer";
+  if (rank(other, layers) <= rank(own, layers)) return "";
+  return std::string(own) + " includes kadans/" + std::string(header) + ", but " + other + " stands below " +
+         std::string(own);
+}
+
+// `path` is the including file's. A quoted header without kadans/ in front is the layer's own.
+std::string check_fences(std::string_view path, const Include& include) {
+  for (const Fence& fence : fences()) {
+    const auto begins = [&include](std::string_view prefix) { return include.header.starts_with(prefix); };
+    const auto holds = [path](std::string_view folder) { return path.starts_with(folder); };
+    if (!include.quoted && std::ranges::any_of(fence.prefixes, begins) && std::ranges::none_of(fence.folders, holds))
+      return "includes <" + include.header + ">, but " + std::string(fence.library) + " has no place here";
+  }
+  return "";
+}
+
+std::string without_comment(const std::string& line) { return line.substr(0, line.find('#')); }
+
+}  // namespace
+
+std::vector<std::string> read_layers(std::string_view cmake_text) {
+  constexpr std::string_view opening = "set(layers ";
+  const auto begin = cmake_text.find(opening);
+  if (begin == std::string_view::npos) return {};
+  const std::string_view rest = cmake_text.substr(begin + opening.size());
+  return words(rest.substr(0, rest.find(')')));
+}
+
+std::vector<std::string> read_table_layers(std::string_view markdown, const std::vector<std::string>& layers) {
+  std::vector<std::string> result;
+  for (const std::string& line : lines(markdown)) {
+    const auto row = words(line);
+    if (row.size() >= 3 && row[0] == "|" && row[2] == "|" && rank(row[1], layers) < layers.size())
+      result.push_back(row[1]);
+  }
+  return result;
+}
+
+std::string layer_of(std::string_view path, const std::vector<std::string>& layers) {
+  const auto slash = path.find('/');
+  if (slash == std::string_view::npos) return "";
+  const std::string_view first = path.substr(0, slash);
+  return rank(first, layers) < layers.size() ? std::string(first) : "";
+}
+
+Findings check_includes(std::string_view path, std::string_view text, const std::vector<std::string>& layers) {
+  const std::string own = layer_of(path, layers);
+  if (own.empty()) return {std::string(path) + ": lies in no layer's folder"};
+  Findings findings;
+  std::size_t number = 0;
+  for (const std::string& line : lines(text)) {
+    ++number;
+    const auto include = include_in(line);
+    if (!include) continue;
+    std::string wrong = check_fences(path, *include);
+    if (include->header.starts_with("kadans/"))
+      wrong = check_layer(own, std::string_view(include->header).substr(7), layers);
+    if (include->header.find("..") != std::string::npos) wrong = "includes " + include->header + ", a path that climbs";
+    if (!wrong.empty()) findings.push_back(place(path, number) + wrong);
+  }
+  return findings;
+}
+
+Findings check_links(std::string_view path, std::string_view cmake_text, const std::vector<std::string>& layers) {
+  const std::string own = layer_of(path, layers);
+  if (own.empty()) return {std::string(path) + ": lies in no layer's folder"};
+  Findings findings;
+  std::size_t number = 0;
+  for (const std::string& whole : lines(cmake_text)) {
+    ++number;
+    const std::string line = without_comment(whole);
+    for (const std::string_view prefix : {"kadans_", "kadans::"}) {
+      for (auto at = line.find(prefix); at != std::string::npos; at = line.find(prefix, at + 1)) {
+        const auto name = at + prefix.size();
+        const auto end = std::ranges::find_if(line.begin() + static_cast<std::ptrdiff_t>(name), line.end(),
+                                              [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
+        const std::string other(line.begin() + static_cast<std::ptrdiff_t>(name), end);
+        if (rank(other, layers) < layers.size() && rank(other, layers) > rank(own, layers))
+          findings.push_back(place(path, number) + own + " links " + other + ", which stands below it");
+      }
+    }
+  }
+  return findings;
+}
+
+Findings check_length(std::string_view path, std::string_view text) {
+  const auto count = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+  if (count <= max_lines) return {};
+  return {std::string(path) + ": has " + std::to_string(count) + " lines; " + std::to_string(max_lines) +
+          " is the most"};
+}
+
+Findings check_name(std::string_view path) {
+  static constexpr std::array<std::string_view, 9> banned{"util",    "utils", "utilities", "common",  "helper",
+                                                          "helpers", "misc",  "manager",   "managers"};
+  std::string spaced(path);
+  std::ranges::replace_if(
+      spaced, [](char c) { return c == '/' || c == '_' || c == '-' || c == '.'; }, ' ');
+  for (const std::string& word : words(spaced)) {
+    if (std::ranges::find(banned, word) != banned.end())
+      return {std::string(path) + ": '" + word + "' says nothing; name it after what it holds"};
+  }
+  return {};
+}
+
+}  // namespace kadans::layout

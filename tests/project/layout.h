@@ -1,0 +1,32 @@
+// The rules of the source tree as functions over text: which layer may include and link what, how long a file may be,
+// what nothing is called. A rule broken is a line for people; an empty list is a clean file. The list of layers comes
+// from src/CMakeLists.txt, so that adding a layer there is all it takes.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kadans::layout {
+
+inline constexpr std::size_t max_lines = 400;
+
+using Findings = std::vector<std::string>;
+
+// The layers in their order, from the text of src/CMakeLists.txt: `set(layers exchange signal ...)`.
+std::vector<std::string> read_layers(std::string_view cmake_text);
+// The same from a table in Markdown whose rows begin "| layer |"; rows that begin otherwise are left out.
+std::vector<std::string> read_table_layers(std::string_view markdown, const std::vector<std::string>& layers);
+
+// "plant/bullet/world.h" -> "plant"; "" when the first folder is no layer.
+std::string layer_of(std::string_view path, const std::vector<std::string>& layers);
+
+// `path` is the file's, below src/ or include/kadans/: its first folder is its layer.
+Findings check_includes(std::string_view path, std::string_view text, const std::vector<std::string>& layers);
+// A CMakeLists.txt below src/: the targets kadans_<layer> that it names.
+Findings check_links(std::string_view path, std::string_view cmake_text, const std::vector<std::string>& layers);
+Findings check_length(std::string_view path, std::string_view text);
+// No word in the names of the folders and of the file is utils, common, helpers, misc or manager, nor their kin.
+Findings check_name(std::string_view path);
+
+}  // namespace kadans::layout

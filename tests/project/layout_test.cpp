@@ -1,0 +1,164 @@
+// The tree against the rules of docs/architecture.md, and the rules against examples that break them.
+#include "layout.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+namespace fs = std::filesystem;
+using namespace kadans::layout;
+
+namespace {
+
+const fs::path root = KADANS_SOURCE_DIR;
+const std::vector<std::string> abc{"exchange", "signal", "model", "plant", "engine", "config", "script", "app"};
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<fs::path> files_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (!fs::exists(folder)) return files;
+  for (fs::recursive_directory_iterator it(folder), end; it != end; ++it) {
+    if (it->path().filename() == "node_modules") it.disable_recursion_pending();
+    if (it->is_regular_file()) files.push_back(it->path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+bool is_code(const fs::path& file) { return file.extension() == ".h" || file.extension() == ".cpp"; }
+
+// package-lock.json is what npm writes; a NUL makes a file data.
+bool is_written_by_hand(const fs::path& file, const std::string& text) {
+  return file.filename() != "package-lock.json" && text.find('\0') == std::string::npos;
+}
+
+std::vector<std::string> layers() { return read_layers(read(root / "src/CMakeLists.txt")); }
+
+void report(const Findings& findings) {
+  for (const std::string& finding : findings) FAIL_CHECK(finding);
+}
+
+}  // namespace
+
+TEST_CASE("no file of a layer includes a layer below it or a library fenced off from it") {
+  std::size_t checked = 0;
+  for (const fs::path& folder : {root / "src", root / "include/kadans"}) {
+    for (const fs::path& file : files_below(folder)) {
+      if (!is_code(file)) continue;
+      report(check_includes(fs::relative(file, folder).generic_string(), read(file), layers()));
+      ++checked;
+    }
+  }
+  CHECK(checked > 20);
+}
+
+TEST_CASE("no layer's CMakeLists.txt links a layer below it") {
+  std::size_t checked = 0;
+  for (const fs::path& file : files_below(root / "src")) {
+    if (file.filename() != "CMakeLists.txt" || file == root / "src/CMakeLists.txt") continue;
+    report(check_links(fs::relative(file, root / "src").generic_string(), read(file), layers()));
+    ++checked;
+  }
+  CHECK(checked >= 2);
+}
+
+TEST_CASE("no file is longer than 400 lines") {
+  std::size_t checked = 0;
+  for (const char* folder : {"src", "include", "tests", "behaviors", "scripts", "cmake"}) {
+    for (const fs::path& file : files_below(root / folder)) {
+      const std::string text = read(file);
+      if (is_written_by_hand(file, text)) report(check_length(fs::relative(file, root).generic_string(), text));
+      ++checked;
+    }
+  }
+  CHECK(checked > 50);
+}
+
+TEST_CASE("the name of every file and folder says what is in it") {
+  for (const char* folder : {"src", "include", "tests", "behaviors", "scripts", "cmake", "config", "models", "docs"}) {
+    for (const fs::path& file : files_below(root / folder)) report(check_name(fs::relative(file, root).generic_string()));
+  }
+}
+
+TEST_CASE("docs/architecture.md lists the layers in the order in which they are built") {
+  CHECK(layers().size() >= 16);
+  CHECK(read_table_layers(read(root / "docs/architecture.md"), layers()) == layers());
+}
+
+TEST_CASE("the checker reads the layers from CMake and from a table") {
+  CHECK(read_layers("# order\nset(layers exchange signal\n           model)\n") ==
+        std::vector<std::string>{"exchange", "signal", "model"});
+  CHECK(read_layers("nothing").empty());
+  CHECK(read_table_layers("| folder | what |\n|---|---|\n| signal | frames |\n| exchange | queues |\n", abc) ==
+        std::vector<std::string>{"signal", "exchange"});
+}
+
+TEST_CASE("the checker accepts includes of the own layer, of layers above and of what is open to all") {
+  CHECK(check_includes("plant/bullet/world.cpp",
+                       "#include \"kadans/plant/plant.h\"\n#include \"kadans/model/urdf.h\"\n#include \"world.h\"\n"
+                       "#include <vector>\n#include <Eigen/Core>\n#include <btBulletDynamicsCommon.h>\n",
+                       abc)
+            .empty());
+  CHECK(check_includes("script/state.cpp", "#include <lua.hpp>\n#include <lauxlib.h>\n", abc).empty());
+  CHECK(check_includes("config/reader.cpp", "#include <nlohmann/json.hpp>\n", abc).empty());
+  CHECK(
+      check_includes("model/mass.cpp", "// #include \"kadans/app/main.h\"\n#include <BulletInverseDynamics/x.h>\n", abc)
+          .empty());
+}
+
+TEST_CASE("the checker finds an include of a layer below, with its line") {
+  const Findings findings =
+      check_includes("signal/fault.cpp", "#include <array>\n#include \"kadans/plant/plant.h\"\n", abc);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0] == "signal/fault.cpp:2: signal includes kadans/plant/plant.h, but plant stands below signal");
+  CHECK(check_includes("engine/tick.h", "  #  include  <kadans/script/state.h>\n", abc).size() == 1);
+}
+
+TEST_CASE("the checker finds a library outside its fence") {
+  CHECK(check_includes("engine/tick.cpp", "#include <lua.hpp>\n", abc).size() == 1);
+  CHECK(check_includes("app/main.cpp", "#include <lauxlib.h>\n", abc).size() == 1);
+  CHECK(check_includes("plant/ideal.cpp", "#include <btBulletDynamicsCommon.h>\n", abc).size() == 1);
+  CHECK(check_includes("engine/tick.cpp", "#include <BulletDynamics/Featherstone/btMultiBody.h>\n", abc).size() == 1);
+  CHECK(check_includes("script/state.cpp", "#include <nlohmann/json.hpp>\n", abc).size() == 1);
+}
+
+TEST_CASE("the checker finds files and headers of no layer and paths that climb") {
+  CHECK(check_includes("tools/x.cpp", "", abc).size() == 1);
+  CHECK(check_includes("app/main.cpp", "#include \"kadans/tools/x.h\"\n", abc).size() == 1);
+  CHECK(check_includes("app/main.cpp", "#include \"../signal/table.h\"\n", abc).size() == 1);
+}
+
+TEST_CASE("the checker finds a link downwards, and only that") {
+  CHECK(check_links("plant/CMakeLists.txt",
+                    "kadans_layer(plant SOURCES a.cpp\n  LINKS kadans_model)  # not kadans_app\n", abc)
+            .empty());
+  CHECK(check_links("plant/bullet/CMakeLists.txt", "kadans_layer(plant/bullet SOURCES a.cpp LINKS kadans_plant)\n", abc)
+            .empty());
+  const Findings findings = check_links("plant/CMakeLists.txt", "kadans_layer(plant\n  LINKS kadans_engine)\n", abc);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0] == "plant/CMakeLists.txt:2: plant links engine, which stands below it");
+  CHECK(check_links("signal/CMakeLists.txt", "target_link_libraries(x kadans::script)\n", abc).size() == 1);
+  CHECK(check_links("signal/CMakeLists.txt", "LINKS kadans_plant_bullet\n", abc).size() == 1);
+}
+
+TEST_CASE("the checker finds a file that is too long") {
+  CHECK(check_length("a.h", std::string(400, '\n')).empty());
+  CHECK(check_length("a.h", std::string(401, '\n')) == Findings{"a.h: has 401 lines; 400 is the most"});
+}
+
+TEST_CASE("the checker finds names that say nothing") {
+  CHECK(check_name("src/engine/control_engine.cpp").empty());
+  CHECK(check_name("tests/signal/community_test.cpp").empty());
+  for (const char* path : {"src/utils/a.h", "src/engine/math_utils.h", "src/common/a.h", "src/helpers.cpp",
+                           "tests/misc/a.cpp", "src/engine/tick-manager.h"})
+    CHECK_MESSAGE(check_name(path).size() == 1, path);
+}

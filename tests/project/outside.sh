@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# outside.sh COMPILER: installs, moves the installed tree, builds the project in outside/ against it, and runs what was
+# built and installed from a folder that is not ours.
+set -euo pipefail
+here=$(dirname "$(realpath "$0")")
+work="$KADANS_BINARY_DIR/outside"
+rm -rf "$work"
+mkdir -p "$work/elsewhere"
+
+cmake --install "$KADANS_BINARY_DIR" --prefix "$work/made" >"$work/install.log"
+mv "$work/made" "$work/moved"
+cmake -S "$here/outside" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$1" >"$work/configure.log"
+cmake --build "$work/build" --parallel "$(nproc)"
+
+cd "$work/elsewhere"
+for program in "$work"/build/run_*; do
+  echo "$(basename "$program")"
+  "$program"
+done
+
+share="$work/moved/share/kadans"
+if [ -x "$work/moved/bin/kadans" ]; then
+  "$work/moved/bin/kadans" --version
+  "$work/moved/bin/kadans" sim "$share/config/scenarios/squat.json" --duration 0.1 --json
+fi
+if grep -rlI -e "$KADANS_SOURCE_DIR" -e "$work/made" "$work/moved"; then
+  echo "the files above name a path of the machine that built them"
+  exit 1
+fi

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# rebuild.sh PRESET TARGET...: builds targets in the preset's way below the build folder, then runs those that are test
+# programs. Address randomisation is off throughout: ThreadSanitizer of gcc 12 does not start on kernels with more of it.
+set -euo pipefail
+preset=$1
+shift
+build="$KADANS_BINARY_DIR/$preset"
+
+[ $# -gt 0 ] || { echo "nothing to build yet"; exit 0; }
+cd "$KADANS_SOURCE_DIR"
+cmake --preset "$preset" -B "$build" -DKADANS_REBUILD_TESTS=OFF >"$KADANS_BINARY_DIR/$preset.configure.log" 2>&1 ||
+  { cat "$KADANS_BINARY_DIR/$preset.configure.log"; exit 1; }
+setarch -R cmake --build "$build" --target "$@"
+
+for target in "$@"; do
+  [[ $target == *_test ]] || continue
+  echo "$target"
+  setarch -R "$build/tests/$target" --minimal
+done
