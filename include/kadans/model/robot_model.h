@@ -4,6 +4,7 @@
 // z up, each link's frame at its joint, rotations given as quaternions (w, x, y, z).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -47,6 +48,7 @@ struct Geometry {
   std::string link;  // the URDF link that it was written in, before merging
   Pose pose;         // in the frame of the (merged) link
   Shape shape;
+  std::array<double, 4> color{0.7, 0.7, 0.7, 1};  // red, green, blue, opacity; of visuals
 };
 
 struct Link {

@@ -1,0 +1,44 @@
+#include "kadans/model/robot_model.h"
+
+#include <algorithm>
+
+namespace kadans {
+
+std::optional<std::size_t> RobotModel::find_joint(std::string_view wanted) const {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].name == wanted) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::size_t> RobotModel::find_link(std::string_view wanted) const {
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const std::vector<std::string>& merged = links[i].merged;
+    if (links[i].name == wanted || std::find(merged.begin(), merged.end(), wanted) != merged.end()) return i;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> RobotModel::joint_names() const {
+  std::vector<std::string> names;
+  names.reserve(joints.size());
+  for (const Joint& joint : joints) names.push_back(joint.name);
+  return names;
+}
+
+std::vector<std::string> RobotModel::link_names() const {
+  std::vector<std::string> names;
+  for (const Link& link : links) {
+    names.push_back(link.name);
+    names.insert(names.end(), link.merged.begin(), link.merged.end());
+  }
+  return names;
+}
+
+double RobotModel::mass_kg() const {
+  double sum_kg = 0;
+  for (const Link& link : links) sum_kg += link.inertia.mass_kg;
+  return sum_kg;
+}
+
+}  // namespace kadans
