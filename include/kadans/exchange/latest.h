@@ -5,8 +5,12 @@
 // newer, with the reader's slot. One atomic exchange each, no loop, so both sides are wait-free and a reader that
 // stops forever disturbs nobody. A write costs one copy a reader; what nobody read is overwritten: this is not a queue.
 //
+// Memory order: every exchange both releases the slot that is given away (the writer's new value, or the reader's end
+// of reading) and acquires the one that comes back, so a slot has one owner at any time and its bytes need no atomics.
+//
 // Latest is trivially copyable and holds no pointer, so it may live in memory shared between two processes. Copy it
-// only while nobody reads or writes.
+// only while nobody reads or writes. A process that is killed inside publish() or read() may leave two parties with the
+// same slot: when a party died, construct the storage anew before the next one takes its place.
 #pragma once
 
 #include <array>
@@ -24,20 +28,21 @@ class Latest {
   static_assert(std::atomic_ref<std::uint32_t>::is_always_lock_free, "also on 32-bit machines");
 
  public:
+  // Before any thread reads or writes. Until the first publish() every reader finds `first`, and it is not news.
   explicit Latest(const T& first = T{}) noexcept {
-    for (Channel& channel : channels_) channel.slots.fill(first);
+    for (Channel& channel : channels_) channel.slots.fill(Slot{first});
   }
 
   // Writer thread only. Wait-free.
   void publish(const T& value) noexcept {
     for (Channel& channel : channels_) {
-      channel.slots[channel.write_slot] = value;
+      channel.slots[channel.write_slot].value = value;
       const std::uint32_t previous = middle(channel).exchange(channel.write_slot | fresh, std::memory_order_acq_rel);
       channel.write_slot = previous & slot_mask;
     }
   }
 
-  // Thread of reader `reader` only; a reader index belongs to one thread. Wait-free.
+  // Thread of reader `reader` only; a reader index belongs to one thread, reader < readers(). Wait-free.
   // The reference holds its value until the same reader reads again.
   const T& read(std::size_t reader = 0) noexcept {
     Channel& channel = channels_[reader];
@@ -45,10 +50,10 @@ class Latest {
       const std::uint32_t newest = middle(channel).exchange(channel.read_slot, std::memory_order_acq_rel);
       channel.read_slot = newest & slot_mask;
     }
-    return channel.slots[channel.read_slot];
+    return channel.slots[channel.read_slot].value;
   }
 
-  // Thread of reader `reader` only: whether read() would bring a value that this reader has not seen.
+  // Thread of reader `reader` only: whether read() would bring a value that this reader has not seen. Wait-free.
   bool has_news(std::size_t reader = 0) noexcept {
     return (middle(channels_[reader]).load(std::memory_order_acquire) & fresh) != 0;
   }
@@ -60,10 +65,14 @@ class Latest {
   static constexpr std::uint32_t slot_mask = 3;
   static constexpr std::uint32_t fresh = 4;
 
+  // Slots share no cache line, so writing one does not slow down reading another.
+  struct alignas(cache_line) Slot {
+    T value;
+  };
   struct Channel {
-    alignas(cache_line) std::array<T, 3> slots;
+    std::array<Slot, 3> slots;
     alignas(cache_line) std::uint32_t write_slot = 0;  // writer
-    alignas(cache_line) std::uint32_t middle = 1;      // both, through atomic_ref
+    alignas(cache_line) std::uint32_t middle = 1;      // both, through atomic_ref alone
     alignas(cache_line) std::uint32_t read_slot = 2;   // reader
   };
 

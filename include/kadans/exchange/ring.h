@@ -1,9 +1,16 @@
 // A bounded queue from one producer to one consumer. A batch goes in whole or not at all and becomes visible at once,
 // so a reader never sees half a transaction. Full means refused: nothing blocks, nothing is overwritten.
 //
-// Wait-free on both sides, trivially copyable and without pointers, so that it also works in shared memory.
+// Two positions count what was pushed and what was popped, modulo 2^32; the difference is what waits. Each side stores
+// its own position with release after it has touched the slots and loads the other's with acquire before it touches
+// them. A position is only ever seen through atomic_ref, by its owner too.
+//
+// Wait-free on both sides, trivially copyable and without pointers, so that it also works in memory shared between two
+// processes. Copy it only while nobody pushes or pops. A producer that is killed inside a push leaves nothing behind; a
+// consumer that is killed inside a pop may have used an element that its successor finds again.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -21,30 +28,33 @@ class Ring {
   static_assert(std::atomic_ref<std::uint32_t>::is_always_lock_free, "also on 32-bit machines");
 
  public:
-  // Producer thread only. False, and nothing is queued, when the batch does not fit.
-  [[nodiscard]] bool try_push(std::span<const T> batch) noexcept {
-    if (batch.size() > free()) return false;
-    const std::uint32_t head = head_;
-    for (std::size_t i = 0; i < batch.size(); ++i) slots_[(head + i) & mask] = batch[i];
-    std::atomic_ref(head_).store(head + static_cast<std::uint32_t>(batch.size()), std::memory_order_release);
+  // Producer thread only. False, and nothing is queued, when the batch does not fit. The batch is no part of the ring.
+  [[nodiscard]] bool try_push(std::span<const T> batch) noexcept { return try_push(batch, {}); }
+  // Producer thread only. The same for a batch that lies in two places, `first` before `second`.
+  [[nodiscard]] bool try_push(std::span<const T> first, std::span<const T> second) noexcept {
+    const std::size_t size = first.size() + second.size();
+    if (size > free()) return false;
+    const std::uint32_t head = own(head_);
+    copy_in(head, first);
+    copy_in(head + static_cast<std::uint32_t>(first.size()), second);
+    store(head_, head + static_cast<std::uint32_t>(size));
     return true;
   }
   // Producer thread only.
   [[nodiscard]] bool try_push(const T& value) noexcept { return try_push(std::span<const T>(&value, 1)); }
 
   // Producer thread only: places left. It can only grow until the producer pushes again.
-  std::size_t free() const noexcept { return Capacity - (head_ - load(tail_)); }
+  std::size_t free() const noexcept { return Capacity - (own(head_) - other(tail_)); }
 
   // Consumer thread only: elements waiting. It can only grow until the consumer pops.
-  std::size_t size() const noexcept { return load(head_) - tail_; }
+  std::size_t size() const noexcept { return other(head_) - own(tail_); }
 
-  // Consumer thread only: element `i` of those waiting, i < size(); it stays in the queue.
-  const T& peek(std::size_t i = 0) const noexcept { return slots_[(tail_ + i) & mask]; }
+  // Consumer thread only: element `i` of those waiting, i < size() as last asked; it stays in the queue. The reference
+  // holds until the element is dropped.
+  const T& peek(std::size_t i = 0) const noexcept { return slots_[(own(tail_) + i) & mask]; }
 
-  // Consumer thread only: removes the first `count` elements, count <= size().
-  void drop(std::size_t count) noexcept {
-    std::atomic_ref(tail_).store(tail_ + static_cast<std::uint32_t>(count), std::memory_order_release);
-  }
+  // Consumer thread only: removes the first `count` elements, count <= size() as last asked.
+  void drop(std::size_t count) noexcept { store(tail_, own(tail_) + static_cast<std::uint32_t>(count)); }
 
   // Consumer thread only. False, and `value` untouched, when nothing waits.
   [[nodiscard]] bool try_pop(T& value) noexcept {
@@ -60,9 +70,26 @@ class Ring {
   static constexpr std::size_t cache_line = 64;
   static constexpr std::uint32_t mask = static_cast<std::uint32_t>(Capacity - 1);
 
+  // In at most two pieces, the second from the start of the slots.
+  void copy_in(std::uint32_t position, std::span<const T> batch) noexcept {
+    const std::size_t start = position & mask;
+    const std::size_t before_end = std::min(batch.size(), Capacity - start);
+    std::copy_n(batch.begin(), before_end, slots_.begin() + static_cast<std::ptrdiff_t>(start));
+    std::copy_n(batch.begin() + static_cast<std::ptrdiff_t>(before_end), batch.size() - before_end, slots_.begin());
+  }
+
   // atomic_ref wants a non-const object even to load; the positions are never const objects.
-  static std::uint32_t load(const std::uint32_t& position) noexcept {
-    return std::atomic_ref(const_cast<std::uint32_t&>(position)).load(std::memory_order_acquire);
+  static std::atomic_ref<std::uint32_t> shared(const std::uint32_t& position) noexcept {
+    return std::atomic_ref(const_cast<std::uint32_t&>(position));
+  }
+  static std::uint32_t own(const std::uint32_t& position) noexcept {
+    return shared(position).load(std::memory_order_relaxed);
+  }
+  static std::uint32_t other(const std::uint32_t& position) noexcept {
+    return shared(position).load(std::memory_order_acquire);
+  }
+  static void store(std::uint32_t& position, std::uint32_t value) noexcept {
+    shared(position).store(value, std::memory_order_release);
   }
 
   alignas(cache_line) std::uint32_t head_ = 0;  // pushed so far, modulo 2^32; written by the producer
