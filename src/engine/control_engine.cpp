@@ -1,25 +1,15 @@
 #include "kadans/engine/control_engine.h"
 
-#include <cmath>
-
 namespace kadans {
-namespace {
-
-std::int64_t to_ns(double time_s) { return std::llround(time_s * 1e9); }
-
-}  // namespace
-
 ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estimator& estimator, Safety& safety,
                              ControlSets& sets, Catalog& catalog, EngineExchange& exchange)
-    : settings_(settings),
-      plant_(plant),
+    : plant_(plant),
       estimator_(estimator),
       safety_(safety),
       sets_(sets),
       exchange_(exchange),
-      inbox_(exchange.commands, catalog, sets, settings.commands_per_tick_max, to_ns(settings.command_age_max_s)),
-      signals_(catalog.signals),
-      dt_s_(settings.control_period_s) {
+      inbox_(exchange.commands, catalog, sets, settings.commands_per_tick_max, settings.command_age_max_ns()),
+      signals_(catalog.signals) {
   actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
   written_ = actuation_;
   declare_signals(catalog);

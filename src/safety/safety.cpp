@@ -82,14 +82,14 @@ void Safety::watch_engine(const SafetyInput& input) noexcept {
 void Safety::watch_joint(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept {
   const JointState& state = input.joints.joints[joint];
   const JointLimits& limits = settings_.joints[joint];
-  const SensorHealth::Reading& reading = input.health.joints[joint];
+  const SensorState& sensor = input.health.joints[joint];
   const auto fault = [&](FaultCode code, double value, double limit) {
     return Fault{code, static_cast<std::uint16_t>(joint), input.tick, value, limit};
   };
-  if (!reading.finite) degrade_joint(joint, SafetyLevel::off, fault(FaultCode::sensor_not_finite, state.position_rad, 0));
-  if (reading.silent_ticks > settings_.silent_ticks_max) {
-    degrade_joint(joint, SafetyLevel::off, fault(FaultCode::sensor_silent, static_cast<double>(reading.silent_ticks),
-                                                 static_cast<double>(settings_.silent_ticks_max)));
+  if (!sensor.finite) degrade_joint(joint, SafetyLevel::off, fault(FaultCode::sensor_not_finite, state.position_rad, 0));
+  const std::uint32_t silent_max = settings_.silent_ticks_max + sensor.period_ticks - 1;
+  if (sensor.silent_ticks > silent_max) {
+    degrade_joint(joint, SafetyLevel::off, fault(FaultCode::sensor_silent, sensor.silent_ticks, silent_max));
   }
   if (!finite(actuation)) {
     degrade_joint(joint, SafetyLevel::damp, fault(FaultCode::actuation_not_finite, actuation.effort_Nm, 0));
@@ -118,10 +118,13 @@ void Safety::limit_joint(const SafetyInput& input, std::size_t joint, JointActua
     const double effort_Nm = -settings_.damping_Nms_per_rad * input.joints.joints[joint].velocity_rad_s;
     actuation = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};
   }
-  if (!(std::abs(actuation.effort_Nm) <= effort_max_Nm)) {
-    actuation.effort_Nm = std::clamp(actuation.effort_Nm, -effort_max_Nm, effort_max_Nm);
-    limited_ = true;
+  const bool too_much = !(std::abs(actuation.effort_Nm) <= effort_max_Nm);
+  if (too_much && !limiting_[joint]) {
+    raise({FaultCode::effort_limit, static_cast<std::uint16_t>(joint), input.tick, actuation.effort_Nm, effort_max_Nm});
   }
+  if (too_much) actuation.effort_Nm = std::clamp(actuation.effort_Nm, -effort_max_Nm, effort_max_Nm);
+  limiting_[joint] = too_much;
+  limited_ = limited_ || too_much;
 }
 
 void Safety::check(const SafetyInput& input, ActuationFrame& actuation, SafetyStatus& status) noexcept {

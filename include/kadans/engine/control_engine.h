@@ -11,6 +11,7 @@
 #include "kadans/control/control_sets.h"
 #include "kadans/engine/command_inbox.h"
 #include "kadans/engine/record_sink.h"
+#include "kadans/engine/settings.h"
 #include "kadans/estimate/estimator.h"
 #include "kadans/exchange/latest.h"
 #include "kadans/plant/plant.h"
@@ -23,13 +24,6 @@ namespace kadans {
 inline constexpr std::size_t snapshot_readers = 2;  // 0: behavior engine, 1: supervisor
 using SnapshotStorage = Latest<Snapshot, snapshot_readers>;
 using HeartbeatStorage = Latest<std::int64_t>;      // time of the behavior engine's last tick
-
-struct EngineSettings {
-  double control_period_s = 0.001;
-  double behavior_period_s = 0.01;  // a whole multiple of the control period
-  std::uint32_t commands_per_tick_max = max_transaction;
-  double command_age_max_s = 0.1;   // older transactions are refused
-};
 
 // The storages between the threads. Position independent; may live in shared memory.
 struct EngineExchange {
@@ -61,7 +55,6 @@ class ControlEngine {
   void publish(std::int64_t time_ns) noexcept;
   void declare_signals(Catalog& catalog);
 
-  EngineSettings settings_;
   Plant& plant_;
   Estimator& estimator_;
   Safety& safety_;
@@ -76,7 +69,6 @@ class ControlEngine {
   Snapshot snapshot_;         // joints and status are estimated in place
   ActuationFrame actuation_;  // computed in the last tick, written in this one
   ActuationFrame written_;    // as it went to the plant
-  double dt_s_ = 0;
   std::vector<double> row_;
 };
 

@@ -7,6 +7,7 @@
 #include "kadans/engine/behavior_engine.h"
 #include "kadans/engine/clock.h"
 #include "kadans/engine/control_engine.h"
+#include "kadans/engine/tick_statistics.h"
 #include "kadans/plant/plant.h"
 
 namespace kadans {
@@ -22,14 +23,17 @@ class Lockstep {
   std::int64_t time_ns() const noexcept { return clock_.now_ns(); }
   std::int64_t control_period_ns() const noexcept { return control_period_ns_; }
   const Clock& clock() const noexcept { return clock_; }
+  const TickStatistics& control_tick_cost() const noexcept { return control_tick_cost_; }  // in wall time
 
  private:
   Plant& plant_;
   ControlEngine& control_;
   BehaviorEngine& behaviors_;
   VirtualClock clock_;
+  WallClock wall_;
+  TickStatistics control_tick_cost_;
   std::int64_t control_period_ns_;
-  std::uint64_t control_ticks_per_behavior_tick_;
+  std::uint32_t behavior_divisor_;
 };
 
 }  // namespace kadans

@@ -60,7 +60,8 @@ class Safety {
   std::size_t joint_count_;
   std::array<SafetyLevel, max_joints> joint_levels_{};
   SafetyLevel robot_level_ = SafetyLevel::normal;
-  bool limited_ = false;  // in this tick
+  std::array<bool, max_joints> limiting_{};
+  bool limited_ = false;  // any joint, in this tick
   bool heartbeat_lost_ = false;
   double lost_for_s_ = 0;
   std::uint32_t overruns_in_a_row_ = 0;

@@ -1,0 +1,43 @@
+// What a run has to say: for people, and as one JSON object for machines.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kadans/model/robot_model.h"
+#include "kadans/scenario/run.h"
+
+namespace kadans {
+
+// {scenario, seed, passed, checks [{name, passed, value, at_s}], duration_s, realtime_factor, control_ticks,
+// behavior_ticks, state_hash, tick_ns {median, p99, max}, queue {sent, refused}, faults [], errors [], record}, on one
+// line. `record` is the record's file or "". Numbers that are not finite become null.
+std::string json_report(const RunResult& result, const RunLog& log, const RobotModel& model, const std::string& record);
+
+struct ReportStyle {
+  bool color = false;
+  bool unicode = true;
+  bool verbose = false;  // all log lines
+};
+
+// A signal drawn in the report.
+struct ReportTrace {
+  std::string title;
+  std::vector<double> values;
+  double duration_s = 0;
+};
+
+struct ReportSubject {
+  const RunResult& result;
+  const RunLog& log;
+  const RobotModel& model;
+  const std::vector<ScenarioCheck>& checks;  // in the order of the result's
+  const std::vector<ReportTrace>& traces;
+  std::string title;   // one sentence on the scenario
+  std::string record;  // file, or ""
+  std::string repeat;  // the command that repeats the run
+};
+
+std::string text_report(const ReportSubject& subject, const ReportStyle& style);
+
+}  // namespace kadans

@@ -1,0 +1,58 @@
+// One run of a scenario on the virtual clock, from the first tick to the verdict.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kadans/engine/lockstep.h"
+#include "kadans/plant/plant.h"
+#include "kadans/scenario/check.h"
+#include "kadans/scenario/run_log.h"
+#include "kadans/scenario/truth_signals.h"
+
+namespace kadans {
+
+struct RunParts {
+  ModelPlant& plant;
+  ControlEngine& control;
+  BehaviorEngine& behaviors;
+  Lockstep& lockstep;
+  TruthSignals& truth;
+  RunLog& log;
+};
+
+// Looks on while a run goes. The row holds all signals of the tick.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void tick(double time_s, std::span<const double> row) = 0;
+  virtual bool stop_asked() const { return false; }
+};
+
+struct TickCost {
+  double median_ns = 0, p99_ns = 0, max_ns = 0;
+};
+
+struct RunResult {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  bool passed = false;  // every check, no error of a behavior, not stopped early
+  bool interrupted = false;
+  std::string error;  // why the run ended early; "" when it did not
+  std::vector<CheckResult> checks;
+  double duration_s = 0;
+  double wall_s = 0;
+  double realtime_factor = 0;
+  std::uint64_t control_ticks = 0, behavior_ticks = 0;
+  std::uint64_t state_hash = 0;
+  TickCost tick;
+  std::uint64_t commands_sent = 0, commands_refused = 0;
+  std::vector<Fault> faults;  // in the order they came, at most fault_log_capacity a tick
+};
+
+// Runs for duration_s. `observers` may be empty. A plant that fails ends the run with an error in the result.
+RunResult run_scenario(const RunParts& parts, double duration_s, std::vector<Check>& checks,
+                       const std::vector<RunObserver*>& observers);
+
+}  // namespace kadans

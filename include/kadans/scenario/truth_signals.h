@@ -1,0 +1,64 @@
+// What a model knows for certain, as signals: for checks and pictures, never for control.
+//
+//   plant.base.height_m, x_m, y_m, tilt_rad, yaw_rad, speed_m_s     the base frame in the world
+//   plant.foot.<link>.force_N, slip_m                                slip: way along the ground since the foot settled
+//   plant.limits.position_rad   how far the worst joint is inside its limits; negative beyond them
+//   plant.limits.torque_share   the largest drive torque, as a share of its joint's limit
+//   plant.limits.speed_share    the largest joint velocity, as a share of its limit
+//   reference.base.height_m     where the base would be if every joint stood at its set-point
+//   reference.base.error_m      plant.base.height_m minus that
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kadans/control/catalog.h"
+#include "kadans/model/kinematics.h"
+#include "kadans/plant/plant.h"
+
+namespace kadans {
+
+class TruthSignals {
+ public:
+  // Declares the signals in the catalog. `feet` are the links named in the plant's settings, with the points of each sole
+  // that touch the ground. Keeps references to model, plant and catalog. Slip counts from settle_s on.
+  struct Foot {
+    std::string link;
+    std::vector<Vec3> sole_m;  // in the link's frame
+  };
+  TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s);
+
+  // After each step of the plant. `row` holds the signals of the last control tick: the set-points are read from it.
+  void update(double time_s, std::span<const double> row) noexcept;
+
+ private:
+  struct State {
+    double height_m = 0, x_m = 0, y_m = 0, tilt_rad = 0, yaw_rad = 0, speed_m_s = 0;
+    double position_rad = 0, torque_share = 0, speed_share = 0;
+    double reference_height_m = 0, reference_error_m = 0;
+  };
+  struct FootState {
+    std::size_t link = 0;
+    std::vector<Vec3> sole_m;
+    bool settled = false;
+    Vec3 settled_at_m{};
+    double force_N = 0, slip_m = 0;
+  };
+  void declare(SignalTable& table, const std::vector<Foot>& feet);
+  void update_limits() noexcept;
+  void update_feet(double time_s) noexcept;
+  double reference_height_m(std::span<const double> row) noexcept;
+
+  const ModelPlant& plant_;
+  const RobotModel& model_;
+  double settle_s_;
+  Kinematics kinematics_;
+  State state_;
+  std::vector<FootState> feet_;
+  std::array<SignalId, max_joints> reference_{};  // of each joint, or no_reference
+  std::array<double, max_joints> position_rad_{};
+};
+
+}  // namespace kadans

@@ -1,0 +1,80 @@
+#include "kadans/scenario/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+namespace kadans {
+namespace {
+
+class Run {
+ public:
+  Run(const RunParts& parts, std::vector<Check>& checks, const std::vector<RunObserver*>& observers)
+      : parts_(parts), checks_(checks), observers_(observers) {}
+
+  void go(double duration_s) {
+    const auto ticks = static_cast<std::uint64_t>(
+        std::llround(duration_s * 1e9 / static_cast<double>(parts_.lockstep.control_period_ns())));
+    const WallClock wall;
+    const std::int64_t began_ns = wall.now_ns();
+    try {
+      while (parts_.control.ticks() < ticks && !stop_asked()) step();
+    } catch (const std::exception& error) {
+      result_.error = error.what();
+    }
+    result_.wall_s = 1e-9 * static_cast<double>(wall.now_ns() - began_ns);
+    result_.interrupted = stop_asked();
+  }
+
+  RunResult finish() {
+    const TickStatistics& cost = parts_.lockstep.control_tick_cost();
+    result_.duration_s = 1e-9 * static_cast<double>(parts_.lockstep.time_ns());
+    result_.realtime_factor = result_.wall_s > 0 ? result_.duration_s / result_.wall_s : 0;
+    result_.control_ticks = parts_.control.ticks();
+    result_.behavior_ticks = parts_.behaviors.ticks();
+    result_.state_hash = hash_.value();
+    result_.tick = {cost.percentile_ns(0.5), cost.percentile_ns(0.99), static_cast<double>(cost.max_ns())};
+    result_.commands_sent = parts_.behaviors.commands().sent();
+    result_.commands_refused = parts_.behaviors.commands().refused() + parts_.control.inbox().state().refused;
+    for (const Check& check : checks_) result_.checks.push_back(check.result());
+    const bool all_passed =
+        std::all_of(result_.checks.begin(), result_.checks.end(), [](const CheckResult& c) { return c.passed; });
+    result_.passed = all_passed && result_.error.empty() && !result_.interrupted && !parts_.log.has_errors();
+    return std::move(result_);
+  }
+
+ private:
+  bool stop_asked() const {
+    return std::any_of(observers_.begin(), observers_.end(), [](const RunObserver* o) { return o->stop_asked(); });
+  }
+
+  void step() {
+    const double time_s = 1e-9 * static_cast<double>(parts_.lockstep.time_ns());
+    parts_.truth.update(time_s, parts_.control.row());
+    parts_.lockstep.step();
+    const std::span<const double> row = parts_.control.row();
+    hash_.add(row);
+    parts_.plant.hash(hash_);
+    for (Check& check : checks_) check.update(time_s, row);
+    for (RunObserver* observer : observers_) observer->tick(time_s, row);
+    Fault fault;
+    while (parts_.control.safety().log().try_pop(fault)) result_.faults.push_back(fault);
+  }
+
+  const RunParts& parts_;
+  std::vector<Check>& checks_;
+  const std::vector<RunObserver*>& observers_;
+  StateHash hash_;
+  RunResult result_;
+};
+
+}  // namespace
+
+RunResult run_scenario(const RunParts& parts, double duration_s, std::vector<Check>& checks,
+                       const std::vector<RunObserver*>& observers) {
+  Run run(parts, checks, observers);
+  run.go(duration_s);
+  return run.finish();
+}
+
+}  // namespace kadans

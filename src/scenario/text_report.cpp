@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "kadans/scenario/report.h"
+#include "kadans/telemetry/text_plot.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t plot_columns = 60, plot_rows = 4;
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[512];
+  const int length = std::snprintf(text, sizeof text, pattern, values...);
+  return {text, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof text) - 1))};
+}
+
+class TextReport {
+ public:
+  TextReport(const ReportSubject& subject, const ReportStyle& style) : subject_(subject), style_(style) {}
+
+  std::string write() {
+    timeline();
+    for (const ReportTrace& trace : subject_.traces) plot(trace);
+    checks();
+    troubles();
+    figures();
+    verdict();
+    return std::move(text_);
+  }
+
+ private:
+  std::string painted(const char* code, const std::string& text) const {
+    return style_.color ? "\033[" + std::string(code) + "m" + text + "\033[0m" : text;
+  }
+  std::string green(const std::string& text) const { return painted("32", text); }
+  std::string red(const std::string& text) const { return painted("31;1", text); }
+  std::string dim(const std::string& text) const { return painted("2", text); }
+
+  void timeline() {
+    const char* arrow = style_.unicode ? "→" : "->";
+    for (const Transition& t : subject_.log.transitions()) {
+      text_ += dim(format("  %7.2f s  ", 1e-9 * static_cast<double>(t.time_ns)));
+      text_ += t.behavior + ": " + (t.from.empty() ? "" : t.from + " ") + arrow + " " + t.to;
+      if (!t.why.empty()) text_ += dim("  (" + t.why + ")");
+      text_ += '\n';
+    }
+    for (const LogLine& line : subject_.log.lines()) {
+      if (line.severity == BehaviorLog::Severity::error || !style_.verbose) continue;
+      text_ += dim(format("  %7.2f s  ", 1e-9 * static_cast<double>(line.time_ns))) + line.behavior + ": " + line.text + '\n';
+    }
+    if (!text_.empty()) text_ += '\n';
+  }
+
+  void plot(const ReportTrace& trace) {
+    const TextPlot plot = text_plot(trace.values, plot_columns, plot_rows, style_.unicode);
+    if (plot.lines.empty()) return;
+    text_ += "  " + trace.title + '\n';
+    for (std::size_t i = 0; i < plot.lines.size(); ++i) {
+      const bool edge = i == 0 || i + 1 == plot.lines.size();
+      const double value = i == 0 ? plot.top : plot.bottom;
+      text_ += edge ? format("  %9.3f ", value) : std::string(12, ' ');
+      text_ += dim(style_.unicode ? "│" : "|") + plot.lines[i] + '\n';
+    }
+    text_ += std::string(12, ' ') + dim(format("0 s%*.0f s", static_cast<int>(plot_columns) - 4, trace.duration_s)) + "\n\n";
+  }
+
+  static std::string bounds(const ScenarioCheck& check) {
+    if (std::isfinite(check.min) && std::isfinite(check.max)) return format("%g .. %g", check.min, check.max);
+    return std::isfinite(check.min) ? format(">= %g", check.min) : format("<= %g", check.max);
+  }
+
+  void checks() {
+    std::size_t widest = 0;
+    for (const CheckResult& check : subject_.result.checks) widest = std::max(widest, check.name.size());
+    for (std::size_t i = 0; i < subject_.result.checks.size(); ++i) {
+      const CheckResult& check = subject_.result.checks[i];
+      const std::string mark = check.passed ? green(style_.unicode ? "✓" : "ok") : red(style_.unicode ? "✗" : "FAILED");
+      text_ += "  " + mark + " " + check.name + std::string(widest - check.name.size(), ' ');
+      text_ += format("  %11.5g at %6.2f s", check.value, check.at_s) + dim("   wanted " + bounds(subject_.checks[i]) + '\n');
+    }
+  }
+
+  void troubles() {
+    const RunResult& result = subject_.result;
+    for (const LogLine& line : subject_.log.lines()) {
+      if (line.severity == BehaviorLog::Severity::error) text_ += "\n" + red("  error: ") + line.text + '\n';
+    }
+    if (!result.error.empty()) text_ += "\n" + red("  the run ended early: ") + result.error + '\n';
+    constexpr std::size_t shown = 5;
+    for (std::size_t i = 0; i < std::min(result.faults.size(), shown); ++i) {
+      const Fault& fault = result.faults[i];
+      const std::string joint = fault.joint == no_joint ? "" : " of " + subject_.model.joints.at(fault.joint).name;
+      text_ += red("  fault: ") + name(fault.code) + joint +
+               format(" in tick %llu: %g, limit %g\n", static_cast<unsigned long long>(fault.tick), fault.value, fault.limit);
+    }
+    if (result.faults.size() > shown) text_ += format("  ... and %zu more faults\n", result.faults.size() - shown);
+  }
+
+  void figures() {
+    const RunResult& r = subject_.result;
+    text_ += format("\n  %.2f s simulated in %.2f s: %.1f times real time\n", r.duration_s, r.wall_s, r.realtime_factor);
+    text_ += format("  %llu control ticks (median %.2f us, p99 %.2f us), %llu behavior ticks\n",
+                    static_cast<unsigned long long>(r.control_ticks), 1e-3 * r.tick.median_ns, 1e-3 * r.tick.p99_ns,
+                    static_cast<unsigned long long>(r.behavior_ticks));
+    text_ += format("  %llu commands sent, %llu refused; state %016llx\n", static_cast<unsigned long long>(r.commands_sent),
+                    static_cast<unsigned long long>(r.commands_refused), static_cast<unsigned long long>(r.state_hash));
+    if (!subject_.record.empty()) text_ += "  record: " + subject_.record + '\n';
+    text_ += dim("  again:  " + subject_.repeat) + "\n\n";
+  }
+
+  void verdict() {
+    const RunResult& r = subject_.result;
+    const auto failed = std::count_if(r.checks.begin(), r.checks.end(), [](const CheckResult& c) { return !c.passed; });
+    if (r.interrupted) {
+      text_ += red("INTERRUPTED") + format(" after %.2f s\n", r.duration_s);
+    } else if (r.passed) {
+      text_ += green("PASSED") + format("  %zu checks\n", r.checks.size());
+    } else {
+      text_ += red("FAILED") + format("  %td of %zu checks\n", failed, r.checks.size());
+    }
+  }
+
+  const ReportSubject& subject_;
+  const ReportStyle& style_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string text_report(const ReportSubject& subject, const ReportStyle& style) {
+  return TextReport(subject, style).write();
+}
+
+}  // namespace kadans

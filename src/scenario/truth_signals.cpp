@@ -1,0 +1,121 @@
+#include "kadans/scenario/truth_signals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kadans {
+namespace {
+
+constexpr SignalId no_reference = std::numeric_limits<SignalId>::max();
+
+// The set-point of a joint's position, whichever control object has it; the first one declared counts.
+SignalId find_reference(const Catalog& catalog, const std::string& joint) {
+  for (const ObjectInfo& object : catalog.objects) {
+    const auto found = catalog.signals.find("control." + object.name + "." + joint + ".reference_rad");
+    if (found) return *found;
+  }
+  return no_reference;
+}
+
+}  // namespace
+
+TruthSignals::TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s)
+    : plant_(plant), model_(*catalog.model), settle_s_(settle_s), kinematics_(*catalog.model) {
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) reference_[i] = find_reference(catalog, model_.joints[i].name);
+  for (const Foot& foot : feet) {
+    FootState state;
+    state.link = model_.find_link(foot.link).value();
+    state.sole_m = foot.sole_m;
+    feet_.push_back(std::move(state));
+  }
+  declare(catalog.signals, feet);
+}
+
+void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
+  table.add({"plant.base.height_m", "m", "Height of the base frame over the ground."}, &state_.height_m);
+  table.add({"plant.base.x_m", "m", "Position of the base frame."}, &state_.x_m);
+  table.add({"plant.base.y_m", "m", "Position of the base frame."}, &state_.y_m);
+  table.add({"plant.base.tilt_rad", "rad", "Angle between the base's z axis and up."}, &state_.tilt_rad);
+  table.add({"plant.base.yaw_rad", "rad", "Heading of the base."}, &state_.yaw_rad);
+  table.add({"plant.base.speed_m_s", "m/s", "Speed of the base frame."}, &state_.speed_m_s);
+  table.add({"plant.limits.position_rad", "rad", "How far the worst joint is inside its limits; negative beyond."},
+            &state_.position_rad);
+  table.add({"plant.limits.torque_share", "", "Largest drive torque as a share of its limit."}, &state_.torque_share);
+  table.add({"plant.limits.speed_share", "", "Largest joint velocity as a share of its limit."}, &state_.speed_share);
+  table.add({"reference.base.height_m", "m", "Height of the base with every joint at its set-point."},
+            &state_.reference_height_m);
+  table.add({"reference.base.error_m", "m", "Height of the base minus that of the set-points."},
+            &state_.reference_error_m);
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    const std::string foot = "plant.foot." + feet[i].link + ".";
+    table.add({foot + "force_N", "N", "Vertical force of the ground on the foot."}, &feet_[i].force_N);
+    table.add({foot + "slip_m", "m", "Way of the foot along the ground since it settled."}, &feet_[i].slip_m);
+  }
+}
+
+void TruthSignals::update_limits() noexcept {
+  const PlantTruth& truth = plant_.truth();
+  state_.position_rad = std::numeric_limits<double>::infinity();
+  state_.torque_share = state_.speed_share = 0;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint& joint = model_.joints[i];
+    const double inside = std::min(truth.position_rad[i] - joint.lower_rad, joint.upper_rad - truth.position_rad[i]);
+    state_.position_rad = std::min(state_.position_rad, inside);
+    if (!joint.passive()) {
+      state_.torque_share = std::max(state_.torque_share, std::abs(truth.drive_torque_Nm[i]) / joint.effort_max_Nm);
+    }
+    if (joint.velocity_max_rad_s > 0) {
+      state_.speed_share = std::max(state_.speed_share, std::abs(truth.velocity_rad_s[i]) / joint.velocity_max_rad_s);
+    }
+  }
+}
+
+void TruthSignals::update_feet(double time_s) noexcept {
+  const PlantTruth& truth = plant_.truth();
+  for (std::size_t i = 0; i < feet_.size() && i < truth.foot_count; ++i) {
+    FootState& foot = feet_[i];
+    const Vec3& at_m = truth.feet[i].position_m;
+    foot.force_N = truth.foot_force_N[i][2];
+    if (!foot.settled && time_s >= settle_s_) {
+      foot.settled = true;
+      foot.settled_at_m = at_m;
+    }
+    if (foot.settled) foot.slip_m = std::hypot(at_m[0] - foot.settled_at_m[0], at_m[1] - foot.settled_at_m[1]);
+  }
+}
+
+// Joints without a set-point (passive ankles) count as they are; the lowest point of the soles is the ground.
+double TruthSignals::reference_height_m(std::span<const double> row) noexcept {
+  const PlantTruth& truth = plant_.truth();
+  const std::size_t joints = model_.joints.size();
+  for (std::size_t i = 0; i < joints; ++i) {
+    position_rad_[i] = reference_[i] == no_reference ? truth.position_rad[i] : row[reference_[i]];
+  }
+  kinematics_.update({position_rad_.data(), joints}, {{0, 0, 0}, truth.base.orientation});
+  double lowest_m = 0;
+  for (const FootState& foot : feet_) {
+    for (const Vec3& point : foot.sole_m) {
+      lowest_m = std::min(lowest_m, transform(kinematics_.link(foot.link), point)[2]);
+    }
+  }
+  return -lowest_m;
+}
+
+void TruthSignals::update(double time_s, std::span<const double> row) noexcept {
+  const PlantTruth& truth = plant_.truth();
+  const Vec3 up = rotate(truth.base.orientation, {0, 0, 1});
+  const Vec3& v = truth.base_velocity_m_s;
+  state_.x_m = truth.base.position_m[0];
+  state_.y_m = truth.base.position_m[1];
+  state_.height_m = truth.base.position_m[2];
+  state_.tilt_rad = std::atan2(std::hypot(up[0], up[1]), up[2]);
+  state_.yaw_rad = roll_pitch_yaw(truth.base.orientation)[2];
+  state_.speed_m_s = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  update_limits();
+  update_feet(time_s);
+  state_.reference_height_m = reference_height_m(row);
+  state_.reference_error_m = state_.height_m - state_.reference_height_m;
+}
+
+}  // namespace kadans

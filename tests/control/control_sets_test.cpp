@@ -1,0 +1,144 @@
+#include "kadans/control/control_sets.h"
+
+#include <doctest/doctest.h>
+
+#include "kadans/control/joint_pid.h"
+#include "two_joint_robot.h"
+
+using namespace kadans;
+
+namespace {
+
+// Writes a constant and counts how often it was started, stepped and updated.
+class Constant final : public ControlObject {
+ public:
+  Constant(std::size_t joint, double effort_Nm) : joint_(joint), effort_Nm_(effort_Nm) {}
+  void declare(Declaration&) override {}
+  void start(const ControlInput&) noexcept override { ++starts; }
+  void step(const ControlInput& input, ActuationFrame& actuation) noexcept override {
+    ++steps;
+    dt_s = input.dt_s;
+    actuation.joints[joint_] = {.effort_Nm = effort_Nm_, .mode = ActuationMode::effort};
+  }
+  void set_point(std::uint32_t, double, double) noexcept override {}
+  void cancel_motion(std::uint32_t) noexcept override {}
+  double motion_remaining_s() const noexcept override { return 0; }
+  void update(const Snapshot&) override { ++updates; }
+
+  int starts = 0, steps = 0, updates = 0;
+  double dt_s = 0;
+
+ private:
+  std::size_t joint_;
+  double effort_Nm_;
+};
+
+struct Bench {
+  RobotModel model = two_joint_robot();
+  Catalog catalog;
+  Constant* hip = new Constant(0, 1);
+  Constant* knee = new Constant(1, 2);
+  Constant* other_knee = new Constant(1, 3);
+  std::unique_ptr<ControlSets> sets;
+  JointStates joints;
+  RobotStatus status;
+  ActuationFrame written, computed;
+  std::uint64_t tick = 0;
+
+  explicit Bench(std::uint32_t knee_divisor = 1) {
+    catalog.model = &model;
+    catalog.objects = {{.name = "hip", .joints = {0}},
+                       {.name = "knee", .joints = {1}, .divisor = knee_divisor, .high_level_divisor = 2},
+                       {.name = "other_knee", .joints = {1}}};
+    catalog.sets = {{"both", {0, 1}}, {"other", {0, 2}}, {"hip_alone", {0}}};
+    std::vector<std::unique_ptr<ControlObject>> objects;
+    for (Constant* object : {hip, knee, other_knee}) objects.emplace_back(object);
+    sets = std::make_unique<ControlSets>(catalog, std::move(objects));
+    written.joint_count = computed.joint_count = 3;
+  }
+  void step() { sets->step(tick++, {joints, status, written, 0, 0.001}, computed); }
+};
+
+std::string refusal(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects) {
+  try {
+    const ControlSets sets(catalog, std::move(objects));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("The initial set computes, each object started once") {
+  Bench bench;
+  bench.step();
+  bench.step();
+  CHECK(bench.hip->starts == 1);
+  CHECK(bench.knee->steps == 2);
+  CHECK(bench.other_knee->steps == 0);
+  CHECK(bench.computed.joints[1].effort_Nm == 2);
+}
+
+TEST_CASE("Switching starts the objects that come in and leaves those that stay alone") {
+  Bench bench;
+  bench.step();
+  bench.sets->switch_to(1);
+  bench.step();
+  CHECK(bench.hip->starts == 1);
+  CHECK(bench.other_knee->starts == 1);
+  CHECK(bench.computed.joints[1].effort_Nm == 3);
+  bench.sets->switch_to(0);
+  bench.step();
+  CHECK(bench.knee->starts == 2);
+}
+
+TEST_CASE("A joint that no object of the new set drives goes off") {
+  Bench bench;
+  bench.step();
+  bench.sets->switch_to(2);
+  bench.step();
+  CHECK(bench.computed.joints[1].mode == ActuationMode::off);
+  CHECK(bench.computed.joints[1].effort_Nm == 0);
+}
+
+TEST_CASE("A slower object computes every n-th tick with its own dt, and its actuation stands meanwhile") {
+  Bench bench(4);
+  for (int i = 0; i < 8; ++i) bench.step();
+  CHECK(bench.hip->steps == 8);
+  CHECK(bench.knee->steps == 2);
+  CHECK(bench.knee->dt_s == doctest::Approx(0.004));
+  CHECK(bench.computed.joints[1].effort_Nm == 2);
+}
+
+TEST_CASE("The high level runs every n-th behavior tick, for the active set alone") {
+  Bench bench;
+  Snapshot snapshot;
+  for (std::uint64_t tick = 0; tick < 4; ++tick) bench.sets->update(tick, snapshot);
+  CHECK(bench.hip->updates == 4);
+  CHECK(bench.knee->updates == 2);
+  CHECK(bench.other_knee->updates == 0);
+}
+
+TEST_CASE("Sets that cannot work are refused before the loop, by name") {
+  const RobotModel model = two_joint_robot();
+  Catalog catalog;
+  catalog.model = &model;
+  catalog.objects = {{.name = "a", .joints = {1}}, {.name = "b", .joints = {1}}};
+  const auto objects = [] {
+    std::vector<std::unique_ptr<ControlObject>> two;
+    two.push_back(std::make_unique<Constant>(1, 0));
+    two.push_back(std::make_unique<Constant>(1, 0));
+    return two;
+  };
+  catalog.sets = {{"clash", {0, 1}}};
+  CHECK(refusal(catalog, objects()) == "control set clash: more than one object drives joint knee");
+  catalog.sets = {{"twice", {0, 0}}};
+  CHECK(refusal(catalog, objects()) == "control set twice lists a twice");
+  catalog.sets = {{"empty", {}}};
+  CHECK(refusal(catalog, objects()) == "control set empty has no control object");
+  catalog.sets = {};
+  CHECK(refusal(catalog, objects()) == "there is no initial control set");
+  catalog.sets = {{"one", {0}}};
+  CHECK(refusal(catalog, objects()) == "accepted");
+}

@@ -1,0 +1,114 @@
+#include "kadans/engine/command_inbox.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <limits>
+
+#include "bench.h"
+#include "kadans/engine/transaction.h"
+
+using namespace kadans;
+
+namespace {
+
+struct Inbox : bench::Robot {
+  CommandInbox inbox{exchange->commands, catalog, sets, 256, 100'000'000};
+  CommandSender sender{exchange->commands};
+
+  ParameterId parameter(const char* name) const { return catalog.parameters.find(name).value(); }
+  Command set_kp(double value) const {
+    return {.kind = CommandKind::set_parameter, .index = parameter("posture.knee.kp_Nm_per_rad"), .value = value};
+  }
+  Command move_hip(double value, double duration_s = 0) const {
+    return {.kind = CommandKind::set_point,
+            .index = catalog.setpoints.find("posture.hip.position_rad").value(),
+            .value = value,
+            .duration_s = duration_s};
+  }
+  template <typename... Commands>
+  void send(std::int64_t time_ns, const Commands&... commands) {
+    sender.begin(time_ns);
+    for (const Command& command : {commands...}) REQUIRE(sender.add(command));
+    REQUIRE(sender.commit() > 0);
+  }
+  double kp() const { return catalog.parameters.get(parameter("posture.knee.kp_Nm_per_rad")); }
+};
+
+}  // namespace
+
+TEST_CASE("A transaction is applied whole, in one tick") {
+  Inbox bench;
+  bench.send(0, bench.set_kp(77), bench.move_hip(0.5, 1.0));
+  bench.inbox.apply(1, 1'000'000, bench.safety);
+  CHECK(bench.kp() == 77);
+  CHECK(bench.sets.object(0).motion_remaining_s() == 1.0);
+  CHECK(bench.inbox.state().last_transaction == 1);
+  CHECK(bench.inbox.state().applied == 2);
+  CHECK(bench.inbox.state().refused == 0);
+}
+
+TEST_CASE("One bad command refuses its whole transaction, and the next one is applied") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Inbox bench;
+  const std::array bad = {bench.set_kp(-1),
+                          bench.set_kp(nan),
+                          bench.move_hip(2.5),
+                          bench.move_hip(nan),
+                          bench.move_hip(0, -1),
+                          bench.move_hip(0, nan),
+                          Command{.kind = CommandKind::set_parameter, .index = 9999},
+                          Command{.kind = CommandKind::set_point, .index = 9999},
+                          Command{.kind = CommandKind::cancel_motion, .index = 9999},
+                          Command{.kind = CommandKind::switch_set, .index = 2},
+                          Command{.kind = CommandKind::transaction},
+                          Command{.kind = static_cast<CommandKind>(99)}};
+  for (const Command& command : bad) bench.send(0, bench.set_kp(99), command);
+  bench.send(0, bench.set_kp(50));
+  bench.inbox.apply(1, 0, bench.safety);
+  CHECK(bench.kp() == 50);
+  CHECK(bench.inbox.state().refused == 2 * bad.size());
+  Fault fault;
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    REQUIRE(bench.safety.log().try_pop(fault));
+    CHECK(fault.code == FaultCode::command_refused);
+  }
+}
+
+TEST_CASE("A transaction that is too old expires") {
+  Inbox bench;
+  bench.send(0, bench.set_kp(77));
+  bench.inbox.apply(1, 100'000'001, bench.safety);
+  CHECK(bench.kp() == 40);
+  CHECK(bench.inbox.state().refused == 1);
+}
+
+TEST_CASE("At most a fixed number of commands is applied in a tick; the rest waits its turn") {
+  Inbox bench;
+  for (int i = 0; i < 3; ++i) {
+    bench.sender.begin(0);
+    for (int j = 0; j < 120; ++j) REQUIRE(bench.sender.add(bench.set_kp(i)));
+    REQUIRE(bench.sender.commit() > 0);
+  }
+  bench.inbox.apply(1, 0, bench.safety);
+  CHECK(bench.inbox.state().applied == 240);
+  CHECK(bench.kp() == 1);
+  bench.inbox.apply(2, 0, bench.safety);
+  CHECK(bench.inbox.state().applied == 360);
+  CHECK(bench.kp() == 2);
+}
+
+TEST_CASE("A queue that does not hold transactions is emptied and reported, nothing is executed") {
+  Inbox bench;
+  const std::array torn = {Command{.kind = CommandKind::transaction, .count = 7}, bench.set_kp(99)};
+  REQUIRE(bench.exchange->commands.try_push(torn));
+  bench.inbox.apply(1, 0, bench.safety);
+  CHECK(bench.kp() == 40);
+  CHECK(bench.exchange->commands.size() == 0);
+  CHECK(bench.inbox.state().refused == 2);
+}
+
+TEST_CASE("A tick's share that the largest transaction could never pass is refused before the loop") {
+  bench::Robot robot;
+  CHECK_THROWS_AS(CommandInbox(robot.exchange->commands, robot.catalog, robot.sets, 10, 0), std::invalid_argument);
+}

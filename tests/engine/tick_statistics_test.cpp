@@ -1,0 +1,32 @@
+#include "kadans/engine/tick_statistics.h"
+
+#include <doctest/doctest.h>
+
+using kadans::TickStatistics;
+
+TEST_CASE("Percentiles are within a bucket of the exact ones") {
+  TickStatistics statistics;
+  for (int ns = 1; ns <= 10000; ++ns) statistics.add(ns);
+  CHECK(statistics.percentile_ns(0.5) == doctest::Approx(5000).epsilon(0.03));
+  CHECK(statistics.percentile_ns(0.99) == doctest::Approx(9900).epsilon(0.03));
+  CHECK(statistics.min_ns() == 1);
+  CHECK(statistics.max_ns() == 10000);
+  CHECK(statistics.mean_ns() == doctest::Approx(5000.5));
+  CHECK(statistics.count() == 10000);
+}
+
+TEST_CASE("Durations that are alike have that duration as every percentile") {
+  for (const std::int64_t ns : {0L, 1L, 63L, 64L, 65L, 1234L, 1000000L, 123456789012L}) {
+    TickStatistics statistics;
+    for (int i = 0; i < 7; ++i) statistics.add(ns);
+    CHECK(statistics.percentile_ns(0.01) == static_cast<double>(ns));
+    CHECK(statistics.percentile_ns(1.0) == static_cast<double>(ns));
+  }
+}
+
+TEST_CASE("Without any tick every figure is 0") {
+  const TickStatistics statistics;
+  CHECK(statistics.percentile_ns(0.5) == 0);
+  CHECK(statistics.min_ns() == 0);
+  CHECK(statistics.max_ns() == 0);
+}
