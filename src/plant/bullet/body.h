@@ -1,0 +1,49 @@
+// The robot inside Bullet: multibody, shapes and colliders of a RobotModel, and its state in the model's terms.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+#include "body_frames.h"
+#include "contact_world.h"
+#include "kadans/plant/settings.h"
+#include "pair_mask.h"
+#include "shapes.h"
+
+namespace kadans::bullet {
+
+class Body {
+ public:
+  Body(const RobotModel& model, const PlantSettings& settings);
+
+  void add_to(ContactWorld& world);
+  // Puts every joint and the base where the settings say; with stand_on_ground the lowest point to z = 0.
+  void place(const PlantSettings& settings);
+
+  btMultiBody& multibody() { return *multibody_; }
+  const btMultiBody& multibody() const { return *multibody_; }
+  std::size_t link_count() const { return frames_.size(); }
+  double mass_kg(std::size_t link) const;
+
+  // As of the last step. Link 0 is the base.
+  btTransform com_frame(std::size_t link) const;
+  btTransform link_frame(std::size_t link) const { return com_frame(link) * frames_[link].link_in_com; }
+  btVector3 com_offset(std::size_t link) const { return frames_[link].com_in_link.getOrigin(); }
+
+  void push(std::size_t link, const btVector3& force_N, const btVector3& point_in_link_m);
+
+ private:
+  std::vector<LinkFrame> frames_;
+  std::unique_ptr<btMultiBody> multibody_;
+  std::vector<std::unique_ptr<LinkShapes>> shapes_;
+  std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
+  btAlignedObjectArray<btQuaternion> scratch_rotations_;
+  btAlignedObjectArray<btVector3> scratch_origins_;
+};
+
+// Parents with children, and whatever else touches while all joints are at 0.
+PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings);
+
+}  // namespace kadans::bullet

@@ -1,0 +1,195 @@
+#include "kadans/plant/bullet/bullet_plant.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "convert.h"
+#include "joint_rows.h"
+#include "plant_settings_check.h"
+#include "sensors.h"
+
+namespace kadans {
+
+using namespace bullet;
+
+namespace {
+
+PlantSettings checked(const RobotModel& model, const PlantSettings& settings) {
+  check_settings(model, settings);
+  return settings;
+}
+
+ContactWorld::Options world_options(const PlantSettings& settings) {
+  return {to_bullet(settings.gravity_m_s2), settings.solver_iterations, settings.ground_friction};
+}
+
+bool finite(const JointActuation& actuation) noexcept {
+  return std::isfinite(actuation.effort_Nm) && std::isfinite(actuation.position_rad) &&
+         std::isfinite(actuation.velocity_rad_s);
+}
+
+bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
+
+}  // namespace
+
+class BulletPlant::World {
+ public:
+  World(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
+      : settings_(checked(model, settings)),
+        joint_names_(model.joint_names()),
+        mask_(make_pair_mask(model, settings)),
+        body_(model, settings),
+        sensors_(model, settings, seed),
+        truth_(body_, model.joints.size()),
+        world_(world_options(settings), mask_) {
+    body_.place(settings_);
+    body_.add_to(world_);
+    add_drives(model);
+    for (const FootSettings& foot : settings_.feet) {
+      feet_.emplace_back();
+      feet_.back().link = *model.find_link(foot.link);
+    }
+    sample(0);
+  }
+
+  void write(const ActuationFrame& actuation) noexcept {
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      const bool usable = i < actuation.joint_count && finite(actuation.joints[i]);
+      drives_[i].ask(usable ? actuation.joints[i] : JointActuation{});
+    }
+  }
+
+  void step(std::int64_t dt_ns) {
+    if (dt_ns <= 0) return;
+    const double dt_s = static_cast<double>(dt_ns) * 1e-9;
+    btMultiBody& multibody = body_.multibody();
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      const int joint = static_cast<int>(i);
+      multibody.addJointTorque(joint,
+                               drives_[i].begin_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s));
+    }
+    world_.step(dt_s);
+    check_finite();
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      const int joint = static_cast<int>(i);
+      drives_[i].end_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s);
+    }
+    time_ns_ += dt_ns;
+    read_feet(world_, body_, settings_.feet, dt_s, feet_);
+    sample(dt_s);
+  }
+
+  void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
+    if (link >= body_.link_count()) throw std::invalid_argument("push: no link number " + std::to_string(link));
+    if (!finite(to_bullet(force_N)) || !finite(to_bullet(point_in_link_m))) {
+      throw std::invalid_argument("push: force and point must be finite");
+    }
+    body_.push(link, to_bullet(force_N), to_bullet(point_in_link_m));
+  }
+
+  void hash(StateHash& hash) const noexcept {
+    const btMultiBody& multibody = body_.multibody();
+    const btTransform base = body_.com_frame(0);
+    for (int i = 0; i < 3; ++i) hash.add(base.getOrigin()[i]);
+    for (int i = 0; i < 4; ++i) hash.add(multibody.getWorldToBaseRot()[i]);
+    for (int i = 0; i < 6 + multibody.getNumDofs(); ++i) hash.add(multibody.getVelocityVector()[i]);
+    for (int i = 0; i < multibody.getNumLinks(); ++i) hash.add(multibody.getJointPos(i));
+    for (const Drive& drive : drives_) drive.hash(hash);
+    hash_contacts(hash);
+    hash_sensors(hash);
+  }
+
+  const SensorFrame& sensors() const noexcept { return sensors_.frame(); }
+  const PlantTruth& truth() const noexcept { return truth_.truth(); }
+
+ private:
+  void add_drives(const RobotModel& model) {
+    drives_.reserve(model.joints.size());
+    for (std::size_t i = 0; i < model.joints.size(); ++i) {
+      const Joint& joint = model.joints[i];
+      const bool limited = joint.type != JointType::continuous;
+      const double infinite = std::numeric_limits<double>::infinity();
+      rows_.push_back(std::make_unique<JointRows>(body_.multibody(), static_cast<int>(i),
+                                                  limited ? joint.lower_rad : -infinite,
+                                                  limited ? joint.upper_rad : infinite));
+      world_.add(*rows_.back());
+      drives_.emplace_back(settings_.drives[i], joint, *rows_.back(), settings_.position_rad[i]);
+    }
+  }
+
+  void sample(double dt_s) {
+    truth_.read(drives_, feet_);
+    const Sensors::ImuInput imu{body_.multibody().getBaseOmega(),
+                                truth_.base_point_velocity_m_s(to_bullet(settings_.imu.pose.position_m)),
+                                body_.link_frame(0).getBasis()};
+    sensors_.sample(time_ns_, dt_s, drives_, body_.multibody(), imu, feet_);
+  }
+
+  void check_finite() const {
+    const btMultiBody& multibody = body_.multibody();
+    if (!finite(multibody.getBasePos()) || !finite(multibody.getBaseVel()) || !finite(multibody.getBaseOmega())) {
+      throw std::runtime_error("the model's state is not finite: base");
+    }
+    for (int i = 0; i < multibody.getNumLinks(); ++i) {
+      if (std::isfinite(multibody.getJointPos(i)) && std::isfinite(multibody.getJointVel(i))) continue;
+      throw std::runtime_error("the model's state is not finite: joint '" + joint_names_[static_cast<std::size_t>(i)] +
+                               "'");
+    }
+  }
+
+  void hash_contacts(StateHash& hash) const noexcept {
+    for (int i = 0; i < world_.manifold_count(); ++i) {
+      const btPersistentManifold& manifold = world_.manifold(i);
+      for (int j = 0; j < manifold.getNumContacts(); ++j) {
+        const btManifoldPoint& point = manifold.getContactPoint(j);
+        for (int k = 0; k < 3; ++k) hash.add(point.m_localPointA[k]);
+        hash.add(point.m_distance1);
+      }
+    }
+  }
+
+  void hash_sensors(StateHash& hash) const noexcept {  // carries the random streams' effect
+    const SensorFrame& frame = sensors_.frame();
+    for (std::size_t i = 0; i < frame.joint_count; ++i) {
+      hash.add(frame.joints[i].position_rad);
+      hash.add(frame.joints[i].motor_position_rad);
+    }
+    hash.add(frame.imu.angular_velocity_rad_s);
+    hash.add(frame.imu.acceleration_m_s2);
+    for (std::size_t i = 0; i < frame.foot_count; ++i) hash.add(frame.feet[i].force_N);
+  }
+
+  PlantSettings settings_;
+  std::vector<std::string> joint_names_;
+  PairMask mask_;
+  Body body_;
+  std::vector<std::unique_ptr<JointRows>> rows_;
+  std::vector<Drive> drives_;
+  std::vector<FootLoad> feet_;
+  Sensors sensors_;
+  TruthReader truth_;
+  ContactWorld world_;  // last: it lets go of the parts above before they end
+  std::int64_t time_ns_ = 0;
+};
+
+BulletPlant::BulletPlant(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
+    : world_(std::make_unique<World>(model, settings, seed)) {}
+
+BulletPlant::~BulletPlant() = default;
+
+void BulletPlant::read(SensorFrame& sensors) noexcept { sensors = world_->sensors(); }
+
+void BulletPlant::write(const ActuationFrame& actuation) noexcept { world_->write(actuation); }
+
+void BulletPlant::step(std::int64_t dt_ns) { world_->step(dt_ns); }
+
+const PlantTruth& BulletPlant::truth() const noexcept { return world_->truth(); }
+
+void BulletPlant::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
+  world_->push(link, force_N, point_in_link_m);
+}
+
+void BulletPlant::hash(StateHash& hash) const noexcept { world_->hash(hash); }
+
+}  // namespace kadans

@@ -1,0 +1,123 @@
+#include "contact_world.h"
+
+namespace kadans::bullet {
+namespace {
+
+constexpr double ground_half_size_m = 200, ground_half_depth_m = 1;
+
+}  // namespace
+
+class SteppedWorld final : public btMultiBodyDynamicsWorld {
+ public:
+  using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
+
+  void internalSingleStepSimulation(btScalar dt_s) override {
+    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
+    getDispatchInfo().m_timeStep = dt_s;
+    performDiscreteCollisionDetection();
+    getSolverInfo().m_timeStep = dt_s;
+    accelerate(dt_s);
+    solve();
+    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
+    move(dt_s);
+  }
+
+  void update_frames() {
+    for (int i = 0; i < m_multiBodies.size(); ++i) update_frames(*m_multiBodies[i]);
+  }
+
+ private:
+  void accelerate(double dt_s) {
+    for (int i = 0; i < m_multiBodies.size(); ++i) {
+      m_multiBodies[i]->clearConstraintForces();
+      m_multiBodies[i]->computeAccelerationsArticulatedBodyAlgorithmMultiDof(dt_s, m_scratch_r, m_scratch_v,
+                                                                             m_scratch_m, false, false, false);
+    }
+  }
+
+  void solve() {
+    btPersistentManifold** manifolds = getDispatcher()->getInternalManifoldPointer();
+    const int manifold_count = getDispatcher()->getNumManifolds();
+    btMultiBodyConstraint** rows = m_multiBodyConstraints.size() > 0 ? &m_multiBodyConstraints[0] : nullptr;
+    m_multiBodyConstraintSolver->solveMultiBodyGroup(&m_collisionObjects[0], m_collisionObjects.size(), manifolds,
+                                                     manifold_count, nullptr, 0, rows, m_multiBodyConstraints.size(),
+                                                     getSolverInfo(), nullptr, getDispatcher());
+    for (int i = 0; i < m_multiBodies.size(); ++i) m_multiBodies[i]->processDeltaVeeMultiDof2();
+  }
+
+  void move(double dt_s) {
+    for (int i = 0; i < m_multiBodies.size(); ++i) {
+      m_multiBodies[i]->stepPositionsMultiDof(dt_s);
+      update_frames(*m_multiBodies[i]);
+    }
+  }
+
+  void update_frames(btMultiBody& body) {
+    body.forwardKinematics(m_scratch_world_to_local, m_scratch_local_origin);
+    if (body.getBaseCollider() != nullptr) body.getBaseCollider()->setWorldTransform(body.getBaseWorldTransform());
+    for (int i = 0; i < body.getNumLinks(); ++i) {
+      btMultibodyLink& link = body.getLink(i);
+      if (link.m_collider != nullptr) link.m_collider->setWorldTransform(link.m_cachedWorldTransform);
+    }
+  }
+};
+
+ContactWorld::ContactWorld(const Options& options, PairMask& mask)
+    : dispatcher_(&configuration_),
+      ground_shape_(btVector3(ground_half_size_m, ground_half_size_m, ground_half_depth_m)) {
+  world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver_, &configuration_);
+  world_->setGravity(options.gravity_m_s2);
+  broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
+  world_->getDispatchInfo().m_deterministicOverlappingPairs = true;
+  world_->getDispatchInfo().m_useContinuous = false;
+  btContactSolverInfo& info = world_->getSolverInfo();
+  info.m_splitImpulse = false;
+  info.m_solverMode |= SOLVER_DISABLE_IMPLICIT_CONE_FRICTION | SOLVER_USE_2_FRICTION_DIRECTIONS;
+  info.m_numIterations = options.solver_iterations;
+  info.m_minimumSolverBatchSize = 0;
+  info.m_leastSquaresResidualThreshold = 0;
+  ground_.setCollisionShape(&ground_shape_);
+  ground_.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, -ground_half_depth_m)));
+  ground_.setFriction(options.ground_friction);
+  ground_.setRestitution(0);
+  world_->addCollisionObject(&ground_, btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);
+}
+
+ContactWorld::~ContactWorld() {
+  // The robot's parts belong to others, who may be gone: take everything out before Bullet looks at it.
+  for (int i = world_->getNumMultiBodyConstraints() - 1; i >= 0; --i) {
+    world_->removeMultiBodyConstraint(world_->getMultiBodyConstraint(i));
+  }
+  for (int i = world_->getNumMultibodies() - 1; i >= 0; --i) world_->removeMultiBody(world_->getMultiBody(i));
+  for (int i = world_->getNumCollisionObjects() - 1; i >= 0; --i) {
+    world_->removeCollisionObject(world_->getCollisionObjectArray()[i]);
+  }
+}
+
+void ContactWorld::add(btMultiBody& body) {
+  world_->addMultiBody(&body);
+  world_->update_frames();
+}
+
+void ContactWorld::add(btCollisionObject& collider, bool fixed) {
+  const int everything = btBroadphaseProxy::DefaultFilter | btBroadphaseProxy::StaticFilter;
+  world_->addCollisionObject(&collider, fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
+                             fixed ? btBroadphaseProxy::DefaultFilter : everything);
+}
+
+void ContactWorld::add(btMultiBodyConstraint& rows) { world_->addMultiBodyConstraint(&rows); }
+
+void ContactWorld::step(double dt_s) { world_->stepSimulation(dt_s, 0); }
+
+void ContactWorld::detect_collisions() {
+  world_->update_frames();
+  world_->performDiscreteCollisionDetection();
+}
+
+int ContactWorld::manifold_count() const { return dispatcher_.getNumManifolds(); }
+
+const btPersistentManifold& ContactWorld::manifold(int index) const {
+  return *const_cast<btCollisionDispatcher&>(dispatcher_).getManifoldByIndexInternal(index);
+}
+
+}  // namespace kadans::bullet

@@ -1,0 +1,63 @@
+// Bullet's world with one robot on level ground, set up so that it is physics and repeats bit for bit.
+//
+// What differs from Bullet's defaults, and why:
+// - no split impulse: the multibody solver never applies the split part, so joint limits would vanish;
+// - friction cone off, two fixed friction directions: standing feet do not creep;
+// - pairs sorted, islands unused (one robot is one island), nothing sleeps: the order of the solver is the same every
+// run;
+// - the solver runs all its iterations (residual threshold 0).
+// A step follows btDiscreteDynamicsWorld's own order, less what only islands and continuous collision need:
+// collide, accelerate (articulated body algorithm), solve contacts and rows, move, update the frames once.
+// Not thread-safe; one world a plant.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <btBulletDynamicsCommon.h>
+
+#include "pair_mask.h"
+
+namespace kadans::bullet {
+
+class SteppedWorld;
+
+class ContactWorld {
+ public:
+  struct Options {
+    btVector3 gravity_m_s2;
+    int solver_iterations = 10;
+    double ground_friction = 1;
+  };
+
+  ContactWorld(const Options& options, PairMask& mask);  // keeps a reference to the mask
+  ~ContactWorld();
+  ContactWorld(const ContactWorld&) = delete;
+  ContactWorld& operator=(const ContactWorld&) = delete;
+
+  void add(btMultiBody& body);
+  void add(btCollisionObject& collider, bool fixed);
+  void add(btMultiBodyConstraint& rows);
+
+  void step(double dt_s);
+  void detect_collisions();  // without a step
+
+  const btCollisionObject& ground() const { return ground_; }
+  int manifold_count() const;
+  const btPersistentManifold& manifold(int index) const;
+
+ private:
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btMultiBodyConstraintSolver solver_;
+  std::unique_ptr<SteppedWorld> world_;
+  btBoxShape ground_shape_;
+  btCollisionObject ground_;
+};
+
+}  // namespace kadans::bullet

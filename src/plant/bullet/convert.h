@@ -1,0 +1,23 @@
+// Between our plain vectors and Bullet's.
+#pragma once
+
+#include <LinearMath/btTransform.h>
+
+#include "kadans/model/robot_model.h"
+
+namespace kadans::bullet {
+
+inline btVector3 to_bullet(const Vec3& v) { return {v[0], v[1], v[2]}; }
+inline btQuaternion to_bullet(const Quat& q) { return {q[1], q[2], q[3], q[0]}; }
+inline btTransform to_bullet(const Pose& pose) {
+  return btTransform(to_bullet(pose.orientation), to_bullet(pose.position_m));
+}
+
+inline Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+inline Quat from_bullet(const btQuaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+inline Pose from_bullet(const btTransform& transform) {
+  return {from_bullet(transform.getOrigin()), from_bullet(transform.getRotation())};
+}
+
+}  // namespace kadans::bullet

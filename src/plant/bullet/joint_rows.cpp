@@ -1,0 +1,112 @@
+#include "joint_rows.h"
+
+#include <cmath>
+#include <limits>
+
+namespace kadans::bullet {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double limit_margin_rad = 0.05;  // nearer than this, or than a few steps' way, the limit's row is there
+
+bool stiff(JointRows::Kind kind) { return kind == JointRows::friction || kind == JointRows::limit; }
+
+}  // namespace
+
+JointRows::JointRows(btMultiBody& body, int link, double lower_rad, double upper_rad)
+    : btMultiBodyConstraint(&body, nullptr, link, -1, 4, false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR),
+      lower_rad_(lower_rad),
+      upper_rad_(upper_rad) {
+  allocateJacobiansMultiDof();
+}
+
+void JointRows::set_linear(double impulse_at_rest, double slope) {
+  active_[linear] = slope > 0;
+  laws_[linear] = {impulse_at_rest, slope, -infinite, infinite};
+}
+
+void JointRows::set_servo(double impulse_at_rest, double slope, double lower, double upper) {
+  active_[servo] = slope > 0;
+  laws_[servo] = {impulse_at_rest, slope, lower, upper};
+}
+
+void JointRows::set_friction(double impulse_max) {
+  active_[friction] = impulse_max > 0;
+  laws_[friction] = {0, 0, -impulse_max, impulse_max};
+}
+
+void JointRows::activate_limit(double dt_s) {
+  const double position = m_bodyA->getJointPos(m_linkA), velocity = m_bodyA->getJointVel(m_linkA);
+  const double margin = limit_margin_rad + 4 * dt_s * std::abs(velocity);
+  const double above = position - lower_rad_, below = upper_rad_ - position;
+  active_[limit] = above < margin || below < margin;
+  if (!active_[limit]) return;
+  const bool at_lower = above < below;
+  const double room = at_lower ? above : below;
+  const double away = (room < 0 ? limit_erp : 1) * room / dt_s;  // how fast it may still go towards the limit
+  limit_velocity_rad_s_ = at_lower ? -away : away;
+  laws_[limit] = {0, 0, at_lower ? 0 : -infinite, at_lower ? infinite : 0};
+}
+
+btMultiBodySolverConstraint JointRows::prototype(btMultiBodyJacobianData& data, double& response) const {
+  btMultiBodySolverConstraint row;
+  const int dofs = m_bodyA->getNumDofs() + 6;
+  row.m_multiBodyA = m_bodyA;
+  row.m_linkA = m_linkA;
+  row.m_deltaVelAindex = m_bodyA->getCompanionId();
+  if (row.m_deltaVelAindex < 0) {
+    row.m_deltaVelAindex = data.m_deltaVelocities.size();
+    m_bodyA->setCompanionId(row.m_deltaVelAindex);
+    data.m_deltaVelocities.resize(row.m_deltaVelAindex + dofs, 0);
+  }
+  row.m_jacAindex = data.m_jacobians.size();
+  row.m_deltaVelBindex = row.m_jacBindex = -1;
+  data.m_jacobians.resize(row.m_jacAindex + dofs, 0);
+  data.m_deltaVelocitiesUnitImpulse.resize(row.m_jacAindex + dofs, 0);
+  const int own = row.m_jacAindex + 6 + m_bodyA->getLink(m_linkA).m_dofOffset;
+  data.m_jacobians[own] = 1;
+  m_bodyA->calcAccelerationDeltasMultiDof(&data.m_jacobians[row.m_jacAindex],
+                                          &data.m_deltaVelocitiesUnitImpulse[row.m_jacAindex], data.scratch_r,
+                                          data.scratch_v);
+  response = data.m_deltaVelocitiesUnitImpulse[own];
+  row.m_relpos1CrossNormal = row.m_contactNormal1 = row.m_relpos2CrossNormal = row.m_contactNormal2 =
+      row.m_angularComponentA = row.m_angularComponentB = btVector3(0, 0, 0);
+  row.m_appliedImpulse = row.m_appliedPushImpulse = 0;
+  row.m_friction = row.m_rhsPenetration = 0;
+  row.m_originalContactPoint = nullptr;
+  row.m_overrideNumSolverIterations = row.m_frictionIndex = -1;
+  return row;
+}
+
+void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
+                                     const btContactSolverInfo& info) {
+  activate_limit(info.m_timeStep);
+  double response = 0;
+  btMultiBodySolverConstraint row;
+  bool made = false;
+  const double velocity = m_bodyA->getVelocityVector()[6 + m_bodyA->getLink(m_linkA).m_dofOffset];
+  for (const Kind kind : {linear, servo, friction, limit}) {
+    if (!active_[kind]) continue;
+    if (!made) row = prototype(data, response);
+    made = true;
+    const Law& law = laws_[kind];
+    if (stiff(kind)) {
+      const double wanted = kind == limit ? limit_velocity_rad_s_ : 0;
+      row.m_jacDiagABInv = 1 / response;
+      row.m_rhs = (wanted - velocity) / response;
+      row.m_cfm = 0;
+    } else {
+      const double scale = 1 / (1 + law.slope * response);
+      row.m_jacDiagABInv = law.slope * scale;
+      row.m_rhs = (law.at_rest - law.slope * velocity) * scale;
+      row.m_cfm = scale;
+    }
+    row.m_lowerLimit = law.lower;
+    row.m_upperLimit = law.upper;
+    row.m_orgConstraint = this;
+    row.m_orgDofIndex = kind;
+    rows.push_back(row);
+  }
+}
+
+}  // namespace kadans::bullet

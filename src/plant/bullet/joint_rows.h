@@ -1,0 +1,68 @@
+// What acts on one joint within the solver, because it must be implicit or unilateral: Bullet's core knows no armature,
+// no joint damping and no usable joint limit.
+//
+// A row is a law for the impulse p on the joint over a step, as a function of the joint velocity v at the step's end:
+//     p = clamp(a - b v, lower, upper)
+// With the response d of v to a unit impulse, the solver's iteration p += (a - b v - p) / (1 + b d) converges to that
+// law; in Bullet's terms: m_jacDiagABInv = b / (1 + b d), m_rhs = (a - b v0) / (1 + b d), m_cfm = 1 / (1 + b d). A
+// stiff row (b -> infinity) asks for a velocity: m_jacDiagABInv = 1 / d, m_rhs = (v_wanted - v0) / d, m_cfm = 0.
+//
+//   rotor inertia J         p = J (v_old - v)                            a = J v_old,  b = J
+//   damper c                p = -dt c v                                  a = 0,        b = dt c
+//   spring k about r        p = dt k (r - q - dt v)                      a = dt k (r - q),  b = dt^2 k
+//   servo kp, kd            p = dt (kp (q_d - q - dt v) + kd (v_d - v)), limited to the drive's torque
+//   dry friction            stiff, v_wanted = 0, limited to dt times the friction torque
+//   joint limit             stiff, one-sided: v may just reach the limit at the step's end; when beyond, a small part
+//                           (limit_erp) of the excess is taken back each step, so that nothing is thrown out
+// All rows of a joint share one Jacobian and one articulated-body pass for the response.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>
+
+namespace kadans::bullet {
+
+inline constexpr double limit_erp = 0.05;
+
+struct TorqueLaw;  // drive.h
+
+class JointRows final : public btMultiBodyConstraint {
+ public:
+  enum Kind : std::uint8_t { linear, servo, friction, limit };
+
+  JointRows(btMultiBody& body, int link, double lower_rad, double upper_rad);
+
+  // Each holds for the next step only; call clear() first.
+  void clear() { active_.fill(false); }
+  void set_linear(double impulse_at_rest, double slope);
+  void set_servo(double impulse_at_rest, double slope, double lower, double upper);
+  void set_friction(double impulse_max);
+
+  // What each row did in the last step, as impulses; 0 when it was not active.
+  double impulse(Kind kind) const { return active_[kind] ? impulses_at(kind) : 0; }
+
+  void createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
+                            const btContactSolverInfo& info) override;
+  void finalizeMultiDof() override {}
+  int getIslandIdA() const override { return 0; }
+  int getIslandIdB() const override { return 0; }
+  void debugDraw(btIDebugDraw*) override {}
+
+ private:
+  struct Law {
+    double at_rest = 0, slope = 0, lower = 0, upper = 0;
+  };
+
+  double impulses_at(Kind kind) const { return m_data[kind]; }
+  void activate_limit(double dt_s);
+  btMultiBodySolverConstraint prototype(btMultiBodyJacobianData& data, double& response) const;
+
+  double lower_rad_, upper_rad_;
+  std::array<bool, 4> active_{};
+  std::array<Law, 4> laws_{};
+  double limit_velocity_rad_s_ = 0;
+};
+
+}  // namespace kadans::bullet

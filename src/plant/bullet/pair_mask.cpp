@@ -1,0 +1,17 @@
+#include "pair_mask.h"
+
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+namespace kadans::bullet {
+
+bool PairMask::needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const {
+  const bool wanted = (a->m_collisionFilterGroup & b->m_collisionFilterMask) != 0 &&
+                      (b->m_collisionFilterGroup & a->m_collisionFilterMask) != 0;
+  if (!wanted) return false;
+  const auto* link_a = btMultiBodyLinkCollider::upcast(static_cast<btCollisionObject*>(a->m_clientObject));
+  const auto* link_b = btMultiBodyLinkCollider::upcast(static_cast<btCollisionObject*>(b->m_clientObject));
+  if (link_a == nullptr || link_b == nullptr) return true;
+  return allowed(static_cast<std::size_t>(link_a->m_link + 1), static_cast<std::size_t>(link_b->m_link + 1));
+}
+
+}  // namespace kadans::bullet

@@ -1,0 +1,12 @@
+// Do the settings fit the model? Before anything is built.
+#pragma once
+
+#include "kadans/model/robot_model.h"
+#include "kadans/plant/settings.h"
+
+namespace kadans::bullet {
+
+// Throws std::invalid_argument naming the setting, its value and what it must be.
+void check_settings(const RobotModel& model, const PlantSettings& settings);
+
+}  // namespace kadans::bullet

@@ -1,0 +1,55 @@
+// What the robot's sensors would say: the truth, quantised, biased and noisy. Every noise comes from a stream of its
+// own, named after the sensor, so that the same seed gives the same run and a new sensor disturbs no other.
+//
+// Joints: position at the joint and before the spring, each rounded to the encoder's resolution; motor effort.
+// IMU: rate and specific force at the IMU's point, in its axes. The acceleration is the change of velocity over the
+// whole step, so impacts are in it. Feet: see foot_pressure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kadans/signal/random.h"
+#include "truth.h"
+
+namespace kadans::bullet {
+
+// Shares a normal force acting at `point` of the sole out over four sensors at its corners: bilinear between heel and
+// toe, inner and outer, so the sum is the force and the centre of pressure is kept inside the corners.
+std::array<double, sensors_per_foot> foot_pressure(const FootSettings& foot, const btVector3& point_in_link_m,
+                                                   double force_N);
+
+// Adds up the ground's contact impulses on each foot. `feet` keeps its links, everything else is written.
+void read_feet(const ContactWorld& world, const Body& body, const std::vector<FootSettings>& settings, double dt_s,
+               std::vector<FootLoad>& feet);
+
+class Sensors {
+ public:
+  Sensors(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed);
+
+  struct ImuInput {
+    btVector3 angular_velocity_rad_s, velocity_m_s;  // of the IMU's point, world axes
+    btMatrix3x3 base_to_world;
+  };
+  // Without a step behind it, dt_s is 0 and the IMU is taken as held still.
+  void sample(std::int64_t time_ns, double dt_s, const std::vector<Drive>& drives, const btMultiBody& multibody,
+              const ImuInput& imu, const std::vector<FootLoad>& feet);
+  const SensorFrame& frame() const noexcept { return frame_; }
+
+ private:
+  void sample_joint(std::size_t index, const Drive& drive, double position_rad);
+  void sample_imu(double dt_s, const ImuInput& imu);
+  void sample_foot(std::size_t index, const FootLoad& load);
+
+  std::vector<EncoderSettings> encoders_;
+  ImuSettings imu_;
+  std::vector<FootSettings> feet_;
+  btMatrix3x3 imu_to_base_;
+  btVector3 gravity_m_s2_, gyro_bias_rad_s_, accelerometer_bias_m_s2_;
+  btVector3 last_velocity_m_s_{0, 0, 0};
+  std::vector<RandomStream> joint_noise_, foot_noise_;
+  RandomStream imu_noise_;
+  SensorFrame frame_;
+};
+
+}  // namespace kadans::bullet

@@ -1,0 +1,29 @@
+// A link's collision geometry as Bullet shapes: every shape convex, gathered in one compound about the link's centre of
+// mass frame. The link's shapes live as long as this object.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <btBulletCollisionCommon.h>
+
+#include "kadans/model/robot_model.h"
+
+namespace kadans::bullet {
+
+class LinkShapes {
+ public:
+  // `com_in_link` is the centre of mass frame that Bullet moves. Throws std::invalid_argument on a mesh, naming it.
+  LinkShapes(const Link& link, const btTransform& com_in_link);
+
+  bool empty() const { return parts_.empty(); }
+  btCollisionShape* shape() { return &compound_; }
+  // The height of the lowest point, the centre of mass frame being at `pose`.
+  double lowest_m(const btTransform& pose) const;
+
+ private:
+  std::vector<std::unique_ptr<btConvexShape>> parts_;
+  btCompoundShape compound_{false};  // a handful of children: a tree costs more than it saves
+};
+
+}  // namespace kadans::bullet

@@ -1,0 +1,37 @@
+// Reads the robot's true state out of Bullet, in the model's terms, once a step.
+#pragma once
+
+#include <vector>
+
+#include "body.h"
+#include "drive.h"
+#include "kadans/plant/plant.h"
+
+namespace kadans::bullet {
+
+// What the ground does to one foot.
+struct FootLoad {
+  std::size_t link = 0;
+  btVector3 force_N{0, 0, 0};                         // world axes
+  std::array<double, sensors_per_foot> pressure_N{};  // normal force, shared out over the sensors
+};
+
+class TruthReader {
+ public:
+  TruthReader(const Body& body, std::size_t joints);
+
+  void read(const std::vector<Drive>& drives, const std::vector<FootLoad>& feet);
+  const PlantTruth& truth() const noexcept { return truth_; }
+
+  // Of the base frame's point `point_in_base_m`, world axes.
+  btVector3 base_point_velocity_m_s(const btVector3& point_in_base_m) const;
+
+ private:
+  void read_com();
+
+  const Body* body_;
+  PlantTruth truth_;
+  std::vector<btVector3> omegas_, velocities_;
+};
+
+}  // namespace kadans::bullet

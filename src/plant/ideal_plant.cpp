@@ -1,0 +1,89 @@
+#include "kadans/plant/ideal_plant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace kadans {
+namespace {
+
+void require(bool good, const std::string& what) {
+  if (!good) throw std::invalid_argument("ideal plant: " + what);
+}
+
+bool finite(const JointActuation& actuation) noexcept {
+  return std::isfinite(actuation.effort_Nm) && std::isfinite(actuation.position_rad) &&
+         std::isfinite(actuation.velocity_rad_s);
+}
+
+}  // namespace
+
+IdealPlant::IdealPlant(const RobotModel& model, const PlantSettings& settings) {
+  const std::size_t joints = model.joints.size();
+  require(joints <= max_joints, "at most " + std::to_string(max_joints) + " joints");
+  require(settings.position_rad.size() == joints, "position_rad must have one entry a joint");
+  require(settings.drives.empty() || settings.drives.size() == joints, "drives must have one entry a joint, or none");
+  truth_.joint_count = static_cast<std::uint32_t>(joints);
+  truth_.base = settings.base;
+  for (std::size_t i = 0; i < joints; ++i) {
+    const Joint& joint = model.joints[i];
+    const bool limited = joint.type != JointType::continuous;
+    const double rotor = settings.drives.empty() ? 0 : settings.drives[i].rotor_inertia_kg_m2;
+    inertia_kg_m2_[i] = rotor > 0 ? rotor : 1;
+    lower_rad_[i] = limited ? joint.lower_rad : -std::numeric_limits<double>::infinity();
+    upper_rad_[i] = limited ? joint.upper_rad : std::numeric_limits<double>::infinity();
+    truth_.position_rad[i] = settings.position_rad[i];
+  }
+}
+
+void IdealPlant::read(SensorFrame& sensors) noexcept {
+  sensors.time_ns = time_ns_;
+  sensors.joint_count = truth_.joint_count;
+  sensors.foot_count = 0;
+  for (std::size_t i = 0; i < truth_.joint_count; ++i) {
+    const double effort_Nm = truth_.drive_torque_Nm[i];
+    sensors.joints[i] = {truth_.position_rad[i], truth_.position_rad[i], effort_Nm, sequence_ + 1};
+  }
+  sensors.imu = {{0, 0, 0}, {0, 0, 9.81}, sequence_ + 1};
+}
+
+void IdealPlant::write(const ActuationFrame& actuation) noexcept {
+  actuation_ = actuation;
+  actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
+  for (std::size_t i = 0; i < truth_.joint_count; ++i) {
+    if (i >= actuation_.joint_count || !finite(actuation_.joints[i])) actuation_.joints[i] = {};
+  }
+}
+
+void IdealPlant::step(std::int64_t dt_ns) {
+  if (dt_ns <= 0) return;
+  const double dt_s = static_cast<double>(dt_ns) * 1e-9;
+  for (std::size_t i = 0; i < truth_.joint_count; ++i) {
+    const JointActuation& asked = actuation_.joints[i];
+    double& position = truth_.position_rad[i];
+    double& velocity = truth_.velocity_rad_s[i];
+    const double before = position;
+    truth_.drive_torque_Nm[i] = asked.mode == ActuationMode::effort ? asked.effort_Nm : 0;
+    velocity += dt_s * truth_.drive_torque_Nm[i] / inertia_kg_m2_[i];
+    if (asked.mode == ActuationMode::velocity) velocity = asked.velocity_rad_s;
+    position = asked.mode == ActuationMode::position ? asked.position_rad : position + dt_s * velocity;
+    const double free = position;
+    position = std::clamp(position, lower_rad_[i], upper_rad_[i]);
+    if (asked.mode == ActuationMode::position) velocity = (position - before) / dt_s;
+    if (position != free) velocity = 0;
+  }
+  time_ns_ += dt_ns;
+  ++sequence_;
+}
+
+void IdealPlant::hash(StateHash& hash) const noexcept {
+  for (std::size_t i = 0; i < truth_.joint_count; ++i) {
+    hash.add(truth_.position_rad[i]);
+    hash.add(truth_.velocity_rad_s[i]);
+  }
+  hash.add(static_cast<std::uint64_t>(time_ns_));
+}
+
+}  // namespace kadans
