@@ -1,0 +1,49 @@
+// A JSON text (RFC 8259) as a tree in which every value and every key knows its line and column.
+//
+// Stricter than the standard: a key may stand only once in an object, values nest at most 64 deep, a text has at most
+// 16 MB, numbers must fit a double, the text must be UTF-8. Looser in one thing: // and /* */ comments are skipped.
+// Numbers do not depend on the locale.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kadans/config/problems.h"
+
+namespace kadans {
+
+struct JsonMember;
+
+struct JsonValue {
+  enum class Kind : std::uint8_t { null, boolean, number, string, array, object };
+  Kind kind = Kind::null;
+  TextPlace place;  // of its first character
+  bool boolean = false;
+  double number = 0;
+  std::string text;                 // of a string; of a number as it was written
+  std::vector<JsonValue> items;     // of an array
+  std::vector<JsonMember> members;  // of an object, in the order of the file
+
+  const JsonMember* find(std::string_view name) const noexcept;
+};
+
+struct JsonMember {
+  std::string name;
+  TextPlace place;  // of the key
+  JsonValue value;
+};
+
+inline constexpr std::size_t json_depth_max = 64;
+inline constexpr std::size_t json_size_max_bytes = std::size_t{16} << 20U;
+
+// Throws InputError with the first mistake; `file` only names the text.
+JsonValue parse_json(std::string_view text, const std::string& file);
+
+// The whole file. Throws InputError when it is missing, no file, unreadable or too large.
+std::string read_text_file(const std::filesystem::path& file, std::size_t size_max_bytes = json_size_max_bytes);
+
+}  // namespace kadans

@@ -1,0 +1,70 @@
+// A robot's configuration: one JSON file that names its URDF and says everything else about plant, estimator, safety,
+// engine, control objects, control sets and poses. Keys are the structs' fields, units included; where the same is
+// said of many joints the key is a pattern over the joints' names ("*_knee"), later entries override earlier ones.
+//
+// Nothing here knows a concrete control object: the names of types come from the caller, parameters are checked
+// against the objects' own tables by apply_parameters.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kadans/config/fields.h"
+#include "kadans/control/catalog.h"
+#include "kadans/engine/settings.h"
+#include "kadans/estimate/settings.h"
+#include "kadans/model/robot_model.h"
+#include "kadans/plant/settings.h"
+#include "kadans/safety/settings.h"
+
+namespace kadans {
+
+struct PresetConfig {
+  PlacedName name;
+  std::vector<NumberEntry> values;  // key: pattern over the object's parameter names
+};
+
+struct ObjectConfig {
+  std::string name;
+  TextPlace place;
+  PlacedName type;
+  std::vector<std::size_t> joints;       // in the order of the model
+  std::uint32_t divisor = 1;             // low level every n-th control tick
+  std::uint32_t high_level_divisor = 1;  // high level every n-th behavior tick
+  std::vector<NumberEntry> parameters;   // key: pattern over the object's parameter names, without its own
+  std::vector<PresetConfig> presets;
+};
+
+struct RobotConfig {
+  std::string file;
+  std::string name;
+  RobotModel model;
+  EngineSettings engine;
+  PlantSettings plant;
+  EstimateSettings estimate;
+  SafetySettings safety;
+  std::vector<ObjectConfig> objects;
+  std::vector<ControlSetInfo> sets;
+  std::uint32_t initial_set = 0;
+  std::vector<PoseInfo> poses;
+  std::string start_pose;
+};
+
+// Throws InputError with everything that is wrong, the URDF's mistakes included. `object_types`: the types of control
+// objects that the program knows.
+RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types);
+RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
+                                   std::span<const std::string> object_types);
+
+// Sets the configured parameters in the tables of `catalog`, whose objects were made from config.objects in their
+// order, and fills the objects' presets. Throws InputError on a pattern that fits no parameter of the object, with the
+// nearest one, and on a value out of a parameter's range.
+void apply_parameters(const RobotConfig& config, Catalog& catalog);
+
+// The fields of the file, for the schema.
+FieldInfo describe_robot_config();
+
+}  // namespace kadans

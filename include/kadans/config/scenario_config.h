@@ -1,0 +1,54 @@
+// A scenario: a robot, a plant, the behaviors it plays and what must hold meanwhile, in one JSON file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "kadans/config/fields.h"
+
+namespace kadans {
+
+enum class PlantKind : std::uint8_t { bullet, ideal };
+
+enum class CheckKind : std::uint8_t {
+  always,      // the signal stays in [min, max]
+  never,       // the signal never comes into [min, max]
+  eventually,  // the signal comes into [min, max] at least once
+  at_end,      // the last value is in [min, max]
+};
+
+struct ScenarioCheck {
+  std::string name;
+  CheckKind kind = CheckKind::always;
+  std::string signal;
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  double from_s = 0;                                         // looked at from here ...
+  double until_s = std::numeric_limits<double>::infinity();  // ... to here, both included
+  TextPlace signal_place;
+};
+
+struct ScenarioConfig {
+  std::string file;
+  std::string name;
+  std::string doc;
+  std::string robot;  // path of the robot's configuration, resolved
+  PlantKind plant = PlantKind::bullet;
+  double duration_s = 0;
+  std::uint64_t seed = 1;
+  std::vector<PlacedName> behaviors;  // paths, resolved; played one after the other
+  std::vector<ScenarioCheck> checks;
+};
+
+// Throws InputError with everything that is wrong. The files that it names are there, but not yet read; whether the
+// signals exist is for whoever has the table: refuse_unknown(file, {check.signal, check.signal_place}, "signal", ...).
+ScenarioConfig read_scenario_config(const std::filesystem::path& file);
+ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file);
+
+// The fields of the file, for the schema.
+FieldInfo describe_scenario_config();
+
+}  // namespace kadans

@@ -1,0 +1,103 @@
+#include "kadans/config/robot_config.h"
+
+#include <cmath>
+
+#include "kadans/config/name_pattern.h"
+#include "kadans/config/project_root.h"
+#include "kadans/model/urdf.h"
+#include "robot_reader.h"
+
+namespace kadans {
+namespace {
+
+void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
+  f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
+  f.number("behavior_period_s", engine.behavior_period_s, {1e-5, 10, "s"},
+           "period of the behavior engine, a whole multiple of control_period_s");
+  f.integer("commands_per_tick_max", engine.commands_per_tick_max, {1, max_transaction},
+            "commands applied in one control tick at most");
+  f.number("command_age_max_s", engine.command_age_max_s, {1e-3, 60, "s"}, "older commands are refused");
+  const double ticks = engine.behavior_period_s / engine.control_period_s;
+  constexpr double tolerance = 1e-6;
+  if (f.reading() && !(ticks >= 1 - tolerance && std::abs(ticks - std::round(ticks)) <= tolerance * ticks)) {
+    problems.add(f.place("behavior_period_s"),
+                 f.path("behavior_period_s") + " is " + number_text(engine.behavior_period_s) +
+                     ", must be a whole multiple of control_period_s, " + number_text(engine.control_period_s) + " s");
+  }
+}
+
+}  // namespace
+
+void RobotReader::read(Fields& f) {
+  std::string schema;
+  f.string("$schema", schema, "the schema of this file, for editors");
+  f.string("name", config_.name, "the robot's name", Need::required);
+  load_model(f);
+  f.object("engine", "periods and bounds of the engines",
+           [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
+  f.map("poses", "positions in radians by joint pattern, for behaviors and the start", [&](Fields& e) { pose(e); });
+  f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });
+  f.object("start", "where the robot starts", [&](Fields& e) { start(e); });
+  f.object("estimate", "how the estimator is set up", [&](Fields& e) { estimate(e); });
+  f.object("safety", "limits and reactions of the safety layer", [&](Fields& e) { safety(e); });
+  f.object(
+      "control", "control objects and control sets", [&](Fields& e) { control(e); }, Need::required);
+}
+
+void RobotReader::load_model(Fields& f) {
+  std::string urdf;
+  if (!f.string("urdf", urdf, "the robot's URDF, from the project root", Need::required)) return;
+  const std::filesystem::path file = resolve_file(urdf, f.place("urdf"), "urdf", problems_);
+  if (file.empty()) return;
+  try {
+    config_.model = read_urdf(file.string());
+  } catch (const InputError& error) {
+    problems_.add(error);
+    return;
+  }
+  have_model_ = true;
+  joint_names_ = config_.model.joint_names();
+  const std::size_t count = config_.model.joints.size();
+  config_.plant.drives.resize(count);
+  config_.plant.encoders.resize(count);
+  config_.plant.position_rad.assign(count, 0.0);
+  config_.estimate.spring_Nm_per_rad.assign(count, 0.0);
+  config_.estimate.joint_velocity_cutoff_Hz.assign(count, 0.0);
+  config_.estimate.sample_divisor.assign(count, 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Joint& joint = config_.model.joints[i];
+    config_.plant.drives[i].torque_max_Nm = joint.effort_max_Nm;
+    config_.plant.drives[i].velocity_max_rad_s = joint.velocity_max_rad_s;
+    config_.safety.joints.push_back({joint.lower_rad, joint.upper_rad, joint.velocity_max_rad_s, joint.effort_max_Nm});
+  }
+}
+
+std::vector<std::size_t> RobotReader::joints(std::string_view pattern, TextPlace place) {
+  std::vector<std::size_t> chosen = matching(pattern, joint_names_);
+  if (chosen.empty()) problems_.add_unknown(place, "joint", pattern, joint_names_);
+  return chosen;
+}
+
+RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
+                                   std::span<const std::string> object_types) {
+  RobotConfig config;
+  config.file = file;
+  Problems problems(file);
+  RobotReader reader(config, problems, object_types);
+  read_fields(parse_json(text, file), problems, [&](Fields& f) { reader.read(f); });
+  problems.throw_if_any();
+  return config;
+}
+
+RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types) {
+  return read_robot_config_text(read_text_file(file), file.string(), object_types);
+}
+
+FieldInfo describe_robot_config() {
+  RobotConfig config;
+  Problems problems("");
+  RobotReader reader(config, problems, {});
+  return describe_fields([&](Fields& f) { reader.read(f); });
+}
+
+}  // namespace kadans

@@ -1,0 +1,128 @@
+// The parts of a robot's configuration that stand on control: objects, sets, poses.
+#include <algorithm>
+
+#include "kadans/config/name_pattern.h"
+#include "robot_reader.h"
+
+namespace kadans {
+namespace {
+
+template <typename Named>
+std::vector<std::string> names_of(const std::vector<Named>& all) {
+  std::vector<std::string> names;
+  for (const Named& one : all) names.push_back(one.name);
+  return names;
+}
+
+}  // namespace
+
+void RobotReader::control(Fields& f) {
+  f.list(
+      "objects", {1, max_objects}, "the control objects", [&](Fields& e) { object(e); }, Need::required);
+  f.map(
+      "sets", "control sets: the control objects that are active together", [&](Fields& e) { control_set(e); },
+      Need::required);
+  std::string initial;
+  if (!f.string("initial_set", initial, "the control set that is active first; else the first one")) return;
+  const std::vector<std::string> names = names_of(config_.sets);
+  const auto found = std::find(names.begin(), names.end(), initial);
+  if (found == names.end()) problems_.add_unknown(f.place("initial_set"), "control set", initial, names);
+  config_.initial_set = static_cast<std::uint32_t>(found == names.end() ? 0 : found - names.begin());
+}
+
+void RobotReader::object(Fields& f) {
+  constexpr NumberRange any_number{-1e9, 1e9};
+  ObjectConfig object;
+  std::vector<PlacedName> patterns;
+  object.place = f.place();
+  f.string("name", object.name, "its name for behaviors, parameters and signals", Need::required);
+  f.string("type", object.type.name, "the kind of control object", Need::required);
+  f.strings("joints", patterns, {1, max_joints}, "patterns of the motor joints that it drives", Need::required);
+  f.integer("divisor", object.divisor, {1, 1000}, "low level every n-th control tick");
+  f.integer("high_level_divisor", object.high_level_divisor, {1, 1000}, "high level every n-th behavior tick");
+  f.object("parameters", "first values by parameter pattern",
+           [&](Fields& e) { e.number_entries(object.parameters, any_number, "in the parameter's unit"); });
+  f.map("presets", "named values that a behavior may choose", [&](Fields& e) {
+    PresetConfig& preset = object.presets.emplace_back();
+    preset.name = {e.key(), e.key_place()};
+    e.number_entries(preset.values, any_number, "in the parameter's unit");
+  });
+  if (!f.reading()) return;
+  object.type.place = f.place("type");
+  if (!object.type.name.empty() &&
+      std::find(object_types_.begin(), object_types_.end(), object.type.name) == object_types_.end()) {
+    problems_.add_unknown(object.type.place, "type of control object", object.type.name, object_types_);
+  }
+  if (!object.name.empty() && object.name.find_first_of(".* ") != std::string::npos) {
+    problems_.add(f.place("name"),
+                  f.path("name") + ": " + in_quotes(object.name) + " must not contain '.', '*' or a space");
+  }
+  const std::vector<std::string> names = names_of(config_.objects);
+  if (std::find(names.begin(), names.end(), object.name) != names.end()) {
+    problems_.add(f.place("name"), f.path("name") + ": another control object is named " + in_quotes(object.name));
+  }
+  object_joints(patterns, object);
+  config_.objects.push_back(std::move(object));
+}
+
+void RobotReader::object_joints(const std::vector<PlacedName>& patterns, ObjectConfig& object) {
+  if (!have_model_) return;
+  for (const PlacedName& pattern : patterns) {
+    bool motor = false;
+    const std::vector<std::size_t> chosen = joints(pattern.name, pattern.place);
+    for (const std::size_t i : chosen) {
+      if (config_.model.joints[i].passive()) continue;
+      motor = true;
+      object.joints.push_back(i);
+    }
+    if (!chosen.empty() && !motor) {
+      problems_.add(pattern.place, "joint " + in_quotes(pattern.name) + " has no motor (effort 0 in the URDF)");
+    }
+  }
+  std::sort(object.joints.begin(), object.joints.end());
+  object.joints.erase(std::unique(object.joints.begin(), object.joints.end()), object.joints.end());
+}
+
+void RobotReader::control_set(Fields& entry) {
+  ControlSetInfo set;
+  set.name = entry.key();
+  std::vector<PlacedName> objects;
+  entry.strings("objects", objects, {1, max_objects}, "names of its control objects, in the order of computing",
+                Need::required);
+  const std::vector<std::string> names = names_of(config_.objects);
+  for (const PlacedName& object : objects) {
+    const auto found = std::find(names.begin(), names.end(), object.name);
+    const auto index = static_cast<std::uint32_t>(found - names.begin());
+    if (found == names.end()) {
+      problems_.add_unknown(object.place, "control object", object.name, names);
+    } else if (std::find(set.objects.begin(), set.objects.end(), index) != set.objects.end()) {
+      problems_.add(object.place, "control object " + in_quotes(object.name) + " stands twice in this set");
+    } else {
+      set.objects.push_back(index);
+    }
+  }
+  config_.sets.push_back(std::move(set));
+}
+
+void RobotReader::pose(Fields& entry) {
+  std::vector<NumberEntry> values;
+  entry.number_entries(values, {-1e3, 1e3, "rad"}, "joint position by joint pattern");
+  if (!have_model_) return;
+  PoseInfo& pose = config_.poses.emplace_back();
+  pose.name = entry.key();
+  for (const NumberEntry& value : values) {
+    for (const std::size_t i : joints(value.key, value.place)) {
+      const Joint& joint = config_.model.joints[i];
+      if (!(value.value >= joint.lower_rad && value.value <= joint.upper_rad)) {
+        problems_.add(value.value_place, entry.path(value.key) + " is " + number_text(value.value) + ", joint '" +
+                                             joint.name + "' reaches " + number_text(joint.lower_rad) + ".." +
+                                             number_text(joint.upper_rad) + " rad");
+      }
+      std::erase_if(pose.position_rad, [&](const auto& given) { return given.first == i; });
+      pose.position_rad.emplace_back(i, value.value);
+    }
+  }
+  std::sort(pose.position_rad.begin(), pose.position_rad.end());
+}
+
+}  // namespace kadans

@@ -1,0 +1,62 @@
+// Reads a robot's configuration, part by part. With a model the joint-keyed parts are filled; without one (the URDF is
+// wrong, or the fields are only described) their fields are checked all the same.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kadans/config/robot_config.h"
+
+namespace kadans {
+
+class RobotReader {
+ public:
+  RobotReader(RobotConfig& config, Problems& problems, std::span<const std::string> object_types)
+      : config_(config), problems_(problems), object_types_(object_types) {}
+
+  void read(Fields& f);
+
+ private:
+  void load_model(Fields& f);
+
+  // robot_plant.cpp
+  void plant(Fields& f);
+  void drive(Fields& entry);
+  void surface(Fields& entry);
+  void imu(Fields& f);
+  void foot(Fields& f);
+  void start(Fields& f);
+  void estimate(Fields& f);
+  void safety(Fields& f);
+  void limits(Fields& entry);
+
+  // robot_control.cpp
+  void control(Fields& f);
+  void object(Fields& f);
+  void object_joints(const std::vector<PlacedName>& patterns, ObjectConfig& object);
+  void control_set(Fields& entry);
+  void pose(Fields& entry);
+
+  // The joints that a pattern chooses; none is a problem at `place`.
+  std::vector<std::size_t> joints(std::string_view pattern, TextPlace place);
+  // Runs `read` on the settings of each joint that the entry's key chooses, on a scratch copy without a model.
+  template <typename Settings, typename Read>
+  void each_joint(Fields& entry, std::vector<Settings>& settings, Read&& read) {
+    Settings scratch{};
+    if (!have_model_) return read(scratch);
+    const std::vector<std::size_t> chosen = joints(entry.key(), entry.key_place());
+    if (chosen.empty()) read(scratch);
+    for (const std::size_t i : chosen) read(settings[i]);
+  }
+
+  RobotConfig& config_;
+  Problems& problems_;
+  std::span<const std::string> object_types_;
+  bool have_model_ = false;
+  std::vector<std::string> joint_names_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,43 @@
+// Walks over a text and always knows the line and column it is at; columns count characters, not bytes.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "kadans/config/problems.h"
+
+namespace kadans {
+
+class TextCursor {
+ public:
+  explicit TextCursor(std::string_view text) noexcept : text_(text) {}
+
+  bool at_end() const noexcept { return position_ >= text_.size(); }
+  // The character `ahead` of the cursor; '\0' behind the end.
+  char peek(std::size_t ahead = 0) const noexcept {
+    return ahead < text_.size() - position_ ? text_[position_ + ahead] : '\0';
+  }
+  char next() noexcept {
+    const char c = text_[position_++];
+    if (c == '\n') {
+      ++place_.line;
+      place_.column = 1;
+    } else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) {  // not the inside of a UTF-8 character
+      ++place_.column;
+    }
+    return c;
+  }
+  std::size_t position() const noexcept { return position_; }
+  std::string_view since(std::size_t start) const noexcept { return text_.substr(start, position_ - start); }
+  TextPlace place() const noexcept { return place_; }
+
+ private:
+  std::string_view text_;
+  std::size_t position_ = 0;
+  TextPlace place_{1, 1};
+};
+
+// Where the text stops being UTF-8 (RFC 3629: shortest forms, no surrogates); npos when it is UTF-8 throughout.
+std::size_t find_invalid_utf8(std::string_view text) noexcept;
+
+}  // namespace kadans

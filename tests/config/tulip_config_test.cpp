@@ -1,0 +1,107 @@
+// The shipped configuration of TULip, against its URDF and the control objects that it names.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "kadans/config/robot_config.h"
+#include "kadans/control/joint_pid.h"
+#include "kadans/model/kinematics.h"
+
+namespace kadans {
+namespace {
+
+const std::vector<std::string> types{"joint_pid"};
+const std::string robot_file = KADANS_SOURCE_DIR "/config/tulip/robot.json";
+
+RobotConfig tulip() { return read_robot_config(robot_file, types); }
+
+// A catalog as the program makes it, with the objects that own the parameters.
+struct Objects {
+  Catalog catalog;
+  std::vector<std::unique_ptr<ControlObject>> owners;
+
+  explicit Objects(const RobotConfig& config) {
+    for (const ObjectConfig& object : config.objects) {
+      ObjectInfo& info = catalog.objects.emplace_back();
+      info.name = object.name;
+      owners.push_back(make_joint_pid({config.model, object.joints}));
+      const auto first = static_cast<ParameterId>(catalog.parameters.size());
+      Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);
+      owners.back()->declare(declaration);
+      for (ParameterId id = first; id < catalog.parameters.size(); ++id) info.parameters.push_back(id);
+    }
+  }
+  double value(const char* name) const { return catalog.parameters.get(catalog.parameters.find(name).value()); }
+};
+
+const PoseInfo& pose(const RobotConfig& config, const char* name) {
+  const auto named = [&](const PoseInfo& one) { return one.name == name; };
+  return *std::find_if(config.poses.begin(), config.poses.end(), named);
+}
+
+// Height of the hips over the left sole and the pitch of the sole, the base upright.
+struct Stance {
+  double height_m, sole_pitch_rad;
+};
+Stance stance(const RobotConfig& config, const char* name) {
+  std::vector<double> position_rad(config.model.joints.size());
+  for (const auto& [joint, value] : pose(config, name).position_rad) position_rad[joint] = value;
+  Kinematics kinematics(config.model);
+  kinematics.update(position_rad);
+  const Pose& foot = kinematics.link(config.model.find_link("l_ankle_roll_link").value());
+  return {-foot.position_m[2], roll_pitch_yaw(foot.orientation)[1]};
+}
+
+}  // namespace
+
+TEST_CASE("TULip's configuration drives its twelve motors and leaves the ankle rolls to their springs") {
+  const RobotConfig config = tulip();
+  CHECK(config.name == "tulip");
+  CHECK(config.model.joints.size() == 14);
+  REQUIRE(config.objects.size() == 1);
+  CHECK(config.objects[0].joints.size() == 12);
+  const std::size_t ankle = config.model.find_joint("r_ankle_roll").value();
+  const std::size_t knee = config.model.find_joint("r_knee").value();
+  CHECK(config.plant.drives[ankle].torque_max_Nm == 0);
+  CHECK(config.plant.drives[ankle].rotor_inertia_kg_m2 == 0);
+  CHECK(config.plant.drives[ankle].parallel_spring_Nm_per_rad == 25);
+  CHECK(config.plant.drives[knee].torque_max_Nm == 25);
+  CHECK(config.plant.drives[knee].rotor_inertia_kg_m2 == 0.02);
+  CHECK(config.plant.drives[knee].parallel_spring_Nm_per_rad == 0);
+  CHECK(config.estimate.spring_Nm_per_rad[knee] == config.plant.drives[knee].spring_Nm_per_rad);
+  CHECK(config.engine.behavior_divisor() == 10);
+  CHECK(config.engine.control_period_ns() == 1'000'000);
+}
+
+TEST_CASE("TULip's squat sinks the hips by 0.10 m with flat feet") {
+  const RobotConfig config = tulip();
+  const Stance stand = stance(config, "stand");
+  const Stance squat = stance(config, "squat");
+  CHECK(stand.height_m - squat.height_m == doctest::Approx(0.10).epsilon(1e-5));
+  CHECK(std::abs(stand.sole_pitch_rad) < 1e-9);
+  CHECK(std::abs(squat.sole_pitch_rad) < 1e-6);
+  CHECK(stance(config, "straight").height_m == doctest::Approx(0.258 + 0.55));
+}
+
+TEST_CASE("TULip starts in its standing pose") {
+  const RobotConfig config = tulip();
+  CHECK(config.plant.position_rad[config.model.find_joint("l_knee").value()] == 0.3);
+  CHECK(config.plant.stand_on_ground);
+}
+
+TEST_CASE("TULip's gains and presets fit the parameters that joint_pid declares") {
+  const RobotConfig config = tulip();
+  Objects objects(config);
+  apply_parameters(config, objects.catalog);
+  CHECK(objects.value("posture.l_knee.kp_Nm_per_rad") == 300);
+  CHECK(objects.value("posture.r_shoulder_pitch.ki_Nm_per_rads") == 20);
+  const std::vector<Preset>& presets = objects.catalog.objects[0].presets;
+  REQUIRE(presets.size() == 2);
+  CHECK(presets[0].name == "stiff");
+  CHECK(presets[1].name == "soft");
+  CHECK(presets[1].values.size() == 24);
+}
+
+}  // namespace kadans
