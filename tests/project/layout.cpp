@@ -86,6 +86,19 @@ std::string check_fences(std::string_view path, const Include& include) {
   return "";
 }
 
+// "plant" for each kadans_plant_bullet or kadans::plant in a line of CMake.
+std::vector<std::string> linked_in(std::string_view line) {
+  std::vector<std::string> names;
+  for (const std::string_view prefix : {"kadans_", "kadans::"}) {
+    for (auto at = line.find(prefix); at != std::string_view::npos; at = line.find(prefix, at + 1)) {
+      const std::string_view rest = line.substr(at + prefix.size());
+      const auto end = std::ranges::find_if(rest, [](unsigned char c) { return std::isalnum(c) == 0; });
+      names.emplace_back(rest.begin(), end);
+    }
+  }
+  return names;
+}
+
 std::string without_comment(const std::string& line) { return line.substr(0, line.find('#')); }
 
 }  // namespace
@@ -140,16 +153,11 @@ Findings check_links(std::string_view path, std::string_view cmake_text, const s
   std::size_t number = 0;
   for (const std::string& whole : lines(cmake_text)) {
     ++number;
-    const std::string line = without_comment(whole);
-    for (const std::string_view prefix : {"kadans_", "kadans::"}) {
-      for (auto at = line.find(prefix); at != std::string::npos; at = line.find(prefix, at + 1)) {
-        const auto name = at + prefix.size();
-        const auto end = std::ranges::find_if(line.begin() + static_cast<std::ptrdiff_t>(name), line.end(),
-                                              [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
-        const std::string other(line.begin() + static_cast<std::ptrdiff_t>(name), end);
-        if (rank(other, layers) < layers.size() && rank(other, layers) > rank(own, layers))
-          findings.push_back(place(path, number) + own + " links " + other + ", which stands below it");
-      }
+    for (const std::string& other : linked_in(without_comment(whole))) {
+      const std::size_t other_rank = rank(other, layers);
+      if (other_rank >= layers.size() || other_rank <= rank(own, layers)) continue;
+      findings.push_back(
+          place(path, number).append(own).append(" links ").append(other).append(", which stands below it"));
     }
   }
   return findings;

@@ -85,7 +85,8 @@ TEST_CASE("no file is longer than 400 lines") {
 
 TEST_CASE("the name of every file and folder says what is in it") {
   for (const char* folder : {"src", "include", "tests", "behaviors", "scripts", "cmake", "config", "models", "docs"}) {
-    for (const fs::path& file : files_below(root / folder)) report(check_name(fs::relative(file, root).generic_string()));
+    for (const fs::path& file : files_below(root / folder))
+      report(check_name(fs::relative(file, root).generic_string()));
   }
 }
 

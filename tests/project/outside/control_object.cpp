@@ -20,7 +20,7 @@ class Spring final : public kadans::ControlObject {
     actuation.joints[0].mode = kadans::ActuationMode::effort;
     actuation.joints[0].effort_Nm = effort_Nm_;
   }
-  bool set_point(std::uint32_t, double, double) noexcept override { return false; }
+  void set_point(std::uint32_t, double, double) noexcept override {}
   void cancel_motion(std::uint32_t) noexcept override {}
   double motion_remaining_s() const noexcept override { return 0; }
 
