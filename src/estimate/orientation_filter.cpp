@@ -53,17 +53,14 @@ void OrientationFilter::update(const Vec3& gyro_rad_s, const Vec3& specific_forc
     if (norm_m_s2 > 0.5 * gravity_m_s2 && norm_m_s2 < 1.5 * gravity_m_s2) initialise(f, norm_m_s2);
     return;
   }
-  const Vec3 error = gravity_error(f, norm_m_s2);
-  learn_bias(error, elapsed_s);
-  Vec3 rate_rad_s;
-  for (std::size_t i = 0; i < 3; ++i) {
-    // The mean of both ends of the step: its error is of third order in the step.
-    rate_rad_s[i] = (gyro_rad_s[i] + last_gyro_rad_s_[i]) / 2 - state_.gyro_bias_rad_s[i] +
-                    config_.accelerometer_gain_per_s * error[i];
-    state_.angular_velocity_rad_s[i] = gyro_rad_s[i] - state_.gyro_bias_rad_s[i];
-  }
+  Vec3 mean_rad_s;
+  for (std::size_t i = 0; i < 3; ++i)  // of both ends of the step: what is left is of third order in the step
+    mean_rad_s[i] = (gyro_rad_s[i] + last_gyro_rad_s_[i]) / 2 - state_.gyro_bias_rad_s[i];
   last_gyro_rad_s_ = gyro_rad_s;
-  state_.orientation = normalized(multiply(state_.orientation, turn(rate_rad_s, elapsed_s)));
+  state_.orientation = multiply(state_.orientation, turn(mean_rad_s, elapsed_s));
+  correct(f, norm_m_s2, elapsed_s);
+  state_.orientation = normalized(state_.orientation);
+  for (std::size_t i = 0; i < 3; ++i) state_.angular_velocity_rad_s[i] = gyro_rad_s[i] - state_.gyro_bias_rad_s[i];
 }
 
 // The shortest rotation that brings the measured up onto the world's z, without yaw.
@@ -76,17 +73,22 @@ void OrientationFilter::initialise(const Vec3& specific_force_m_s2, double norm_
   state_.initialised = true;
 }
 
-// measured up x estimated up, weighted: the axis to turn about, in the base frame, times the sine of the angle.
-Vec3 OrientationFilter::gravity_error(const Vec3& specific_force_m_s2, double norm_m_s2) noexcept {
+// The error is measured up x estimated up, weighted, both now and in the base frame: the axis to turn about, times the
+// sine of the angle.
+void OrientationFilter::correct(const Vec3& specific_force_m_s2, double norm_m_s2, double elapsed_s) noexcept {
   const double deviation = std::fabs(norm_m_s2 / gravity_m_s2 - 1);
   const bool trusted = deviation < config_.gravity_tolerance && norm_m_s2 > 0;
   state_.gravity_weight = trusted ? 1 - deviation / config_.gravity_tolerance : 0;
-  if (!trusted) return {};
+  if (!trusted) return;
   const Vec3& f = specific_force_m_s2;
   const Vec3 up = rotate_inverse(state_.orientation, {0, 0, 1});
   const double scale = state_.gravity_weight / norm_m_s2;
-  return {scale * (f[1] * up[2] - f[2] * up[1]), scale * (f[2] * up[0] - f[0] * up[2]),
-          scale * (f[0] * up[1] - f[1] * up[0])};
+  const Vec3 error{scale * (f[1] * up[2] - f[2] * up[1]), scale * (f[2] * up[0] - f[0] * up[2]),
+                   scale * (f[0] * up[1] - f[1] * up[0])};
+  // After a long gap at most the whole error is taken back.
+  state_.orientation =
+      multiply(state_.orientation, turn(error, std::fmin(1, config_.accelerometer_gain_per_s * elapsed_s)));
+  learn_bias(error, elapsed_s);
 }
 
 void OrientationFilter::learn_bias(const Vec3& error, double elapsed_s) noexcept {

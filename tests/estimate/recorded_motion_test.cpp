@@ -65,8 +65,6 @@ Errors run(const OrientationFilter::Config& config) {
     errors.yaw_worst_rad = std::max(errors.yaw_worst_rad, std::fabs(yaw_rad - truth_rad[2]));
   }
   errors.tilt_rms_rad = std::sqrt(errors.tilt_rms_rad);
-  MESSAGE("tilt worst " << errors.tilt_worst_rad << " settled " << errors.settled_worst_rad << " rms "
-                        << errors.tilt_rms_rad << " yaw " << errors.yaw_worst_rad << " rad");
   return errors;
 }
 
@@ -74,11 +72,34 @@ Errors run(const OrientationFilter::Config& config) {
 
 TEST_CASE("On a recorded motion the estimated up stays near the true one") {
   const Errors errors = run({});
-  CHECK(errors.tilt_worst_rad < 0.03);
+  CHECK(errors.tilt_worst_rad < 0.03);  // in the first seconds, while the gyro's bias is not known
+  CHECK(errors.settled_worst_rad < 0.02);
+  CHECK(errors.tilt_rms_rad < 0.016);
+  CHECK(errors.yaw_worst_rad < 0.13);  // nothing corrects yaw: 5 mrad/s of bias for 25 s
 }
 
-TEST_CASE(
-    "On the same motion the gyro alone drifts away, and without the fading of gravity stamps and sway disturb more") {
-  run({.accelerometer_gain_per_s = 0, .gyro_bias_gain_per_s2 = 0});
-  run({.gravity_tolerance = 100});
+TEST_CASE("On the same motion the gyro alone drifts away") {
+  CHECK(run({.accelerometer_gain_per_s = 0, .gyro_bias_gain_per_s2 = 0}).settled_worst_rad > 0.2);
+}
+
+TEST_CASE("During a fall the accelerometer points along the body, and fading keeps the estimate from following it") {
+  const auto error_of_fall_rad = [](double gravity_tolerance) {
+    OrientationFilter filter({.gravity_tolerance = gravity_tolerance});
+    constexpr double length_m = 0.6, step_s = 0.001;
+    double angle_rad = 0.05, rate_rad_s = 0;  // of a mass on a stiff leg that topples forward
+    double worst_rad = 0;
+    while (angle_rad < 1.5) {
+      const double along_m_s2 = 9.81 * std::cos(angle_rad) - length_m * rate_rad_s * rate_rad_s;
+      filter.update({0, rate_rad_s, 0}, {0, 0, along_m_s2}, step_s);
+      const Vec3 up = kadans::rotate_inverse(filter.state().orientation, {0, 0, 1});
+      // The filter starts upright: its first specific force does not show the 0.05 rad.
+      worst_rad = std::max(worst_rad, std::fabs(std::atan2(-up[0], up[2]) - (angle_rad - 0.05)));
+      const double acceleration_rad_s2 = 9.81 / length_m * std::sin(angle_rad);
+      angle_rad += step_s * (rate_rad_s + step_s / 2 * acceleration_rad_s2);
+      rate_rad_s += step_s * acceleration_rad_s2;
+    }
+    return worst_rad;
+  };
+  CHECK(error_of_fall_rad(0.2) < 0.02);
+  CHECK(error_of_fall_rad(100) > 0.06);
 }
