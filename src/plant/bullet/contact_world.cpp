@@ -1,12 +1,6 @@
 #include "contact_world.h"
 
 namespace kadans::bullet {
-namespace {
-
-constexpr double ground_half_size_m = 200, ground_half_depth_m = 1;
-
-}  // namespace
-
 class SteppedWorld final : public btMultiBodyDynamicsWorld {
  public:
   using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
@@ -62,9 +56,8 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   }
 };
 
-ContactWorld::ContactWorld(const Options& options, PairMask& mask)
-    : dispatcher_(&configuration_),
-      ground_shape_(btVector3(ground_half_size_m, ground_half_size_m, ground_half_depth_m)) {
+ContactWorld::ContactWorld(const Options& options, PairMask& mask) : dispatcher_(&configuration_) {
+  ground_contact_.register_with(dispatcher_);
   world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver_, &configuration_);
   world_->setGravity(options.gravity_m_s2);
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
@@ -77,7 +70,6 @@ ContactWorld::ContactWorld(const Options& options, PairMask& mask)
   info.m_minimumSolverBatchSize = 0;
   info.m_leastSquaresResidualThreshold = 0;
   ground_.setCollisionShape(&ground_shape_);
-  ground_.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, -ground_half_depth_m)));
   ground_.setFriction(options.ground_friction);
   ground_.setRestitution(0);
   world_->addCollisionObject(&ground_, btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);

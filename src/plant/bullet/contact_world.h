@@ -20,6 +20,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
 
+#include "ground_contact.h"
 #include "pair_mask.h"
 
 namespace kadans::bullet {
@@ -51,12 +52,13 @@ class ContactWorld {
   const btPersistentManifold& manifold(int index) const;
 
  private:
+  GroundContactMaker ground_contact_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
   btMultiBodyConstraintSolver solver_;
   std::unique_ptr<SteppedWorld> world_;
-  btBoxShape ground_shape_;
+  btStaticPlaneShape ground_shape_{btVector3(0, 0, 1), 0};
   btCollisionObject ground_;
 };
 

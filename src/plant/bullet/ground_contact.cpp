@@ -1,0 +1,146 @@
+#include "ground_contact.h"
+
+#include <algorithm>
+#include <array>
+#include <new>
+
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+
+namespace kadans::bullet {
+namespace {
+
+constexpr std::size_t points_per_shape = 4;
+
+// The lowest few of the points offered, lowest first; of equals the one offered first.
+class LowestPoints {
+ public:
+  void offer(const btVector3& point) {
+    if (!(point.z() < contact_distance_m)) return;
+    std::size_t at = count_;
+    while (at > 0 && point.z() < points_[at - 1].z()) --at;
+    if (at == points_per_shape) return;
+    count_ = std::min(count_ + 1, points_per_shape);
+    for (std::size_t i = count_ - 1; i > at; --i) points_[i] = points_[i - 1];
+    points_[at] = point;
+  }
+  const btVector3* begin() const { return points_.data(); }
+  const btVector3* end() const { return points_.data() + count_; }
+
+ private:
+  std::array<btVector3, points_per_shape> points_;
+  std::size_t count_ = 0;
+};
+
+void offer_box(const btBoxShape& box, const btTransform& pose, LowestPoints& points) {
+  const btVector3 half = box.getHalfExtentsWithMargin();
+  for (int corner = 0; corner < 8; ++corner) {
+    const btVector3 signs((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
+    points.offer(pose * (half * signs));
+  }
+}
+
+// On each rim the lowest point, the one across, and the two between.
+void offer_cylinder(const btCylinderShapeZ& cylinder, const btTransform& pose, LowestPoints& points) {
+  const btVector3 half = cylinder.getHalfExtentsWithMargin();
+  btVector3 down = btVector3(0, 0, -1) * pose.getBasis();
+  down.setZ(0);
+  down = down.length2() > 1e-12 ? down.normalized() : btVector3(1, 0, 0);
+  const btVector3 side(-down.y(), down.x(), 0);
+  for (const btVector3& out : {down, side, -side, -down}) {
+    for (const double end : {-1.0, 1.0}) points.offer(pose * (half.x() * out + btVector3(0, 0, end * half.z())));
+  }
+}
+
+LowestPoints lowest_points(const btCollisionShape& shape, const btTransform& pose) {
+  LowestPoints points;
+  switch (shape.getShapeType()) {
+    case SPHERE_SHAPE_PROXYTYPE:
+      points.offer(pose.getOrigin() - btVector3(0, 0, static_cast<const btSphereShape&>(shape).getRadius()));
+      break;
+    case BOX_SHAPE_PROXYTYPE:
+      offer_box(static_cast<const btBoxShape&>(shape), pose, points);
+      break;
+    case CYLINDER_SHAPE_PROXYTYPE:
+      offer_cylinder(static_cast<const btCylinderShapeZ&>(shape), pose, points);
+      break;
+    default:
+      break;  // shapes.h makes no others
+  }
+  return points;
+}
+
+class GroundContact final : public btCollisionAlgorithm {
+ public:
+  GroundContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject& link,
+                const btCollisionObject& ground)
+      : btCollisionAlgorithm(info), link_(&link) {
+    const int parts = compound().getNumChildShapes();
+    manifolds_.reserve(parts);
+    for (int i = 0; i < parts; ++i) manifolds_.push_back(info.m_dispatcher1->getNewManifold(&link, &ground));
+    friction_ = btManifoldResult::calculateCombinedFriction(&link, &ground);
+  }
+  ~GroundContact() override {
+    for (int i = 0; i < manifolds_.size(); ++i) m_dispatcher->releaseManifold(manifolds_[i]);
+  }
+
+  void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
+                        btManifoldResult*) override {
+    const btTransform& link = link_->getWorldTransform();
+    for (int i = 0; i < manifolds_.size(); ++i) {
+      manifolds_[i]->clearManifold();
+      const btTransform part = link * compound().getChildTransform(i);
+      for (const btVector3& point : lowest_points(*compound().getChildShape(i), part)) add(*manifolds_[i], point);
+    }
+  }
+
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) override {
+    return 1;
+  }
+
+  void getAllContactManifolds(btManifoldArray& all) override {
+    for (int i = 0; i < manifolds_.size(); ++i) all.push_back(manifolds_[i]);
+  }
+
+ private:
+  const btCompoundShape& compound() const { return static_cast<const btCompoundShape&>(*link_->getCollisionShape()); }
+
+  void add(btPersistentManifold& manifold, const btVector3& point) const {
+    const btVector3 on_ground(point.x(), point.y(), 0);
+    btManifoldPoint contact(link_->getWorldTransform().invXform(point), on_ground, btVector3(0, 0, 1), point.z());
+    contact.m_positionWorldOnA = point;
+    contact.m_positionWorldOnB = on_ground;
+    contact.m_combinedFriction = friction_;
+    contact.m_combinedRestitution = 0;
+    manifold.addManifoldPoint(contact);
+  }
+
+  const btCollisionObject* link_;
+  btManifoldArray manifolds_;  // one a part
+  double friction_ = 0;
+};
+
+}  // namespace
+
+void GroundContactMaker::register_with(btCollisionDispatcher& dispatcher) {
+  dispatcher.registerCollisionCreateFunc(COMPOUND_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE, this);
+  dispatcher.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE, this);
+}
+
+btCollisionAlgorithm* GroundContactMaker::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                                   const btCollisionObjectWrapper* a,
+                                                                   const btCollisionObjectWrapper* b) {
+  const bool link_first = a->getCollisionShape()->isCompound();
+  const btCollisionObject& link = *(link_first ? a : b)->getCollisionObject();
+  const btCollisionObject& ground = *(link_first ? b : a)->getCollisionObject();
+  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(GroundContact));
+  return new (memory) GroundContact(info, link, ground);
+}
+
+}  // namespace kadans::bullet

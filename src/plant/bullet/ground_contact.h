@@ -1,0 +1,24 @@
+// Contact of a link's shapes with level ground, exact and without memory: each step the corners of every shape that lie
+// nearest to the plane become its contact points (at most four a shape), normal to the ground and at their true
+// distance. Points still above the ground are contacts too, within contact_distance_m: the solver lets them come down
+// as far as the ground and no further. Bullet's own box against box detector tilts the normal with the foot and lets
+// standing feet creep.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+
+namespace kadans::bullet {
+
+inline constexpr double contact_distance_m = 0.01;
+
+// Makes the dispatcher use this for every compound shape on a static plane with normal z.
+class GroundContactMaker final : public btCollisionAlgorithmCreateFunc {
+ public:
+  void register_with(btCollisionDispatcher& dispatcher);
+  btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                 const btCollisionObjectWrapper* a,
+                                                 const btCollisionObjectWrapper* b) override;
+};
+
+}  // namespace kadans::bullet
