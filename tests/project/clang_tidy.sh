@@ -20,7 +20,7 @@ keys() {
   dependencies >"$passed/.dependencies"
   awk '{ print $2 }' "$passed/.dependencies" | sort -u | xargs sha256sum >"$passed/.sums"
   local settings
-  settings=$(cat "$KADANS_SOURCE_DIR/.clang-tidy" <(clang-tidy --version) | sha256sum)
+  settings=$(cat "$KADANS_SOURCE_DIR"/.clang-tidy "$KADANS_SOURCE_DIR"/*/.clang-tidy <(clang-tidy --version) | sha256sum)
   awk -v settings="${settings%% *}" '
     FNR == NR { sum[$2] = $1; next }
     { digest[$1] = digest[$1] " " sum[$2] }
