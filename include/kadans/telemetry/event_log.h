@@ -1,0 +1,58 @@
+// What behaviors do and say, on its way into a record: transitions and messages, from the behavior thread to the
+// thread that drains the record. Never blocks: what does not fit is dropped and counted.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kadans/engine/behavior_host.h"
+#include "kadans/exchange/ring.h"
+#include "kadans/telemetry/byte_order.h"
+
+namespace kadans {
+
+struct Event {
+  enum class Kind : std::uint8_t { message, transition };
+  Kind kind = Kind::message;
+  Transition transition;  // time_ns and behavior count for both kinds
+  BehaviorLog::Severity severity = BehaviorLog::Severity::info;
+  std::string text;
+};
+
+// The JSON that viewers read, and the JSON schemas that go with it: foxglove.Log and kadans.Transition.
+std::string json_of(const Event& event);
+extern const char* const log_schema;
+extern const char* const transition_schema;
+
+class EventLog final : public BehaviorLog {
+ public:
+  EventLog();
+
+  // Behavior thread only.
+  void transition(const Transition& transition) override;
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
+
+  // Draining thread only. False when nothing up to `time_ns` waits.
+  [[nodiscard]] bool pop(std::int64_t time_ns, Event& event);
+
+  std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }  // any thread
+
+ private:
+  using Bytes = Ring<std::byte, std::size_t{1} << 18U>;
+  static constexpr std::size_t head_bytes = sizeof(std::uint32_t) + sizeof(std::int64_t);
+
+  void begin(Event::Kind kind, std::int64_t time_ns);
+  void push();
+
+  std::unique_ptr<Bytes> ring_;
+  ByteWriter outgoing_;              // behavior thread
+  std::vector<std::byte> incoming_;  // draining thread
+  std::atomic<std::uint32_t> dropped_{0};
+};
+
+}  // namespace kadans

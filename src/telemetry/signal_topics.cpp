@@ -1,0 +1,188 @@
+#include "kadans/telemetry/signal_topics.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string_view>
+
+namespace kadans {
+namespace {
+
+constexpr std::array<std::byte, cdr_head_bytes> cdr_head{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+constexpr SignalId no_signal = 0xffffffff;
+
+bool is_letter(char c) noexcept { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
+// A part of a name and what stands below it: a field when `signal` is one, else a message type.
+struct Part {
+  std::string name;   // as in the signal table
+  std::string field;  // as ROS allows it
+  SignalId signal = no_signal;
+  std::vector<Part> parts;
+};
+
+std::string field_name(std::string_view name) {
+  std::string field(name);
+  for (char& c : field) {
+    if (!is_letter(c) && !is_digit(c)) c = '_';
+  }
+  if (field.empty() || !is_letter(field[0])) field.insert(0, "n");
+  return field;
+}
+
+std::string unique_field(const std::vector<Part>& siblings, std::string_view name) {
+  const std::string wanted = field_name(name);
+  std::string field = wanted;
+  const auto taken = [&] { return std::ranges::any_of(siblings, [&](const Part& p) { return p.field == field; }); };
+  for (int i = 2; taken(); ++i) field = wanted + "_" + std::to_string(i);
+  return field;
+}
+
+Part& add_part(std::vector<Part>& to, std::string_view name, SignalId signal) {
+  if (signal == no_signal) {
+    const auto known = std::ranges::find_if(to, [&](const Part& p) { return p.name == name && p.signal == no_signal; });
+    if (known != to.end()) return *known;
+  }
+  to.push_back({.name = std::string(name), .field = unique_field(to, name), .signal = signal, .parts = {}});
+  return to.back();
+}
+
+std::vector<Part> tree_of(const SignalTable& table) {
+  std::vector<Part> topics;
+  for (SignalId id = 0; id < table.size(); ++id) {
+    std::string_view rest = table.info(id).name;
+    std::vector<Part>* level = &topics;
+    for (std::size_t dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {
+      level = &add_part(*level, rest.substr(0, dot), no_signal).parts;
+      rest.remove_prefix(dot + 1);
+    }
+    if (level == &topics) {
+      level = &add_part(topics, rest, no_signal).parts;
+      rest = "value";
+    }
+    add_part(*level, rest, id);
+  }
+  return topics;
+}
+
+std::string one_line(std::string_view text) {
+  std::string line(text);
+  std::ranges::replace_if(
+      line, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return line;
+}
+
+// "l_knee" -> "LKnee"
+std::string type_name(std::string_view field) {
+  std::string type;
+  bool upper = true;
+  for (const char c : field) {
+    if (c == '_') {
+      upper = true;
+      continue;
+    }
+    type += upper && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    upper = false;
+  }
+  return type;
+}
+
+// Walks the tree of one topic in the order of the wire: depth first, fields in the order of the table.
+class Definition {
+ public:
+  Definition(const SignalTable& table, Precision precision, SignalTopic& topic)
+      : table_(table), number_(precision == Precision::full ? "float64" : "float32"), topic_(topic) {}
+
+  void add(const Part& root) {
+    const std::string type = unique_type(type_name(root.field));
+    topic_.topic = "/" + root.field;
+    topic_.type = "kadans_msgs/msg/" + type;
+    topic_.definition = body(root, type);
+    for (const std::string& nested : nested_) {
+      topic_.definition += std::string(80, '=') + "\nMSG: " + nested;
+    }
+  }
+
+ private:
+  std::string unique_type(const std::string& wanted) {
+    std::string type = wanted;
+    for (int i = 2; std::ranges::find(types_, type) != types_.end(); ++i) type = wanted + std::to_string(i);
+    types_.push_back(type);
+    return type;
+  }
+
+  std::string body(const Part& part, const std::string& type) {
+    std::string text;
+    for (const Part& field : part.parts) {
+      if (field.signal != no_signal) {
+        text += number_ + " " + field.field + comment(field.signal) + "\n";
+        continue;
+      }
+      const std::string nested = unique_type(type + type_name(field.field));
+      text += "kadans_msgs/" + nested + " " + field.field + "\n";
+      const std::size_t place = nested_.size();
+      nested_.emplace_back();
+      nested_[place] = "kadans_msgs/" + nested + "\n" + body(field, nested);
+    }
+    return text;
+  }
+
+  std::string comment(SignalId id) {
+    const Signal& signal = table_.info(id);
+    const std::string unit = one_line(signal.unit), doc = one_line(signal.doc);
+    topic_.signals.push_back(id);
+    topic_.description += one_line(signal.name) + "\t" + unit + "\t" + doc + "\n";
+    return "  # [" + (unit.empty() ? "1" : unit) + "] " + doc;
+  }
+
+  const SignalTable& table_;
+  std::string number_;
+  SignalTopic& topic_;
+  std::vector<std::string> types_;
+  std::vector<std::string> nested_;
+};
+
+}  // namespace
+
+std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision precision) {
+  std::vector<SignalTopic> topics;
+  for (const Part& root : tree_of(table)) {
+    topics.emplace_back();
+    Definition(table, precision, topics.back()).add(root);
+  }
+  return topics;
+}
+
+void write_cdr(std::span<std::byte> payload, std::span<const double> values, Precision precision) noexcept {
+  std::ranges::copy(cdr_head, payload.begin());
+  std::byte* to = payload.data() + cdr_head_bytes;
+  if (precision == Precision::full) {
+    std::memcpy(to, values.data(), values.size_bytes());
+    return;
+  }
+  for (const double value : values) {
+    const auto single = static_cast<float>(value);
+    std::memcpy(to, &single, sizeof single);
+    to += sizeof single;
+  }
+}
+
+bool read_cdr(std::span<const std::byte> payload, std::span<double> values, Precision precision) noexcept {
+  if (payload.size() != cdr_bytes(values.size(), precision)) return false;
+  if (!std::ranges::equal(payload.first(cdr_head_bytes), cdr_head)) return false;
+  const std::byte* from = payload.data() + cdr_head_bytes;
+  if (precision == Precision::full) {
+    std::memcpy(values.data(), from, values.size_bytes());
+    return true;
+  }
+  for (double& value : values) {
+    float single = 0;
+    std::memcpy(&single, from, sizeof single);
+    value = static_cast<double>(single);
+    from += sizeof single;
+  }
+  return true;
+}
+
+}  // namespace kadans

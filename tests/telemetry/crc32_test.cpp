@@ -1,0 +1,23 @@
+#include "kadans/telemetry/crc32.h"
+
+#include <doctest/doctest.h>
+
+#include "kadans/telemetry/byte_order.h"
+
+using namespace kadans;
+
+TEST_CASE("Crc32 gives the check value of the CRC-32 of zlib") {
+  CHECK(crc32(bytes_of("123456789")) == 0xcbf43926U);
+  CHECK(crc32(bytes_of("")) == 0U);
+  CHECK(crc32(bytes_of("The quick brown fox jumps over the lazy dog")) == 0x414fa339U);
+}
+
+TEST_CASE("Crc32 over pieces is that of the whole, wherever it is cut") {
+  const std::string_view text = "sample, estimate, check, actuate, compute, publish";
+  for (std::size_t cut = 0; cut <= text.size(); ++cut) {
+    Crc32 crc;
+    crc.add(bytes_of(text.substr(0, cut)));
+    crc.add(bytes_of(text.substr(cut)));
+    REQUIRE(crc.value() == crc32(bytes_of(text)));
+  }
+}

@@ -1,0 +1,224 @@
+#include "kadans/telemetry/recorder.h"
+
+#include <array>
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "kadans/telemetry/mcap_reader.h"
+#include "scratch_file.h"
+
+using namespace kadans;
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+const double zero = 0;
+
+SignalTable small_table() {
+  SignalTable table;
+  table.add({"joint.l_knee.position_rad", "rad", "Position."}, &zero);
+  table.add({"base.tilt_rad", "rad", "Tilt."}, &zero);
+  table.add({"joint.r_knee.position_rad", "rad", "Position."}, &zero);
+  return table;
+}
+
+SignalTable wide_table(int signals) {
+  SignalTable table;
+  for (int i = 0; i < signals; ++i) table.add({"s.v" + std::to_string(i), "", ""}, &zero);
+  return table;
+}
+
+struct Entry {
+  std::string topic;
+  std::uint32_t sequence = 0;
+  std::int64_t time_ns = 0;
+  std::string payload;
+};
+
+std::vector<Entry> entries_of(const std::string& path) {
+  std::vector<Entry> entries;
+  McapReader reader(path);
+  for (McapMessage message; reader.next(message);) {
+    entries.push_back({reader.channels().at(message.channel).topic, message.sequence, message.time_ns,
+                       std::string(reinterpret_cast<const char*>(message.payload.data()), message.payload.size())});
+  }
+  CHECK(reader.complete());
+  return entries;
+}
+
+std::size_t count(const std::vector<Entry>& entries, std::string_view topic) {
+  std::size_t found = 0;
+  for (const Entry& entry : entries) found += entry.topic == topic ? 1U : 0U;
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("Recorder writes each row under its topics, in schema order, with the tick as sequence") {
+  const ScratchFile file;
+  Recorder recorder(small_table());
+  REQUIRE(recorder.open(file.path()));
+  recorder.record(1000, 1000 * ms, std::array{0.25, 0.5, 0.75});
+  REQUIRE(recorder.close());
+  const auto entries = entries_of(file.path());
+  REQUIRE(entries.size() == 2);
+  CHECK(entries[0].topic == "/joint");
+  CHECK(entries[0].sequence == 1000);
+  CHECK(entries[0].time_ns == 1000 * ms);
+  std::array<double, 2> knees{};
+  REQUIRE(read_cdr(bytes_of(entries[0].payload), knees, Precision::full));
+  CHECK(knees[0] == 0.25);
+  CHECK(knees[1] == 0.75);
+  CHECK(entries[1].topic == "/base");
+}
+
+TEST_CASE("Recorder records topics at the rates chosen and leaves out those with none") {
+  const ScratchFile file;
+  Recorder recorder(small_table(), {.every_ticks = 0, .topics = {{.name = "base", .every_ticks = 10}}});
+  REQUIRE(recorder.open(file.path()));
+  for (std::uint64_t tick = 0; tick < 100; ++tick) {
+    recorder.record(tick, static_cast<std::int64_t>(tick) * ms, std::array{0.0, 0.0, 0.0});
+  }
+  REQUIRE(recorder.close());
+  const auto entries = entries_of(file.path());
+  CHECK(count(entries, "/base") == 10);
+  CHECK(count(entries, "/joint") == 0);
+  CHECK(entries[3].sequence == 30);
+  CHECK(recorder.rows() == 10);
+}
+
+TEST_CASE("Recorder refuses a topic that does not exist and says which one was meant") {
+  CHECK_THROWS_WITH_AS(Recorder(small_table(), {.topics = {{.name = "jont"}}}),
+                       "no signals are called 'jont', did you mean 'joint'?", std::invalid_argument);
+}
+
+TEST_CASE("Recorder writes transitions and messages as JSON between the rows, in order of time") {
+  const ScratchFile file;
+  Recorder recorder(small_table(), {.topics = {{.name = "joint", .every_ticks = 0}}});
+  REQUIRE(recorder.open(file.path()));
+  recorder.record(1, 1 * ms, std::array{0.0, 0.0, 0.0});
+  recorder.events().transition({.time_ns = 2 * ms, .behavior = "squat", .from = "", .to = "down", .why = "start"});
+  recorder.events().message(1'500'000'002, BehaviorLog::Severity::error, "squat", "line \xff\n\"end\"");
+  recorder.record(3, 3 * ms, std::array{0.0, 0.0, 0.0});
+  REQUIRE(recorder.close());
+  const auto entries = entries_of(file.path());
+  REQUIRE(entries.size() == 4);
+  CHECK(entries[0].topic == "/base");
+  CHECK(entries[1].topic == "/transitions");
+  CHECK(entries[1].payload ==
+        R"({"behavior":"squat","from":"","timestamp":{"nsec":2000000,"sec":0},"to":"down","why":"start"})");
+  CHECK(entries[2].topic == "/base");
+  CHECK(entries[3].topic == "/log");
+  CHECK(entries[3].payload == R"({"file":"","level":4,"line":0,"message":"line )"
+                              "\xef\xbf\xbd"
+                              R"(\n\"end\"","name":"squat",)"
+                              R"("timestamp":{"nsec":500000002,"sec":1}})");
+}
+
+TEST_CASE("Recorder: when nobody drains, rows are dropped, counted, and told in the record") {
+  const ScratchFile file;
+  constexpr std::uint64_t rows = 2000;
+  Recorder recorder(wide_table(498));  // 500 words a row: 1048 rows fit
+  REQUIRE(recorder.open(file.path()));
+  const std::vector<double> row(498, 1.0);
+  for (std::uint64_t tick = 0; tick < rows; ++tick) recorder.record(tick, static_cast<std::int64_t>(tick) * ms, row);
+  CHECK(recorder.dropped() == rows - 1048);
+  REQUIRE(recorder.drain());
+  recorder.record(rows, static_cast<std::int64_t>(rows) * ms, row);
+  REQUIRE(recorder.close());
+  CHECK(recorder.dropped() == rows - 1048);
+  const auto entries = entries_of(file.path());
+  CHECK(count(entries, "/s") == 1049);
+  REQUIRE(count(entries, "/log") == 1);
+  for (const Entry& entry : entries) {
+    if (entry.topic == "/log") CHECK(entry.payload.find("952 rows and 0 events so far") != std::string::npos);
+  }
+  CHECK(entries.back().sequence == rows);
+}
+
+TEST_CASE("Recorder counts a row of the wrong size as dropped") {
+  Recorder recorder(small_table());
+  recorder.record(0, 0, std::array{1.0});
+  CHECK(recorder.dropped() == 1);
+}
+
+TEST_CASE("Recorder: events that do not fit are dropped and counted, those that fit arrive") {
+  const ScratchFile file;
+  Recorder recorder(small_table());
+  REQUIRE(recorder.open(file.path()));
+  const std::string text(1000, 'x');
+  for (int i = 0; i < 300; ++i) recorder.events().message(i, BehaviorLog::Severity::info, "flood", text);
+  CHECK(recorder.dropped_events() > 30);
+  CHECK(recorder.dropped_events() < 60);
+  REQUIRE(recorder.close());
+  CHECK(count(entries_of(file.path()), "/log") == 300 - recorder.dropped_events() + 1);
+}
+
+TEST_CASE("Recorder: a full disk is told by error(), the ring is emptied all the same, the loop sees no drops") {
+  Recorder recorder(wide_table(498));
+  CHECK_FALSE(recorder.open("/dev/full"));
+  CHECK(recorder.error().find("No space left on device") != std::string::npos);
+  const std::vector<double> row(498, 1.0);
+  for (std::uint64_t tick = 0; tick < 3000; ++tick) {
+    recorder.record(tick, static_cast<std::int64_t>(tick) * ms, row);
+    if (tick % 100 == 99) CHECK_FALSE(recorder.drain());
+  }
+  CHECK(recorder.dropped() == 0);
+  CHECK(recorder.rows() == 3000);
+  CHECK(recorder.lost() == 3000);
+  CHECK_FALSE(recorder.close());
+}
+
+TEST_CASE("Recorder describes run and robot: metadata, attachment, and the URDF on /robot_description") {
+  const ScratchFile file;
+  Recorder recorder(small_table());
+  REQUIRE(recorder.open(file.path()));
+  REQUIRE(recorder.describe_run({{"scenario", "squat"}, {"seed", "7"}}));
+  REQUIRE(recorder.describe_robot("tulip", "<robot/>", 0));
+  REQUIRE(recorder.close());
+  McapReader reader(file.path());
+  McapMessage message;
+  REQUIRE(reader.next(message));
+  CHECK(reader.channels().at(message.channel).topic == "/robot_description");
+  CHECK(message.payload.size() == 4 + 4 + 8 + 1);
+  CHECK_FALSE(reader.next(message));
+  CHECK(reader.metadata().at("run").at("seed") == "7");
+  CHECK(reader.metadata().at("recorder").at("dropped_rows") == "0");
+  REQUIRE(reader.attachments().size() == 1);
+  CHECK(reader.attachments()[0].name == "tulip.urdf");
+}
+
+TEST_CASE("Recorder: with a thread that drains, every row arrives whole and in order or is counted") {
+  const ScratchFile file;
+  constexpr std::uint64_t rows = 20'000;
+  Recorder recorder(wide_table(100));
+  REQUIRE(recorder.open(file.path()));
+  std::atomic<bool> done{false};
+  std::thread drainer([&] {
+    while (!done.load()) (void)recorder.drain();
+  });
+  std::vector<double> row(100);
+  for (std::uint64_t tick = 0; tick < rows; ++tick) {
+    row.assign(row.size(), static_cast<double>(tick));
+    recorder.record(tick, static_cast<std::int64_t>(tick) * ms, row);
+  }
+  done = true;
+  drainer.join();
+  REQUIRE(recorder.close());
+  std::size_t arrived = 0;
+  std::int64_t last = -1;
+  std::vector<double> values(100);
+  for (const Entry& entry : entries_of(file.path())) {
+    if (entry.topic != "/s") continue;
+    ++arrived;
+    REQUIRE(std::int64_t{entry.sequence} > last);
+    last = entry.sequence;
+    REQUIRE(read_cdr(bytes_of(entry.payload), values, Precision::full));
+    REQUIRE(values.front() == static_cast<double>(entry.sequence));
+    REQUIRE(values.back() == values.front());
+  }
+  CHECK(arrived + recorder.dropped() == rows);
+}
