@@ -1,0 +1,62 @@
+// A robot put together from its files: the one place that names concrete types together. The order of the members is
+// the way of the data; each keeps references to those before it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kadans/config/robot_config.h"
+#include "kadans/config/scenario_config.h"
+#include "kadans/engine/lockstep.h"
+#include "kadans/plant/plant.h"
+#include "kadans/scenario/check.h"
+#include "kadans/scenario/run.h"
+#include "kadans/script/script_host.h"
+
+namespace kadans {
+
+// The types of control objects that the program knows, for the configuration's "type".
+std::vector<std::string> control_object_types();
+
+// Control objects of a configuration with their parameters set, and the catalog that describes them.
+struct ControlSystem {
+  Catalog catalog;
+  std::vector<std::unique_ptr<ControlObject>> objects;
+};
+// Throws InputError at the place in the configuration that is wrong.
+std::unique_ptr<ControlSystem> make_control_system(const RobotConfig& config);
+
+class Assembly {
+ public:
+  // Reads the robot and the behaviors that the scenario names. Throws InputError with everything that is wrong. The log
+  // must outlive the assembly.
+  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log);
+
+  const RobotConfig& robot() const noexcept { return robot_; }
+  const Catalog& catalog() const noexcept { return control_system_->catalog; }
+  const ScriptHost& host() const noexcept { return *host_; }
+  RunParts parts() noexcept;
+  void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
+
+  // Throws InputError for a signal that nobody declares.
+  std::vector<Check> make_checks() const;
+
+ private:
+  const ScenarioConfig& scenario_;
+  RunLog& log_;
+  RobotConfig robot_;
+  std::unique_ptr<ModelPlant> plant_;
+  std::unique_ptr<ControlSystem> control_system_;
+  std::unique_ptr<ControlSets> sets_;
+  std::unique_ptr<Estimator> estimator_;
+  std::unique_ptr<Safety> safety_;
+  std::unique_ptr<EngineExchange> exchange_;
+  std::unique_ptr<TruthSignals> truth_;
+  std::unique_ptr<ControlEngine> control_;
+  std::unique_ptr<ScriptHost> host_;
+  std::unique_ptr<BehaviorEngine> behaviors_;
+  std::unique_ptr<Lockstep> lockstep_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,122 @@
+#include "kadans/app/assembly.h"
+
+#include <stdexcept>
+
+#include "kadans/control/joint_pid.h"
+#include "kadans/estimate/signals.h"
+#include "kadans/plant/bullet/bullet_plant.h"
+#include "kadans/plant/ideal_plant.h"
+
+namespace kadans {
+namespace {
+
+constexpr double feet_settle_s = 0.5;
+
+struct ControlObjectType {
+  const char* name;
+  std::unique_ptr<ControlObject> (*make)(const ObjectSetup&);
+};
+constexpr ControlObjectType types[] = {{"joint_pid", make_joint_pid}};
+
+std::unique_ptr<ControlObject> make_object(const RobotConfig& config, const ObjectConfig& object) {
+  for (const ControlObjectType& type : types) {
+    if (object.type.name != type.name) continue;
+    try {
+      return type.make({config.model, object.joints});
+    } catch (const std::invalid_argument& error) {
+      refuse(config.file, object.place, "control object " + quoted(object.name) + ": " + error.what());
+    }
+  }
+  refuse_unknown(config.file, object.type, "type of control object", control_object_types());
+}
+
+std::unique_ptr<ModelPlant> make_plant(PlantKind kind, const RobotConfig& config, std::uint64_t seed) {
+  if (kind == PlantKind::ideal) return std::make_unique<IdealPlant>(config.model, config.plant);
+  return std::make_unique<BulletPlant>(config.model, config.plant, seed);
+}
+
+std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
+  std::vector<TruthSignals::Foot> feet;
+  for (const FootSettings& foot : plant.feet) {
+    feet.push_back({foot.link, {foot.sensors_m.begin(), foot.sensors_m.end()}});
+  }
+  return feet;
+}
+
+}  // namespace
+
+std::vector<std::string> control_object_types() {
+  std::vector<std::string> names;
+  for (const ControlObjectType& type : types) names.emplace_back(type.name);
+  return names;
+}
+
+std::unique_ptr<ControlSystem> make_control_system(const RobotConfig& config) {
+  auto system = std::make_unique<ControlSystem>();
+  Catalog& catalog = system->catalog;
+  catalog.model = &config.model;
+  catalog.sets = config.sets;
+  catalog.poses = config.poses;
+  catalog.initial_set = config.initial_set;
+  for (const ObjectConfig& object : config.objects) {
+    const auto index = static_cast<std::uint32_t>(system->objects.size());
+    system->objects.push_back(make_object(config, object));
+    Declaration declaration(object.name, index, catalog.parameters, catalog.setpoints, catalog.signals);
+    const auto first_parameter = static_cast<ParameterId>(catalog.parameters.size());
+    const auto first_setpoint = static_cast<SetpointId>(catalog.setpoints.size());
+    system->objects.back()->declare(declaration);
+    ObjectInfo info{.name = object.name,
+                    .type = object.type.name,
+                    .joints = object.joints,
+                    .parameters = {},
+                    .setpoints = {},
+                    .presets = {},
+                    .divisor = object.divisor,
+                    .high_level_divisor = object.high_level_divisor};
+    for (ParameterId id = first_parameter; id < catalog.parameters.size(); ++id) info.parameters.push_back(id);
+    for (SetpointId id = first_setpoint; id < catalog.setpoints.size(); ++id) info.setpoints.push_back(id);
+    catalog.objects.push_back(std::move(info));
+  }
+  apply_parameters(config, catalog);
+  for (const auto& object : system->objects) object->parameters_changed();
+  return system;
+}
+
+Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log)
+    : scenario_(scenario), log_(log), robot_(read_robot_config(scenario.robot, control_object_types())) {
+  control_system_ = make_control_system(robot_);
+  Catalog& catalog = control_system_->catalog;
+  try {
+    plant_ = make_plant(scenario.plant, robot_, seed);
+    sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
+    estimator_ = std::make_unique<Estimator>(robot_.model, robot_.estimate, robot_.engine.control_period_s);
+    safety_ = std::make_unique<Safety>(robot_.safety, robot_.model);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.file = robot_.file, .message = error.what()});
+  }
+  exchange_ = std::make_unique<EngineExchange>();
+  truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.plant), feet_settle_s);
+  control_ = std::make_unique<ControlEngine>(robot_.engine, *plant_, *estimator_, *safety_, *sets_, catalog, *exchange_);
+  host_ = make_script_host(scenario, catalog, seed, log);
+  behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host_.get());
+  lockstep_ = std::make_unique<Lockstep>(robot_.engine, *plant_, *control_, *behaviors_);
+}
+
+RunParts Assembly::parts() noexcept { return {*plant_, *control_, *behaviors_, *lockstep_, *truth_, log_}; }
+
+std::vector<Check> Assembly::make_checks() const {
+  std::vector<Check> checks;
+  Problems problems(scenario_.file);
+  for (const ScenarioCheck& check : scenario_.checks) {
+    const auto signal = catalog().signals.find(check.signal);
+    if (!signal) {
+      problems.add_unknown(check.signal_place, "signal", check.signal, catalog().signals.names());
+    } else {
+      checks.emplace_back(check, *signal);
+    }
+  }
+  problems.throw_if_any();
+  return checks;
+}
+
+}  // namespace kadans

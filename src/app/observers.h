@@ -1,0 +1,54 @@
+// Who looks on while a scenario runs: the progress bar, the drawn signals, the recorder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kadans/scenario/report.h"
+#include "kadans/scenario/run.h"
+#include "kadans/telemetry/recorder.h"
+
+namespace kadans {
+
+// A bar on stderr while the run goes; takes itself away at the end. Also asks for a stop after SIGINT or SIGTERM.
+class ProgressBar final : public RunObserver {
+ public:
+  ProgressBar(double duration_s, bool shown) : duration_s_(duration_s), shown_(shown) {}
+  ~ProgressBar() override;
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void tick(double time_s, std::span<const double> row) override;
+  bool stop_asked() const override;
+
+ private:
+  double duration_s_;
+  bool shown_;
+  int drawn_percent_ = -1;
+};
+
+// Keeps every n-th value of one signal for the report.
+class TraceObserver final : public RunObserver {
+ public:
+  TraceObserver(std::string title, SignalId signal, double duration_s);
+  void tick(double time_s, std::span<const double> row) override;
+  const ReportTrace& trace() const noexcept { return trace_; }
+
+ private:
+  SignalId signal_;
+  double every_s_;
+  double next_s_ = 0;
+  ReportTrace trace_;
+};
+
+// Lets the recorder write what the tick left in its ring.
+class RecordDrain final : public RunObserver {
+ public:
+  explicit RecordDrain(Recorder& recorder) : recorder_(recorder) {}
+  void tick(double time_s, std::span<const double> row) override;
+
+ private:
+  Recorder& recorder_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,148 @@
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "kadans/app/assembly.h"
+#include "commands.h"
+#include "kadans/scenario/report.h"
+#include "kadans/telemetry/recorder.h"
+#include "observers.h"
+#include "terminal.h"
+#include "version.h"
+
+namespace kadans {
+namespace {
+
+constexpr const char* height_signal = "plant.base.height_m";
+
+std::string repeat_command(const ScenarioConfig& scenario, const SimOptions& options, std::uint64_t seed) {
+  std::string command = "kadans sim " + scenario.file + " --seed " + std::to_string(seed);
+  if (options.duration_s) command += " --duration " + number_text(*options.duration_s);
+  return command;
+}
+
+std::string read_all(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// Events go to the recorder only when it exists, and it exists only when the signals are known: this lets the log be
+// made first.
+class LateLog final : public BehaviorLog {
+ public:
+  void set(BehaviorLog* log) noexcept { log_ = log; }
+  void transition(const Transition& transition) override {
+    if (log_ != nullptr) log_->transition(transition);
+  }
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
+    if (log_ != nullptr) log_->message(time_ns, severity, behavior, text);
+  }
+
+ private:
+  BehaviorLog* log_ = nullptr;
+};
+
+class Sim {
+ public:
+  explicit Sim(const SimOptions& options)
+      : options_(options),
+        scenario_(read_scenario_config(options.scenario)),
+        seed_(options.seed.value_or(scenario_.seed)),
+        duration_s_(options.duration_s.value_or(scenario_.duration_s)),
+        assembly_(scenario_, seed_, log_),
+        checks_(assembly_.make_checks()) {
+    // A run that was asked to be short says nothing about what was to hold later.
+    std::erase_if(checks_, [&](const Check& check) { return check.config().from_s > duration_s_; });
+  }
+
+  int run() {
+    const std::string record = start_record();
+    ProgressBar progress(duration_s_, stderr_is_terminal() && !options_.json);
+    std::vector<RunObserver*> observers{&progress};
+    TraceObserver height("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_);
+    observers.push_back(&height);
+    std::unique_ptr<RecordDrain> drain;
+    if (recorder_) observers.push_back((drain = std::make_unique<RecordDrain>(*recorder_)).get());
+    RunResult result = [&] {
+      const RunParts parts = assembly_.parts();
+      return run_scenario(parts, duration_s_, checks_, observers);
+    }();
+    result.scenario = scenario_.name;
+    result.seed = seed_;
+    finish_record();
+    print(result, height.trace(), record);
+    if (result.interrupted) return exit_interrupted;
+    return result.passed ? exit_passed : exit_failed;
+  }
+
+ private:
+  // The file that is written, or "". A file that was asked for and cannot be written is an error; the usual one is not.
+  std::string start_record() {
+    if (options_.no_record) return {};
+    const std::string file = options_.record.empty() ? scenario_.name + ".mcap" : options_.record;
+    recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
+    if (!recorder_->open(file)) {
+      const std::string why = recorder_->error();
+      recorder_.reset();
+      if (!options_.record.empty()) throw InputError({.message = why});
+      print_error(why + "; this run leaves no record");
+      return {};
+    }
+    const RobotModel& model = assembly_.robot().model;
+    (void)recorder_->describe_run(
+        {{"scenario", scenario_.file}, {"seed", std::to_string(seed_)}, {"kadans", version}});
+    (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
+    late_log_.set(&recorder_->events());
+    assembly_.record_to(recorder_.get());
+    return file;
+  }
+
+  void finish_record() {
+    if (!recorder_) return;
+    if (!recorder_->close()) print_error("the record is not complete: " + recorder_->error());
+    if (recorder_->dropped() > 0) print_error(std::to_string(recorder_->dropped()) + " rows are missing in the record");
+  }
+
+  void print(const RunResult& result, const ReportTrace& height, const std::string& record) const {
+    if (options_.json) {
+      std::puts(json_report(result, log_, assembly_.robot().model, record).c_str());
+      return;
+    }
+    std::vector<ScenarioCheck> wanted;
+    for (const Check& check : checks_) wanted.push_back(check.config());
+    const std::vector<ReportTrace> traces{height};
+    const ReportSubject subject{.result = result,
+                                .log = log_,
+                                .model = assembly_.robot().model,
+                                .checks = wanted,
+                                .traces = traces,
+                                .title = scenario_.name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
+                                .record = record,
+                                .repeat = repeat_command(scenario_, options_, seed_)};
+    const std::string text =
+        text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
+    std::fputs(text.c_str(), stdout);
+  }
+
+  const SimOptions& options_;
+  ScenarioConfig scenario_;
+  std::uint64_t seed_;
+  double duration_s_;
+  LateLog late_log_;
+  RunLog log_{&late_log_};
+  Assembly assembly_;
+  std::vector<Check> checks_;
+  std::unique_ptr<Recorder> recorder_;
+};
+
+}  // namespace
+
+int run_sim(const SimOptions& options) {
+  Sim sim(options);
+  catch_interrupts();
+  return sim.run();
+}
+
+}  // namespace kadans

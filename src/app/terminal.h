@@ -1,0 +1,23 @@
+// What the program may do on the streams it was given, and what it says there.
+#pragma once
+
+#include <string>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+
+enum ExitCode : int { exit_passed = 0, exit_failed = 1, exit_usage = 2, exit_internal = 3, exit_interrupted = 130 };
+
+bool stdout_takes_color();  // a terminal, and NO_COLOR is not set
+bool stderr_is_terminal();
+
+// One line a problem on stderr: "error: file:line:column: what is wrong".
+void print_problems(const InputError& error);
+void print_error(const std::string& message);
+
+// From now on SIGINT and SIGTERM set a flag instead of ending the program.
+void catch_interrupts();
+bool interrupted() noexcept;
+
+}  // namespace kadans

@@ -1,0 +1,28 @@
+#include <CLI/CLI.hpp>
+#include <map>
+
+#include "report.h"
+
+int main(int argc, char** argv) {
+  using namespace kadans::bench;
+  const std::map<std::string, void (*)(Report&)> parts = {
+      {"control", bench_control}, {"exchange", bench_exchange}, {"plant", bench_simulation}, {"record", bench_record}};
+  CLI::App app("Kadans benchmarks", "kadans_bench");
+  std::vector<std::string> only;
+  bool json = false;
+  std::vector<std::string> names;
+  for (const auto& [name, run] : parts) names.push_back(name);
+  app.add_option("--only", only, "Parts to run (default: all)")->check(CLI::IsMember(names))->delimiter(',');
+  app.add_flag("--json", json, "Print one JSON object");
+  CLI11_PARSE(app, argc, argv);
+  Report report;
+  for (const auto& [name, run] : parts) {
+    if (only.empty() || std::find(only.begin(), only.end(), name) != only.end()) run(report);
+  }
+  if (json) {
+    report.print_json();
+  } else {
+    report.print_table();
+  }
+  return 0;
+}
