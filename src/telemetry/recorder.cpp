@@ -25,7 +25,8 @@ Recorder::Recorder(const SignalTable& signals, const RecorderSettings& settings)
 void Recorder::choose_topics(const SignalTable& signals, const RecorderSettings& settings) {
   std::vector<std::string> names;
   for (SignalTopic& topic : signal_topics(signals, precision_)) {
-    names.push_back(topic.topic.substr(1));
+    const std::string& first = signals.info(topic.signals.front()).name;
+    names.push_back(first.substr(0, first.find('.')));
     topics_.push_back({.signals = std::move(topic), .every_ticks = settings.every_ticks});
   }
   for (const RecorderSettings::Topic& chosen : settings.topics) {

@@ -11,8 +11,9 @@ namespace {
 constexpr std::array<std::byte, cdr_head_bytes> cdr_head{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
 constexpr SignalId no_signal = 0xffffffff;
 
-bool is_letter(char c) noexcept { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_small(char c) noexcept { return c >= 'a' && c <= 'z'; }
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+char small(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 // A part of a name and what stands below it: a field when `signal` is one, else a message type.
 struct Part {
@@ -22,13 +23,17 @@ struct Part {
   std::vector<Part> parts;
 };
 
+// ROS 2 wants small letters and digits, a letter first, single underscores between.
 std::string field_name(std::string_view name) {
-  std::string field(name);
-  for (char& c : field) {
-    if (!is_letter(c) && !is_digit(c)) c = '_';
+  std::string field;
+  for (const char any : name) {
+    const char c = small(any);
+    const bool allowed = is_small(c) || is_digit(c);
+    if (allowed) field += c;
+    if (!allowed && !field.empty() && field.back() != '_') field += '_';
   }
-  if (field.empty() || !is_letter(field[0])) field.insert(0, "n");
-  return field;
+  if (!field.empty() && field.back() == '_') field.pop_back();
+  return !field.empty() && is_small(field[0]) ? field : "n" + field;
 }
 
 std::string unique_field(const std::vector<Part>& siblings, std::string_view name) {
@@ -82,7 +87,7 @@ std::string type_name(std::string_view field) {
       upper = true;
       continue;
     }
-    type += upper && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    type += upper && is_small(c) ? static_cast<char>(c - 'a' + 'A') : c;
     upper = false;
   }
   return type;

@@ -156,7 +156,7 @@ TEST_CASE("McapReader reads messages outside chunks and passes over records it d
   CHECK(message.payload.size() == 2);
 }
 
-TEST_CASE("McapReader survives 2000 records with bytes changed at random") {
+TEST_CASE("McapReader survives 300 records with bytes changed at random") {
   const ScratchFile file;
   {
     McapWriter writer({.chunk_period_ns = 10, .compression_level = 0});
@@ -171,7 +171,7 @@ TEST_CASE("McapReader survives 2000 records with bytes changed at random") {
   const std::vector<std::byte> good = file.bytes();
   RandomStream random(3, "damage");
   std::size_t read_whole = 0;
-  for (int run = 0; run < 2000; ++run) {
+  for (int run = 0; run < 300; ++run) {
     std::vector<std::byte> bad = good;
     for (int i = 0; i < 3; ++i) {
       bad[mcap_magic.size() + random.next() % (bad.size() - mcap_magic.size())] = static_cast<std::byte>(random.next());
@@ -183,5 +183,5 @@ TEST_CASE("McapReader survives 2000 records with bytes changed at random") {
     if (reader.complete()) ++read_whole;
     if (!reader.complete()) REQUIRE(reader.problem() != "");
   }
-  CHECK(read_whole < 1500);  // damage to the summary, which a streaming reader passes over, goes unseen
+  CHECK(read_whole < 225);  // damage to the summary, which a streaming reader passes over, goes unseen
 }

@@ -36,7 +36,7 @@ TEST_CASE("signal_topics nests the middle parts of the names and gathers each to
   CHECK(topics[0].definition ==
         "kadans_msgs/JointLKnee l_knee\nkadans_msgs/JointRKnee r_knee\nfloat64 count  # [1] Number of joints.\n" +
             line +
-            "\nMSG: kadans_msgs/JointLKnee\nfloat64 position_rad  # [rad] Position.\nfloat64 effort_Nm  # [Nm] "
+            "\nMSG: kadans_msgs/JointLKnee\nfloat64 position_rad  # [rad] Position.\nfloat64 effort_nm  # [Nm] "
             "Torque.\n" +
             line + "\nMSG: kadans_msgs/JointRKnee\nfloat64 position_rad  # [rad] Position.\n");
   CHECK(topics[0].description ==
@@ -47,8 +47,8 @@ TEST_CASE("signal_topics nests the middle parts of the names and gathers each to
 }
 
 TEST_CASE("signal_topics makes names that ROS allows and keeps those apart that become the same") {
-  const SignalTable table = table_of({{"2-legs.l-knee", "", ""},
-                                      {"2-legs.l_knee", "", ""},
+  const SignalTable table = table_of({{"2-legs.l--Knee", "", ""},
+                                      {"2-legs._l_knee_", "", ""},
                                       {"2-legs.l-knee.q", "", ""},
                                       {"tick", "", ""},
                                       {"tick.late", "", ""}});

@@ -1,10 +1,11 @@
 // The signal table as the tools of ROS 2 see it: one topic for the first part of the names, one message field a signal.
 //
-//   joint.l_knee.position_rad  ->  topic /joint, type kadans_msgs/msg/Joint, field l_knee.position_rad
+//   joint.l_knee.effort_Nm  ->  topic /joint, type kadans_msgs/msg/Joint, field l_knee.effort_nm
 //
 // Each middle part is a nested message type. All fields are of one number type, so a message is the CDR header and the
-// numbers side by side, in the order of the schema: `signals` says which signal stands where. Characters that ROS does
-// not allow become '_'; names that collide so get a number. A name of one part is the field `value` of its own topic.
+// numbers side by side, in the order of the schema: `signals` says which signal stands where. ROS 2 allows only small
+// letters, digits and single '_' in a field's name: others change, and names that collide so get a number; the
+// description keeps them as they were. A name of one part is the field `value` of its own topic.
 #pragma once
 
 #include <cstddef>
