@@ -42,6 +42,7 @@ class JsonParser {
     for (std::size_t i = 0; i < 20 && is_word(at_.peek(i)); ++i) word += at_.peek(i);
     if (!word.empty()) return in_quotes(word);
     const auto c = static_cast<unsigned char>(at_.peek());
+    if (c == '"') return "a string";
     if (c == '\n' || c == '\r') return "the end of the line";
     if (c < 0x20U || c >= 0x7FU) return "a character that is not JSON";
     return std::string("'") + at_.peek() + "'";
@@ -78,6 +79,7 @@ class JsonParser {
 
   JsonValue parse_value(std::size_t depth) {
     if (depth >= json_depth_max) fail("values are nested deeper than " + std::to_string(json_depth_max) + " levels");
+    if (++values_ > json_values_max) fail("the file holds more than " + std::to_string(json_values_max) + " values");
     const char c = at_.peek();
     if (c == '{') return parse_object(depth);
     if (c == '[') return parse_array(depth);
@@ -118,6 +120,9 @@ class JsonParser {
   JsonMember parse_member(std::size_t depth) {
     if (at_.at_end()) fail("the file ends inside an object, a closing } is missing");
     if (at_.peek() == '\'') fail("keys stand in double quotes");
+    if (is_digit(at_.peek())) {
+      fail("a key in double quotes is needed here, not " + here() + " (decimals are written with a point)");
+    }
     if (at_.peek() != '"') fail("a key in double quotes is needed here, not " + here());
     JsonMember member;
     member.place = at_.place();
@@ -158,7 +163,7 @@ class JsonParser {
     const TextPlace comma = at_.place();
     at_.next();
     skip_space();
-    if (at_.peek() == close) fail(comma, "no comma after the last item of the " + what + ": " + item + " must follow");
+    if (at_.peek() == close) fail(comma, item + " must follow this comma, not " + here());
   }
 
   std::string parse_string() {
@@ -291,6 +296,7 @@ class JsonParser {
   TextCursor at_;
   const std::string& file_;
   std::size_t number_start_ = 0;
+  std::size_t values_ = 0;
 };
 
 }  // namespace

@@ -21,7 +21,10 @@ class ParameterValues {
     std::map<ParameterId, double> values;
     for (const NumberEntry& entry : entries) {
       const std::vector<std::size_t> fitting = matching(entry.key, names_);
-      if (fitting.empty()) problems_.add_unknown(entry.place, "parameter of '" + object_ + "'", entry.key, names_);
+      if (fitting.empty()) {
+        problems_.add_unknown(entry.place, "parameter", entry.key, alike(entry.key),
+                              "of control object '" + object_ + "'");
+      }
       for (const std::size_t i : fitting) {
         check_range(entry, table_.info(ids_[i]));
         values[ids_[i]] = entry.value;
@@ -31,6 +34,22 @@ class ParameterValues {
   }
 
  private:
+  // What may have been meant: for "*_knee.kp" the quantities of the joints that "*_knee" fits, else all parameters.
+  std::vector<std::string> alike(const std::string& pattern) const {
+    const std::size_t dot = pattern.rfind('.');
+    if (dot == std::string::npos) return names_;
+    std::vector<std::string> candidates;
+    for (const std::string& name : names_) {
+      const std::size_t name_dot = name.rfind('.');
+      if (name_dot == std::string::npos || !matches(pattern.substr(0, dot), name.substr(0, name_dot))) continue;
+      std::string candidate = pattern.substr(0, dot) + name.substr(name_dot);
+      if (std::find(candidates.begin(), candidates.end(), candidate) == candidates.end()) {
+        candidates.push_back(std::move(candidate));
+      }
+    }
+    return candidates.empty() ? names_ : candidates;
+  }
+
   void check_range(const NumberEntry& entry, const Parameter& parameter) {
     if (entry.value >= parameter.min && entry.value <= parameter.max) return;
     problems_.add(entry.value_place, parameter.name + " is " + number_text(entry.value) + ", must be " +

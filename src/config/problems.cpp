@@ -20,6 +20,14 @@ std::string first_names(std::span<const std::string> known) {
   return text + (shown < known.size() ? ", ...)" : ")");
 }
 
+// "rotor_inertia" for rotor_inertia_kg_m2: the commonest mistake is too far away for an edit distance.
+std::string without_unit(std::string_view wrong, std::span<const std::string> known) {
+  for (const std::string& name : known) {
+    if (!wrong.empty() && name.starts_with(std::string(wrong) + "_")) return ", did you mean '" + name + "'?";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string in_quotes(std::string_view name) {
@@ -35,9 +43,13 @@ std::string in_quotes(std::string_view name) {
   return text + "'";
 }
 
-std::string unknown_name(std::string_view what, std::string_view wrong, std::span<const std::string> known) {
-  const std::string hint = did_you_mean(wrong, known);
-  return "unknown " + std::string(what) + " " + in_quotes(wrong) + (hint.empty() ? first_names(known) : hint);
+std::string unknown_name(std::string_view what, std::string_view wrong, std::span<const std::string> known,
+                         std::string_view where) {
+  std::string text = "unknown " + std::string(what) + " " + in_quotes(wrong);
+  if (!where.empty()) text += " " + std::string(where);
+  std::string hint = did_you_mean(wrong, known);
+  if (hint.empty()) hint = without_unit(wrong, known);
+  return text + (hint.empty() ? first_names(known) : hint);
 }
 
 void Problems::add(TextPlace place, std::string message) {
@@ -49,8 +61,8 @@ void Problems::add(const InputError& error) {
 }
 
 void Problems::add_unknown(TextPlace place, std::string_view what, std::string_view wrong,
-                           std::span<const std::string> known) {
-  if (problems_.size() < problems_max) add(place, unknown_name(what, wrong, known));
+                           std::span<const std::string> known, std::string_view where) {
+  if (problems_.size() < problems_max) add(place, unknown_name(what, wrong, known, where));
 }
 
 void Problems::throw_if_any() const {

@@ -90,6 +90,7 @@ void RobotReader::control_set(Fields& entry) {
   entry.strings("objects", objects, {1, max_objects}, "names of its control objects, in the order of computing",
                 Need::required);
   const std::vector<std::string> names = names_of(config_.objects);
+  std::vector<std::size_t> owner(joint_names_.size(), names.size());  // the object of this set that drives a joint
   for (const PlacedName& object : objects) {
     const auto found = std::find(names.begin(), names.end(), object.name);
     const auto index = static_cast<std::uint32_t>(found - names.begin());
@@ -99,9 +100,22 @@ void RobotReader::control_set(Fields& entry) {
       problems_.add(object.place, "control object " + in_quotes(object.name) + " stands twice in this set");
     } else {
       set.objects.push_back(index);
+      claim_joints(index, object.place, owner);
     }
   }
   config_.sets.push_back(std::move(set));
+}
+
+void RobotReader::claim_joints(std::size_t object, TextPlace place, std::vector<std::size_t>& owner) {
+  for (const std::size_t joint : config_.objects[object].joints) {
+    if (owner[joint] < config_.objects.size()) {
+      problems_.add(place, "control objects '" + config_.objects[owner[joint]].name + "' and '" +
+                               config_.objects[object].name + "' of one set both drive joint '" + joint_names_[joint] +
+                               "'");
+      return;
+    }
+    owner[joint] = object;
+  }
 }
 
 void RobotReader::pose(Fields& entry) {
@@ -110,19 +124,21 @@ void RobotReader::pose(Fields& entry) {
   if (!have_model_) return;
   PoseInfo& pose = config_.poses.emplace_back();
   pose.name = entry.key();
-  for (const NumberEntry& value : values) {
-    for (const std::size_t i : joints(value.key, value.place)) {
-      const Joint& joint = config_.model.joints[i];
-      if (!(value.value >= joint.lower_rad && value.value <= joint.upper_rad)) {
-        problems_.add(value.value_place, entry.path(value.key) + " is " + number_text(value.value) + ", joint '" +
-                                             joint.name + "' reaches " + number_text(joint.lower_rad) + ".." +
-                                             number_text(joint.upper_rad) + " rad");
-      }
-      std::erase_if(pose.position_rad, [&](const auto& given) { return given.first == i; });
-      pose.position_rad.emplace_back(i, value.value);
-    }
-  }
+  for (const NumberEntry& value : values) pose_value(entry, value, pose);
   std::sort(pose.position_rad.begin(), pose.position_rad.end());
+}
+
+void RobotReader::pose_value(const Fields& entry, const NumberEntry& value, PoseInfo& pose) {
+  for (const std::size_t i : joints(value.key, value.place)) {
+    const Joint& joint = config_.model.joints[i];
+    if (!(value.value >= joint.lower_rad && value.value <= joint.upper_rad)) {
+      return problems_.add(value.value_place, entry.path(value.key) + " is " + number_text(value.value) + ", joint '" +
+                                                  joint.name + "' reaches " + number_text(joint.lower_rad) + ".." +
+                                                  number_text(joint.upper_rad) + " rad");
+    }
+    std::erase_if(pose.position_rad, [&](const auto& given) { return given.first == i; });
+    pose.position_rad.emplace_back(i, value.value);
+  }
 }
 
 }  // namespace kadans

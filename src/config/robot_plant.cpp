@@ -40,14 +40,16 @@ void RobotReader::drive(Fields& entry) {
   if (!have_model_) return;
   for (const std::size_t i : matching(entry.key(), joint_names_)) {
     const DriveSettings& d = config_.plant.drives[i];
-    if (config_.model.joints[i].passive() && d.torque_max_Nm > 0) {
-      problems_.add(entry.place("torque_max_Nm"), entry.path("torque_max_Nm") + " gives a motor to joint '" +
-                                                      joint_names_[i] + "', which is passive (effort 0 in the URDF)");
+    if (config_.model.joints[i].passive() && d.torque_max_Nm > 0 && entry.has("torque_max_Nm")) {
+      return problems_.add(entry.place("torque_max_Nm"), entry.path("torque_max_Nm") + " gives a motor to joint '" +
+                                                             joint_names_[i] +
+                                                             "', which is passive (effort 0 in the URDF)");
     }
     if (!(d.knee_velocity_rad_s <= d.velocity_max_rad_s)) {
-      problems_.add(entry.place("knee_velocity_rad_s"),
-                    entry.path("knee_velocity_rad_s") + " is " + number_text(d.knee_velocity_rad_s) + ", joint '" +
-                        joint_names_[i] + "' has velocity_max_rad_s " + number_text(d.velocity_max_rad_s));
+      return problems_.add(entry.place("knee_velocity_rad_s"), entry.path("knee_velocity_rad_s") + " is " +
+                                                                   number_text(d.knee_velocity_rad_s) + ", joint '" +
+                                                                   joint_names_[i] + "' has velocity_max_rad_s " +
+                                                                   number_text(d.velocity_max_rad_s));
     }
   }
 }
@@ -176,22 +178,28 @@ void RobotReader::limits(Fields& entry) {
   });
   if (!have_model_) return;
   for (const std::size_t i : matching(entry.key(), joint_names_)) {
-    const JointLimits& l = config_.safety.joints[i];
-    const Joint& joint = config_.model.joints[i];
-    const auto narrower = [&](const char* field, bool holds, double urdf) {
-      if (holds) return;
-      problems_.add(entry.place(field), entry.path(field) + " goes beyond the URDF's " + number_text(urdf) +
-                                            " of joint '" + joint.name + "'; limits may only be narrowed");
-    };
-    narrower("lower_rad", l.lower_rad >= joint.lower_rad, joint.lower_rad);
-    narrower("upper_rad", l.upper_rad <= joint.upper_rad, joint.upper_rad);
-    narrower("velocity_max_rad_s", l.velocity_max_rad_s <= joint.velocity_max_rad_s, joint.velocity_max_rad_s);
-    narrower("effort_max_Nm", l.effort_max_Nm <= joint.effort_max_Nm, joint.effort_max_Nm);
-    if (!(l.lower_rad <= l.upper_rad)) {
-      problems_.add(entry.place("upper_rad"), entry.path() + ": lower_rad " + number_text(l.lower_rad) +
-                                                  " is above upper_rad " + number_text(l.upper_rad));
-    }
+    if (!within_urdf(entry, config_.safety.joints[i], config_.model.joints[i])) return;
   }
+}
+
+// Limits may only be narrower than the URDF's.
+bool RobotReader::within_urdf(const Fields& entry, const JointLimits& l, const Joint& joint) {
+  const auto refuse_field = [&](const char* field, double urdf) {
+    problems_.add(entry.place(field), entry.path(field) + " goes beyond the URDF's " + number_text(urdf) +
+                                          " of joint '" + joint.name + "'; limits may only be narrowed");
+    return false;
+  };
+  if (!(l.lower_rad >= joint.lower_rad)) return refuse_field("lower_rad", joint.lower_rad);
+  if (!(l.upper_rad <= joint.upper_rad)) return refuse_field("upper_rad", joint.upper_rad);
+  if (!(l.velocity_max_rad_s <= joint.velocity_max_rad_s)) {
+    return refuse_field("velocity_max_rad_s", joint.velocity_max_rad_s);
+  }
+  if (!(l.effort_max_Nm <= joint.effort_max_Nm)) return refuse_field("effort_max_Nm", joint.effort_max_Nm);
+  if (l.lower_rad <= l.upper_rad) return true;
+  problems_.add(entry.place("upper_rad"), entry.path() + ": lower_rad " + number_text(l.lower_rad) +
+                                              " is above upper_rad " + number_text(l.upper_rad) + " for joint '" +
+                                              joint.name + "'");
+  return false;
 }
 
 void RobotReader::safety(Fields& f) {

@@ -32,13 +32,16 @@ class RobotReader {
   void estimate(Fields& f);
   void safety(Fields& f);
   void limits(Fields& entry);
+  bool within_urdf(const Fields& entry, const JointLimits& limits, const Joint& joint);
 
   // robot_control.cpp
   void control(Fields& f);
   void object(Fields& f);
   void object_joints(const std::vector<PlacedName>& patterns, ObjectConfig& object);
   void control_set(Fields& entry);
+  void claim_joints(std::size_t object, TextPlace place, std::vector<std::size_t>& owner);
   void pose(Fields& entry);
+  void pose_value(const Fields& entry, const NumberEntry& value, PoseInfo& pose);
 
   // The joints that a pattern chooses; none is a problem at `place`.
   std::vector<std::size_t> joints(std::string_view pattern, TextPlace place);

@@ -57,7 +57,8 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   f.string("robot", scenario.robot, "the robot's configuration, from the project root", Need::required);
   f.choice("plant", scenario.plant, plant_names, "what plays the robot");
   f.number("duration_s", scenario.duration_s, {1e-3, duration_max_s, "s"}, "simulated time", Need::required);
-  f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()}, "of all random numbers");
+  f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
+            "where all random numbers of the run come from");
   f.strings("behaviors", scenario.behaviors, {0, 100}, "behavior files, played one after the other");
   f.list("checks", {0, 1000}, "what must hold", [&](Fields& e) {
     ScenarioCheck check;

@@ -6,8 +6,8 @@
 #include <doctest/doctest.h>
 
 #include "kadans/config/robot_config.h"
-#include "kadans/control/joint_pid.h"
 #include "kadans/model/kinematics.h"
+#include "objects.h"
 
 namespace kadans {
 namespace {
@@ -16,25 +16,6 @@ const std::vector<std::string> types{"joint_pid"};
 const std::string robot_file = KADANS_SOURCE_DIR "/config/tulip/robot.json";
 
 RobotConfig tulip() { return read_robot_config(robot_file, types); }
-
-// A catalog as the program makes it, with the objects that own the parameters.
-struct Objects {
-  Catalog catalog;
-  std::vector<std::unique_ptr<ControlObject>> owners;
-
-  explicit Objects(const RobotConfig& config) {
-    for (const ObjectConfig& object : config.objects) {
-      ObjectInfo& info = catalog.objects.emplace_back();
-      info.name = object.name;
-      owners.push_back(make_joint_pid({config.model, object.joints}));
-      const auto first = static_cast<ParameterId>(catalog.parameters.size());
-      Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);
-      owners.back()->declare(declaration);
-      for (ParameterId id = first; id < catalog.parameters.size(); ++id) info.parameters.push_back(id);
-    }
-  }
-  double value(const char* name) const { return catalog.parameters.get(catalog.parameters.find(name).value()); }
-};
 
 const PoseInfo& pose(const RobotConfig& config, const char* name) {
   const auto named = [&](const PoseInfo& one) { return one.name == name; };
@@ -93,7 +74,7 @@ TEST_CASE("TULip starts in its standing pose") {
 
 TEST_CASE("TULip's gains and presets fit the parameters that joint_pid declares") {
   const RobotConfig config = tulip();
-  Objects objects(config);
+  ControlObjects objects(config);
   apply_parameters(config, objects.catalog);
   CHECK(objects.value("posture.l_knee.kp_Nm_per_rad") == 300);
   CHECK(objects.value("posture.r_shoulder_pitch.ki_Nm_per_rads") == 20);

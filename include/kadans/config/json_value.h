@@ -1,8 +1,8 @@
 // A JSON text (RFC 8259) as a tree in which every value and every key knows its line and column.
 //
 // Stricter than the standard: a key may stand only once in an object, values nest at most 64 deep, a text has at most
-// 16 MB, numbers must fit a double, the text must be UTF-8. Looser in one thing: // and /* */ comments are skipped.
-// Numbers do not depend on the locale.
+// 16 MB and a million values, numbers must fit a double, the text must be UTF-8. Looser in one thing: // and /* */
+// comments are skipped. Numbers do not depend on the locale.
 #pragma once
 
 #include <cstddef>
@@ -38,6 +38,7 @@ struct JsonMember {
 };
 
 inline constexpr std::size_t json_depth_max = 64;
+inline constexpr std::size_t json_values_max = 1'000'000;
 inline constexpr std::size_t json_size_max_bytes = std::size_t{16} << 20U;
 
 // Throws InputError with the first mistake; `file` only names the text.

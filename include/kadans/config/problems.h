@@ -31,7 +31,8 @@ class Problems {
   void add(TextPlace place, std::string message);
   void add(const InputError& error);  // what another file got wrong, behind the problems of this one
   // "unknown joint 'l_kne', did you mean 'l_knee'?"; with nothing near, the first known names.
-  void add_unknown(TextPlace place, std::string_view what, std::string_view wrong, std::span<const std::string> known);
+  void add_unknown(TextPlace place, std::string_view what, std::string_view wrong, std::span<const std::string> known,
+                   std::string_view where = "");
   void throw_if_any() const;  // InputError, sorted by place, nothing said twice
 
   bool empty() const noexcept { return problems_.empty() && others_.empty(); }
@@ -43,8 +44,9 @@ class Problems {
   std::vector<InputProblem> others_;
 };
 
-// "unknown WHAT 'WRONG', did you mean 'NAME'?"
-std::string unknown_name(std::string_view what, std::string_view wrong, std::span<const std::string> known);
+// "unknown WHAT 'WRONG' WHERE, did you mean 'NAME'?"
+std::string unknown_name(std::string_view what, std::string_view wrong, std::span<const std::string> known,
+                         std::string_view where = "");
 
 // A name from outside in a message: in single quotes, not too long, control characters escaped.
 std::string in_quotes(std::string_view name);

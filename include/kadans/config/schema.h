@@ -1,0 +1,16 @@
+// JSON Schema (draft-07) from the same field lists that read the files, so that editors complete and check them.
+// config/schema/*.schema.json are these texts; a test compares them.
+#pragma once
+
+#include <string>
+
+#include "kadans/config/fields.h"
+
+namespace kadans {
+
+std::string json_schema(const FieldInfo& fields, const std::string& title);
+
+std::string robot_schema();
+std::string scenario_schema();
+
+}  // namespace kadans

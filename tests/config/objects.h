@@ -1,0 +1,30 @@
+// The control objects of a configuration with their tables, as the program makes them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "kadans/config/robot_config.h"
+#include "kadans/control/joint_pid.h"
+
+namespace kadans {
+
+struct ControlObjects {
+  Catalog catalog;
+  std::vector<std::unique_ptr<ControlObject>> owners;
+
+  explicit ControlObjects(const RobotConfig& config) {
+    for (const ObjectConfig& object : config.objects) {
+      ObjectInfo& info = catalog.objects.emplace_back();
+      info.name = object.name;
+      owners.push_back(make_joint_pid({config.model, object.joints}));
+      const auto first = static_cast<ParameterId>(catalog.parameters.size());
+      Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);
+      owners.back()->declare(declaration);
+      for (ParameterId id = first; id < catalog.parameters.size(); ++id) info.parameters.push_back(id);
+    }
+  }
+  double value(const char* name) const { return catalog.parameters.get(catalog.parameters.find(name).value()); }
+};
+
+}  // namespace kadans
