@@ -43,7 +43,9 @@ Part make(const typename Part::Config& config, const std::string& owner) {
 }  // namespace
 
 Estimator::Estimator(const RobotModel& model, const EstimateSettings& settings, double dt_s)
-    : orientation_(make<OrientationFilter>(orientation_config(settings), "base orientation")), dt_s_(dt_s) {
+    : settings_(settings),
+      orientation_(make<OrientationFilter>(orientation_config(settings), "base orientation")),
+      dt_s_(dt_s) {
   if (!(dt_s > 0 && std::isfinite(dt_s))) refuse("dt_s = " + std::to_string(dt_s) + " must be > 0");
   add_joints(model, settings, dt_s);
   add_feet(model, settings);

@@ -24,10 +24,11 @@ void ContactDetector::update(const std::array<double, sensors_per_foot>& force_N
   state_.force_N = sum_N;
   state_.contact = sum_N >= (state_.contact ? config_.off_N : config_.on_N);
   if (!state_.contact) return;
+  const double scale_per_N = 1 / sum_N;
   for (std::size_t i = 0; i < 3; ++i) {
     double moment_Nm = 0;
     for (std::size_t s = 0; s < sensors_per_foot; ++s) moment_Nm += force_N[s] * config_.sensors_m[s][i];
-    state_.cop_m[i] = moment_Nm / sum_N;
+    state_.cop_m[i] = moment_Nm * scale_per_N;
   }
 }
 

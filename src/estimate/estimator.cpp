@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "kadans/model/kinematics.h"
-
 namespace kadans {
 namespace {
 
@@ -32,12 +30,13 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
     const std::uint32_t period_ticks = health_.joints[i].period_ticks;
     const bool due = period_ticks == 1 || !started_ || tick % period_ticks == 0;
     update_joint(i, sensors.joints[i], due && i < sensors.joint_count, dt_s);
-    joints.joints[i] = joints_[i].state;
+    const JointState& state = joints_[i].state;
+    joints.joints[i] = {state.position_rad, state.velocity_rad_s, state.effort_Nm};
   }
-  update_base(sensors.imu, dt_s, status.base);
+  const Axes base = update_base(sensors.imu, dt_s, status.base);
   status.foot_count = health_.foot_count;
   for (std::size_t i = 0; i < feet_.size(); ++i) update_foot(i, sensors.feet[i], status.feet[i]);
-  update_support(joints, axes_of(status.base.orientation), status);
+  update_support(joints, base, status);
   started_ = true;
 }
 
@@ -63,7 +62,7 @@ void Estimator::update_joint(std::size_t joint, const JointSample& sample, bool 
   }
 }
 
-void Estimator::update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept {
+Axes Estimator::update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept {
   imu_elapsed_s_ += dt_s;
   if (is_new(sample.sequence, last_imu_sequence_, true, health_.imu)) {
     const bool gyro_ok = is_finite(sample.angular_velocity_rad_s);
@@ -74,13 +73,13 @@ void Estimator::update_base(const ImuSample& sample, double dt_s, BaseStatus& ba
   const OrientationFilter::State& state = orientation_.state();
   base.orientation = state.orientation;
   base.angular_velocity_rad_s = state.angular_velocity_rad_s;
-  const Vec3 angles_rad = roll_pitch_yaw(state.orientation);
-  base.roll_rad = angles_rad[0];
-  base.pitch_rad = angles_rad[1];
-  base.yaw_rad = angles_rad[2];
-  // cos(tilt) = 1 - 2 (x^2 + y^2): half the tilt has this sine and this cosine.
-  const auto [w, x, y, z] = state.orientation;
-  base.tilt_rad = 2 * std::atan2(std::sqrt(x * x + y * y), std::sqrt(w * w + z * z));
+  const Axes axes = axes_of(state.orientation);
+  const Attitude angles = attitude(axes);
+  base.roll_rad = angles.roll_rad;
+  base.pitch_rad = angles.pitch_rad;
+  base.yaw_rad = angles.yaw_rad;
+  base.tilt_rad = angles.tilt_rad;
+  return axes;
 }
 
 void Estimator::update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept {
@@ -115,7 +114,7 @@ void Estimator::update_support(const JointStates& joints, const Axes& base, Robo
     if (!contact.contact) continue;
     foot.leg.update(joints, base);
     for (const Vec3& corner_m : foot.detector.config().sensors_m)
-      lowest_m = std::fmin(lowest_m, foot.leg.point(corner_m)[2]);
+      lowest_m = std::min(lowest_m, foot.leg.point(corner_m)[2]);
     const Vec3 cop_m = foot.leg.point(contact.cop_m);
     moment_x_Nm += contact.force_N * cop_m[0];
     moment_y_Nm += contact.force_N * cop_m[1];

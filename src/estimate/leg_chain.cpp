@@ -5,26 +5,22 @@
 #include <stdexcept>
 #include <string>
 
+#include "sine_cosine.h"
+
 namespace kadans {
 namespace {
 
-Vec3 along(const Axes& axes, const Vec3& v) noexcept {
-  Vec3 sum;
-  for (std::size_t i = 0; i < 3; ++i) sum[i] = axes.x[i] * v[0] + axes.y[i] * v[1] + axes.z[i] * v[2];
-  return sum;
-}
-
-Axes along(const Axes& outer, const Axes& inner) noexcept {
-  return {along(outer, inner.x), along(outer, inner.y), along(outer, inner.z)};
-}
+Vec3 sum(const Vec3& a, const Vec3& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
 // Turns a and b by the angle in their plane, from a towards b.
-void turn_pair(Vec3& a, Vec3& b, double cosine, double sine) noexcept {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double old_a = a[i];
-    a[i] = cosine * old_a + sine * b[i];
-    b[i] = cosine * b[i] - sine * old_a;
-  }
+[[gnu::always_inline]] inline void turn_pair(Vec3& a, Vec3& b, double cosine, double sine) noexcept {
+  const double a0 = a[0], a1 = a[1], a2 = a[2];
+  a[0] = cosine * a0 + sine * b[0];
+  a[1] = cosine * a1 + sine * b[1];
+  a[2] = cosine * a2 + sine * b[2];
+  b[0] = cosine * b[0] - sine * a0;
+  b[1] = cosine * b[1] - sine * a1;
+  b[2] = cosine * b[2] - sine * a2;
 }
 
 // Rodrigues' formula.
@@ -36,13 +32,6 @@ Axes turned_about(const Vec3& u, double cosine, double sine) noexcept {
 }
 
 }  // namespace
-
-Axes axes_of(const Quat& q) noexcept {
-  const auto [w, x, y, z] = q;
-  return {{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-          {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-          {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
-}
 
 LegChain::LegChain(const RobotModel& model, std::size_t link) {
   if (link >= model.links.size()) throw std::invalid_argument("the robot has no link " + std::to_string(link));
@@ -66,38 +55,36 @@ LegChain::LegChain(const RobotModel& model, std::size_t link) {
   std::reverse(segments_.begin(), segments_.end());
 }
 
-void LegChain::turn(const Segment& segment, double angle_rad) noexcept {
-  const double cosine = std::cos(angle_rad);
-  const double sine = std::sin(angle_rad);
-  switch (segment.main_axis) {
-    case 0:
-      return turn_pair(axes_.y, axes_.z, cosine, segment.sign * sine);
-    case 1:
-      return turn_pair(axes_.z, axes_.x, cosine, segment.sign * sine);
-    case 2:
-      return turn_pair(axes_.x, axes_.y, cosine, segment.sign * sine);
-    default:
-      axes_ = along(axes_, turned_about(segment.axis, cosine, sine));
-  }
-}
-
-Vec3 LegChain::point(const Vec3& in_link_m) const noexcept {
-  const Vec3 arm = along(axes_, in_link_m);
-  return {position_m_[0] + arm[0], position_m_[1] + arm[1], position_m_[2] + arm[2]};
-}
-
+// Local copies: the compiler keeps them in registers.
 void LegChain::update(const JointStates& joints, const Axes& base) noexcept {
-  axes_ = base;
-  position_m_ = {};
+  Axes axes = base;
+  Vec3 place_m{};
   for (const Segment& segment : segments_) {
     const double position = joints.joints[segment.joint].position_rad;
-    position_m_ = point(segment.origin_m);
-    if (segment.origin_turned) axes_ = along(axes_, segment.origin_axes);
-    if (segment.prismatic)
-      position_m_ = point({segment.axis[0] * position, segment.axis[1] * position, segment.axis[2] * position});
-    else
-      turn(segment, position);
+    place_m = sum(place_m, along(axes, segment.origin_m));
+    if (segment.origin_turned) axes = along(axes, segment.origin_axes);
+    if (segment.prismatic) {
+      const Vec3& axis = segment.axis;
+      place_m = sum(place_m, along(axes, Vec3{axis[0] * position, axis[1] * position, axis[2] * position}));
+      continue;
+    }
+    const auto [sine, cosine] = sine_cosine(position);
+    switch (segment.main_axis) {
+      case 0:
+        turn_pair(axes.y, axes.z, cosine, segment.sign * sine);
+        break;
+      case 1:
+        turn_pair(axes.z, axes.x, cosine, segment.sign * sine);
+        break;
+      case 2:
+        turn_pair(axes.x, axes.y, cosine, segment.sign * sine);
+        break;
+      default:
+        axes = along(axes, turned_about(segment.axis, cosine, sine));
+    }
   }
+  axes_ = axes;
+  position_m_ = place_m;
 }
 
 }  // namespace kadans

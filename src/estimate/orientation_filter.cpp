@@ -1,5 +1,6 @@
 #include "kadans/estimate/orientation_filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -50,7 +51,7 @@ void OrientationFilter::update(const Vec3& gyro_rad_s, const Vec3& specific_forc
   const double norm_m_s2 = std::sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);  // NaN and infinity fail what follows
   if (!state_.initialised) {
     last_gyro_rad_s_ = state_.angular_velocity_rad_s = gyro_rad_s;
-    if (norm_m_s2 > 0.5 * gravity_m_s2 && norm_m_s2 < 1.5 * gravity_m_s2) initialise(f, norm_m_s2);
+    if (norm_m_s2 > 0.5 * gravity_m_s2 && norm_m_s2 < 1.5 * gravity_m_s2) initialise(f);
     return;
   }
   Vec3 mean_rad_s;
@@ -64,10 +65,10 @@ void OrientationFilter::update(const Vec3& gyro_rad_s, const Vec3& specific_forc
 }
 
 // The shortest rotation that brings the measured up onto the world's z, without yaw.
-void OrientationFilter::initialise(const Vec3& specific_force_m_s2, double norm_m_s2) noexcept {
+void OrientationFilter::initialise(const Vec3& specific_force_m_s2) noexcept {
   const Vec3& f = specific_force_m_s2;
   const double roll_rad = std::atan2(f[1], f[2]);
-  const double pitch_rad = std::asin(std::fmax(-1, std::fmin(1, -f[0] / norm_m_s2)));
+  const double pitch_rad = std::atan2(-f[0], std::sqrt(f[1] * f[1] + f[2] * f[2]));
   state_.orientation = from_roll_pitch_yaw(roll_rad, pitch_rad, 0);
   state_.gravity_weight = 1;
   state_.initialised = true;
@@ -87,7 +88,7 @@ void OrientationFilter::correct(const Vec3& specific_force_m_s2, double norm_m_s
                    scale * (f[0] * up[1] - f[1] * up[0])};
   // After a long gap at most the whole error is taken back.
   state_.orientation =
-      multiply(state_.orientation, turn(error, std::fmin(1, config_.accelerometer_gain_per_s * elapsed_s)));
+      multiply(state_.orientation, turn(error, std::min(1.0, config_.accelerometer_gain_per_s * elapsed_s)));
   learn_bias(error, elapsed_s);
 }
 
@@ -96,7 +97,7 @@ void OrientationFilter::learn_bias(const Vec3& error, double elapsed_s) noexcept
   state_.gyro_bias_saturated = false;
   for (std::size_t i = 0; i < 3; ++i) {
     const double wanted_rad_s = state_.gyro_bias_rad_s[i] - config_.gyro_bias_gain_per_s2 * error[i] * elapsed_s;
-    const double bias_rad_s = std::fmax(-max_rad_s, std::fmin(max_rad_s, wanted_rad_s));
+    const double bias_rad_s = std::clamp(wanted_rad_s, -max_rad_s, max_rad_s);
     state_.gyro_bias_saturated |= bias_rad_s != wanted_rad_s;
     state_.gyro_bias_rad_s[i] = bias_rad_s;
   }

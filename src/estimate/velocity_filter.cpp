@@ -1,5 +1,6 @@
 #include "kadans/estimate/velocity_filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double cutoff_max_in_rates = 0.45;  // of the sampling rate; the warping grows without bound at 0.5
 constexpr double steps_max = 32;              // a longer gap is crossed in longer steps
+constexpr double jitter_max = 0.05;           // of the period
 
 bool is_cutoff(double cutoff_Hz, double dt_s) noexcept {
   return cutoff_Hz > 0 && cutoff_Hz * dt_s < cutoff_max_in_rates;
@@ -23,19 +25,29 @@ VelocityFilter::VelocityFilter(const Config& config) : config_(config) {
   if (!is_cutoff(config.cutoff_Hz, config.dt_s))
     throw std::invalid_argument("cutoff_Hz = " + std::to_string(config.cutoff_Hz) + " is outside (0, " +
                                 std::to_string(cutoff_max_in_rates / config.dt_s) + ")");
-  set_step(config.dt_s);
+  prewarp();
 }
 
 bool VelocityFilter::set_cutoff(double cutoff_Hz) noexcept {
   if (!is_cutoff(cutoff_Hz, config_.dt_s)) return false;
   config_.cutoff_Hz = cutoff_Hz;
-  set_step(config_.dt_s);
+  prewarp();
   return true;
+}
+
+void VelocityFilter::prewarp() noexcept {
+  const double slope_per_s = std::numbers::pi * config_.cutoff_Hz;
+  nominal_gain_ = std::tan(slope_per_s * config_.dt_s);
+  gain_slope_per_s_ = slope_per_s * (1 + nominal_gain_ * nominal_gain_);
+  set_step(config_.dt_s);
 }
 
 void VelocityFilter::set_step(double step_s) noexcept {
   step_s_ = step_s;
-  const double g = std::tan(std::numbers::pi * config_.cutoff_Hz * step_s);
+  const double late_s = step_s - config_.dt_s;
+  const double g = std::fabs(late_s) <= jitter_max * config_.dt_s
+                       ? nominal_gain_ + gain_slope_per_s_ * late_s  // along the tangent: no call of tan in most ticks
+                       : std::tan(std::numbers::pi * config_.cutoff_Hz * step_s);
   a1_ = 1 / (1 + g * (g + std::numbers::sqrt2));  // damping sqrt(2) / 2: Butterworth
   a2_ = g * a1_;
   a3_ = g * a2_;
@@ -62,7 +74,7 @@ double VelocityFilter::update(double position_rad, double elapsed_s) noexcept {
 
   double steps = 1;
   if (elapsed_s != config_.dt_s) {
-    steps = std::fmin(steps_max, std::fmax(1, std::round(elapsed_s / config_.dt_s)));
+    steps = std::clamp(std::round(elapsed_s / config_.dt_s), 1.0, steps_max);
     if (!is_cutoff(config_.cutoff_Hz, elapsed_s / steps)) steps += 1;
   }
   const double step_s = elapsed_s / steps;

@@ -48,7 +48,7 @@ TEST_CASE("A slower joint is looked at in every n-th tick only, and its velocity
   TulipFixture robot(settings);
   robot.tick = 1003;  // the first tick looks at everything, wherever the count stands
   double seen_rad = -1;
-  for (int n = 0; n < 500; ++n) {
+  for (std::uint32_t n = 0; n < 500; ++n) {
     const double position_rad = 1 + 0.003 * n;
     robot.sensors.joints[slow].position_rad = robot.sensors.joints[fast].position_rad = position_rad;
     const std::uint64_t tick = robot.tick;

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kadans/estimate/axes.h"
 #include "kadans/estimate/contact_detector.h"
 #include "kadans/estimate/leg_chain.h"
 #include "kadans/estimate/orientation_filter.h"
@@ -43,6 +44,7 @@ class Estimator {
               RobotStatus& status) noexcept;
 
   const SensorHealth& health() const noexcept { return health_; }  // as of the last update
+  const EstimateSettings& settings() const noexcept { return settings_; }
   const OrientationFilter::State& orientation() const noexcept { return orientation_.state(); }
 
   // Of one joint's velocity filter. False, and nothing changes, for an unknown joint or outside (0, 0.45 / its period).
@@ -66,10 +68,11 @@ class Estimator {
   void add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s);
   void add_feet(const RobotModel& model, const EstimateSettings& settings);
   void update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept;
-  void update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept;
+  Axes update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept;
   void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
   void update_support(const JointStates& joints, const Axes& base, RobotStatus& status) noexcept;
 
+  EstimateSettings settings_;
   OrientationFilter orientation_;
   std::vector<JointTrack> joints_;
   std::vector<FootTrack> feet_;

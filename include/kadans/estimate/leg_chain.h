@@ -9,15 +9,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "kadans/estimate/axes.h"
 #include "kadans/model/robot_model.h"
 
 namespace kadans {
-
-// The axes of a frame, given in another.
-struct Axes {
-  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-};
-Axes axes_of(const Quat& orientation) noexcept;
 
 class LegChain {
  public:
@@ -29,7 +24,10 @@ class LegChain {
   void update(const JointStates& joints, const Axes& base) noexcept;
 
   const Axes& axes() const noexcept { return axes_; }
-  Vec3 point(const Vec3& in_link_m) const noexcept;
+  Vec3 point(const Vec3& in_link_m) const noexcept {
+    const Vec3 arm = along(axes_, in_link_m);
+    return {position_m_[0] + arm[0], position_m_[1] + arm[1], position_m_[2] + arm[2]};
+  }
 
  private:
   struct Segment {
@@ -42,7 +40,6 @@ class LegChain {
     int main_axis = 0;  // 0, 1, 2: along x, y, z; -1: any
     double sign = 1;    // along or against the main axis
   };
-  void turn(const Segment& segment, double angle_rad) noexcept;
 
   std::vector<Segment> segments_;  // from the base outwards
   Axes axes_;

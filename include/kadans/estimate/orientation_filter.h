@@ -41,7 +41,7 @@ class OrientationFilter {
   const State& state() const noexcept { return state_; }
 
  private:
-  void initialise(const Vec3& specific_force_m_s2, double norm_m_s2) noexcept;
+  void initialise(const Vec3& specific_force_m_s2) noexcept;
   void correct(const Vec3& specific_force_m_s2, double norm_m_s2, double elapsed_s) noexcept;
   void learn_bias(const Vec3& error, double elapsed_s) noexcept;
 

@@ -39,10 +39,13 @@ class VelocityFilter {
   const State& state() const noexcept { return state_; }
 
  private:
+  void prewarp() noexcept;  // for the cut-off
   void set_step(double step_s) noexcept;
 
   Config config_;
   State state_;
+  double nominal_gain_ = 0,
+         gain_slope_per_s_ = 0;            // of an integrator: tan(pi cut-off step), and how it grows with step
   double step_s_ = 0;                      // that the coefficients are made for
   double a1_ = 0, a2_ = 0, a3_ = 0;        // coefficients
   double band_rad_s_ = 0, low_rad_s_ = 0;  // the integrators
