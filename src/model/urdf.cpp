@@ -1,36 +1,70 @@
 #include "kadans/model/urdf.h"
 
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
-#include <sstream>
-
-#include <tinyxml2.h>
+#include <iterator>
 
 #include "kadans/signal/input_error.h"
+#include "urdf_checks.h"
 #include "urdf_dom.h"
+#include "urdf_grammar.h"
 #include "urdf_merge.h"
 
 namespace kadans {
+namespace {
 
-RobotModel read_urdf(const std::string& file, const UrdfOptions& options) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(InputProblem{file, 0, 0, "cannot be read"});
-  std::ostringstream text;
-  text << in.rdbuf();
-  return read_urdf_text(text.str(), file, options);
+constexpr std::uintmax_t max_size = 16U << 20U;
+
+[[noreturn]] void fail(const std::string& file, const std::string& message) {
+  throw InputError(InputProblem{file, 0, 0, message});
 }
 
-RobotModel read_urdf_text(const std::string& text, const std::string& file, const UrdfOptions&) {
-  tinyxml2::XMLDocument xml;
-  if (xml.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || xml.RootElement() == nullptr) {
-    throw InputError(InputProblem{file, xml.ErrorLineNum(), 0, "not well-formed XML"});
-  }
-  std::vector<std::string> order;
-  for (auto* e = xml.RootElement()->FirstChildElement("joint"); e != nullptr; e = e->NextSiblingElement("joint")) {
-    order.emplace_back(e->Attribute("name"));
-  }
-  const UrdfDom dom = parse_with_urdfdom(text);
-  if (!dom.complaints.empty()) throw InputError(InputProblem{file, 0, 0, dom.complaints.front()});
-  return merge_fixed_joints(*dom.model, order, file);
+void check_size(const std::string& file, std::uintmax_t size) {
+  if (size == 0) fail(file, "the file is empty");
+  if (size > max_size) fail(file, "the file has " + std::to_string(size) + " bytes, a URDF may have 16 MiB");
+}
+
+std::string read_file(const std::string& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found) fail(file, "there is no such file");
+  if (std::filesystem::is_directory(status)) fail(file, "this is a folder, a URDF file was expected");
+  if (!std::filesystem::is_regular_file(status)) fail(file, "this is not a file that can be read");
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (!error) check_size(file, size);
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in.good() && !in.eof()) fail(file, "the file cannot be read");
+  return text;
+}
+
+// Our own pass finds what is wrong and where; urdfdom then reads what is known to be right, and may still object.
+urdf::ModelInterfaceSharedPtr checked_dom(UrdfDocument& document) {
+  const UrdfDom dom = parse_with_urdfdom(document.reprinted());
+  for (const std::string& complaint : dom.complaints) document.refuse(document.robot(), "urdfdom: " + complaint);
+  document.throw_if_refused();
+  return dom.model;
+}
+
+}  // namespace
+
+RobotModel read_urdf(const std::string& file, const UrdfOptions& options) {
+  return read_urdf_text(read_file(file), file, options);
+}
+
+RobotModel read_urdf_text(const std::string& text, const std::string& file, const UrdfOptions& options) {
+  check_size(file, text.size());
+  UrdfDocument document(text, file);
+  check_xacro(document);
+  check_grammar(document);
+  const UrdfOutline outline = outline_of(document);
+  check_links(document, outline, options);
+  check_joints(document, outline);
+  check_mimics(document, outline);
+  check_tree(document, outline);
+  document.throw_if_refused();
+  return merge_fixed_joints(*checked_dom(document), outline.joint_names(), file);
 }
 
 }  // namespace kadans

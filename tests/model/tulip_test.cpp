@@ -13,7 +13,7 @@ using namespace kadans;
 namespace {
 
 const RobotModel& tulip() {
-  static const RobotModel model = read_urdf(std::string(KADANS_SOURCE_DIR) + "/models/tulip/tulip.urdf");
+  static const RobotModel model = read_urdf(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
   return model;
 }
 

@@ -1,0 +1,39 @@
+// The text of a file from outside: is it text at all, and on which line and column is a byte of it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kadans {
+
+struct TextPlace {
+  int line = 0, column = 0;  // 1-based; a column is a character, not a byte
+};
+
+struct TextProblem {
+  std::size_t at = 0;  // byte
+  std::string message;
+};
+
+class SourceText {
+ public:
+  explicit SourceText(std::string_view text);  // keeps a view
+
+  std::string_view text() const noexcept { return text_; }
+  TextPlace place(std::size_t at) const noexcept;
+
+ private:
+  std::string_view text_;
+  std::vector<std::size_t> lines_;  // where each line starts
+};
+
+// The first byte that is not UTF-8, or a control character other than tab, line feed and carriage return.
+std::optional<TextProblem> find_non_text(std::string_view text);
+
+// For a message: without control characters, cut after 40 characters.
+std::string shown(std::string_view text);
+
+}  // namespace kadans

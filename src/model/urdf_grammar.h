@@ -1,0 +1,20 @@
+// URDF's elements in one table: which attributes and children each has, which values they take, how often they come.
+// check_grammar compares a document with it. What the table cannot say (trees, inertias, limits) is in urdf_checks.h.
+// At the top level elements of others (gazebo, transmission, ...) are left alone unless their name is nearly one of
+// URDF's; elements and attributes with a name space (drake:..., xml:...) are left alone everywhere.
+#pragma once
+
+#include <string_view>
+
+#include "urdf_document.h"
+
+namespace kadans {
+
+// Throws when the text is xacro that has not been expanded: every other mistake would be a consequence.
+void check_xacro(UrdfDocument& document);
+void check_grammar(UrdfDocument& document);
+
+bool known_attribute(std::string_view element, std::string_view attribute);
+bool known_child(std::string_view element, std::string_view child);
+
+}  // namespace kadans

@@ -1,0 +1,31 @@
+// The values that URDF's attributes can have, read strictly: a whole number is the whole text, finite, with a point.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kadans {
+
+enum class UrdfValue : std::uint8_t {
+  name,             // not empty, at most 128 characters, no blanks around it
+  text,             // anything
+  number,           // finite, magnitude at most 1e9
+  positive,         // > 0
+  not_negative,     // >= 0
+  vector,           // three numbers
+  positive_vector,  // three numbers > 0
+  scale,            // three numbers, none 0
+  color,            // four numbers in 0..1
+};
+
+// What is wrong with the text as such a value ("is not a number, did you mean '2.5'?"); nothing when it is right.
+std::optional<std::string> value_defect(UrdfValue kind, std::string_view text);
+
+// Nothing where value_defect finds something.
+std::optional<double> read_number(std::string_view text);
+std::optional<std::array<double, 3>> read_vector(std::string_view text);
+
+}  // namespace kadans

@@ -1,0 +1,122 @@
+// Files as they should not be: missing, empty, a folder, binary, huge; and meshes beside the URDF.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <stdlib.h>
+
+#include "broken_urdf.h"
+#include "kadans/model/urdf.h"
+#include "kadans/signal/input_error.h"
+
+using namespace kadans;
+
+namespace {
+
+// A folder of its own for a test, gone afterwards.
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "kadans-urdf-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return (path_ / name).string();
+  }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string file_error(const std::string& file, const UrdfOptions& options = {}) {
+  try {
+    (void)read_urdf(file, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string duo_with_mesh(const std::string& holder, const std::string& file) {
+  const std::string shape = holder == "visual" ? R"(<sphere radius="0.1"/>)" : R"(<box size="0.1 0.2 0.3"/>)";
+  return duo_with(shape, "<mesh filename=\"" + file + "\" scale=\"1 2 3\"/>");
+}
+
+}  // namespace
+
+TEST_CASE("A file that is missing, a folder, empty or too large is refused by name") {
+  const Folder folder;
+  CHECK(file_error(folder.path() + "/none.urdf") == folder.path() + "/none.urdf: there is no such file");
+  CHECK(file_error(folder.path()) == folder.path() + ": this is a folder, a URDF file was expected");
+  const std::string empty = folder.write("empty.urdf", "");
+  CHECK(file_error(empty) == empty + ": the file is empty");
+  const std::string huge = folder.write("huge.urdf", "<robot/>");
+  std::filesystem::resize_file(huge, (16U << 20U) + 1);
+  CHECK(file_error(huge) == huge + ": the file has 16777217 bytes, a URDF may have 16 MiB");
+  CHECK(file_error("/dev/null") == "/dev/null: this is not a file that can be read");
+}
+
+TEST_CASE("Binary, other encodings and control characters are refused at the first byte that is no text") {
+  using std::string_literals::operator""s;
+  CHECK(read_error("<robot name=\"a\">\n\0</robot>"s) == "duo.urdf:2:1: a NUL byte: this is not a text file");
+  CHECK(read_error("\x7F"
+                   "ELF\x02\x01"s) == "duo.urdf:1:1: control character 0x7F in the text");
+  CHECK(read_error("\xFF\xFE<\0r\0"s) == "duo.urdf:1:1: byte 0xFF is not UTF-8: save the file as UTF-8 text");
+  CHECK(read_error("<!-- \xE9t\xE9 -->"s) == "duo.urdf:1:6: byte 0xE9 is not UTF-8: save the file as UTF-8 text");
+  CHECK(read_error("<robot name=\"a\x1B[31m\"/>"s) == "duo.urdf:1:15: control character 0x1B in the text");
+}
+
+TEST_CASE("Columns count characters, not bytes, and a byte order mark does not disturb") {
+  CHECK(read_error("\xEF\xBB\xBF<robot name=\"\xC3\xA9t\xC3\xA9\" vrsion=\"1.0\"/>").find("1:20: unknown attribute") !=
+        std::string::npos);
+  CHECK(read_error("\xEF\xBB\xBF" + duo_urdf) == "no error");
+}
+
+TEST_CASE("All mistakes of a file come in one error, by line, with places for machines") {
+  std::string text = duo_with("\"0 1 0\"", "\"0 2 0\"");
+  text.replace(text.find("\"2.5\""), 5, "\"2,5\"");
+  text.replace(text.find("link=\"fore_arm\""), 15, "link=\"forearm\"");
+  try {
+    (void)read_urdf_text(text, "duo.urdf");
+    FAIL("accepted");
+  } catch (const InputError& error) {
+    REQUIRE(error.problems().size() == 3);
+    CHECK(error.problems()[0].line == 5);
+    CHECK(error.problems()[0].column == 20);
+    CHECK(error.problems()[1].line == 20);
+    CHECK(error.problems()[2].line == 24);
+    CHECK(error.problems()[2].file == "duo.urdf");
+  }
+}
+
+TEST_CASE("Mesh files are found beside the URDF, and in a package's folder above it") {
+  const Folder folder;
+  folder.write("duo/meshes/shell.stl", "solid");
+  const std::string beside = folder.write("duo/urdf/a.urdf", duo_with_mesh("visual", "../meshes/shell.stl"));
+  const std::string package =
+      folder.write("duo/urdf/b.urdf", duo_with_mesh("visual", "package://duo/meshes/shell.stl"));
+  const std::string absolute =
+      folder.write("duo/urdf/c.urdf", duo_with_mesh("visual", "file://" + folder.path() + "/duo/meshes/shell.stl"));
+  for (const std::string& file : {beside, package, absolute}) {
+    const RobotModel model = read_urdf(file);
+    const auto& mesh = std::get<Mesh>(model.links[0].visuals.at(0).shape);
+    CHECK(mesh.file == folder.path() + "/duo/meshes/shell.stl");
+    CHECK(mesh.scale == Vec3{1, 2, 3});
+  }
+}
+
+TEST_CASE("A mesh collides only when its convex hull is asked for") {
+  const Folder folder;
+  folder.write("hull.stl", "solid");
+  const std::string file = folder.write("duo.urdf", duo_with_mesh("collision", "hull.stl"));
+  CHECK(file_error(file).find("collides only as its convex hull") != std::string::npos);
+  CHECK(file_error(file, {.mesh_hulls = true}) == "no error");
+}
