@@ -1,0 +1,82 @@
+// A behavior's state machine, flat: made once from the author's tables, run without looking at them again.
+//
+// States stand in document order (a state before its children, its subtree in one piece), so that "is inside" is two
+// comparisons, entering goes up the numbers and leaving down. State 0 is the behavior itself. A called behavior is
+// grafted in below the state that calls it, with a machine of its own: vars, arguments, names.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+
+using StateIndex = std::uint16_t;
+inline constexpr StateIndex no_state = 0xffff;
+using EventId = std::int32_t;
+inline constexpr EventId no_event = -1;
+inline constexpr EventId run_done_event = 0;  // "run.done"
+
+struct Chart {
+  enum class Kind : std::uint8_t { state, parallel, region, final_state, history };
+  static constexpr int no_function = -2;  // as LUA_NOREF
+  static constexpr std::int32_t no_parameter = -1;
+
+  struct State {
+    std::string name;
+    std::string path;  // "stand.wait"; "" for the behavior itself
+    std::string chunk;
+    int line = 0;
+    Kind kind = Kind::state;
+    bool deep = false;          // history
+    bool machine_root = false;  // a behavior, the played one or a called one
+    StateIndex parent = no_state;
+    StateIndex end = 0;             // one past the last state inside
+    StateIndex initial = no_state;  // child entered by default; history: where it leads when there is none yet
+    std::uint16_t machine = 0;
+    std::uint16_t first_transition = 0, transition_count = 0;
+    std::uint16_t first_always = 0, always_count = 0;
+    int enter = no_function, exit = no_function, during = no_function, run = no_function;  // registry references
+    EventId outcome = no_event;                                                            // final states
+    std::string initial_name, outcome_name;
+  };
+  struct Transition {
+    StateIndex source = 0, target = no_state;
+    StateIndex domain = 0;  // what is inside it and active is left
+    int when = no_function, action = no_function;
+    EventId on = no_event;
+    bool timed = false;
+    double after_s = 0;
+    std::int32_t after_parameter = no_parameter;
+    std::string target_name, why;
+    int line = 0;
+  };
+  struct Machine {
+    std::string name;
+    StateIndex root = 0;
+    int vars = no_function, arguments = no_function;  // registry: what is declared
+    int given = no_function;                          // registry: what the caller gives
+    std::string controls;
+    int version = 0;
+  };
+
+  std::string name;
+  std::vector<State> states;
+  std::vector<Transition> transitions;  // those of a state in one piece
+  std::vector<Machine> machines;
+  std::vector<std::string> events{"run.done"};
+
+  bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // or the same
+    return state >= ancestor && state < states[ancestor].end;
+  }
+  EventId intern(std::string_view event);
+  EventId find_event(std::string_view event) const noexcept;
+
+  // Finds what the names mean, and every mistake.
+  void resolve(std::vector<InputProblem>& problems);
+};
+
+}  // namespace kadans

@@ -1,0 +1,131 @@
+// Runs a chart, one tick at a time.
+//
+// A tick, against one snapshot: each innermost active state looks for a transition, first among the `always` of the
+// states around it from the outside in, then among their transitions from the inside out, in the order written. Of
+// transitions that would leave the same state the first stays, unless a later one starts further inside (SCXML). All
+// exits run, innermost and last first, then the actions, then all entries, outermost and first first. Then `during`,
+// then the coroutines of `run`. So a tick takes one step: what it causes is seen in the next.
+//
+// Events wait in a bounded queue; a tick looks at the oldest. One that nobody takes is dropped and counted, but it
+// stays while transitions without event are taken.
+//
+// tick() and stop() call into Lua and raise through this: no function here holds what needs a destructor. They allocate
+// nothing beyond what the script does.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kadans/script/chart.h"
+
+struct lua_State;
+
+namespace kadans {
+
+struct Motion;
+
+// Registry references of what the functions are given.
+struct RunnerTables {
+  struct Machine {
+    int handle = Chart::no_function;   // m
+    int content = Chart::no_function;  // the table behind it
+  };
+  std::vector<Machine> machines;
+  int snapshot = Chart::no_function;  // s
+  int threads = Chart::no_function;   // keeps coroutines
+  int time_key = Chart::no_function;  // "time_s"
+};
+
+class TransitionSink {
+ public:
+  virtual ~TransitionSink() = default;
+  virtual void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept = 0;
+};
+
+class ChartRunner {
+ public:
+  // Before the first tick. All must outlive the runner.
+  ChartRunner(const Chart& chart, const RunnerTables& tables, TransitionSink& sink);
+
+  void tick(lua_State* state, std::int64_t now_ns);
+  // Leaves all active states, `exit` innermost first.
+  void stop(lua_State* state, std::int64_t now_ns);
+
+  // False when the queue is full: counted.
+  bool post(EventId event) noexcept;
+
+  bool started() const noexcept { return started_; }
+  bool finished() const noexcept { return finished_; }
+  EventId outcome() const noexcept { return run_[0].outcome; }
+  bool active(StateIndex state) const noexcept { return run_[state].active; }
+  double state_time_s(StateIndex state) const noexcept;
+  std::uint64_t events_unhandled() const noexcept { return unhandled_; }
+  std::uint64_t events_refused() const noexcept { return refused_; }
+  // What runs now, for waiting: set by the bindings just before they yield.
+  void wait_for(Motion* motion) noexcept { wait_motion_ = motion; }
+  void wait_until(std::int64_t time_ns) noexcept { wait_ns_ = time_ns; }
+  std::int64_t now_ns() const noexcept { return now_ns_; }
+
+ private:
+  struct StateRun {
+    bool active = false, run_done = false;
+    bool entering = false, leaving = false;
+    EventId outcome = no_event;
+    std::int64_t entered_ns = 0;
+    lua_State* thread = nullptr;
+    bool thread_started = false;
+    Motion* motion = nullptr;  // waited for
+    std::int64_t wake_ns = 0;
+  };
+  enum class Guard : std::uint8_t { unknown, no, yes };
+
+  // chart_selection.cpp
+  void select(lua_State* state, EventId event, bool events_only);
+  std::uint16_t select_for_leaf(lua_State* state, StateIndex leaf, EventId event, bool events_only);
+  bool enabled(lua_State* state, std::uint16_t transition, EventId event, bool events_only);
+  bool guard(lua_State* state, std::uint16_t transition);
+  void add_selected(std::uint16_t transition) noexcept;
+  bool took(EventId event) const noexcept;
+
+  // chart_runner.cpp
+  void take_step(lua_State* state);
+  void leave(lua_State* state, StateIndex index);
+  void enter(lua_State* state, StateIndex index);
+  void complete(StateIndex index, EventId outcome) noexcept;
+  void mark_entry(StateIndex target) noexcept;
+  void mark_ancestors(StateIndex target, StateIndex domain) noexcept;
+  bool marked_inside(StateIndex index) const noexcept;
+  void mark_history(StateIndex history) noexcept;
+  void remember(StateIndex index) noexcept;
+  void list_active() noexcept;
+  void report(std::uint16_t transition) noexcept;
+  StateIndex first_leaf() const noexcept;
+
+  // chart_calls.cpp
+  void set_time(lua_State* state, StateIndex index);
+  void call(lua_State* state, int function, StateIndex index);
+  void start_run(lua_State* state, StateIndex index);
+  void resume_run(lua_State* state, StateIndex index);
+  void cancel_run(lua_State* state, StateIndex index);
+  bool ready(lua_State* state, StateRun& run, lua_State* thread, int& arguments) noexcept;
+
+  const Chart& chart_;
+  const RunnerTables& tables_;
+  TransitionSink& sink_;
+  std::vector<StateRun> run_;
+  std::vector<StateIndex> active_;            // in document order
+  std::vector<std::uint16_t> selected_;       // transitions
+  std::vector<Guard> guards_;                 // one a transition, this tick's
+  std::vector<std::vector<bool>> histories_;  // one a state; empty where none
+  std::vector<bool> remembered_;
+  std::array<EventId, 32> events_{};
+  std::uint32_t event_first_ = 0, event_count_ = 0;
+  std::uint64_t unhandled_ = 0, refused_ = 0;
+  std::int64_t now_ns_ = 0;
+  bool started_ = false, finished_ = false;
+  Motion* wait_motion_ = nullptr;
+  std::int64_t wait_ns_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,16 @@
+// What is wrong with a behavior, found without running it.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "kadans/control/catalog.h"
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+
+// Loads the file and what it requires and calls, and checks it against the catalog. Empty: nothing is wrong.
+std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
+                                         const Catalog& catalog);
+
+}  // namespace kadans

@@ -1,0 +1,32 @@
+// The memory of one Lua state, counted and limited. Over the limit a reserve of an eighth still serves, so that the
+// script can be stopped at its next instruction, with its line, rather than somewhere inside the interpreter.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace kadans {
+
+class LuaHeap {
+ public:
+  LuaHeap(std::size_t limit_bytes, std::size_t block_bytes) noexcept : limit_(limit_bytes), block_(block_bytes) {}
+  LuaHeap(const LuaHeap&) = delete;
+  LuaHeap& operator=(const LuaHeap&) = delete;
+
+  // nullptr when refused: Lua raises "not enough memory". Shrinking and freeing always work.
+  void* reallocate(void* block, std::size_t old_bytes, std::size_t new_bytes) noexcept;
+
+  std::size_t used_bytes() const noexcept { return used_; }
+  std::size_t limit_bytes() const noexcept { return limit_; }
+  std::uint64_t allocated_bytes() const noexcept { return allocated_; }  // ever
+  bool exceeded() const noexcept { return exceeded_; }
+  void forgive() noexcept { exceeded_ = false; }
+
+ private:
+  std::size_t limit_, block_;
+  std::size_t used_ = 0;
+  std::uint64_t allocated_ = 0;
+  bool exceeded_ = false;
+};
+
+}  // namespace kadans

@@ -1,0 +1,18 @@
+// What one played behavior may use. Instructions are those of the Lua interpreter, counted in steps of a thousand; a
+// library call is charged in proportion to what it does.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace kadans {
+
+struct ScriptLimits {
+  std::uint64_t tick_instructions = 200'000;
+  std::uint64_t load_instructions = 5'000'000;
+  std::int64_t tick_wall_ns = 0;  // 0: no limit, as it must be on a virtual clock, where a run repeats bit for bit
+  std::size_t memory_bytes = std::size_t{4} << 20;
+  std::size_t block_bytes = std::size_t{512} << 10;  // one string, one table's array
+};
+
+}  // namespace kadans

@@ -1,0 +1,17 @@
+// A tunable of a behavior, declared in k.params: shown, ranged, and changed while the behavior runs.
+#pragma once
+
+#include <string>
+
+namespace kadans {
+
+struct ScriptParameter {
+  std::string chunk;  // the file that declares it
+  std::string name;
+  std::string unit;
+  std::string doc;
+  double initial = 0, min = 0, max = 0;
+  double value = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,134 @@
+#include "kadans/script/behavior.h"
+
+#include <algorithm>
+
+#include "behavior_parts.h"
+#include "lua_core.h"
+
+namespace kadans {
+namespace {
+
+int tick_chart(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  parts.runner->tick(state, parts.bindings.now_ns);
+  return 0;
+}
+
+int stop_chart(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  parts.runner->stop(state, parts.bindings.now_ns);
+  return 0;
+}
+
+}  // namespace
+
+Behavior::Parts::Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to)
+    : settings(wanted), catalog(offered), log(to) {}
+
+void Behavior::Parts::say(const char* text) noexcept {
+  log.message(bindings.now_ns, BehaviorLog::Severity::info, chart.name, text);
+}
+
+void Behavior::Parts::transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept {
+  transition.time_ns = bindings.now_ns;
+  transition.behavior = chart.name;
+  transition.from = from;
+  transition.to = to;
+  transition.why = why;
+  log.transition(transition);
+}
+
+bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
+  return lua->call(function, this, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
+}
+
+Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
+    : parts_(std::make_unique<Parts>(settings, catalog, log)) {
+  load_behavior(*parts_);
+}
+
+Behavior::~Behavior() = default;
+
+bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  Parts& parts = *parts_;
+  if (failed() || finished()) return false;
+  Bindings& bindings = parts.bindings;
+  bindings.begin(commands, snapshot, snapshot.time_ns);
+  if (!parts.runner->started() && bindings.set != nullptr) {
+    const auto wanted = static_cast<std::uint32_t>(bindings.set - parts.catalog.sets.data());
+    if (wanted != snapshot.control_set) (void)bindings.send({.kind = CommandKind::switch_set, .index = wanted});
+  }
+  if (!parts.run(tick_chart)) {
+    commands.discard();
+    parts.failed = true;
+    parts.error = parts.lua->error();
+    if (parts.error.breach == ScriptBreach::none) stop(snapshot, commands);
+    return false;
+  }
+  if (!bindings.commit()) {
+    ++parts.transactions_refused;
+    parts.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
+                      "queue_full: the commands of this tick were refused, all of them");
+  }
+  parts.lua->collect();
+  return !finished();
+}
+
+void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  Parts& parts = *parts_;
+  if (!parts.runner->started() || parts.error.breach != ScriptBreach::none) return;
+  parts.bindings.begin(commands, snapshot, snapshot.time_ns);
+  if (parts.run(stop_chart)) {
+    (void)parts.bindings.commit();
+    return;
+  }
+  commands.discard();
+  if (!parts.failed) parts.error = parts.lua->error();
+  parts.failed = true;
+}
+
+bool Behavior::post(const std::string& event) noexcept {
+  const EventId id = parts_->chart.find_event(event);
+  return id != no_event && id != run_done_event && parts_->runner->post(id);
+}
+
+const std::string& Behavior::name() const noexcept { return parts_->chart.name; }
+const Chart& Behavior::chart() const noexcept { return parts_->chart; }
+bool Behavior::finished() const noexcept { return parts_->runner->finished(); }
+bool Behavior::failed() const noexcept { return parts_->failed; }
+const ScriptError& Behavior::error() const noexcept { return parts_->error; }
+std::uint64_t Behavior::transactions_refused() const noexcept { return parts_->transactions_refused; }
+std::uint64_t Behavior::events_unhandled() const noexcept { return parts_->runner->events_unhandled(); }
+std::size_t Behavior::heap_bytes() const noexcept { return parts_->lua->used_bytes(); }
+
+std::string Behavior::outcome() const {
+  if (failed()) return "error";
+  const EventId outcome = parts_->runner->outcome();
+  return outcome == no_event ? "" : parts_->chart.events[static_cast<std::size_t>(outcome)];
+}
+
+std::string Behavior::state() const {
+  StateIndex at = 0;
+  for (StateIndex i = 1; i < parts_->chart.states.size(); ++i) {
+    if (parts_->runner->active(i) && parts_->chart.states[i].parent == at) at = i;
+  }
+  return parts_->chart.states[at].path;
+}
+
+std::vector<ScriptParameter> Behavior::parameters() const {
+  const auto& all = parts_->lua->core().parameters;
+  return {all.begin(), all.end()};
+}
+
+bool Behavior::set_parameter(const std::string& name, double value) noexcept {
+  for (ScriptParameter& parameter : parts_->lua->core().parameters) {
+    if (parameter.name != name || !(value >= parameter.min && value <= parameter.max)) continue;
+    parameter.value = value;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace kadans

@@ -1,0 +1,76 @@
+#include "behavior_parts.h"
+#include "chart_nodes.h"
+#include "chart_reader.h"
+#include "hint.h"
+#include "kadans/signal/nearest_name.h"
+#include "lua_core.h"
+#include "sandbox.h"
+
+namespace kadans {
+namespace {
+
+// Runs the file and reads the chart from what it returns.
+int read_file(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  if (!parts.lua->load_file(state, parts.settings.file)) return lua_error(state);
+  lua_call(state, 0, 1);
+  const int result = lua_gettop(state);
+  NodeKind kind{};
+  if (!is_node(state, result, &kind) || kind != NodeKind::behavior) {
+    return luaL_error(state, "%s:1: the file must return k.behavior \"name\" { ... }",
+                      parts.lua->sources().front().chunk.c_str());
+  }
+  read_chart(state, result, parts.chart);
+  return 0;
+}
+
+int open_bindings(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  open_machines(state, parts.chart, parts.bindings, parts.tables);
+  parts.tables.snapshot = parts.snapshot_tables.open(state, *parts.catalog.model, parts.settings.feet);
+  return 0;
+}
+
+InputProblem problem_of(const ScriptError& error) { return {error.file.data(), error.line, 0, error.message.data()}; }
+
+void find_control_set(Behavior::Parts& parts) {
+  const std::string& wanted = parts.chart.machines.front().controls;
+  if (wanted.empty()) return;
+  std::vector<std::string> names;
+  for (const ControlSetInfo& set : parts.catalog.sets) {
+    names.push_back(set.name);
+    if (set.name == wanted) parts.bindings.set = &set;
+  }
+  if (parts.bindings.set != nullptr) return;
+  const Chart::State& root = parts.chart.states.front();
+  parts.problems.push_back({root.chunk, parts.lua->line_of(root.chunk, root.line, wanted), 0,
+                            "unknown control set '" + wanted + "' in 'controls'" + did_you_mean(wanted, names)});
+}
+
+}  // namespace
+
+void load_behavior(Behavior::Parts& parts) {
+  const Behavior::Settings& settings = parts.settings;
+  parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = settings.root,
+                                                            .folder = settings.file.parent_path(),
+                                                            .name = settings.file.stem().string(),
+                                                            .seed = settings.seed,
+                                                            .limits = settings.limits,
+                                                            .voice = &parts});
+  parts.bindings.catalog = &parts.catalog;
+  parts.lua->core().bindings = &parts.bindings;
+  if (!parts.lua->call(read_file, &parts, settings.limits.load_instructions, 0)) {
+    throw InputError(problem_of(parts.lua->error()));
+  }
+  parts.chart.resolve(parts.problems);
+  find_control_set(parts);
+  if (!parts.problems.empty()) throw InputError(parts.problems);
+  if (!parts.lua->call(open_bindings, &parts, settings.limits.load_instructions, 0)) {
+    throw InputError(problem_of(parts.lua->error()));
+  }
+  parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);
+  parts.bindings.runner = parts.runner.get();
+  parts.lua->core().loading = false;
+}
+
+}  // namespace kadans

@@ -1,0 +1,48 @@
+// What the functions of `m` act on: the catalog, the snapshot and the transaction of the running tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <lua.hpp>
+
+#include "kadans/control/catalog.h"
+#include "kadans/engine/transaction.h"
+#include "kadans/script/chart.h"
+#include "kadans/script/chart_runner.h"
+#include "lua_core.h"
+#include "motion.h"
+
+namespace kadans {
+
+struct Bindings {
+  const Catalog* catalog = nullptr;
+  const ControlSetInfo* set = nullptr;  // nullptr: every object
+  const Snapshot* snapshot = nullptr;
+  CommandSender* sender = nullptr;
+  std::int64_t now_ns = 0;
+  ChartRunner* runner = nullptr;
+  bool refused = false;                            // a command of this tick found no place
+  std::array<Motion*, max_transaction> motions{};  // asked for in this tick
+  std::uint32_t motion_count = 0;
+
+  bool has_object(std::uint32_t object) const noexcept;
+  // False when the queue has no place: the whole transaction will be refused.
+  bool send(const Command& command) noexcept;
+  void begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept;
+  // Commits; motions learn their transaction. False: refused.
+  bool commit() noexcept;
+};
+
+inline Bindings& bindings_of(lua_State* state) noexcept { return *static_cast<Bindings*>(core_of(state).bindings); }
+
+// [-0 +1] The handle of a control object: m.posture.
+void push_object(lua_State* state, std::uint32_t object);
+void open_objects(lua_State* state);
+
+// Makes `m` of each machine and `s`; leaves references in the runner's tables. Raises.
+void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables);
+// Gives a machine that is being entered its vars and arguments.
+void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tables, std::uint16_t machine);
+
+}  // namespace kadans

@@ -1,0 +1,225 @@
+#include "chart_reader.h"
+
+#include "chart_nodes.h"
+#include "kadans/script/lua_state.h"
+#include "lua_core.h"
+#include "sandbox.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t states_max = 4000;
+constexpr int call_depth_max = 16;
+
+// Nothing here may hold what needs a destructor while it calls Lua: strings go straight into the chart.
+struct Reader {
+  lua_State* state;
+  Chart& chart;
+
+  int reference(int table, const char* key) {
+    lua_getfield(state, table, key);
+    if (lua_isnil(state, -1)) return lua_pop(state, 1), Chart::no_function;
+    return luaL_ref(state, LUA_REGISTRYINDEX);
+  }
+  const char* text(int table, const char* key) {  // anchored by the table
+    lua_getfield(state, table, key);
+    const char* value = lua_tostring(state, -1);
+    lua_pop(state, 1);
+    return value != nullptr ? value : "";
+  }
+
+  void read_transition(int table, StateIndex source, const Place& place) {
+    Chart::Transition& made = chart.transitions.emplace_back();
+    made.source = source;
+    made.target_name = text(table, "to");
+    const LuaState& owner = *core_of(state).owner;
+    made.line = owner.line_of(place.chunk, place.line, made.target_name);
+    made.when = reference(table, "when");
+    made.action = reference(table, "action");
+    const char* on = text(table, "on");
+    if (*on != '\0') made.on = chart.intern(on);
+    lua_getfield(state, table, "after");
+    std::size_t number = 0;
+    made.timed = !lua_isnil(state, -1);
+    if (is_parameter(state, -1, &number)) {
+      made.after_parameter = static_cast<std::int32_t>(number);
+    } else if (made.timed) {
+      made.after_s = lua_tonumber(state, -1);
+    }
+    lua_pop(state, 1);
+    made.why = text(table, "why");
+    if (made.why.empty()) made.why = *on != '\0' ? on : made.timed ? "after" : "when";
+  }
+
+  // The transitions in the list at `list`, nodes passed over.
+  std::uint16_t read_transitions(int list, StateIndex source, const Place& place) {
+    const std::size_t before = chart.transitions.size();
+    const int count = static_cast<int>(lua_objlen(state, list));
+    for (int i = 1; i <= count; ++i) {
+      lua_rawgeti(state, list, i);
+      NodeKind kind{};
+      if (!is_node(state, -1, &kind)) read_transition(lua_gettop(state), source, place);
+      lua_pop(state, 1);
+    }
+    return static_cast<std::uint16_t>(chart.transitions.size() - before);
+  }
+
+  StateIndex add_state(const char* name, Chart::Kind kind, StateIndex parent, std::uint16_t machine,
+                       const Place& place) {
+    if (chart.states.size() >= states_max)
+      raise_at(state, place, nullptr, "more than %d states", static_cast<int>(states_max));
+    const auto index = static_cast<StateIndex>(chart.states.size());
+    Chart::State& made = chart.states.emplace_back();
+    made.name = name;
+    made.kind = kind;
+    made.parent = parent;
+    made.machine = machine;
+    made.chunk = place.chunk;
+    made.line = place.line;
+    if (parent != no_state) {
+      const std::string& above = chart.states[parent].path;
+      made.path = above.empty() ? made.name : above + "." + made.name;
+    }
+    return index;
+  }
+
+  void read_body(int body, StateIndex index, const Place& place, int depth) {
+    {
+      Chart::State& made = chart.states[index];
+      made.enter = reference(body, "enter");
+      made.exit = reference(body, "exit");
+      made.during = reference(body, "during");
+      made.run = reference(body, "run");
+      made.initial_name = text(body, made.kind == Chart::Kind::history ? "to" : "initial");
+      made.outcome_name = text(body, "outcome");
+      if (made.kind == Chart::Kind::final_state) {
+        if (made.outcome_name.empty()) made.outcome_name = "done";
+        made.outcome = chart.intern(made.outcome_name);
+      }
+      lua_getfield(state, body, "deep");
+      made.deep = lua_toboolean(state, -1) != 0;
+      made.first_transition = static_cast<std::uint16_t>(chart.transitions.size());
+    }
+    const std::uint16_t transitions = read_transitions(body, index, place);
+    chart.states[index].transition_count = transitions;
+    chart.states[index].first_always = static_cast<std::uint16_t>(chart.transitions.size());
+    lua_getfield(state, body, "always");
+    if (lua_istable(state, -1)) {
+      const std::uint16_t always = read_transitions(lua_gettop(state), index, place);
+      chart.states[index].always_count = always;
+    }
+    lua_settop(state, body);
+    read_children(body, index, depth);
+    chart.states[index].end = static_cast<StateIndex>(chart.states.size());
+  }
+
+  void read_children(int body, StateIndex index, int depth) {
+    luaL_checkstack(state, 20, "states are nested too deeply");
+    const int count = static_cast<int>(lua_objlen(state, body));
+    for (int i = 1; i <= count; ++i) {
+      lua_rawgeti(state, body, i);
+      NodeKind kind{};
+      if (is_node(state, -1, &kind)) read_node(lua_gettop(state), kind, index, depth);
+      lua_settop(state, body);
+    }
+  }
+
+  void read_node(int node, NodeKind kind, StateIndex parent, int depth) {
+    const Place place = node_place(state, node);
+    const char* name = node_name(state, node);
+    if (kind == NodeKind::call) return read_call(node, name, parent, place, depth);
+    if (kind == NodeKind::behavior)
+      raise_at(state, place, nullptr, "a behavior inside a behavior: k.call \"%s\" does that", name);
+    constexpr Chart::Kind kinds[] = {Chart::Kind::state,  Chart::Kind::state,       Chart::Kind::parallel,
+                                     Chart::Kind::region, Chart::Kind::final_state, Chart::Kind::history};
+    const StateIndex index =
+        add_state(name, kinds[static_cast<int>(kind)], parent, chart.states[parent].machine, place);
+    push_node_body(state, node);
+    read_body(lua_gettop(state), index, place, depth);
+  }
+
+  // [-0 +0] Grafts the behavior that is called in below `parent`.
+  void read_call(int node, const char* name, StateIndex parent, const Place& place, int depth) {
+    if (depth >= call_depth_max)
+      raise_at(state, place, name, "behaviors call each other too deeply; does '%s' call itself?", name);
+    lua_pushcfunction(state, sandbox_require);
+    lua_pushstring(state, name);
+    if (lua_pcall(state, 1, 1, 0) != 0) {
+      core_of(state).budget.raise_again(state);
+      const char* text = lua_tostring(state, -1);
+      if (text != nullptr && text[0] != 'n') lua_error(state);  // the file has its own mistake, with its own place
+      raise_at(state, place, name, "k.call: %s", text != nullptr ? text : "?");
+    }
+    const int behavior = lua_gettop(state);
+    NodeKind kind{};
+    if (!is_node(state, behavior, &kind) || kind != NodeKind::behavior) {
+      raise_at(state, place, name, "k.call: '%s' does not return a k.behavior", name);
+    }
+    push_node_body(state, node);
+    check_arguments(behavior, lua_gettop(state), name, place);
+    const int given = luaL_ref(state, LUA_REGISTRYINDEX);
+    read_machine(behavior, parent, given, depth + 1);
+    check_controls(place, name, parent);
+  }
+
+  void check_arguments(int behavior, int given, const char* name, const Place& place) {
+    push_node_body(state, behavior);
+    lua_getfield(state, -1, "args");
+    for (lua_pushnil(state); lua_next(state, given) != 0; lua_pop(state, 1)) {
+      const char* key = lua_type(state, -2) == LUA_TSTRING ? lua_tostring(state, -2) : "?";
+      bool known = lua_istable(state, given + 2);
+      if (known) {
+        lua_getfield(state, given + 2, key);
+        known = !lua_isnil(state, -1);
+        lua_pop(state, 1);
+      }
+      if (!known) raise_at(state, place, key, "behavior '%s' takes no argument '%s'", name, key);
+    }
+    lua_settop(state, given);
+  }
+
+  void check_controls(const Place& place, const char* name, StateIndex parent) {
+    const char* wanted = chart.machines.back().controls.c_str();
+    const char* has = chart.machines[chart.states[parent].machine].controls.c_str();
+    for (std::size_t i = 0; i < chart.machines.size(); ++i) {
+      if (chart.machines[i].name == name) wanted = chart.machines[i].controls.c_str();
+    }
+    if (*wanted != '\0' && *has != '\0' &&
+        std::char_traits<char>::compare(wanted, has, std::char_traits<char>::length(wanted) + 1) != 0) {
+      raise_at(state, place, name, "behavior '%s' runs on control set '%s', its caller on '%s'", name, wanted, has);
+    }
+  }
+
+  StateIndex read_machine(int behavior, StateIndex parent, int given, int depth) {
+    const Place place = node_place(state, behavior);
+    const char* name = node_name(state, behavior);
+    const auto number = static_cast<std::uint16_t>(chart.machines.size());
+    chart.machines.emplace_back();
+    const StateIndex index = add_state(parent == no_state ? "" : name, Chart::Kind::state, parent, number, place);
+    chart.states[index].machine_root = true;
+    push_node_body(state, behavior);
+    const int body = lua_gettop(state);
+    Chart::Machine& machine = chart.machines[number];
+    machine.name = name;
+    machine.root = index;
+    machine.controls = text(body, "controls");
+    machine.vars = reference(body, "vars");
+    machine.arguments = reference(body, "args");
+    machine.given = given;
+    lua_getfield(state, body, "version");
+    machine.version = static_cast<int>(lua_tointeger(state, -1));
+    lua_settop(state, body);
+    read_body(body, index, place, depth);
+    return index;
+  }
+};
+
+}  // namespace
+
+void read_chart(lua_State* state, int index, Chart& chart) {
+  Reader reader{state, chart};
+  chart.name = node_name(state, index);
+  reader.read_machine(index, no_state, Chart::no_function, 0);
+}
+
+}  // namespace kadans

@@ -1,0 +1,38 @@
+// What every C function of the sandbox can reach from its lua_State: the allocator's user data is the core.
+#pragma once
+
+#include <deque>
+
+#include <lua.hpp>
+
+#include "kadans/script/budget.h"
+#include "kadans/script/lua_heap.h"
+#include "kadans/script/script_error.h"
+#include "kadans/script/script_parameter.h"
+#include "kadans/signal/random.h"
+
+namespace kadans {
+
+class LuaState;
+
+struct LuaCore {
+  LuaHeap heap;
+  ScriptError error{};
+  Budget budget{heap, error};
+  RandomStream random;
+  std::deque<ScriptParameter> parameters{};
+  LuaState* owner = nullptr;
+  lua_State* main = nullptr;
+  lua_State* running = nullptr;  // the coroutine of a `run` while it runs, else nullptr
+  void* bindings = nullptr;      // of the behavior that owns the state
+  bool loading = true;
+  int depth = 0;  // of library functions that call back
+};
+
+inline LuaCore& core_of(lua_State* state) noexcept {
+  void* core = nullptr;
+  lua_getallocf(state, &core);
+  return *static_cast<LuaCore*>(core);
+}
+
+}  // namespace kadans

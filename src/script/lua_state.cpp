@@ -1,0 +1,166 @@
+#include "kadans/script/lua_state.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <new>
+
+#include "lua_core.h"
+#include "sandbox.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t source_bytes_max = std::size_t{1} << 20;
+
+void* allocate(void* user, void* block, std::size_t old_bytes, std::size_t new_bytes) {
+  auto& core = *static_cast<LuaCore*>(user);
+  const bool had = core.heap.exceeded();
+  void* moved = core.heap.reallocate(block, old_bytes, new_bytes);
+  if (new_bytes > 0 && !had && core.heap.exceeded() && core.main != nullptr) {
+    core.budget.memory_ran_out(core.running != nullptr ? core.running : core.main, moved != nullptr);
+  }
+  return moved;
+}
+
+// The handler of uncaught errors: keeps the message and the stack while it still stands.
+int keep_error(lua_State* state) {
+  ScriptError& error = core_of(state).error;
+  if (error.set) return 1;
+  if (lua_type(state, 1) == LUA_TSTRING) {
+    error.set_message(lua_tostring(state, 1));
+  } else {
+    error.set_message("the script raised a value that is not a string");
+  }
+  luaL_traceback(state, state, nullptr, 1);
+  error.set_traceback(lua_tostring(state, -1));
+  return 1;
+}
+
+int open(lua_State* state) {
+  open_sandbox(state);
+  return 0;
+}
+
+}  // namespace
+
+LuaState::LuaState(Settings settings)
+    : settings_(std::move(settings)),
+      core_(new LuaCore{.heap = LuaHeap(settings_.limits.memory_bytes, settings_.limits.block_bytes),
+                        .random = RandomStream(settings_.seed, "script." + settings_.name)}) {
+  core_->owner = this;
+  lua_ = lua_newstate(allocate, core_.get());
+  if (lua_ == nullptr) throw std::bad_alloc();
+  core_->main = lua_;
+  luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
+  lua_gc(lua_, LUA_GCSTOP, 0);
+  if (!call(open, nullptr, settings_.limits.load_instructions, 0)) {
+    lua_close(lua_);
+    throw std::bad_alloc();
+  }
+}
+
+LuaState::~LuaState() {
+  core_->main = nullptr;
+  lua_sethook(lua_, nullptr, 0, 0);
+  lua_close(lua_);
+}
+
+const ScriptError& LuaState::error() const noexcept { return core_->error; }
+std::size_t LuaState::used_bytes() const noexcept { return core_->heap.used_bytes(); }
+
+bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
+                    std::int64_t wall_ns) noexcept {
+  core_->depth = 0;
+  core_->running = nullptr;
+  core_->budget.begin(lua_, instructions, wall_ns);
+  lua_settop(lua_, 0);
+  lua_pushcfunction(lua_, keep_error);
+  lua_pushcfunction(lua_, function);
+  lua_pushlightuserdata(lua_, argument);
+  const int status = lua_pcall(lua_, 1, 0, 1);
+  core_->running = nullptr;
+  if (status != 0 && !core_->error.set) {
+    const char* text = lua_tostring(lua_, -1);
+    core_->error.set_message(text != nullptr ? text : "stopped");
+  }
+  lua_settop(lua_, 0);
+  return status == 0 && !core_->budget.breached();
+}
+
+bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
+  Source source;
+  source.path = path;
+  source.chunk = path.lexically_relative(settings_.root).generic_string();
+  if (source.chunk.empty() || source.chunk.starts_with("..")) source.chunk = path.generic_string();
+  std::ifstream file(path, std::ios::binary);
+  source.text.assign(std::istreambuf_iterator<char>(file), {});
+  const std::string chunk = "@" + source.chunk;
+  if (!file.good() && source.text.empty()) {
+    lua_pushfstring(state, "%s:1: cannot be read, or is empty", source.chunk.c_str());
+    return false;
+  }
+  if (source.text.size() > source_bytes_max) {
+    lua_pushfstring(state, "%s:1: is larger than 1 MB", source.chunk.c_str());
+    return false;
+  }
+  sources_.push_back(std::move(source));
+  const std::string& text = sources_.back().text;
+  if (luaL_loadbufferx(state, text.data(), text.size(), chunk.c_str(), "t") != 0) return false;
+  push_environment(lua_);
+  lua_setfenv(state, -2);
+  return true;
+}
+
+std::filesystem::path LuaState::find_module(std::string_view name) const {
+  std::string relative;
+  bool start = true;  // of a part: a part begins with a letter or digit, so ".." and "/" find nothing
+  for (const char c : name) {
+    const bool word = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    if (!word && (c != '.' || start)) return {};
+    relative += word ? c : '/';
+    start = !word;
+  }
+  if (start) return {};
+  relative += ".lua";
+  for (const auto& folder : {settings_.folder, settings_.root / "behaviors/lib"}) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(folder / relative, ignored)) return folder / relative;
+  }
+  return {};
+}
+
+int LuaState::line_of(std::string_view chunk, int from, std::string_view text) const {
+  for (const Source& source : sources_) {
+    if (source.chunk != chunk) continue;
+    const std::string& all = source.text;
+    std::size_t start = 0;
+    for (int line = 1; line < from && start != std::string::npos; ++line) {
+      start = all.find('\n', start);
+      if (start != std::string::npos) ++start;
+    }
+    const auto word = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
+    for (std::size_t at = all.find(text, start); at != std::string::npos; at = all.find(text, at + 1)) {
+      const std::size_t end = at + text.size();
+      if ((at > 0 && word(all[at - 1])) || (end < all.size() && word(all[end]))) continue;
+      return from + static_cast<int>(std::count(all.begin() + static_cast<std::ptrdiff_t>(start),
+                                                all.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    }
+  }
+  return from;
+}
+
+void LuaState::collect() noexcept {
+  const std::uint64_t fresh = core_->heap.allocated_bytes() - collected_at_;
+  collected_at_ = core_->heap.allocated_bytes();
+  lua_sethook(lua_, nullptr, 0, 0);
+  if (core_->heap.used_bytes() > settings_.limits.memory_bytes / 4 * 3) {
+    lua_gc(lua_, LUA_GCCOLLECT, 0);
+  } else {
+    lua_gc(lua_, LUA_GCSTEP, static_cast<int>(8 + fresh / 512));
+  }
+  lua_gc(lua_, LUA_GCSTOP, 0);  // a step starts the collector again
+}
+
+}  // namespace kadans

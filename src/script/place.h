@@ -1,0 +1,22 @@
+// Where in a script something was written, for messages.
+#pragma once
+
+#include <lua.hpp>
+
+namespace kadans {
+
+struct Place {
+  const char* chunk = "";  // lives as long as the Lua state
+  int line = 0;
+};
+
+// Of the script function that calls the running C function; `level` 1 is the direct caller.
+Place calling_place(lua_State* state, int level = 1);
+// Raises "file:line: message". With `needle`, the line is the first from the place on that holds this text.
+int raise_at(lua_State* state, const Place& place, const char* needle, const char* format, ...);
+
+// [-0 +0] Raises when the table at `table` has a string key that is not among the names (ends with nullptr); `what` is
+// how messages call the table. The nearest name is told.
+void check_keys(lua_State* state, int table, const Place& place, const char* what, const char* const* names);
+
+}  // namespace kadans

@@ -1,0 +1,27 @@
+// The names that a script sees, and the tools that make tables read-only.
+#pragma once
+
+#include <lua.hpp>
+
+namespace kadans {
+
+// Builds the sandbox's globals and leaves them in the registry; push_environment() gets them. Raises.
+void open_sandbox(lua_State* state);
+void push_environment(lua_State* state);
+
+// [-1 +1] Replaces the table on top by an empty one through which its content is read: writing raises, reading an
+// unknown field raises and names the nearest. `name` is what messages call it. Raises when out of memory.
+void make_read_only(lua_State* state, const char* name, bool strict = true);
+// [-0 +1 when true] Pushes the content behind a read-only table.
+bool push_content(lua_State* state, int index);
+// Raises "NAME has no field 'x', did you mean 'y'?" for the key at `key`, from the names in the table at `content`.
+int raise_unknown_field(lua_State* state, const char* name, int content, int key);
+
+// The parts of the library.
+void open_strings(lua_State* state);  // [-0 +0] wraps what is in the string table at the top
+void open_tables(lua_State* state);   // the same for the table library
+int sandbox_pairs(lua_State* state);
+int sandbox_require(lua_State* state);
+void open_kadans_module(lua_State* state);  // [-0 +1]
+
+}  // namespace kadans
