@@ -1,5 +1,6 @@
 #include "joint_rows.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,6 +8,7 @@ namespace kadans::bullet {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double limit_return_rad_s = 0.5;
 constexpr double limit_margin_rad = 0.05;  // nearer than this, or than a few steps' way, the limit's row is there
 
 bool stiff(JointRows::Kind kind) { return kind == JointRows::friction || kind == JointRows::limit; }
@@ -43,7 +45,8 @@ void JointRows::activate_limit(double dt_s) {
   if (!active_[limit]) return;
   const bool at_lower = above < below;
   const double room = at_lower ? above : below;
-  const double away = (room < 0 ? limit_erp : 1) * room / dt_s;  // how fast it may still go towards the limit
+  // How fast it may still go towards the limit; when beyond it, how fast it must come back, negated.
+  const double away = room < 0 ? std::max(limit_erp * room / dt_s, -limit_return_rad_s) : room / dt_s;
   limit_velocity_rad_s_ = at_lower ? -away : away;
   laws_[limit] = {0, 0, at_lower ? 0 : -infinite, at_lower ? infinite : 0};
 }

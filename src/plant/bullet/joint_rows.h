@@ -13,7 +13,7 @@
 //   servo kp, kd            p = dt (kp (q_d - q - dt v) + kd (v_d - v)), limited to the drive's torque
 //   dry friction            stiff, v_wanted = 0, limited to dt times the friction torque
 //   joint limit             stiff, one-sided: v may just reach the limit at the step's end; when beyond, a small part
-//                           (limit_erp) of the excess is taken back each step, so that nothing is thrown out
+//                           (limit_erp) of the excess is taken back each step, slowly, so that nothing is thrown out
 // All rows of a joint share one Jacobian and one articulated-body pass for the response.
 #pragma once
 

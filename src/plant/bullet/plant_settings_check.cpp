@@ -55,6 +55,9 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
   if (settings.feet.size() > max_feet) refuse("feet", static_cast<double>(settings.feet.size()), "at most 4");
   if (settings.solver_iterations < 1) refuse("solver_iterations", settings.solver_iterations, "at least 1");
   require_at_least_zero("ground_friction", settings.ground_friction);
+  for (const double g : settings.gravity_m_s2) {
+    if (!std::isfinite(g)) throw std::invalid_argument("gravity_m_s2 must be finite");
+  }
   for (std::size_t i = 0; i < joints; ++i) {
     const std::string& name = model.joints[i].name;
     check_drive(name, settings.drives[i]);

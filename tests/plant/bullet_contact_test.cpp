@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "small_robots.h"
+
+using namespace kadans;
+using namespace kadans::test;
+
+namespace {
+
+// The ground is level; a slope is gravity that leans.
+Robot box_on_slope(double slope_rad, double box_friction, double ground_friction) {
+  Robot robot = box(2, {0.2, 0.2, 0.1});
+  robot.settings.gravity_m_s2 = {g * std::sin(slope_rad), 0, -g * std::cos(slope_rad)};
+  robot.settings.surfaces.push_back({"box", box_friction});
+  robot.settings.ground_friction = ground_friction;
+  return robot;
+}
+
+// A torso whose two arms hang beside it and swing about x, inwards when positive for the left one.
+Robot torso_with_arm(double gap_m) {
+  Robot robot = pendulum(0.5, 0.18, 0.02);
+  robot.model.links[0].collisions.push_back({"torso", "base", {{0, 0, -0.2}, {1, 0, 0, 0}}, Box{{0.16, 0.24, 0.4}}});
+  robot.model.links[1].collisions.push_back({"arm", "arm", {{0, 0, -0.18}, {1, 0, 0, 0}}, Box{{0.04, 0.04, 0.36}}});
+  Link shoulder;
+  shoulder.name = "shoulder";
+  shoulder.inertia = {.mass_kg = 0.1, .xx = 1e-3, .yy = 1e-3, .zz = 1e-3};
+  robot.model.links.insert(robot.model.links.begin() + 1, shoulder);
+  robot.model.joints[0].origin.position_m = {0, 0.12 + gap_m + 0.02, 0};
+  robot.model.joints[0].axis = {1, 0, 0};
+  Joint swing = robot.model.joints[0];
+  swing.name = "arm";
+  swing.parent = 1;
+  swing.origin = {};
+  robot.model.joints.push_back(swing);
+  robot.settings.drives.resize(2, DriveSettings{.torque_max_Nm = 5});
+  robot.settings.encoders.resize(2);
+  robot.settings.position_rad.resize(2);
+  robot.settings.base.position_m = {0, 0, 3};
+  return robot;
+}
+
+}  // namespace
+
+TEST_CASE("A box rests at its own height and its foot sensors carry m g") {
+  Robot robot = box(4, {0.22, 0.1, 0.03});
+  BulletPlant plant(robot.model, robot.settings, 1);
+  CHECK(plant.truth().base.position_m[2] == doctest::Approx(0.015).epsilon(1e-9));
+  run(plant, 500);
+  CHECK(std::abs(plant.truth().base.position_m[2] - 0.015) < 1e-6);
+  CHECK(plant.truth().foot_force_N[0][2] == doctest::Approx(4 * g).epsilon(1e-4));
+  SensorFrame sensors;
+  plant.read(sensors);
+  double sum_N = 0;
+  for (const double force_N : sensors.feet[0].force_N) {
+    CHECK(force_N == doctest::Approx(g).epsilon(1e-2));
+    sum_N += force_N;
+  }
+  CHECK(sum_N == doctest::Approx(4 * g).epsilon(1e-4));
+}
+
+TEST_CASE("A heavy landing is not cut off: the ground stops any impulse") {
+  Robot robot = box(500, {0.3, 0.3, 0.3});
+  robot.settings.stand_on_ground = false;
+  robot.settings.base.position_m = {0, 0, 1.15};
+  BulletPlant plant(robot.model, robot.settings, 1);
+  double lowest_m = 1;
+  for (int i = 0; i < 1500; ++i) {
+    plant.step(ms);
+    lowest_m = std::min(lowest_m, plant.truth().base.position_m[2]);
+  }
+  CHECK(lowest_m > 0.149);
+  CHECK(std::abs(plant.truth().base_velocity_m_s[2]) < 1e-3);
+}
+
+TEST_CASE("A box stays on a slope just under the friction angle and slides just over it") {
+  const double friction = 0.8 * 0.5, angle_rad = std::atan(friction);  // the product of both surfaces
+  Robot under = box_on_slope(angle_rad - 0.01, 0.8, 0.5);
+  BulletPlant stays(under.model, under.settings, 1);
+  run(stays, 1000);
+  CHECK(std::abs(stays.truth().base.position_m[0]) < 1e-3);
+
+  Robot over = box_on_slope(angle_rad + 0.05, 0.8, 0.5);
+  BulletPlant slides(over.model, over.settings, 1);
+  run(slides, 1000);
+  const double slope_rad = angle_rad + 0.05;
+  const double acceleration = g * (std::sin(slope_rad) - friction * std::cos(slope_rad));
+  CHECK(slides.truth().base_velocity_m_s[0] == doctest::Approx(acceleration).epsilon(0.02));
+}
+
+TEST_CASE("Friction never exceeds mu N, in whatever direction it acts along an axis") {
+  for (const double direction : {-1.0, 1.0}) {
+    Robot robot = box_on_slope(0.6 * direction, 1, 0.3);
+    BulletPlant plant(robot.model, robot.settings, 1);
+    for (int i = 0; i < 200; ++i) {
+      plant.step(ms);
+      const Vec3& force = plant.truth().foot_force_N[0];
+      CHECK(std::abs(force[0]) <= 0.3 * force[2] * (1 + 1e-9));
+    }
+  }
+}
+
+TEST_CASE("A box that stands under a swaying load does not creep") {
+  Robot robot = box(4, {0.22, 0.1, 0.03});
+  robot.settings.surfaces.push_back({"box", 0.8});
+  BulletPlant plant(robot.model, robot.settings, 1);
+  for (int i = 0; i < 10000; ++i) {
+    plant.push(0, {3 * std::sin(0.01 * i), 2 * std::cos(0.013 * i), 0}, {0, 0, 0.1});
+    plant.step(ms);
+  }
+  CHECK(std::hypot(plant.truth().base.position_m[0], plant.truth().base.position_m[1]) < 1e-4);
+}
+
+TEST_CASE("An arm that swings in stops at the torso, and swings through when self-collision is off") {
+  for (const bool self_collision : {true, false}) {
+    Robot robot = torso_with_arm(0.03);
+    robot.settings.self_collision = self_collision;
+    BulletPlant plant(robot.model, robot.settings, 1);
+    ActuationFrame inwards;
+    inwards.joint_count = 2;
+    inwards.joints[1] = {.effort_Nm = -0.5, .mode = ActuationMode::effort};
+    double furthest_rad = 0;
+    for (int i = 0; i < 600; ++i) {
+      plant.write(inwards);
+      plant.step(ms);
+      furthest_rad = std::min(furthest_rad, plant.truth().position_rad[0] + plant.truth().position_rad[1]);
+    }
+    if (self_collision) {
+      CHECK(furthest_rad < -0.02);
+      CHECK(furthest_rad > -0.15);  // 3 cm at the hand
+    } else {
+      CHECK(furthest_rad < -1);
+    }
+  }
+}
+
+TEST_CASE("Links that overlap at the zero pose, grandparent and grandchild, leave each other alone") {
+  Robot robot = torso_with_arm(-0.01);  // the arm reaches 1 cm into the torso
+  BulletPlant plant(robot.model, robot.settings, 1);
+  run(plant, 200);
+  CHECK(std::abs(plant.truth().position_rad[0]) < 1e-9);
+  CHECK(std::abs(plant.truth().position_rad[1]) < 1e-9);
+}
+
+TEST_CASE("Spheres and cylinders rest on the ground where they touch it") {
+  Robot ball = box(1, {0.1, 0.1, 0.1});
+  ball.model.links[0].collisions[0].shape = Sphere{0.05};
+  BulletPlant round(ball.model, ball.settings, 1);
+  run(round, 500);
+  CHECK(round.truth().base.position_m[2] == doctest::Approx(0.05).epsilon(1e-4));
+  Robot drum = box(1, {0.1, 0.1, 0.1});
+  drum.model.links[0].collisions[0].shape = Cylinder{0.05, 0.1};
+  drum.settings.base.orientation = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
+  BulletPlant lying(drum.model, drum.settings, 1);
+  run(lying, 500);
+  CHECK(lying.truth().base.position_m[2] == doctest::Approx(0.05).epsilon(1e-4));
+  CHECK(lying.truth().foot_force_N[0][2] == doctest::Approx(g).epsilon(1e-3));
+}

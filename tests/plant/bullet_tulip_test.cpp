@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "kadans/model/urdf.h"
+#include "small_robots.h"
+
+using namespace kadans;
+using namespace kadans::test;
+
+namespace {
+
+enum class Drives : std::uint8_t { elastic, stiff_spring, rigid };
+
+double crouch_rad(const std::string& joint) {
+  if (joint.ends_with("hip_pitch") || joint.ends_with("ankle_pitch")) return -0.3;
+  return joint.ends_with("knee") ? 0.6 : 0;
+}
+
+DriveSettings drive_of(const Joint& joint, Drives kind) {
+  DriveSettings drive;
+  if (joint.passive()) {
+    drive.parallel_spring_Nm_per_rad = 25;
+    drive.parallel_damping_Nms_per_rad = 0.6;
+    return drive;
+  }
+  drive.torque_max_Nm = joint.effort_max_Nm;
+  drive.velocity_max_rad_s = joint.velocity_max_rad_s;
+  drive.knee_velocity_rad_s = joint.velocity_max_rad_s / 2;
+  drive.rotor_inertia_kg_m2 = 0.02;
+  drive.viscous_Nms_per_rad = 0.2;
+  if (kind == Drives::rigid) return drive;
+  drive.spring_Nm_per_rad = kind == Drives::elastic ? 300 : 3000;
+  drive.spring_damping_Nms_per_rad = 0.5;
+  return drive;
+}
+
+FootSettings foot_of(const std::string& link) {
+  const double inner = link.starts_with("l") ? -0.05 : 0.05;
+  FootSettings foot;
+  foot.link = link;
+  foot.sensors_m = {{{-0.08, inner, -0.06}, {-0.08, -inner, -0.06}, {0.14, inner, -0.06}, {0.14, -inner, -0.06}}};
+  return foot;
+}
+
+Robot tulip(Drives kind) {
+  Robot robot;
+  robot.model = read_urdf(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
+  for (const Joint& joint : robot.model.joints) {
+    robot.settings.drives.push_back(drive_of(joint, kind));
+    robot.settings.position_rad.push_back(crouch_rad(joint.name));
+  }
+  robot.settings.encoders.resize(robot.model.joints.size());
+  for (const std::string link : {"l_ankle_roll_link", "r_ankle_roll_link"}) {
+    robot.settings.feet.push_back(foot_of(link));
+    robot.settings.surfaces.push_back({link, 0.8});
+  }
+  return robot;
+}
+
+// Joint PD on the motors' side, one tick of delay, as a control object would do it.
+class JointPdHold {
+ public:
+  explicit JointPdHold(const Robot& robot) : robot_(robot) {}
+
+  void tick(BulletPlant& plant) {
+    plant.read(sensors_);
+    actuation_.joint_count = sensors_.joint_count;
+    plant.write(actuation_);
+    for (std::size_t i = 0; i < sensors_.joint_count; ++i) {
+      const double at_rad = sensors_.joints[i].motor_position_rad;
+      const double velocity_rad_s = started_ ? (at_rad - last_rad_[i]) / 1e-3 : 0;
+      last_rad_[i] = at_rad;
+      actuation_.joints[i] = {.effort_Nm = 300 * (robot_.settings.position_rad[i] - at_rad) - 6 * velocity_rad_s,
+                              .mode = ActuationMode::effort};
+    }
+    started_ = true;
+    plant.step(ms);
+  }
+  const SensorFrame& sensors() const { return sensors_; }
+
+ private:
+  const Robot& robot_;
+  SensorFrame sensors_;
+  ActuationFrame actuation_;
+  std::array<double, max_joints> last_rad_{};
+  bool started_ = false;
+};
+
+double tilt_rad(const PlantTruth& truth) {
+  const Quat& q = truth.base.orientation;
+  return 2 * std::asin(std::min(1.0, std::hypot(q[1], q[2])));
+}
+
+}  // namespace
+
+TEST_CASE("TULip stands for 2 s on joint torques, with every kind of drive") {
+  for (const Drives kind : {Drives::elastic, Drives::stiff_spring, Drives::rigid}) {
+    CAPTURE(static_cast<int>(kind));
+    const Robot robot = tulip(kind);
+    BulletPlant plant(robot.model, robot.settings, 1);
+    const Pose left = plant.truth().feet[0];
+    JointPdHold hold(robot);
+    double most_tilt_rad = 0;
+    for (int i = 0; i < 2000; ++i) {
+      hold.tick(plant);
+      most_tilt_rad = std::max(most_tilt_rad, tilt_rad(plant.truth()));
+    }
+    const PlantTruth& truth = plant.truth();
+    CHECK(most_tilt_rad < 0.12);
+    CHECK(truth.base.position_m[2] > 0.8);
+    CHECK(std::hypot(truth.feet[0].position_m[0] - left.position_m[0],
+                     truth.feet[0].position_m[1] - left.position_m[1]) < 2e-4);
+  }
+}
+
+TEST_CASE("TULip's two feet carry its weight") {
+  const Robot robot = tulip(Drives::rigid);
+  BulletPlant plant(robot.model, robot.settings, 1);
+  JointPdHold hold(robot);
+  double sensors_N = 0, truth_N = 0;
+  for (int i = 0; i < 4000; ++i) {
+    hold.tick(plant);
+    if (i < 3000) continue;
+    for (std::size_t foot = 0; foot < 2; ++foot) {
+      for (const double force_N : hold.sensors().feet[foot].force_N) sensors_N += force_N / 1000;
+      truth_N += plant.truth().foot_force_N[foot][2] / 1000;
+    }
+  }
+  CHECK(robot.model.mass_kg() == doctest::Approx(14));
+  CHECK(sensors_N == doctest::Approx(14 * g).epsilon(1e-3));
+  CHECK(truth_N == doctest::Approx(14 * g).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "TULip's hips turn about one point without colliding, and its joints stay within their limits when it falls") {
+  const Robot robot = tulip(Drives::elastic);
+  BulletPlant plant(robot.model, robot.settings, 1);
+  double worst_rad = 0;
+  for (int i = 0; i < 3000; ++i) {
+    plant.step(ms);  // no torque: it collapses
+    for (std::size_t j = 0; j < robot.model.joints.size(); ++j) {
+      const double at_rad = plant.truth().position_rad[j];
+      worst_rad =
+          std::max({worst_rad, robot.model.joints[j].lower_rad - at_rad, at_rad - robot.model.joints[j].upper_rad});
+    }
+  }
+  CHECK(plant.truth().base.position_m[2] < 0.4);
+  CHECK(worst_rad < 0.02);
+}
+
+TEST_CASE("TULip falls the same way twice") {
+  const Robot robot = tulip(Drives::elastic);
+  BulletPlant first(robot.model, robot.settings, 1), second(robot.model, robot.settings, 1);
+  run(first, 3000);
+  run(second, 3000);
+  CHECK(state_hash(first) == state_hash(second));
+}

@@ -1,0 +1,38 @@
+// Robots small enough that physics has a formula for them.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/plant/bullet/bullet_plant.h"
+
+namespace kadans::test {
+
+inline constexpr std::int64_t ms = 1'000'000;  // ns
+inline constexpr double g = 9.81;
+
+struct Robot {
+  RobotModel model;
+  PlantSettings settings;
+
+  DriveSettings& drive(std::size_t joint = 0) { return settings.drives[joint]; }
+};
+
+// A free box, lying on the ground.
+Robot box(double mass_kg, const Vec3& size_m);
+
+// One link on a fixed base, turning about y; no collision shapes, no gravity, no drive. Zero is the link hanging
+// straight down. Its inertia about the joint is inertia_kg_m2, its centre of mass com_m below the joint.
+Robot pendulum(double mass_kg, double com_m, double inertia_kg_m2);
+
+// A chain of free-floating links with skew axes, offset centres of mass and full inertia tensors; no gravity.
+Robot tumbling_chain();
+
+// One joint, one mode.
+ActuationFrame effort(double effort_Nm);
+ActuationFrame position(double position_rad);
+ActuationFrame velocity(double velocity_rad_s);
+
+void run(Plant& plant, int steps, std::int64_t dt_ns = ms);
+std::uint64_t state_hash(const ModelPlant& plant);
+
+}  // namespace kadans::test
