@@ -1,7 +1,5 @@
 #include "kadans/config/robot_config.h"
 
-#include <cmath>
-
 #include "kadans/config/name_pattern.h"
 #include "kadans/config/project_root.h"
 #include "kadans/model/urdf.h"
@@ -14,12 +12,10 @@ void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
   f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
   f.number("behavior_period_s", engine.behavior_period_s, {1e-5, 10, "s"},
            "period of the behavior engine, a whole multiple of control_period_s");
-  f.integer("commands_per_tick_max", engine.commands_per_tick_max, {1, max_transaction},
-            "commands applied in one control tick at most");
+  f.integer("commands_per_tick_max", engine.commands_per_tick_max, {max_transaction - 1, command_capacity},
+            "commands applied in one control tick at most; the largest transaction must pass");
   f.number("command_age_max_s", engine.command_age_max_s, {1e-3, 60, "s"}, "older commands are refused");
-  const double ticks = engine.behavior_period_s / engine.control_period_s;
-  constexpr double tolerance = 1e-6;
-  if (f.reading() && !(ticks >= 1 - tolerance && std::abs(ticks - std::round(ticks)) <= tolerance * ticks)) {
+  if (f.reading() && engine.behavior_divisor() == 0) {
     problems.add(f.place("behavior_period_s"),
                  f.path("behavior_period_s") + " is " + number_text(engine.behavior_period_s) +
                      ", must be a whole multiple of control_period_s, " + number_text(engine.control_period_s) + " s");

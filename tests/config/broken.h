@@ -14,11 +14,11 @@ struct Broken {
 };
 
 inline std::string replaced(std::string text, const std::string& find, const std::string& replace) {
-  const std::size_t at = text.find(find);
+  const std::size_t at = find.empty() ? std::string::npos : text.find(find);
   return at == std::string::npos ? text : text.replace(at, find.size(), replace);
 }
 
-// What `read` refuses, each problem without the name of `file`; "" when it refuses nothing.
+// What `read` refuses, each problem without the name of `file` and with ROOT for `root`; "" when it refuses nothing.
 template <typename Read>
 std::string refusal(const std::string& file, const std::string& root, Read&& read) {
   try {

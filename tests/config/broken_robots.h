@@ -24,14 +24,15 @@ inline constexpr Broken broken_robots[] = {
      "5:5: unknown key 'control_perod_s' in engine, did you mean 'control_period_s'?"},
     {"\"behavior_period_s\": 0.01", "\"behavior_period_s\": 0.0015",
      "6:26: engine.behavior_period_s is 0.0015, must be a whole multiple of control_period_s, 0.001 s"},
-    {"\"commands_per_tick_max\": 64", "\"commands_per_tick_max\": 1.5",
-     "7:30: engine.commands_per_tick_max is 1.5, must be 1..256, a whole number: commands applied in one control tick "
-     "at most"},
-    {"\"commands_per_tick_max\": 64", "\"commands_per_tick_max\": 1000",
-     "7:30: engine.commands_per_tick_max is 1000, must be 1..256: commands applied in one control tick at most"},
-    {"\"commands_per_tick_max\": 64", "\"commands_per_tick_max\": null",
+    {"\"commands_per_tick_max\": 300", "\"commands_per_tick_max\": 300.5",
+     "7:30: engine.commands_per_tick_max is 300.5, must be 255..1024, a whole number: commands applied in one control "
+     "tick at most; the largest transaction must pass"},
+    {"\"commands_per_tick_max\": 300", "\"commands_per_tick_max\": 64",
+     "7:30: engine.commands_per_tick_max is 64, must be 255..1024: commands applied in one control tick at most; the "
+     "largest transaction must pass"},
+    {"\"commands_per_tick_max\": 300", "\"commands_per_tick_max\": null",
      "7:30: engine.commands_per_tick_max must be a whole number, not null: commands applied in one control tick at "
-     "most"},
+     "most; the largest transaction must pass"},
     {"\"*_knee\": 0.3", "\"*_kne\": 0.3", "10:16: unknown joint '*_kne', did you mean 'l_knee'?"},
     {"\"*_knee\": 0.3", "\"*_knee\": 3", "10:26: poses.stand['*_knee'] is 3, joint 'l_knee' reaches 0..2.35 rad"},
     {"\"*_knee\": 0.3", "\"*_knee\": \"0.3\"",

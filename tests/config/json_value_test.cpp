@@ -12,7 +12,7 @@ namespace kadans {
 namespace {
 
 std::string refusal_of(const std::string& text) {
-  return refusal("t.json", "?", [&] { parse_json(text, "t.json"); });
+  return refusal("t.json", "", [&] { parse_json(text, "t.json"); });
 }
 
 }  // namespace
@@ -80,8 +80,8 @@ TEST_CASE("What is too deep, too long or too large is refused") {
 }
 
 TEST_CASE("A file that is not there, or no file, is refused by name") {
-  CHECK(refusal("/none/x.json", "?", [] { read_text_file("/none/x.json"); }) == " there is no such file");
-  CHECK(refusal("/", "?", [] { read_text_file("/"); }) == " this is no file");
+  CHECK(refusal("/none/x.json", "", [] { read_text_file("/none/x.json"); }) == " there is no such file");
+  CHECK(refusal("/", "", [] { read_text_file("/"); }) == " this is no file");
 }
 
 }  // namespace kadans

@@ -9,7 +9,7 @@ inline constexpr const char* right_robot = R"({
   "engine": {
     "control_period_s": 0.001,
     "behavior_period_s": 0.01,
-    "commands_per_tick_max": 64
+    "commands_per_tick_max": 300
   },
   "poses": {
     "stand": { "*_knee": 0.3, "*_hip_pitch": -0.15 }

@@ -2,7 +2,7 @@
 //
 //   void engine_fields(Fields& f, EngineSettings& engine) {
 //     f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
-//     f.integer("commands_per_tick_max", engine.commands_per_tick_max, {1, 1000}, "commands applied in one tick");
+//     f.integer("commands_per_tick_max", engine.commands_per_tick_max, {255, 1024}, "commands applied in one tick");
 //   }
 //
 // Run on a JSON object, each line checks type and range and stores the value; what is not in the file keeps the value

@@ -1,0 +1,130 @@
+// Robot configurations: what the parts mean, and what is said to wrong ones.
+#include "kadans/config/robot_config.h"
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "broken_robots.h"
+#include "objects.h"
+#include "right_texts.h"
+
+namespace kadans {
+namespace {
+
+const std::vector<std::string> types{"joint_pid"};
+const std::string file = KADANS_SOURCE_DIR "/config/t.json";
+
+RobotConfig read(const std::string& text) { return read_robot_config_text(text, file, types); }
+RobotConfig read_with(const char* find, const char* replace) { return read(replaced(right_robot, find, replace)); }
+
+std::string refusal_of(const std::string& text) {
+  return refusal(file, KADANS_SOURCE_DIR, [&] {
+    const RobotConfig config = read(text);
+    ControlObjects objects(config);
+    apply_parameters(config, objects.catalog);
+  });
+}
+
+std::size_t joint(const RobotConfig& config, const char* name) { return config.model.find_joint(name).value(); }
+
+}  // namespace
+
+TEST_CASE("Every broken robot configuration is refused at its place, with what was meant") {
+  CHECK(refusal_of(right_robot).empty());
+  for (const Broken& broken : broken_robots) {
+    CAPTURE(broken.replace);
+    const std::string text = replaced(right_robot, broken.find, broken.replace);
+    CHECK(text != right_robot);
+    CHECK(refusal_of(text) == std::string(broken.message));
+  }
+}
+
+TEST_CASE("A key that is left out keeps its default, torque and speed the URDF's") {
+  const RobotConfig config = read(right_robot);
+  const DriveSettings& knee = config.plant.drives[joint(config, "l_knee")];
+  CHECK(knee.torque_max_Nm == 25);
+  CHECK(knee.velocity_max_rad_s == 8);
+  CHECK(knee.viscous_Nms_per_rad == 0);
+  CHECK(config.safety.damp_s == SafetySettings{}.damp_s);
+  CHECK(config.engine.command_age_max_s == EngineSettings{}.command_age_max_s);
+  CHECK(config.engine.commands_per_tick_max == 300);
+}
+
+TEST_CASE("A pattern speaks for all joints that it fits, and later entries override earlier ones field by field") {
+  const RobotConfig config = read_with("\"*_ankle_roll\": { \"rotor_inertia_kg_m2\": 0,", "\"*_ankle_roll\": {");
+  const DriveSettings& ankle = config.plant.drives[joint(config, "r_ankle_roll")];
+  CHECK(ankle.rotor_inertia_kg_m2 == 0.02);
+  CHECK(ankle.parallel_spring_Nm_per_rad == 25);
+  CHECK(config.plant.drives[joint(config, "l_knee")].parallel_spring_Nm_per_rad == 0);
+  CHECK(config.estimate.sample_divisor[joint(config, "l_shoulder_pitch")] == 10);
+  CHECK(config.estimate.sample_divisor[joint(config, "l_knee")] == 1);
+}
+
+TEST_CASE("Limits may be narrowed for the safety layer, joint by joint") {
+  const RobotConfig config = read(right_robot);
+  CHECK(config.safety.joints[joint(config, "l_knee")].upper_rad == 2.0);
+  CHECK(config.safety.joints[joint(config, "l_hip_yaw")].upper_rad == 0.7);
+  CHECK(config.model.joints[joint(config, "l_knee")].upper_rad == 2.35);
+}
+
+TEST_CASE("Feet are the plant's and the estimator's alike, in the order of the file") {
+  const RobotConfig config = read(right_robot);
+  REQUIRE(config.plant.feet.size() == 1);
+  REQUIRE(config.estimate.feet.size() == 1);
+  CHECK(config.plant.feet[0].sensors_m[2] == Vec3{0.14, -0.05, -0.06});
+  CHECK(config.estimate.feet[0].sensors_m == config.plant.feet[0].sensors_m);
+  CHECK(config.estimate.feet[0].link == "l_ankle_roll_link");
+}
+
+TEST_CASE("A control object drives the motor joints that its patterns fit, each once, in the order of the model") {
+  const RobotConfig config = read_with("\"joints\": [\"*\"]", "\"joints\": [\"*_knee\", \"l_*\", \"l_knee\"]");
+  const std::vector<std::size_t>& joints = config.objects[0].joints;
+  CHECK(joints.size() == 7);  // six motors of the left side and the right knee
+  CHECK(std::is_sorted(joints.begin(), joints.end()));
+  CHECK(std::find(joints.begin(), joints.end(), joint(config, "l_ankle_roll")) == joints.end());
+}
+
+TEST_CASE("Sets number their control objects, and the initial one is found by name") {
+  const RobotConfig config = read_with("\"initial_set\": \"posture\"", "\"initial_set\": \"wave\"");
+  REQUIRE(config.sets.size() == 2);
+  CHECK(config.sets[1].objects == std::vector<std::uint32_t>{1});
+  CHECK(config.initial_set == 1);
+}
+
+TEST_CASE("A pose gives some joints their positions, the start pose the others too") {
+  const RobotConfig config = read(right_robot);
+  REQUIRE(config.poses.size() == 1);
+  CHECK(config.poses[0].position_rad.size() == 4);
+  CHECK(config.plant.position_rad[joint(config, "r_hip_pitch")] == -0.15);
+  CHECK(config.plant.position_rad[joint(config, "r_hip_yaw")] == 0);
+}
+
+TEST_CASE("Parameters reach the tables by pattern, later entries override, presets are kept apart") {
+  const RobotConfig config = read(right_robot);
+  ControlObjects objects(config);
+  apply_parameters(config, objects.catalog);
+  CHECK(objects.value("posture.l_knee.kp_Nm_per_rad") == 200);
+  CHECK(objects.value("posture.r_knee.kp_Nm_per_rad") == 100);
+  CHECK(objects.value("arms.l_shoulder_pitch.kp_Nm_per_rad") != 100);
+  REQUIRE(objects.catalog.objects[0].presets.size() == 1);
+  CHECK(objects.catalog.objects[0].presets[0].name == "soft");
+  CHECK(objects.catalog.objects[0].presets[0].values.size() == 12);
+}
+
+TEST_CASE("One wrong parameter leaves the tables as they were") {
+  const RobotConfig config = read_with("\"l_knee.kp_Nm_per_rad\": 200", "\"l_knee.kp_Nm_per_rad\": -1");
+  ControlObjects objects(config);
+  const double before = objects.value("posture.r_knee.kp_Nm_per_rad");
+  CHECK_THROWS_AS(apply_parameters(config, objects.catalog), InputError);
+  CHECK(objects.value("posture.r_knee.kp_Nm_per_rad") == before);
+}
+
+TEST_CASE("What the URDF gets wrong is told beside what the configuration gets wrong") {
+  const std::string text = replaced(right_robot, "models/tulip/tulip.urdf", "config/tulip/robot.json");
+  const std::string message = refusal_of(replaced(text, "\"hold_s\": 1", "\"hold_s\": -1"));
+  CHECK(message.starts_with("40:15: safety.hold_s is -1"));
+  CHECK(message.find("\nROOT/config/tulip/robot.json") != std::string::npos);
+}
+
+}  // namespace kadans

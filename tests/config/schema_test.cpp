@@ -1,0 +1,93 @@
+// The schemas in config/schema are what the readers' field lists say, and the shipped files keep to them.
+#include "kadans/config/schema.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "kadans/config/json_value.h"
+#include "right_texts.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+const fs::path source = KADANS_SOURCE_DIR;
+
+// On a difference the schema as it should be is left in the build tree, to be copied.
+void check_shipped(const std::string& schema, const char* name) {
+  const fs::path shipped = source / "config" / "schema" / name;
+  const fs::path renewed = fs::path(KADANS_BINARY_DIR) / name;
+  const bool same = fs::exists(shipped) && read_text_file(shipped) == schema;
+  if (!same) std::ofstream(renewed) << schema;
+  CHECK_MESSAGE(same, "renew it: cp " << renewed.string() << " " << shipped.string());
+}
+
+// The part of JSON Schema that our schemas use.
+void check_value(const Json& schema, const Json& value, const std::string& path) {
+  CAPTURE(path);
+  const std::string type = schema.at("type");
+  if (type == "object") {
+    REQUIRE(value.is_object());
+    for (const auto& name : schema.value("required", Json::array())) CHECK(value.contains(name.get<std::string>()));
+    const Json properties = schema.value("properties", Json::object());
+    for (const auto& [key, member] : value.items()) {
+      const Json rest = schema.at("additionalProperties");
+      REQUIRE_MESSAGE((properties.contains(key) || rest.is_object()), "unknown key " << key);
+      check_value(properties.contains(key) ? properties[key] : rest, member, path + "/" + key);
+    }
+  } else if (type == "array") {
+    REQUIRE(value.is_array());
+    CHECK(value.size() >= schema.value("minItems", std::size_t{0}));
+    CHECK(value.size() <= schema.value("maxItems", value.size()));
+    for (const Json& item : value) check_value(schema.at("items"), item, path + "/-");
+  } else if (type == "string") {
+    CHECK(value.is_string());
+  } else if (type == "boolean") {
+    CHECK(value.is_boolean());
+  } else {
+    REQUIRE(value.is_number());
+    if (type == "integer") CHECK(value.is_number_integer());
+    CHECK(value.get<double>() >= schema.value("minimum", value.get<double>()));
+    CHECK(value.get<double>() <= schema.value("maximum", value.get<double>()));
+  }
+}
+
+void check_file(const std::string& schema, const fs::path& file) {
+  check_value(Json::parse(schema), Json::parse(read_text_file(file)), file.filename().string());
+}
+
+}  // namespace
+
+TEST_CASE("The shipped schemas are what the readers' field lists say") {
+  check_shipped(robot_schema(), "robot.schema.json");
+  check_shipped(scenario_schema(), "scenario.schema.json");
+}
+
+TEST_CASE("What the readers accept fits the schemas, what the schemas refuse is no shipped file") {
+  check_value(Json::parse(robot_schema()), Json::parse(right_robot), "robot");
+  check_value(Json::parse(scenario_schema()), Json::parse(right_scenario), "scenario");
+  check_file(robot_schema(), source / "config" / "tulip" / "robot.json");
+  for (const auto& entry : fs::directory_iterator(source / "config" / "scenarios")) {
+    if (entry.path().extension() == ".json") check_file(scenario_schema(), entry.path());
+  }
+}
+
+TEST_CASE("A field's range, unit, default and meaning stand in the schema") {
+  const Json schema = Json::parse(robot_schema());
+  const Json& period = schema["properties"]["engine"]["properties"]["control_period_s"];
+  CHECK(period["minimum"] == 1e-5);
+  CHECK(period["maximum"] == 1);
+  CHECK(period["default"] == 0.001);
+  CHECK(period["description"] == "period of the control engine, in s");
+  CHECK(schema["required"] == Json({"name", "urdf", "control"}));
+  const Json& drive = schema["properties"]["plant"]["properties"]["drives"]["additionalProperties"];
+  CHECK(drive["properties"].contains("spring_Nm_per_rad"));
+  CHECK(drive["additionalProperties"] == false);
+}
+
+}  // namespace kadans
