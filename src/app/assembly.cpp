@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "kadans/config/project_root.h"
 #include "kadans/control/joint_pid.h"
 #include "kadans/estimate/signals.h"
 #include "kadans/plant/bullet/bullet_plant.h"
@@ -24,7 +25,7 @@ std::unique_ptr<ControlObject> make_object(const RobotConfig& config, const Obje
     try {
       return type.make({config.model, object.joints});
     } catch (const std::invalid_argument& error) {
-      refuse(config.file, object.place, "control object " + quoted(object.name) + ": " + error.what());
+      refuse(config.file, object.place, "control object " + kadans::quoted(object.name) + ": " + error.what());
     }
   }
   refuse_unknown(config.file, object.type, "type of control object", control_object_types());
@@ -41,6 +42,15 @@ std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
     feet.push_back({foot.link, {foot.sensors_m.begin(), foot.sensors_m.end()}});
   }
   return feet;
+}
+
+std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Catalog& catalog, std::uint64_t seed,
+                                      RunLog& log) {
+  ScriptHost::Settings settings;
+  settings.root = project_root(scenario.file);
+  settings.seed = seed;
+  for (const PlacedName& behavior : scenario.behaviors) settings.play.push_back({.file = behavior.name});
+  return std::make_unique<ScriptHost>(settings, catalog, log);
 }
 
 }  // namespace
@@ -97,7 +107,7 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   exchange_ = std::make_unique<EngineExchange>();
   truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.plant), feet_settle_s);
   control_ = std::make_unique<ControlEngine>(robot_.engine, *plant_, *estimator_, *safety_, *sets_, catalog, *exchange_);
-  host_ = make_script_host(scenario, catalog, seed, log);
+  host_ = make_host(scenario, catalog, seed, log);
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host_.get());
   lockstep_ = std::make_unique<Lockstep>(robot_.engine, *plant_, *control_, *behaviors_);
 }

@@ -6,6 +6,7 @@
 #include "kadans/config/json_value.h"
 #include "kadans/config/project_root.h"
 #include "kadans/model/urdf.h"
+#include "kadans/script/check_behavior.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -53,7 +54,7 @@ std::string check_lua(const std::string& file, const std::string& robot) {
   }
   const RobotConfig robot_config = read_robot_config(config, control_object_types());
   const auto system = make_control_system(robot_config);
-  const std::vector<InputProblem> problems = check_behavior(file, system->catalog);
+  const std::vector<InputProblem> problems = check_behavior(project_root(file), file, system->catalog);
   if (!problems.empty()) throw InputError(problems);
   return "behavior: fits " + robot_config.name;
 }

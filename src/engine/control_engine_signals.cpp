@@ -1,9 +1,11 @@
 #include "kadans/engine/control_engine.h"
+#include "kadans/estimate/signals.h"
 
 namespace kadans {
 
 void ControlEngine::declare_signals(Catalog& catalog) {
   SignalTable& table = catalog.signals;
+  kadans::declare_signals(table, *catalog.model, estimator_.settings(), snapshot_.joints, snapshot_.status);
   for (std::size_t i = 0; i < catalog.model->joints.size(); ++i) {
     table.add({"actuation." + catalog.model->joints[i].name + ".effort_Nm", "Nm", "Torque asked of the drive."},
               &written_.joints[i].effort_Nm);
