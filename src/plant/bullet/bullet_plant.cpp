@@ -145,6 +145,8 @@ class BulletPlant::World {
         const btManifoldPoint& point = manifold.getContactPoint(j);
         for (int k = 0; k < 3; ++k) hash.add(point.m_localPointA[k]);
         hash.add(point.m_distance1);
+        hash.add(point.m_appliedImpulse);  // the solver starts from it
+        hash.add(point.m_prevRHS);
       }
     }
   }

@@ -1,5 +1,7 @@
 #include "contact_world.h"
 
+#include <algorithm>
+
 namespace kadans::bullet {
 class SteppedWorld final : public btMultiBodyDynamicsWorld {
  public:
@@ -11,9 +13,17 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     performDiscreteCollisionDetection();
     getSolverInfo().m_timeStep = dt_s;
     accelerate(dt_s);
+    getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
     solve();
     if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
     move(dt_s);
+  }
+
+  void set_iterations(int iterations) { iterations_ = iterations; }
+
+  void add_rows(JointRows& rows) {
+    addMultiBodyConstraint(&rows);
+    rows_.push_back(&rows);
   }
 
   void update_frames() {
@@ -21,6 +31,10 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   }
 
  private:
+  bool against_limit(double dt_s) const {
+    return std::any_of(rows_.begin(), rows_.end(), [dt_s](const JointRows* rows) { return rows->against_limit(dt_s); });
+  }
+
   void accelerate(double dt_s) {
     for (int i = 0; i < m_multiBodies.size(); ++i) {
       m_multiBodies[i]->clearConstraintForces();
@@ -54,6 +68,9 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
       if (link.m_collider != nullptr) link.m_collider->setWorldTransform(link.m_cachedWorldTransform);
     }
   }
+
+  int iterations_ = 10;
+  std::vector<JointRows*> rows_;
 };
 
 ContactWorld::ContactWorld(const Options& options, PairMask& mask) : dispatcher_(&configuration_) {
@@ -65,8 +82,9 @@ ContactWorld::ContactWorld(const Options& options, PairMask& mask) : dispatcher_
   world_->getDispatchInfo().m_useContinuous = false;
   btContactSolverInfo& info = world_->getSolverInfo();
   info.m_splitImpulse = false;
-  info.m_solverMode |= SOLVER_DISABLE_IMPLICIT_CONE_FRICTION | SOLVER_USE_2_FRICTION_DIRECTIONS;
-  info.m_numIterations = options.solver_iterations;
+  info.m_solverMode |=
+      SOLVER_DISABLE_IMPLICIT_CONE_FRICTION | SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_USE_ARTICULATED_WARMSTARTING;
+  world_->set_iterations(options.solver_iterations);
   info.m_minimumSolverBatchSize = 0;
   info.m_leastSquaresResidualThreshold = 0;
   ground_.setCollisionShape(&ground_shape_);
@@ -97,7 +115,7 @@ void ContactWorld::add(btCollisionObject& collider, bool fixed) {
                              fixed ? btBroadphaseProxy::DefaultFilter : everything);
 }
 
-void ContactWorld::add(btMultiBodyConstraint& rows) { world_->addMultiBodyConstraint(&rows); }
+void ContactWorld::add(JointRows& rows) { world_->add_rows(rows); }
 
 void ContactWorld::step(double dt_s) { world_->stepSimulation(dt_s, 0); }
 

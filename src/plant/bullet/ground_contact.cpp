@@ -15,25 +15,46 @@
 namespace kadans::bullet {
 namespace {
 
-constexpr std::size_t points_per_shape = 4;
+constexpr std::size_t points_per_shape = 4, corners_per_shape = 8;
+
+struct Corner {
+  btVector3 point;
+  int number = 0;  // of the shape's corners, the same in every step
+};
+
+// What the solver starts from at a corner that touched in the last step already.
+struct Impulse {
+  double normal = 0, rhs = 0;
+};
+using Impulses = std::array<Impulse, corners_per_shape>;
+
+Impulses impulses_of(const btPersistentManifold& manifold) {
+  Impulses impulses{};
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    impulses[static_cast<std::size_t>(point.m_index0)] = {point.m_appliedImpulse, point.m_prevRHS};
+  }
+  return impulses;
+}
 
 // The lowest few of the points offered, lowest first; of equals the one offered first.
+
 class LowestPoints {
  public:
-  void offer(const btVector3& point) {
+  void offer(const btVector3& point, int number) {
     if (!(point.z() < contact_distance_m)) return;
     std::size_t at = count_;
-    while (at > 0 && point.z() < points_[at - 1].z()) --at;
+    while (at > 0 && point.z() < points_[at - 1].point.z()) --at;
     if (at == points_per_shape) return;
     count_ = std::min(count_ + 1, points_per_shape);
     for (std::size_t i = count_ - 1; i > at; --i) points_[i] = points_[i - 1];
-    points_[at] = point;
+    points_[at] = {point, number};
   }
-  const btVector3* begin() const { return points_.data(); }
-  const btVector3* end() const { return points_.data() + count_; }
+  const Corner* begin() const { return points_.data(); }
+  const Corner* end() const { return points_.data() + count_; }
 
  private:
-  std::array<btVector3, points_per_shape> points_;
+  std::array<Corner, points_per_shape> points_;
   std::size_t count_ = 0;
 };
 
@@ -41,7 +62,7 @@ void offer_box(const btBoxShape& box, const btTransform& pose, LowestPoints& poi
   const btVector3 half = box.getHalfExtentsWithMargin();
   for (int corner = 0; corner < 8; ++corner) {
     const btVector3 signs((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
-    points.offer(pose * (half * signs));
+    points.offer(pose * (half * signs), corner);
   }
 }
 
@@ -52,8 +73,11 @@ void offer_cylinder(const btCylinderShapeZ& cylinder, const btTransform& pose, L
   down.setZ(0);
   down = down.length2() > 1e-12 ? down.normalized() : btVector3(1, 0, 0);
   const btVector3 side(-down.y(), down.x(), 0);
+  int number = 0;
   for (const btVector3& out : {down, side, -side, -down}) {
-    for (const double end : {-1.0, 1.0}) points.offer(pose * (half.x() * out + btVector3(0, 0, end * half.z())));
+    for (const double end : {-1.0, 1.0}) {
+      points.offer(pose * (half.x() * out + btVector3(0, 0, end * half.z())), number++);
+    }
   }
 }
 
@@ -61,7 +85,7 @@ LowestPoints lowest_points(const btCollisionShape& shape, const btTransform& pos
   LowestPoints points;
   switch (shape.getShapeType()) {
     case SPHERE_SHAPE_PROXYTYPE:
-      points.offer(pose.getOrigin() - btVector3(0, 0, static_cast<const btSphereShape&>(shape).getRadius()));
+      points.offer(pose.getOrigin() - btVector3(0, 0, static_cast<const btSphereShape&>(shape).getRadius()), 0);
       break;
     case BOX_SHAPE_PROXYTYPE:
       offer_box(static_cast<const btBoxShape&>(shape), pose, points);
@@ -93,9 +117,12 @@ class GroundContact final : public btCollisionAlgorithm {
                         btManifoldResult*) override {
     const btTransform& link = link_->getWorldTransform();
     for (int i = 0; i < manifolds_.size(); ++i) {
+      const Impulses last = impulses_of(*manifolds_[i]);
       manifolds_[i]->clearManifold();
       const btTransform part = link * compound().getChildTransform(i);
-      for (const btVector3& point : lowest_points(*compound().getChildShape(i), part)) add(*manifolds_[i], point);
+      for (const Corner& corner : lowest_points(*compound().getChildShape(i), part)) {
+        add(*manifolds_[i], corner, last[static_cast<std::size_t>(corner.number)]);
+      }
     }
   }
 
@@ -111,13 +138,17 @@ class GroundContact final : public btCollisionAlgorithm {
  private:
   const btCompoundShape& compound() const { return static_cast<const btCompoundShape&>(*link_->getCollisionShape()); }
 
-  void add(btPersistentManifold& manifold, const btVector3& point) const {
+  void add(btPersistentManifold& manifold, const Corner& corner, const Impulse& last) const {
+    const btVector3& point = corner.point;
     const btVector3 on_ground(point.x(), point.y(), 0);
     btManifoldPoint contact(link_->getWorldTransform().invXform(point), on_ground, btVector3(0, 0, 1), point.z());
     contact.m_positionWorldOnA = point;
     contact.m_positionWorldOnB = on_ground;
     contact.m_combinedFriction = friction_;
     contact.m_combinedRestitution = 0;
+    contact.m_index0 = corner.number;
+    contact.m_appliedImpulse = last.normal;
+    contact.m_prevRHS = last.rhs;
     manifold.addManifoldPoint(contact);
   }
 

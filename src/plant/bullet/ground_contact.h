@@ -1,8 +1,9 @@
-// Contact of a link's shapes with level ground, exact and without memory: each step the corners of every shape that lie
+// Contact of a link's shapes with level ground, exact: each step the corners of every shape that lie
 // nearest to the plane become its contact points (at most four a shape), normal to the ground and at their true
 // distance. Points still above the ground are contacts too, within contact_distance_m: the solver lets them come down
-// as far as the ground and no further. Bullet's own box against box detector tilts the normal with the foot and lets
-// standing feet creep.
+// as far as the ground and no further. A corner remembers its impulse from one step to the next, which is where the
+// solver starts from. Bullet's own box against box detector tilts the normal with the foot and lets standing feet
+// creep.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double limit_return_rad_s = 0.5;
+constexpr double hard_approach_rad_s = 1, excess_rad = 0.002;  // see against_limit
 constexpr double limit_margin_rad = 0.05;  // nearer than this, or than a few steps' way, the limit's row is there
 
 bool stiff(JointRows::Kind kind) { return kind == JointRows::friction || kind == JointRows::limit; }
@@ -37,10 +38,15 @@ void JointRows::set_friction(double impulse_max) {
   laws_[friction] = {0, 0, -impulse_max, impulse_max};
 }
 
+bool JointRows::against_limit(double dt_s) const {
+  const double above = above_lower_rad(), below = below_upper_rad(), velocity = m_bodyA->getJointVel(m_linkA);
+  return std::min(above, below) < -excess_rad || -velocity > above / dt_s + hard_approach_rad_s ||
+         velocity > below / dt_s + hard_approach_rad_s;
+}
+
 void JointRows::activate_limit(double dt_s) {
-  const double position = m_bodyA->getJointPos(m_linkA), velocity = m_bodyA->getJointVel(m_linkA);
-  const double margin = limit_margin_rad + 4 * dt_s * std::abs(velocity);
-  const double above = position - lower_rad_, below = upper_rad_ - position;
+  const double margin = limit_margin_rad + 4 * dt_s * std::abs(m_bodyA->getJointVel(m_linkA));
+  const double above = above_lower_rad(), below = below_upper_rad();
   active_[limit] = above < margin || below < margin;
   if (!active_[limit]) return;
   const bool at_lower = above < below;
@@ -89,7 +95,10 @@ void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBo
   bool made = false;
   const double velocity = m_bodyA->getVelocityVector()[6 + m_bodyA->getLink(m_linkA).m_dofOffset];
   for (const Kind kind : {linear, servo, friction, limit}) {
-    if (!active_[kind]) continue;
+    if (!active_[kind]) {
+      internalSetAppliedImpulse(kind, 0);
+      continue;
+    }
     if (!made) row = prototype(data, response);
     made = true;
     const Law& law = laws_[kind];

@@ -40,6 +40,9 @@ class JointRows final : public btMultiBodyConstraint {
   void set_servo(double impulse_at_rest, double slope, double lower, double upper);
   void set_friction(double impulse_max);
 
+  // Runs into its limit, or stands beyond it, so that the solver should look closer. Before the solver, after the
+  // accelerations.
+  bool against_limit(double dt_s) const;
   // What each row did in the last step, as impulses; 0 when it was not active.
   double impulse(Kind kind) const { return active_[kind] ? impulses_at(kind) : 0; }
 
@@ -56,6 +59,8 @@ class JointRows final : public btMultiBodyConstraint {
   };
 
   double impulses_at(Kind kind) const { return m_data[kind]; }
+  double above_lower_rad() const { return m_bodyA->getJointPos(m_linkA) - lower_rad_; }
+  double below_upper_rad() const { return upper_rad_ - m_bodyA->getJointPos(m_linkA); }
   void activate_limit(double dt_s);
   btMultiBodySolverConstraint prototype(btMultiBodyJacobianData& data, double& response) const;
 
