@@ -25,7 +25,7 @@ std::unique_ptr<ControlObject> make_object(const RobotConfig& config, const Obje
     try {
       return type.make({config.model, object.joints});
     } catch (const std::invalid_argument& error) {
-      refuse(config.file, object.place, "control object " + kadans::quoted(object.name) + ": " + error.what());
+      refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
     }
   }
   refuse_unknown(config.file, object.type, "type of control object", control_object_types());
