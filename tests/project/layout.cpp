@@ -111,12 +111,18 @@ std::vector<std::string> read_layers(std::string_view cmake_text) {
   return words(rest.substr(0, rest.find(')')));
 }
 
-std::vector<std::string> read_table_layers(std::string_view markdown, const std::vector<std::string>& layers) {
+std::vector<std::string> read_table_layers(std::string_view markdown) {
   std::vector<std::string> result;
+  bool inside = false;
   for (const std::string& line : lines(markdown)) {
     const auto row = words(line);
-    if (row.size() >= 3 && row[0] == "|" && row[2] == "|" && rank(row[1], layers) < layers.size())
+    const bool is_row = row.size() >= 3 && row[0] == "|" && row[2] == "|";
+    if (is_row && row[1] == "layer")
+      inside = true;
+    else if (is_row && inside)
       result.push_back(row[1]);
+    else if (row.empty())
+      inside = false;
   }
   return result;
 }

@@ -15,8 +15,8 @@ using Findings = std::vector<std::string>;
 
 // The layers in their order, from the text of src/CMakeLists.txt: `set(layers exchange signal ...)`.
 std::vector<std::string> read_layers(std::string_view cmake_text);
-// The same from a table in Markdown whose rows begin "| layer |"; rows that begin otherwise are left out.
-std::vector<std::string> read_table_layers(std::string_view markdown, const std::vector<std::string>& layers);
+// The same from Markdown: the first column of the table whose first column is headed "layer".
+std::vector<std::string> read_table_layers(std::string_view markdown);
 
 // "plant/bullet/world.h" -> "plant"; "" when the first folder is no layer.
 std::string layer_of(std::string_view path, const std::vector<std::string>& layers);

@@ -36,9 +36,9 @@ std::vector<fs::path> files_below(const fs::path& folder) {
 
 bool is_code(const fs::path& file) { return file.extension() == ".h" || file.extension() == ".cpp"; }
 
-// package-lock.json is what npm writes; a NUL makes a file data.
+// package-lock.json is what npm writes; tables of numbers and whatever holds a NUL are data.
 bool is_written_by_hand(const fs::path& file, const std::string& text) {
-  return file.filename() != "package-lock.json" && text.find('\0') == std::string::npos;
+  return file.filename() != "package-lock.json" && file.extension() != ".csv" && text.find('\0') == std::string::npos;
 }
 
 std::vector<std::string> layers() { return read_layers(read(root / "src/CMakeLists.txt")); }
@@ -92,14 +92,15 @@ TEST_CASE("the name of every file and folder says what is in it") {
 
 TEST_CASE("docs/architecture.md lists the layers in the order in which they are built") {
   CHECK(layers().size() >= 16);
-  CHECK(read_table_layers(read(root / "docs/architecture.md"), layers()) == layers());
+  CHECK(read_table_layers(read(root / "docs/architecture.md")) == layers());
 }
 
 TEST_CASE("the checker reads the layers from CMake and from a table") {
   CHECK(read_layers("# order\nset(layers exchange signal\n           model)\n") ==
         std::vector<std::string>{"exchange", "signal", "model"});
   CHECK(read_layers("nothing").empty());
-  CHECK(read_table_layers("| folder | what |\n|---|---|\n| signal | frames |\n| exchange | queues |\n", abc) ==
+  CHECK(read_table_layers("| word | meaning |\n|---|---|\n| plant | what is controlled |\n\n"
+                          "| layer | what |\n|---|---|\n| signal | frames |\n| exchange | queues |\n\n| app | x |\n") ==
         std::vector<std::string>{"signal", "exchange"});
 }
 
