@@ -16,8 +16,9 @@ std::int64_t wall_now_ns() noexcept {
       .count();
 }
 
-// The innermost line of a script; never allocates. False when only C is running.
-bool note_place(lua_State* state, ScriptError& error) noexcept {
+const char breach_marker = 0;
+
+bool note_active_line(lua_State* state, ScriptError& error) noexcept {
   lua_Debug activation;
   for (int level = 0; lua_getstack(state, level, &activation) != 0; ++level) {
     if (lua_getinfo(state, "Sl", &activation) == 0 || activation.currentline <= 0) continue;
@@ -28,9 +29,18 @@ bool note_place(lua_State* state, ScriptError& error) noexcept {
   return false;
 }
 
-const char breach_marker = 0;
-
 }  // namespace
+
+void note_place(lua_State* state, ScriptError& error) noexcept {
+  const LuaCore& core = core_of(state);
+  if (note_active_line(state, error) || (core.main != state && note_active_line(core.main, error))) return;
+  if (core.called == LUA_NOREF) return;
+  lua_Debug function;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, core.called);
+  if (lua_getinfo(state, ">S", &function) != 0 && function.source[0] == '@') {
+    error.set_place(function.source + 1, function.linedefined);
+  }
+}
 
 void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept {
   limit_ = instructions;
@@ -82,7 +92,7 @@ void Budget::memory_ran_out(lua_State* state, bool granted) noexcept {
 
 void Budget::breach(lua_State* state, ScriptBreach what) noexcept {
   error_.clear();
-  if (!note_place(state, error_)) note_place(core_of(state).main, error_);
+  note_place(state, error_);
   error_.breach = what;
   error_.set = true;
   auto& text = error_.message;

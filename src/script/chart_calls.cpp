@@ -19,6 +19,7 @@ void ChartRunner::set_time(lua_State* state, StateIndex index) {
 
 void ChartRunner::call(lua_State* state, int function, StateIndex index) {
   set_time(state, index);
+  core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, function);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].handle);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
@@ -80,6 +81,7 @@ void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   set_time(state, index);
   LuaCore& core = core_of(state);
   run.thread_started = true;
+  core.called = chart_.states[index].run;
   wait_motion_ = nullptr;
   wait_ns_ = now_ns_;
   core.running = thread;
@@ -92,7 +94,9 @@ void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   }
   if (status != 0) {
     core.budget.raise_again(state);
-    if (lua_type(thread, -1) == LUA_TSTRING) core.error.set_message(lua_tostring(thread, -1));
+    const bool text = lua_type(thread, -1) == LUA_TSTRING;
+    core.error.set_message(text ? lua_tostring(thread, -1) : "the script raised a value that is not a string");
+    if (core.error.line == 0) note_place(thread, core.error);
     luaL_traceback(state, thread, nullptr, 0);
     core.error.set_traceback(lua_tostring(state, -1));
     lua_xmove(thread, state, 1);

@@ -20,6 +20,7 @@ bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
   if (transition.when == Chart::no_function) return true;
   if (guards_[number] == Guard::unknown) {  // several innermost states may ask
     set_time(state, transition.source);
+    core_of(state).called = transition.when;
     lua_rawgeti(state, LUA_REGISTRYINDEX, transition.when);
     lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
     lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[transition.source].machine].handle);

@@ -25,6 +25,7 @@ struct LuaCore {
   lua_State* main = nullptr;
   lua_State* running = nullptr;  // the coroutine of a `run` while it runs, else nullptr
   void* bindings = nullptr;      // of the behavior that owns the state
+  int called = LUA_NOREF;  // registry: the function of a state that was called last
   bool loading = true;
   int depth = 0;  // of library functions that call back
 };
@@ -34,5 +35,9 @@ inline LuaCore& core_of(lua_State* state) noexcept {
   lua_getallocf(state, &core);
   return *static_cast<LuaCore*>(core);
 }
+
+// Notes the innermost line of a script in `error`, or else the line where the function that was called last begins: a
+// tail call leaves no trace. Never allocates.
+void note_place(lua_State* state, ScriptError& error) noexcept;
 
 }  // namespace kadans

@@ -33,6 +33,7 @@ int keep_error(lua_State* state) {
   } else {
     error.set_message("the script raised a value that is not a string");
   }
+  if (error.line == 0) note_place(state, error);
   luaL_traceback(state, state, nullptr, 1);
   error.set_traceback(lua_tostring(state, -1));
   return 1;
@@ -103,6 +104,10 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   }
   if (source.text.size() > source_bytes_max) {
     lua_pushfstring(state, "%s:1: is larger than 1 MB", source.chunk.c_str());
+    return false;
+  }
+  if (source.text.starts_with('\x1b')) {
+    lua_pushfstring(state, "%s:1: is bytecode; scripts are text", source.chunk.c_str());
     return false;
   }
   sources_.push_back(std::move(source));

@@ -72,6 +72,12 @@ std::size_t Stage::commands(CommandKind kind) const {
       std::count_if(applied.begin(), applied.end(), [&](const Command& command) { return command.kind == kind; }));
 }
 
+std::string output_of(const std::string& code) {
+  Stage stage(on_enter(code));
+  stage.tick();
+  return stage.behavior->failed() ? stage.behavior->error().text() : stage.said();
+}
+
 std::string load_error(const std::string& text) {
   try {
     const Stage stage(text);

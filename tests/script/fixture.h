@@ -143,6 +143,14 @@ class Stage {
   double moving_until_s_[max_objects]{};
 };
 
+// A behavior that runs `code`, with m and s, on entering its only state.
+inline std::string on_enter(const std::string& code) {
+  return "local k = require 'kadans'\nreturn k.behavior 'test' { k.state 'a' { enter = function(m, s)\n" + code +
+         "\nend } }\n";
+}
+// What the code prints, or its error.
+std::string output_of(const std::string& code);
+
 // The message that loading this text gives; "" when it loads.
 std::string load_error(const std::string& text);
 

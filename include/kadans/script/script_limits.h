@@ -12,7 +12,7 @@ struct ScriptLimits {
   std::uint64_t load_instructions = 5'000'000;
   std::int64_t tick_wall_ns = 0;  // 0: no limit, as it must be on a virtual clock, where a run repeats bit for bit
   std::size_t memory_bytes = std::size_t{4} << 20;
-  std::size_t block_bytes = std::size_t{512} << 10;  // one string, one table's array
+  std::size_t block_bytes = std::size_t{576} << 10;  // one string, one table's array; the deepest stack fits
 };
 
 }  // namespace kadans
