@@ -10,7 +10,6 @@
 
 using namespace kadans;
 using kadans::test::joint_of;
-using kadans::test::tulip;
 using kadans::test::TulipFixture;
 
 namespace {
@@ -57,9 +56,10 @@ TEST_CASE("A leaning robot's height is over the lowest corner of its sole, along
   const Quat lean = from_roll_pitch_yaw(0.1, 0.3, 0);
   robot.sensors.imu.acceleration_m_s2 = rotate_inverse(lean, {0, 0, 9.81});
   robot.advance();
+  const EstimateSettings settings = test::tulip_settings();
   double lowest_m = 0;
   for (const double side_m : {0.085, -0.085})
-    for (const Vec3& corner_m : test::tulip_settings().feet[0].sensors_m)
+    for (const Vec3& corner_m : settings.feet[0].sensors_m)
       lowest_m = std::min(lowest_m, rotate(lean, {corner_m[0], corner_m[1] + side_m, -0.868})[2]);
   CHECK(robot.status.base.height_m == doctest::Approx(-lowest_m));
   CHECK(robot.status.base.roll_rad == doctest::Approx(0.1));

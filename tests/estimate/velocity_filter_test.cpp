@@ -102,6 +102,7 @@ TEST_CASE("White noise on the position comes through with the analytic noise gai
     VelocityFilter filter({.cutoff_Hz = cutoff_Hz, .dt_s = dt_s});
     RandomStream noise(1, "velocity");
     std::vector<double> velocity;
+    velocity.reserve(200000);
     for (int n = 0; n < 200000; ++n) velocity.push_back(filter.update(1e-4 * noise.normal(), dt_s));
     CHECK(rms(velocity) == doctest::Approx(1e-4 * analytic_noise_gain(cutoff_Hz)).epsilon(0.02));
   }
