@@ -1,0 +1,52 @@
+#include "program.h"
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+namespace kadans::program {
+
+namespace fs = std::filesystem;
+
+Outcome run(const std::string& arguments, const fs::path& where) {
+  const fs::path out = where / "stdout.txt", err = where / "stderr.txt";
+  const std::string command = "cd '" + where.string() + "' && '" KADANS_BINARY_DIR "/kadans' " + arguments + " >'" +
+                              out.string() + "' 2>'" + err.string() + "' </dev/null";
+  const int status = std::system(command.c_str());  // NOLINT: the shell is the point
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return {code, read(out), read(err)};
+}
+
+fs::path fresh_folder(const std::string& name) {
+  const fs::path folder = fs::path(KADANS_BINARY_DIR) / "tests" / "folders" / name;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+fs::path project_copy(const std::string& name) {
+  const fs::path folder = fresh_folder(name);
+  for (const char* part : {"config", "models", "behaviors"}) {
+    fs::copy(fs::path(KADANS_SOURCE_DIR) / part, folder / part, fs::copy_options::recursive);
+  }
+  return folder;
+}
+
+std::string read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+bool edit(const fs::path& file, const std::string& from, const std::string& to) {
+  std::string text = read(file);
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) return false;
+  write(file, text.replace(at, from.size(), to));
+  return true;
+}
+
+}  // namespace kadans::program
