@@ -2,7 +2,6 @@
 #include "chart_nodes.h"
 #include "chart_reader.h"
 #include "hint.h"
-#include "kadans/signal/nearest_name.h"
 #include "lua_core.h"
 #include "sandbox.h"
 
@@ -44,7 +43,7 @@ void find_control_set(Behavior::Parts& parts) {
   if (parts.bindings.set != nullptr) return;
   const Chart::State& root = parts.chart.states.front();
   parts.problems.push_back({root.chunk, parts.lua->line_of(root.chunk, root.line, wanted), 0,
-                            "unknown control set '" + wanted + "' in 'controls'" + did_you_mean(wanted, names)});
+                            "unknown control set '" + wanted + "' in 'controls'" + hint_text(wanted, names)});
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "kadans/signal/nearest_name.h"
+#include "hint.h"
 
 namespace kadans {
 namespace {
@@ -91,7 +91,7 @@ struct Resolver {
     if (state.kind == Chart::Kind::parallel || state.initial != no_state) return;
     if (!state.initial_name.empty()) {
       problem(state, state.line,
-              "unknown initial state '" + state.initial_name + "'" + did_you_mean(state.initial_name, names));
+              "unknown initial state '" + state.initial_name + "'" + hint_text(state.initial_name, names));
     } else if (names.size() == 1) {
       state.initial = first;
     } else if (names.size() > 1) {
@@ -112,7 +112,7 @@ struct Resolver {
     } else {
       problem(state, state.line,
               "history '" + state.name + "' leads to an unknown state '" + state.initial_name + "'" +
-                  did_you_mean(state.initial_name, names_in(chart, state.machine)));
+                  hint_text(state.initial_name, names_in(chart, state.machine)));
     }
   }
 
@@ -124,7 +124,7 @@ struct Resolver {
       problem(source, transition.line,
               ambiguous ? "there are several states '" + transition.target_name + "': write its path, with dots"
                         : "unknown state '" + transition.target_name + "' in 'to'" +
-                              did_you_mean(transition.target_name, names_in(chart, source.machine)));
+                              hint_text(transition.target_name, names_in(chart, source.machine)));
       return;
     }
     if (chart.states[transition.target].kind == Chart::Kind::region) {

@@ -25,7 +25,7 @@ struct LuaCore {
   lua_State* main = nullptr;
   lua_State* running = nullptr;  // the coroutine of a `run` while it runs, else nullptr
   void* bindings = nullptr;      // of the behavior that owns the state
-  int called = LUA_NOREF;  // registry: the function of a state that was called last
+  int called = LUA_NOREF;        // registry: the function of a state that was called last
   bool loading = true;
   int depth = 0;  // of library functions that call back
 };

@@ -23,6 +23,17 @@ int wait(lua_State* state) {
 // m:emit(event) -> true | nil, "queue_full". The behavior sees it from its next tick on.
 int emit(lua_State* state);  // upvalue: the chart
 
+// Reading what m does not have; upvalue: its content.
+int refuse_read(lua_State* state) {
+  const Bindings& bindings = bindings_of(state);
+  for (const ObjectInfo& object : bindings.catalog->objects) {
+    if (lua_type(state, 2) != LUA_TSTRING || object.name != lua_tostring(state, 2) || bindings.set == nullptr) continue;
+    return luaL_error(state, "control object '%s' is not in this behavior's control set, '%s'", object.name.c_str(),
+                      bindings.set->name.c_str());
+  }
+  return raise_unknown_field(state, "m", lua_upvalueindex(1), 2);
+}
+
 // [-0 +1] A deep copy of the value at `index`: plain data only.
 void push_copy(lua_State* state, int index, int depth) {
   const int type = lua_type(state, index);
@@ -92,7 +103,12 @@ void open_machines(lua_State* state, const Chart& chart, const Bindings& binding
     push_machine_content(state, chart, bindings, chart.machines[i]);
     lua_pushvalue(state, -1);
     tables.machines[i].content = luaL_ref(state, LUA_REGISTRYINDEX);
-    make_read_only(state, "m");
+    lua_createtable(state, 0, 1);
+    lua_pushvalue(state, -2);
+    lua_pushcclosure(state, refuse_read, 1);
+    lua_setfield(state, -2, "__index");
+    lua_setmetatable(state, -2);
+    make_read_only(state, "m", false);
     tables.machines[i].handle = luaL_ref(state, LUA_REGISTRYINDEX);
   }
   lua_newtable(state);

@@ -1,14 +1,10 @@
 #include "place.h"
 
-#include <algorithm>
 #include <cstdarg>
-#include <cstdio>
 #include <cstring>
-#include <string>
-#include <vector>
 
+#include "hint.h"
 #include "kadans/script/lua_state.h"
-#include "kadans/signal/nearest_name.h"
 #include "lua_core.h"
 
 namespace kadans {
@@ -19,21 +15,6 @@ bool is_among(const char* key, const char* const* names) noexcept {
     if (std::strcmp(key, *names) == 0) return true;
   }
   return false;
-}
-
-void describe(const char* what, const char* key, const char* const* names, char* text, std::size_t size) {
-  std::vector<std::string> candidates;
-  std::string known;
-  for (; *names != nullptr; ++names) {
-    candidates.emplace_back(*names);
-    known += (known.empty() ? "" : ", ") + candidates.back();
-  }
-  const std::string hint = did_you_mean(key, candidates);
-  if (hint.empty()) {
-    std::snprintf(text, size, "%s has no key '%s'; it may have: %s", what, key, known.c_str());
-  } else {
-    std::snprintf(text, size, "%s has no key '%s'%s", what, key, hint.c_str());
-  }
 }
 
 }  // namespace
@@ -65,9 +46,10 @@ void check_keys(lua_State* state, int table, const Place& place, const char* wha
     if (!is_among(key, names) && (wrong == nullptr || std::strcmp(key, wrong) < 0)) wrong = key;
   }
   if (wrong == nullptr) return;
-  char text[400];
-  describe(what, wrong, names, text, sizeof text);
-  raise_at(state, place, wrong, "%s", text);
+  const Hint hint = make_hint(wrong, [&](auto& known) {
+    for (const char* const* name = names; *name != nullptr; ++name) known.emplace_back(*name);
+  });
+  raise_at(state, place, wrong, "%s has no key '%s'%s", what, wrong, hint.data());
 }
 
 }  // namespace kadans

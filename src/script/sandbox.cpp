@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "hint.h"
 #include "kadans/script/lua_state.h"
-#include "kadans/signal/nearest_name.h"
 #include "lua_core.h"
 
 namespace kadans {
@@ -23,7 +23,7 @@ void describe_unknown(lua_State* state, const char* name, int content, const cha
     if (lua_type(state, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -2));
   }
   std::sort(names.begin(), names.end());
-  const std::string hint = did_you_mean(key, names);
+  const std::string hint = hint_text(key, names);
   std::snprintf(text, size, *name == '\0' ? "%sunknown name '%s'%s" : "%s has no '%s'%s", name, key, hint.c_str());
 }
 

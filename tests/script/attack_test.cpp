@@ -20,16 +20,17 @@ constexpr ScriptBreach memory = ScriptBreach::memory;
 const Attack attacks[] = {
     {"an endless loop", "while true do end", time_out},
     {"a loop around pcall", "while true do pcall(function() while true do end end) end", time_out},
-    {"pcall in pcall in pcall",
-     "local function f() pcall(f) while true do pcall(f) end end f()", time_out},
+    {"pcall in pcall in pcall", "local function f() pcall(f) while true do pcall(f) end end f()", time_out},
     {"a loop around xpcall", "while true do xpcall(function() while true do end end, function() end) end", time_out},
     {"an xpcall handler that loops", "xpcall(error, function() while true do end end)", time_out},
-    {"an xpcall handler that raises", "local function h() error('x') end while true do pcall(xpcall, error, h) end", time_out},
+    {"an xpcall handler that raises", "local function h() error('x') end while true do pcall(xpcall, error, h) end",
+     time_out},
     {"a loop in a coroutine", "coroutine.wrap(function() while true do end end)()", time_out},
     {"coroutines resumed in a loop",
      "while true do coroutine.resume(coroutine.create(function() while true do end end)) end", time_out},
     {"coroutines within coroutines", "local function f() return coroutine.wrap(f)() end f()", memory},
-    {"a yield in a loop", "local c = coroutine.wrap(function() while true do coroutine.yield() end end) while true do c() end", time_out},
+    {"a yield in a loop",
+     "local c = coroutine.wrap(function() while true do coroutine.yield() end end) while true do c() end", time_out},
     {"recursion without end", "local function f() return 1 + f() end while true do pcall(f) end", time_out},
     {"tail calls without end", "local function f() return f() end f()", time_out},
     {"a goto loop", "::top:: goto top", time_out},
@@ -40,25 +41,36 @@ const Attack attacks[] = {
     {"a table that grows under pcall", "local t = {} while true do pcall(function() t[#t + 1] = {} end) end", time_out},
     {"a hash that grows", "local t = {} local i = 0 while true do i = i + 1 t['k' .. i] = i end", memory},
     {"closures without end", "local f = print while true do local g = f f = function() return g end end", memory},
-    {"table.concat of what is large", "local t = {} for i = 1, 5000 do t[i] = ('x'):rep(60) end\n"
-                                      "local u = {} while true do u[#u + 1] = table.concat(t) end", time_out},
-    {"a pattern that backtracks, again and again", "local x = ('a'):rep(100) while true do x:find('(.-)(.-)b') end", time_out},
+    {"table.concat of what is large",
+     "local t = {} for i = 1, 5000 do t[i] = ('x'):rep(60) end\n"
+     "local u = {} while true do u[#u + 1] = table.concat(t) end",
+     time_out},
+    {"a pattern that backtracks, again and again", "local x = ('a'):rep(100) while true do x:find('(.-)(.-)b') end",
+     time_out},
     {"a gsub callback that loops", "('x'):gsub('.', function() while true do end end)", time_out},
     {"gsub of a long string", "local x = ('x'):rep(60000) while true do x:gsub('x', 'y') end", time_out},
     {"a gmatch without end", "for _ in ('x'):rep(60000):gmatch('') do while true do end end", time_out},
     {"a comparison that loops", "table.sort({ 1, 2, 3 }, function() while true do end end)", time_out},
-    {"pcall as comparison", "local t = {} for i = 1, 1000 do t[i] = function() while true do end end end table.sort(t, pcall)", time_out},
-    {"a large sort, again and again", "local t = {} for i = 1, 5000 do t[i] = -i end while true do table.sort(t) end", time_out},
-    {"insertions at the front", "local t = {} for i = 1, 5000 do t[i] = i end while true do table.insert(t, 1, 0) table.remove(t, 1) end",
+    {"pcall as comparison",
+     "local t = {} for i = 1, 1000 do t[i] = function() while true do end end end table.sort(t, pcall)", time_out},
+    {"a large sort, again and again", "local t = {} for i = 1, 5000 do t[i] = -i end while true do table.sort(t) end",
+     time_out},
+    {"insertions at the front",
+     "local t = {} for i = 1, 5000 do t[i] = i end while true do table.insert(t, 1, 0) table.remove(t, 1) end",
      time_out},
     {"pairs over a large table", "local t = {} for i = 1, 5000 do t[i] = i end while true do pairs(t) end", time_out},
     {"load in a loop", "local x = ('x=1 '):rep(1000) while true do load(x) end", time_out},
-    {"an __index that loops", "local t = setmetatable({}, { __index = function() while true do end end }) return t.x", time_out},
-    {"an __index that calls itself", "local t t = setmetatable({}, { __index = function(_, key) return t[key] end }) while true do pcall(function() return t.x end) end",
+    {"an __index that loops", "local t = setmetatable({}, { __index = function() while true do end end }) return t.x",
+     time_out},
+    {"an __index that calls itself",
+     "local t t = setmetatable({}, { __index = function(_, key) return t[key] end }) while true do pcall(function() "
+     "return t.x end) end",
      time_out},
     {"a tostring that loops", "print(setmetatable({}, { __tostring = function() while true do end end }))", time_out},
-    {"a __lt that loops", "local mt = { __lt = function() while true do end end }\n"
-                          "table.sort({ setmetatable({}, mt), setmetatable({}, mt) })", time_out},
+    {"a __lt that loops",
+     "local mt = { __lt = function() while true do end end }\n"
+     "table.sort({ setmetatable({}, mt), setmetatable({}, mt) })",
+     time_out},
     {"printing without end", "while true do print('x') end", time_out},
     {"a random number without end", "while true do math.random() end", time_out},
 };
@@ -90,10 +102,12 @@ TEST_CASE("an endless loop is stopped wherever a script can put it") {
            head + "k.state 'a' { enter = function() " + loop + " end } }",
            head + "k.state 'a' { during = function() " + loop + " end } }",
            head + "k.state 'a' { run = function() " + loop + " end } }",
-           head + "initial = 'a', k.state 'a' { exit = function() " + loop + " end, { after = 0, to = 'b' } }, k.state 'b' {} }",
+           head + "initial = 'a', k.state 'a' { exit = function() " + loop +
+               " end, { after = 0, to = 'b' } }, k.state 'b' {} }",
            head + "initial = 'a', k.state 'a' { { when = function() " + loop + " end, to = 'b' } }, k.state 'b' {} }",
            head + "initial = 'a', k.state 'a' { { action = function() " + loop + " end, to = 'b' } }, k.state 'b' {} }",
-           head + "initial = 'a', always = { { when = function() " + loop + " end, to = 'b' } }, k.state 'a' {}, k.state 'b' {} }",
+           head + "initial = 'a', always = { { when = function() " + loop +
+               " end, to = 'b' } }, k.state 'a' {}, k.state 'b' {} }",
            head + "k.final 'a' { enter = function() " + loop + " end } }",
            head + "k.state 'a' { run = function(m) m:wait(0) pcall(function() " + loop + " end) end } }",
        }) {
@@ -123,7 +137,9 @@ TEST_CASE("what no budget can hold is refused at the line") {
   refused("local x = (('a'):rep(60000)):find('.-.-.-b')", "may take");
   refused("local function f() return (('x'):gsub('x', f)) end return f() .. nil", "nested too deeply");
   refused("local function f(a, b) table.sort({ 1, 2 }, f) return false end f()", "nested too deeply");
-  refused("local t = setmetatable({}, { __tostring = function(t) return ('%s'):format(t) end }) local x = ('%s'):format(t)", "nested too deeply");
+  refused(
+      "local t = setmetatable({}, { __tostring = function(t) return ('%s'):format(t) end }) local x = ('%s'):format(t)",
+      "nested too deeply");
 }
 
 TEST_CASE("an error in a tail call, which leaves no trace, is reported where its function begins") {
@@ -140,15 +156,17 @@ TEST_CASE("a wall-time budget stops what instructions alone would let pass") {
 }
 
 TEST_CASE("k.budget tells what is left") {
-  Stage stage(on_enter("local k = require 'kadans' local a = k.budget() for i = 1, 20000 do end local b = k.budget()\n"
-                       "print(a.instructions - b.instructions >= 19000, a.memory_bytes > 3e6, a.memory_bytes < 4.2e6)"));
+  Stage stage(
+      on_enter("local k = require 'kadans' local a = k.budget() for i = 1, 20000 do end local b = k.budget()\n"
+               "print(a.instructions - b.instructions >= 19000, a.memory_bytes > 3e6, a.memory_bytes < 4.2e6)"));
   stage.tick();
   CHECK(stage.said() == "true true true\n");
 }
 
 TEST_CASE("garbage is collected between ticks, so that a behavior lives within its memory for ever") {
-  Stage stage("local k = require 'kadans' return k.behavior 'test' { k.state 'a' { during = function(m)\n"
-              "local t = {} for i = 1, 200 do t[i] = { i } end m.vars.t = t end } }");
+  Stage stage(
+      "local k = require 'kadans' return k.behavior 'test' { k.state 'a' { during = function(m)\n"
+      "local t = {} for i = 1, 200 do t[i] = { i } end m.vars.t = t end } }");
   stage.tick(20000);
   CHECK_FALSE(stage.behavior->failed());
   CHECK(stage.behavior->heap_bytes() < 1u << 20);

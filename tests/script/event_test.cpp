@@ -27,7 +27,9 @@ TEST_CASE("events are seen in their order, one a tick, and by every region that 
 }
 
 TEST_CASE("an event that nobody takes is dropped and counted, the next one is looked at in the same tick") {
-  Stage stage(head + R"(return k.behavior 't' { initial = 'a', k.state 'a' { { on = 'go', to = 'b' } }, k.state 'b' { { on = 'back', to = 'a' } } })");
+  Stage stage(
+      head +
+      R"(return k.behavior 't' { initial = 'a', k.state 'a' { { on = 'go', to = 'b' } }, k.state 'b' { { on = 'back', to = 'a' } } })");
   stage.tick();
   CHECK(stage.behavior->post("back"));
   CHECK(stage.behavior->post("go"));
@@ -37,7 +39,9 @@ TEST_CASE("an event that nobody takes is dropped and counted, the next one is lo
 }
 
 TEST_CASE("an event waits while transitions without event are taken") {
-  Stage stage(head + R"(return k.behavior 't' { initial = 'a', k.state 'a' { { to = 'b' } }, k.state 'b' { { on = 'go', to = 'c' } }, k.state 'c' {} })");
+  Stage stage(
+      head +
+      R"(return k.behavior 't' { initial = 'a', k.state 'a' { { to = 'b' } }, k.state 'b' { { on = 'go', to = 'c' } }, k.state 'c' {} })");
   stage.tick();
   CHECK(stage.behavior->post("go"));
   stage.tick();
@@ -47,15 +51,19 @@ TEST_CASE("an event waits while transitions without event are taken") {
 }
 
 TEST_CASE("the event queue is bounded and refuses visibly") {
-  Stage stage(head + "return k.behavior 't' { initial = 'a', k.state 'a' { during = function(m) for _ = 1, 40 do\n"
-                     "local ok, why = m:emit('go') if not ok then print(why) return end end end, { when = function() return false end, on = 'go', to = 'b' } }, k.state 'b' {} }");
+  Stage stage(head +
+              "return k.behavior 't' { initial = 'a', k.state 'a' { during = function(m) for _ = 1, 40 do\n"
+              "local ok, why = m:emit('go') if not ok then print(why) return end end end, { when = function() return "
+              "false end, on = 'go', to = 'b' } }, k.state 'b' {} }");
   stage.tick();
   CHECK(stage.said() == "queue_full\n");
   CHECK_FALSE(stage.behavior->post("nothing of this name"));
 }
 
 TEST_CASE("what a behavior emits it sees in its next tick") {
-  Stage stage(head + "return k.behavior 't' { initial = 'a', k.state 'a' { enter = function(m) m:emit('go') end, { on = 'go', to = 'b' } }, k.state 'b' {} }");
+  Stage stage(head +
+              "return k.behavior 't' { initial = 'a', k.state 'a' { enter = function(m) m:emit('go') end, { on = 'go', "
+              "to = 'b' } }, k.state 'b' {} }");
   stage.tick();
   CHECK(stage.behavior->state() == "a");
   stage.tick();
@@ -63,27 +71,35 @@ TEST_CASE("what a behavior emits it sees in its next tick") {
 }
 
 TEST_CASE("run is a coroutine: it goes on tick by tick, waits in seconds, and its end is an event") {
-  Stage stage(head + R"(return k.behavior 't' { initial = 'a', k.state 'a' { run = function(m, s) print(s.time_s) coroutine.yield() print(s.time_s)
+  Stage stage(
+      head +
+      R"(return k.behavior 't' { initial = 'a', k.state 'a' { run = function(m, s) print(s.time_s) coroutine.yield() print(s.time_s)
     m:wait(0.05) print(s.time_s) end, { on = 'run.done', to = 'b' } }, k.state 'b' { enter = function(_, s) print(s.time_s) end } })");
   stage.play(20);
   CHECK(stage.said() == "0\n0.01\n0.06\n0.07\n");
 }
 
 TEST_CASE("run is cancelled when its state is left, and begins anew when it is entered again") {
-  Stage stage(head + R"(return k.behavior 't' { initial = 'a', k.state 'a' { run = function(m) print 'start' m:wait(1) print 'never' end,
+  Stage stage(
+      head +
+      R"(return k.behavior 't' { initial = 'a', k.state 'a' { run = function(m) print 'start' m:wait(1) print 'never' end,
     { after = 0.03, to = 'b' } }, k.state 'b' { { after = 0.03, to = 'a' } } })");
   stage.tick(11);
   CHECK(stage.said() == "start\nstart\n");
 }
 
 TEST_CASE("pcall inside run may hold a wait") {
-  Stage stage(head + R"(return k.behavior 't' { k.state 'a' { run = function(m) print(pcall(function() m:wait(0.02) return 'ok' end)) end } })");
+  Stage stage(
+      head +
+      R"(return k.behavior 't' { k.state 'a' { run = function(m) print(pcall(function() m:wait(0.02) return 'ok' end)) end } })");
   stage.tick(5);
   CHECK(stage.said() == "true ok\n");
 }
 
 TEST_CASE("an error inside run is reported with the line and the stack of the coroutine") {
-  Stage stage(head + "return k.behavior 't' { k.state 'a' { run = function(m)\nm:wait(0.02)\nlocal function inner()\nerror('broken') end\ninner() end } }");
+  Stage stage(head +
+              "return k.behavior 't' { k.state 'a' { run = function(m)\nm:wait(0.02)\nlocal function "
+              "inner()\nerror('broken') end\ninner() end } }");
   stage.tick(5);
   CHECK(stage.behavior->error().text() == "behaviors/test.lua:6: broken");
   CHECK(std::string(stage.behavior->error().traceback.data()).find("behaviors/test.lua:7:") != std::string::npos);
@@ -113,7 +129,8 @@ struct Caller {
   explicit Caller(const std::string& text, const std::string& called) {
     stage.scripts.write("behaviors/lib/called.lua", head + called);
     const auto file = stage.scripts.write("behaviors/caller.lua", head + text);
-    stage.behavior = std::make_unique<Behavior>(Behavior::Settings{.root = stage.scripts.root, .file = file}, stage.robot.catalog, stage.log);
+    stage.behavior = std::make_unique<Behavior>(Behavior::Settings{.root = stage.scripts.root, .file = file},
+                                                stage.robot.catalog, stage.log);
   }
   Stage stage{on_enter("")};
 };
@@ -130,10 +147,11 @@ std::string refused_call(const std::string& text, const std::string& called) {
 }  // namespace
 
 TEST_CASE("a behavior is called with arguments, has vars of its own, and its outcome is an event for the caller") {
-  Caller caller(R"(return k.behavior 'caller' { vars = { n = 'mine' }, initial = 'a',
+  Caller caller(
+      R"(return k.behavior 'caller' { vars = { n = 'mine' }, initial = 'a',
       k.state 'a' { k.call 'called' { distance_m = 2 }, { on = 'done', to = 'x' }, { on = 'lost', to = 'y' } },
       k.state 'x' {}, k.state 'y' { enter = function(m) print(m.vars.n) end } })",
-                R"(return k.behavior 'called' { args = { distance_m = 1, speed = 3 }, vars = { n = 'its' }, initial = 'go',
+      R"(return k.behavior 'called' { args = { distance_m = 1, speed = 3 }, vars = { n = 'its' }, initial = 'go',
       k.state 'go' { enter = function(m) print(m.vars.n, m.args.distance_m, m.args.speed, m.name) m.vars.n = 'changed' end, { after = 0.03, to = 'end' } },
       k.final 'end' { outcome = 'lost' } })");
   caller.stage.play(20);
@@ -143,23 +161,32 @@ TEST_CASE("a behavior is called with arguments, has vars of its own, and its out
 
 TEST_CASE("a behavior that is called again starts with its declared vars") {
   Caller caller("return k.behavior 'caller' { k.state 'a' { k.call 'called', { on = 'done', to = 'a' } } }",
-                "return k.behavior 'called' { vars = { list = {} }, initial = 'b', k.state 'b' { enter = function(m) m.vars.list[#m.vars.list + 1] = 1 print(#m.vars.list) end, { to = 'c' } }, k.final 'c' {} }");
+                "return k.behavior 'called' { vars = { list = {} }, initial = 'b', k.state 'b' { enter = function(m) "
+                "m.vars.list[#m.vars.list + 1] = 1 print(#m.vars.list) end, { to = 'c' } }, k.final 'c' {} }");
   caller.stage.tick(6);
   CHECK(caller.stage.said() == "1\n1\n1\n");
 }
 
 TEST_CASE("a region may call a behavior") {
-  Caller caller("return k.behavior 'caller' { initial = 'p', k.parallel 'p' { k.region 'l' { k.call 'called' }, k.region 'r' { k.call 'called' }, { on = 'done', to = 'z' } }, k.final 'z' {} }",
-                "return k.behavior 'called' { initial = 'b', k.state 'b' { { after = 0.02, to = 'c' } }, k.final 'c' {} }");
+  Caller caller(
+      "return k.behavior 'caller' { initial = 'p', k.parallel 'p' { k.region 'l' { k.call 'called' }, k.region 'r' { "
+      "k.call 'called' }, { on = 'done', to = 'z' } }, k.final 'z' {} }",
+      "return k.behavior 'called' { initial = 'b', k.state 'b' { { after = 0.02, to = 'c' } }, k.final 'c' {} }");
   caller.stage.play(20);
   CHECK(caller.stage.behavior->outcome() == "done");
 }
 
 TEST_CASE("calls that cannot work are refused at their line") {
   const std::string called = "return k.behavior 'called' { args = { far = 1 }, controls = 'gesture', k.final 'c' {} }";
-  CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'cold' } }", called).find("behaviors/caller.lua:4: k.call: no module 'cold'") == 0);
-  CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'called' { near = 1 } } }", called).find("behaviors/caller.lua:4: behavior 'called' takes no argument 'near'") == 0);
-  CHECK(refused_call("return k.behavior 'caller' { controls = 'posture',\nk.state 'a' { k.call 'called' } }", called).find("behaviors/caller.lua:4: behavior 'called' runs on control set 'gesture'") == 0);
-  CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'called' } }", "return k.behavior 'called' { k.state 'x' { k.call 'called' } }").find("does 'called' call itself?") != std::string::npos);
-  CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'called' } }", "local x = = 1").find("behaviors/lib/called.lua:3:") == 0);
+  CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'cold' } }", called)
+            .find("behaviors/caller.lua:4: k.call: no module 'cold'") == 0);
+  CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'called' { near = 1 } } }", called)
+            .find("behaviors/caller.lua:4: behavior 'called' takes no argument 'near'") == 0);
+  CHECK(refused_call("return k.behavior 'caller' { controls = 'posture',\nk.state 'a' { k.call 'called' } }", called)
+            .find("behaviors/caller.lua:4: behavior 'called' runs on control set 'gesture'") == 0);
+  CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'called' } }",
+                     "return k.behavior 'called' { k.state 'x' { k.call 'called' } }")
+            .find("does 'called' call itself?") != std::string::npos);
+  CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'called' } }", "local x = = 1")
+            .find("behaviors/lib/called.lua:3:") == 0);
 }

@@ -9,13 +9,16 @@ using namespace kadans::script_test;
 namespace {
 
 std::string in_run(const std::string& code) {
-  return "local k = require 'kadans'\nreturn k.behavior 'test' { controls = 'posture', k.state 'a' { run = function(m, s)\n" + code + "\nend } }\n";
+  return "local k = require 'kadans'\nreturn k.behavior 'test' { controls = 'posture', k.state 'a' { run = function(m, "
+         "s)\n" +
+         code + "\nend } }\n";
 }
 
 }  // namespace
 
 TEST_CASE("what a tick asks for is one transaction, with the switch to the behavior's control set first") {
-  Stage stage(in_run("m.posture:set_gains('stiff') m.posture:move('stand', { time_s = 2 }) m.posture:set('l_knee.position_rad', 1)"));
+  Stage stage(in_run(
+      "m.posture:set_gains('stiff') m.posture:move('stand', { time_s = 2 }) m.posture:set('l_knee.position_rad', 1)"));
   stage.snapshot.control_set = 1;
   stage.tick();
   REQUIRE(stage.applied.size() == 1 + 1 + 12 + 12 + 1);
@@ -40,7 +43,8 @@ TEST_CASE("a behavior whose control set is active already does not switch") {
 TEST_CASE("a behavior sees the objects of its control set only") {
   Stage stage(in_run("local x = m.arms"));
   stage.tick();
-  CHECK(stage.behavior->error().text() == "behaviors/test.lua:3: m has no 'arms'");
+  CHECK(stage.behavior->error().text() ==
+        "behaviors/test.lua:3: control object 'arms' is not in this behavior's control set, 'posture'");
 }
 
 TEST_CASE("wait goes on when the motion has arrived") {
@@ -50,23 +54,26 @@ TEST_CASE("wait goes on when the motion has arrived") {
 }
 
 TEST_CASE("done is false while the motion is under way, and a shorter one is done before a longer one") {
-  Stage stage(in_run("local slow = m.posture:move({ l_knee = 1 }, { time_s = 0.5 })\n"
-                     "local fast = m.posture:move({ r_knee = 1 }, { time_s = 0.1 })\n"
-                     "print(slow.done, fast.done) fast:wait() print(slow.done, fast.done, s.time_s) slow:wait() print(slow.done)"));
+  Stage stage(in_run(
+      "local slow = m.posture:move({ l_knee = 1 }, { time_s = 0.5 })\n"
+      "local fast = m.posture:move({ r_knee = 1 }, { time_s = 0.1 })\n"
+      "print(slow.done, fast.done) fast:wait() print(slow.done, fast.done, s.time_s) slow:wait() print(slow.done)"));
   stage.play(100);
   CHECK(stage.said() == "false false\nfalse true 0.11\ntrue\n");
 }
 
 TEST_CASE("cancel sends a cancellation for every joint of the motion, once") {
-  Stage stage(in_run("local motion = m.posture:move({ l_knee = 1, r_knee = 1 }, { time_s = 0.5 }) m:wait(0.1)\n"
-                     "print(motion:cancel(), motion.done) print(motion:wait()) motion:cancel()"));
+  Stage stage(
+      in_run("local motion = m.posture:move({ l_knee = 1, r_knee = 1 }, { time_s = 0.5 }) m:wait(0.1)\n"
+             "print(motion:cancel(), motion.done) print(motion:wait()) motion:cancel()"));
   stage.play(30);
   CHECK(stage.said() == "true true\nnil cancelled\n");
   CHECK(stage.commands(CommandKind::cancel_motion) == 2);
 }
 
 TEST_CASE("a full queue refuses the whole transaction: the behavior gets nil, \"queue_full\" and the log a warning") {
-  Stage stage(in_run("for i = 1, 30 do local ok, why = m.posture:set_gains('stiff') if not ok then print(i, why) end end"));
+  Stage stage(
+      in_run("for i = 1, 30 do local ok, why = m.posture:set_gains('stiff') if not ok then print(i, why) end end"));
   stage.tick();
   CHECK(stage.applied.empty());
   CHECK(stage.behavior->transactions_refused() == 1);
@@ -76,15 +83,17 @@ TEST_CASE("a full queue refuses the whole transaction: the behavior gets nil, \"
 }
 
 TEST_CASE("a motion of a refused transaction is over, and its wait says why") {
-  Stage stage(in_run("local motion = m.posture:move('lean', { time_s = 1 })\n"
-                     "for i = 1, 30 do m.posture:set_gains('stiff') end print(motion:wait())"));
+  Stage stage(
+      in_run("local motion = m.posture:move('lean', { time_s = 1 })\n"
+             "for i = 1, 30 do m.posture:set_gains('stiff') end print(motion:wait())"));
   stage.play(5);
   CHECK(stage.said().find("nil queue_full") != std::string::npos);
 }
 
 TEST_CASE("a control engine that takes nothing: the queue fills up, refuses, and the behavior goes on") {
-  Stage stage("local k = require 'kadans'\nreturn k.behavior 'test' { k.state 'a' { during = function(m)\n"
-              "local ok, why = m.posture:set_gains('stiff') m.vars.refused = (m.vars.refused or 0) + (ok and 0 or 1) end } }");
+  Stage stage(
+      "local k = require 'kadans'\nreturn k.behavior 'test' { k.state 'a' { during = function(m)\n"
+      "local ok, why = m.posture:set_gains('stiff') m.vars.refused = (m.vars.refused or 0) + (ok and 0 or 1) end } }");
   stage.applying = false;
   stage.tick(200);
   CHECK_FALSE(stage.behavior->failed());
@@ -106,18 +115,26 @@ TEST_CASE("a pose moves the joints of the object and leaves the others") {
 }
 
 TEST_CASE("k.pose gives a copy of a pose, which may be changed and moved to") {
-  Stage stage("local k = require 'kadans'\nlocal pose = k.pose 'lean'\npose.l_ankle_roll, pose.r_ankle_roll, pose.l_knee = nil, nil, 0.5\n"
-              "return k.behavior 'test' { k.state 'a' { enter = function(m) m.posture:move(pose, { time_s = 1 }) print(k.pose('lean').l_knee) end } }");
+  Stage stage(
+      "local k = require 'kadans'\nlocal pose = k.pose 'lean'\npose.l_ankle_roll, pose.r_ankle_roll, pose.l_knee = "
+      "nil, nil, 0.5\n"
+      "return k.behavior 'test' { k.state 'a' { enter = function(m) m.posture:move(pose, { time_s = 1 }) "
+      "print(k.pose('lean').l_knee) end } }");
   stage.tick();
   CHECK(stage.said() == "0.1\n");
   CHECK(stage.commands(CommandKind::set_point) == 12);
 }
 
 TEST_CASE("the snapshot shows the robot, refilled each tick in the same tables") {
-  Stage stage("local k = require 'kadans'\nreturn k.behavior 'test' { enter = function(m, s) m.vars.knee = 1 end,\nk.state 'a' { during = function(m, s)\n"
-              "print(s.time_s, s.tick, s.joints.l_knee.position_rad, s.joints.l_knee.velocity_rad_s, s.joints.l_knee.effort_Nm,\n"
-              "s.base.roll_rad, s.base.pitch_rad, s.base.yaw_rad, s.base.tilt_rad, s.base.height_m, s.base.angular_velocity_rad_s.y,\n"
-              "s.feet.left.contact, s.feet.right.force_N, s.feet.left.cop_x_m, s.feet.left.cop_y_m, s.safety.level, s.safety.faults) end } }");
+  Stage stage(
+      "local k = require 'kadans'\nreturn k.behavior 'test' { enter = function(m, s) m.vars.knee = 1 end,\nk.state 'a' "
+      "{ during = function(m, s)\n"
+      "print(s.time_s, s.tick, s.joints.l_knee.position_rad, s.joints.l_knee.velocity_rad_s, "
+      "s.joints.l_knee.effort_Nm,\n"
+      "s.base.roll_rad, s.base.pitch_rad, s.base.yaw_rad, s.base.tilt_rad, s.base.height_m, "
+      "s.base.angular_velocity_rad_s.y,\n"
+      "s.feet.left.contact, s.feet.right.force_N, s.feet.left.cop_x_m, s.feet.left.cop_y_m, s.safety.level, "
+      "s.safety.faults) end } }");
   stage.tick();
   stage.snapshot.joints.joints[3] = {.position_rad = 1, .velocity_rad_s = 2, .effort_Nm = 3};
   stage.snapshot.status.base.roll_rad = 4;
@@ -131,6 +148,7 @@ TEST_CASE("the snapshot shows the robot, refilled each tick in the same tables")
   stage.snapshot.status.safety.level = SafetyLevel::hold;
   stage.snapshot.status.safety.fault_count = 14;
   stage.tick();
-  CHECK(stage.said() == "0 0 0 0 0 0 0 0 0 0 0 false 0 0 0 normal 0\n"
-                        "0.01 10 1 2 3 4 5 6 7 8 9 true 13 11 12 hold 14\n");
+  CHECK(stage.said() ==
+        "0 0 0 0 0 0 0 0 0 0 0 false 0 0 0 normal 0\n"
+        "0.01 10 1 2 3 4 5 6 7 8 9 true 13 11 12 hold 14\n");
 }

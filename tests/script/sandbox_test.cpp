@@ -12,8 +12,8 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 }  // namespace
 
 TEST_CASE("a script sees no name that leads out of the sandbox") {
-  for (const char* name : {"io", "os", "debug", "ffi", "jit", "package", "getfenv", "setfenv", "newproxy", "loadfile", "dofile",
-                           "loadstring", "collectgarbage", "next", "module", "gcinfo"}) {
+  for (const char* name : {"io", "os", "debug", "ffi", "jit", "package", "getfenv", "setfenv", "newproxy", "loadfile",
+                           "dofile", "loadstring", "collectgarbage", "next", "module", "gcinfo"}) {
     CAPTURE(name);
     CHECK(contains(output_of(std::string("print(") + name + ")"), std::string("unknown name '") + name + "'"));
     CHECK(contains(output_of(std::string("print(_G['") + name + "'])"), "unknown name"));
@@ -21,7 +21,8 @@ TEST_CASE("a script sees no name that leads out of the sandbox") {
 }
 
 TEST_CASE("require finds no library of the host") {
-  for (const char* name : {"ffi", "jit", "io", "os", "debug", "string.buffer", "table.new", "jit.opt", "../secret", "/etc/passwd"}) {
+  for (const char* name :
+       {"ffi", "jit", "io", "os", "debug", "string.buffer", "table.new", "jit.opt", "../secret", "/etc/passwd"}) {
     CAPTURE(name);
     CHECK(contains(load_error(std::string("require '") + name + "'"), "no module"));
   }
@@ -33,10 +34,12 @@ TEST_CASE("require finds files beside the script and in behaviors/lib, each load
   stage.scripts.write("behaviors/lib/far.lua", "return { n = 2 }");
   stage.scripts.write("other/hidden.lua", "return { n = 3 }");
   const auto play = [&](const std::string& text) {
-    kadans::Behavior loaded({.root = stage.scripts.root, .file = stage.scripts.write("behaviors/main.lua", text)}, stage.robot.catalog, stage.log);
+    kadans::Behavior loaded({.root = stage.scripts.root, .file = stage.scripts.write("behaviors/main.lua", text)},
+                            stage.robot.catalog, stage.log);
   };
-  play("local k = require 'kadans' local a, b = require 'near', require 'far' assert(a.n + b.n == 3)\n"
-       "assert(require 'near' == a) return k.behavior 'x' { k.state 'a' {} }");
+  play(
+      "local k = require 'kadans' local a, b = require 'near', require 'far' assert(a.n + b.n == 3)\n"
+      "assert(require 'near' == a) return k.behavior 'x' { k.state 'a' {} }");
   CHECK_THROWS(play("require 'hidden'"));
   CHECK_THROWS(play("require '../other/hidden'"));
 }
@@ -62,7 +65,8 @@ TEST_CASE("the string metatable is closed and its methods are the sandbox's") {
 }
 
 TEST_CASE("library tables, the globals, s and m are read-only, by any means") {
-  for (const char* table : {"string", "table", "math", "coroutine", "bit", "_G", "s", "s.joints.l_knee", "s.base", "m", "require 'kadans'"}) {
+  for (const char* table : {"string", "table", "math", "coroutine", "bit", "_G", "s", "s.joints.l_knee", "s.base", "m",
+                            "require 'kadans'"}) {
     CAPTURE(table);
     const std::string local = std::string("local t = ") + table + "\n";
     CHECK(output_of(local + "t.x = 1").find("test.lua:4: ") != std::string::npos);
@@ -84,8 +88,9 @@ TEST_CASE("two behaviors share no table") {
 }
 
 TEST_CASE("no address shows, since it would differ from run to run") {
-  for (const char* code : {"print({})", "print(tostring(print))", "print(string.format('%s', {}))", "print(m)", "print(m.posture)",
-                           "print(coroutine.create(print))", "print(tostring(s))", "print(('%s'):format(print))"}) {
+  for (const char* code :
+       {"print({})", "print(tostring(print))", "print(string.format('%s', {}))", "print(m)", "print(m.posture)",
+        "print(coroutine.create(print))", "print(tostring(s))", "print(('%s'):format(print))"}) {
     CAPTURE(code);
     const std::string text = output_of(code);
     CHECK_MESSAGE(text.find("0x") == std::string::npos, text);
@@ -100,9 +105,10 @@ TEST_CASE("a __gc on a table never runs, and no userdata can be made to have one
 
 TEST_CASE("pairs visits numbers, then strings, each sorted") {
   CHECK(output_of("local t = { b = 1, a = 1, [3] = 1, [1] = 1, [-2] = 1, [2.5] = 1, B = 1, [true] = 1 }\n"
-                  "local keys = {} for key in pairs(t) do keys[#keys + 1] = tostring(key) end print(table.concat(keys, ' '))") ==
-        "-2 1 2.5 3 B a b true\n");
-  CHECK(output_of("local names = {} for name in pairs(s.joints) do names[#names + 1] = name end print(#names, names[1])") ==
+                  "local keys = {} for key in pairs(t) do keys[#keys + 1] = tostring(key) end print(table.concat(keys, "
+                  "' '))") == "-2 1 2.5 3 B a b true\n");
+  CHECK(output_of(
+            "local names = {} for name in pairs(s.joints) do names[#names + 1] = name end print(#names, names[1])") ==
         "14 l_ankle_pitch\n");
   CHECK(contains(output_of("for _ in pairs({ [{}] = 1 }) do end"), "have no order"));
 }
@@ -123,7 +129,8 @@ TEST_CASE("math.random repeats with the seed and differs with another") {
   CHECK(said(1) != said(2));
   CHECK(contains(output_of("math.randomseed(1)"), "math has no 'randomseed'"));
   CHECK(contains(output_of("print(math.random(2, 1))"), "interval is empty"));
-  CHECK(output_of("for _ = 1, 1000 do local n = math.random(3) assert(n == 1 or n == 2 or n == 3) end print('ok')") == "ok\n");
+  CHECK(output_of("for _ = 1, 1000 do local n = math.random(3) assert(n == 1 or n == 2 or n == 3) end print('ok')") ==
+        "ok\n");
 }
 
 TEST_CASE("pcall, xpcall, error, assert and coroutines work as authors expect") {
