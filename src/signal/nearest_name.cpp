@@ -10,7 +10,7 @@ namespace {
 double substitution(char a, char b) {
   if (a == b) return 0.0;
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  return lower(a) == lower(b) ? 0.5 : 1.0;
+  return lower(a) == lower(b) ? 0.25 : 1.0;
 }
 
 // Optimal string alignment distance (Damerau-Levenshtein without repeated edits), three rows at a time.

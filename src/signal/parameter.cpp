@@ -1,16 +1,26 @@
 #include "kadans/signal/parameter.h"
 
+#include <array>
+#include <charconv>
 #include <stdexcept>
 #include <utility>
 
 namespace kadans {
+namespace {
+
+// As few digits as name the number exactly: 1e-09, not 0.000000.
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+}  // namespace
 
 ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_t owner) {
   if (!(parameter.min <= parameter.max)) throw std::invalid_argument("parameter " + parameter.name + ": empty range");
-  if (!(parameter.initial >= parameter.min && parameter.initial <= parameter.max)) {
-    throw std::invalid_argument("parameter " + parameter.name + ": initial value " +
-                                std::to_string(parameter.initial) + " is outside " + std::to_string(parameter.min) +
-                                ".." + std::to_string(parameter.max));
+  if (!(std::isfinite(parameter.initial) && parameter.initial >= parameter.min && parameter.initial <= parameter.max)) {
+    throw std::invalid_argument("parameter " + parameter.name + ": initial value " + shortest(parameter.initial) +
+                                " is outside " + shortest(parameter.min) + ".." + shortest(parameter.max));
   }
   const auto id = static_cast<ParameterId>(entries_.size());
   if (!ids_.emplace(parameter.name, id).second) {

@@ -1,5 +1,6 @@
 #include "kadans/signal/signal.h"
 
+#include <cassert>
 #include <stdexcept>
 #include <utility>
 
@@ -33,6 +34,7 @@ SignalId SignalTable::add(Signal signal, const std::uint32_t* source) {
 }
 
 void SignalTable::gather(std::span<double> row) const noexcept {
+  assert(row.size() == infos_.size());
   for (const auto& [id, value] : doubles_) row[id] = *value;
   for (const auto& [id, value] : bools_) row[id] = *value ? 1.0 : 0.0;
   for (const auto& [id, value] : counts_) row[id] = static_cast<double>(*value);

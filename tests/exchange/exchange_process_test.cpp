@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <iostream>
 #include <memory>
 #include <new>
 
@@ -69,7 +70,9 @@ int serve(Shared& shared) {
 
 class Child {
  public:
-  explicit Child(Shared& shared) : pid_(fork()) {
+  explicit Child(Shared& shared) {
+    std::cout.flush();  // or the child might write it once more
+    pid_ = fork();
     if (pid_ == 0) _exit(serve(shared));
   }
   bool alive() {
@@ -83,7 +86,7 @@ class Child {
   }
 
  private:
-  pid_t pid_;
+  pid_t pid_ = -1;
   int status_ = 0;
   bool ended_ = false;
 };

@@ -2,6 +2,7 @@
 // through the queue in one piece and is applied whole, in one tick, or not at all.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -24,11 +25,13 @@ struct Command {
   std::uint32_t index = 0;
   std::uint32_t count = 0;
   std::uint32_t sequence = 0;
-  std::int64_t time_ns = 0;
+  alignas(8) std::int64_t time_ns = 0;
   double value = 0;
   double duration_s = 0;
 };
 static_assert(std::is_trivially_copyable_v<Command>);
+static_assert(sizeof(Command) == 40 && alignof(Command) == 8 && offsetof(Command, time_ns) == 16,
+              "the same on 32-bit machines");
 
 inline constexpr double motion_duration_max_s = 3600;
 

@@ -7,8 +7,8 @@
 
 namespace kadans {
 
-// The candidate with the smallest edit distance (insertions, deletions, substitutions, swaps of neighbours; case
-// counts half), or "" when none is near enough to be what was meant.
+// The candidate with the smallest edit distance (insertions, deletions, substitutions, swaps of neighbours; a letter
+// of the other case counts a quarter), or "" when none is near enough to be what was meant.
 std::string nearest_name(std::string_view wrong, std::span<const std::string> candidates);
 
 // ", did you mean 'NAME'?" or "" when nothing is near: to be appended to a message.

@@ -2,6 +2,7 @@
 // scripts; the tick addresses parameters by number. The value itself lives in its owner, a control object or a filter.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -27,21 +28,24 @@ class ParameterTable {
  public:
   // Before the loop. `value` is the owner's variable and is set to the initial value; it must outlive the table's use.
   // `owner` is told apart by the engine (the control object's index). Throws std::invalid_argument on a name taken,
-  // an empty range or an initial value outside it.
+  // an empty range, or an initial value that is outside it or not finite. A name refused leaves the table as it was.
   ParameterId add(Parameter parameter, double* value, std::uint32_t owner = 0);
 
-  // Any thread: whether the id is known and the value within the range (NaN is not).
+  // Any thread: whether the id is known and the value finite and within the range.
   bool accepts(ParameterId id, double value) const noexcept {
-    return id < entries_.size() && value >= entries_[id].info.min && value <= entries_[id].info.max;
+    return id < entries_.size() && std::isfinite(value) && value >= entries_[id].info.min &&
+           value <= entries_[id].info.max;
   }
-  // Control thread. False, and nothing changes, on an unknown id or a value outside [min, max] (NaN included).
+  // Control thread. False, and nothing changes, on an unknown id or a value that is not finite or outside
+  // [min, max].
   [[nodiscard]] bool set(ParameterId id, double value) noexcept;
-  // Control thread.
+  // Control thread; id < size().
   double get(ParameterId id) const noexcept { return *entries_[id].value; }
   std::uint32_t owner(ParameterId id) const noexcept { return entries_[id].owner; }
 
   // Any thread: the declarations do not change once the loop runs.
   std::optional<ParameterId> find(std::string_view name) const;
+  // Throws std::out_of_range on an unknown id.
   const Parameter& info(ParameterId id) const { return entries_.at(id).info; }
   std::size_t size() const noexcept { return entries_.size(); }
   std::vector<std::string> names() const;

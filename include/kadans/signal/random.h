@@ -1,5 +1,6 @@
 // Random numbers that repeat. Every use has a stream of its own, named, so that adding one disturbs no other; all
-// streams of a run come from the run's one seed. The same seed gives the same numbers with every compiler.
+// streams of a run come from the run's one seed. The same seed gives the same integers and uniform numbers everywhere;
+// normal() also asks the C library for a logarithm.
 #pragma once
 
 #include <array>
@@ -12,11 +13,13 @@ namespace kadans {
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view name) noexcept;
+  // The generator at a state of its own, as published; not all words 0.
+  explicit RandomStream(const std::array<std::uint64_t, 4>& state) noexcept : state_(state) {}
 
   std::uint64_t next() noexcept;
-  double uniform() noexcept;                        // [0, 1)
-  double uniform(double low, double high) noexcept;  // [low, high)
-  double normal() noexcept;                         // mean 0, standard deviation 1 (polar method, Marsaglia 1964)
+  double uniform() noexcept;                         // [0, 1)
+  double uniform(double low, double high) noexcept;  // [low, high], high only by rounding
+  double normal() noexcept;                          // mean 0, standard deviation 1 (polar method, Marsaglia 1964)
 
  private:
   std::array<std::uint64_t, 4> state_;

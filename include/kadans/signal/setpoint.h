@@ -2,6 +2,7 @@
 // set-points by number. Each set-point is a channel of its owner, a control object.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "kadans/signal/frames.h"
+#include "kadans/signal/fault.h"
 
 namespace kadans {
 
@@ -30,12 +31,14 @@ class SetpointTable {
   // Before the loop. Throws std::invalid_argument on a name taken or an empty range.
   SetpointId add(Setpoint setpoint);
 
-  // Control thread: whether the id is known and the value within the range (NaN is not).
+  // Control thread: whether the id is known and the value finite and within the range.
   bool accepts(SetpointId id, double value) const noexcept {
-    return id < entries_.size() && value >= entries_[id].min && value <= entries_[id].max;
+    return id < entries_.size() && std::isfinite(value) && value >= entries_[id].min && value <= entries_[id].max;
   }
+  // Any thread; id < size().
   const Setpoint& operator[](SetpointId id) const noexcept { return entries_[id]; }
 
+  // Any thread: the declarations do not change once the loop runs.
   std::optional<SetpointId> find(std::string_view name) const;
   std::size_t size() const noexcept { return entries_.size(); }
   std::vector<std::string> names() const;

@@ -28,11 +28,12 @@ class SignalTable {
   SignalId add(Signal signal, const bool* source);
   SignalId add(Signal signal, const std::uint32_t* source);
 
-  // Control thread. row.size() == size(); booleans become 0 and 1. No allocation.
+  // Control thread. row.size() == size(), asserted; booleans become 0 and 1. No allocation.
   void gather(std::span<double> row) const noexcept;
 
   // Any thread: the declarations do not change once the loop runs.
   std::optional<SignalId> find(std::string_view name) const;
+  // Throws std::out_of_range on an unknown id.
   const Signal& info(SignalId id) const { return infos_.at(id); }
   std::size_t size() const noexcept { return infos_.size(); }
   std::vector<std::string> names() const;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <concepts>
 #include <cstdint>
 #include <span>
 
@@ -10,14 +11,17 @@ namespace kadans {
 
 class StateHash {
  public:
-  void add(std::uint64_t word) noexcept {
-    hash_ ^= word;
+  // Any integer; what it is worth counts, not how wide its type is.
+  template <std::integral Integer>
+  void add(Integer value) noexcept {
+    hash_ ^= static_cast<std::uint64_t>(value);
     hash_ *= 0x9e3779b97f4a7c15U;  // 2^64 / golden ratio
     hash_ ^= hash_ >> 32;
   }
   // -0.0 and 0.0 are one state; every NaN is one state.
   void add(double value) noexcept {
-    add(value == 0.0 ? 0 : value != value ? not_a_number : std::bit_cast<std::uint64_t>(value));
+    const std::uint64_t bits = value == 0.0 ? 0 : std::bit_cast<std::uint64_t>(value);
+    add(value != value ? not_a_number : bits);
   }
   void add(std::span<const double> values) noexcept {
     for (const double value : values) add(value);

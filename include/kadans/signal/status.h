@@ -1,7 +1,9 @@
 // Robot status: what the control engine knows of the robot as a whole, and the snapshot that it publishes each tick.
+// alignas(8) as in frames.h: the layout does not depend on the machine.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -14,7 +16,7 @@ namespace kadans {
 enum class SafetyLevel : std::uint8_t { normal, limited, hold, damp, off };
 const char* name(SafetyLevel level) noexcept;
 
-struct BaseStatus {
+struct alignas(8) BaseStatus {
   Quat orientation{1, 0, 0, 0};
   double roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
   double tilt_rad = 0;            // between the base's z axis and up; >= 0
@@ -22,15 +24,15 @@ struct BaseStatus {
   double height_m = 0;            // of the base frame over the lowest sole, through the legs; holds when no foot bears
 };
 
-struct FootStatus {
+struct alignas(8) FootStatus {
   bool contact = false;
-  double force_N = 0;             // sum of the foot's sensors
+  alignas(8) double force_N = 0;    // sum of the foot's sensors
   double cop_x_m = 0, cop_y_m = 0;  // centre of pressure in the foot's frame; holds without contact
 };
 
 // Where the ground bears the robot: over all feet in contact. In the heading frame: below the base frame's origin, x
 // forward along the ground where the base points, z up.
-struct SupportStatus {
+struct alignas(8) SupportStatus {
   double force_N = 0;               // sum over the feet in contact; 0 without contact
   double cop_x_m = 0, cop_y_m = 0;  // centre of pressure; holds without contact
 };
@@ -41,7 +43,7 @@ struct SafetyStatus {
   Fault first_fault;              // kept until cleared
 };
 
-struct RobotStatus {
+struct alignas(8) RobotStatus {
   BaseStatus base;
   std::uint32_t foot_count = 0;
   std::array<FootStatus, max_feet> feet{};
@@ -50,13 +52,13 @@ struct RobotStatus {
 };
 
 // What control objects tell of themselves to the behaviors.
-struct ObjectStatus {
+struct alignas(8) ObjectStatus {
   bool active = false;
-  double motion_remaining_s = 0;  // until the last of its set-points is reached; 0 at rest
+  alignas(8) double motion_remaining_s = 0;  // until the last of its set-points is reached; 0 at rest
 };
 
 // One tick of the control engine as the other threads see it.
-struct Snapshot {
+struct alignas(8) Snapshot {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
   std::uint32_t transactions_applied = 0;  // number of the last transaction applied; they are numbered from 1
@@ -69,5 +71,8 @@ struct Snapshot {
 };
 
 static_assert(std::is_trivially_copyable_v<Snapshot>);
+static_assert(sizeof(BaseStatus) == 96 && sizeof(FootStatus) == 32 && sizeof(SafetyStatus) == 40 &&
+              sizeof(ObjectStatus) == 16 && alignof(SafetyStatus) == 8);
+static_assert(offsetof(RobotStatus, feet) == 104 && offsetof(Snapshot, joints) == 32);
 
 }  // namespace kadans

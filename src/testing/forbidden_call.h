@@ -1,0 +1,70 @@
+// What the functions that take the C library's place have in common: the marks of the current thread, the way out when
+// a marked thread calls one, and the way on to the library's own.
+#pragma once
+
+#include <atomic>
+
+#include <dlfcn.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define KADANS_SANITIZER 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define KADANS_SANITIZER 1
+#endif
+#endif
+#ifndef KADANS_SANITIZER
+#define KADANS_SANITIZER 0
+#endif
+
+namespace kadans::testing {
+
+struct ThreadMarks {
+  int depth = 0;  // guards around the current call; 0 when the thread may do anything
+  const char* guard_file = "";
+  int guard_line = 0;
+  long allocations = 0;
+  long frees = 0;
+};
+// Storage in the program itself: reaching it never allocates.
+extern thread_local constinit ThreadMarks thread_marks __attribute__((tls_model("initial-exec")));
+
+// Tells what was called, from where, and aborts.
+[[noreturn]] void report_forbidden(const char* call) noexcept;
+
+inline void forbid(const char* call) noexcept {
+  if (thread_marks.depth != 0) [[unlikely]]
+    report_forbidden(call);
+}
+
+// The next definition of a function after the program's own. Found when first asked for; no lock, no allocation of
+// ours.
+template <typename Function>
+Function* next_definition(std::atomic<Function*>& known, const char* name) noexcept {
+  Function* function = known.load(std::memory_order_relaxed);
+  if (function == nullptr) {
+    function = reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+    known.store(function, std::memory_order_relaxed);
+  }
+  return function;
+}
+
+// A static library gives a program only what it asks for: the guard asks for each group of calls by these.
+void link_heap_calls() noexcept;
+void link_exception_calls() noexcept;
+void link_file_calls() noexcept;
+void link_lock_calls() noexcept;
+void link_stream_calls() noexcept;
+
+}  // namespace kadans::testing
+
+// Defines the symbol `name` under a C++ name of its own, since the system's headers may have declared `name` with
+// attributes, macros or redirections: forbids it, then forwards. PARAMETERS is a list in parentheses, the rest are the
+// arguments to hand on.
+#define KADANS_FORBID(result, name, parameters, ...)                                       \
+  extern "C" result forbidden_##name parameters __asm__(#name);                            \
+  extern "C" result forbidden_##name parameters {                                          \
+    static constinit std::atomic<result(*) parameters> known{nullptr};                     \
+    kadans::testing::forbid(#name);                                                        \
+    return kadans::testing::next_definition<result parameters>(known, #name)(__VA_ARGS__); \
+  }
