@@ -110,7 +110,7 @@ PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings) 
     const auto* b = btMultiBodyLinkCollider::upcast(manifold.getBody1());
     if (a != nullptr && b != nullptr && overlaps(manifold)) touching.emplace_back(a->m_link, b->m_link);
   }
-  for (const auto& [a, b] : touching) mask.forbid(static_cast<std::size_t>(a + 1), static_cast<std::size_t>(b + 1));
+  for (const auto& [a, b] : touching) mask.forbid(model_link(a), model_link(b));
   return mask;
 }
 

@@ -8,6 +8,8 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
 
   void internalSingleStepSimulation(btScalar dt_s) override {
+    // Rigid bodies alone: the multibody world's own versions would move the robot too, a second time.
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
     if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
     getDispatchInfo().m_timeStep = dt_s;
     performDiscreteCollisionDetection();
@@ -15,6 +17,7 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     accelerate(dt_s);
     getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
     solve();
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
     if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
     move(dt_s);
   }

@@ -13,6 +13,12 @@ inline btTransform to_bullet(const Pose& pose) {
   return btTransform(to_bullet(pose.orientation), to_bullet(pose.position_m));
 }
 
+// Bullet counts links from the first moving one, the base being -1; the model counts the base as 0.
+inline std::size_t model_link(int bullet_link) {
+  const int link = bullet_link + 1;
+  return static_cast<std::size_t>(link);
+}
+
 inline Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 inline Quat from_bullet(const btQuaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 

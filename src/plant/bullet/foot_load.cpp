@@ -56,7 +56,7 @@ void read_feet(const ContactWorld& world, const Body& body, const std::vector<Fo
     const btPersistentManifold& manifold = world.manifold(i);
     const GroundContact contact = ground_contact(world, manifold);
     if (contact.link == nullptr) continue;
-    const auto link = static_cast<std::size_t>(contact.link->m_link + 1);
+    const std::size_t link = model_link(contact.link->m_link);
     for (std::size_t foot = 0; foot < feet.size(); ++foot) {
       if (feet[foot].link != link) continue;
       const btTransform frame = body.link_frame(link);

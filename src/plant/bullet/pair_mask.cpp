@@ -2,6 +2,8 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
+#include "convert.h"
+
 namespace kadans::bullet {
 
 bool PairMask::needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const {
@@ -11,7 +13,7 @@ bool PairMask::needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* 
   const auto* link_a = btMultiBodyLinkCollider::upcast(static_cast<btCollisionObject*>(a->m_clientObject));
   const auto* link_b = btMultiBodyLinkCollider::upcast(static_cast<btCollisionObject*>(b->m_clientObject));
   if (link_a == nullptr || link_b == nullptr) return true;
-  return allowed(static_cast<std::size_t>(link_a->m_link + 1), static_cast<std::size_t>(link_b->m_link + 1));
+  return allowed(model_link(link_a->m_link), model_link(link_b->m_link));
 }
 
 }  // namespace kadans::bullet
