@@ -117,6 +117,7 @@ const Rule* find_rule(const std::vector<Rule>& rules, std::string_view name) {
 template <typename Rule>
 std::vector<std::string> names_of(const std::vector<Rule>& rules) {
   std::vector<std::string> names;
+  names.reserve(rules.size());
   for (const Rule& rule : rules) names.push_back(rule.name);
   return names;
 }
@@ -139,7 +140,7 @@ std::string refuse_unknown_attribute(UrdfDocument& document, const XMLElement& e
   const std::string_view name = attribute.Name();
   if (of_others(name) || name == "xmlns") return {};
   const std::vector<std::string> known = names_of(rule.attributes);
-  const std::string nearest = nearest_name(name, known);
+  std::string nearest = nearest_name(name, known);
   document.refuse_name(element, name,
                        "unknown attribute '" + shown(name) + "' of " + bracketed(element) + hint(nearest, known));
   return nearest;
@@ -148,7 +149,7 @@ std::string refuse_unknown_attribute(UrdfDocument& document, const XMLElement& e
 std::string refuse_unknown_child(UrdfDocument& document, const XMLElement& child, const ElementRule& rule) {
   if (of_others(child.Name())) return {};
   const std::vector<std::string> known = names_of(rule.children);
-  const std::string nearest = nearest_name(child.Name(), known);
+  std::string nearest = nearest_name(child.Name(), known);
   if (rule.name == "robot" && nearest.empty()) return {};
   const std::string what = rule.name == "geometry" ? "unknown geometry " + bracketed(child)
                                                    : "unknown element " + bracketed(child) + " in <" + rule.name + ">";

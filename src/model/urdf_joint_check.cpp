@@ -107,21 +107,23 @@ void check_joints(UrdfDocument& document, const UrdfOutline& outline) {
 void check_mimics(UrdfDocument& document, const UrdfOutline& outline) {
   std::set<std::string> in_rings;
   for (const UrdfJoint& joint : outline.joints) {
-    const std::string wanted = joint.mimic == nullptr ? "" : attribute_or_empty(*joint.mimic, "joint");
-    if (wanted.empty()) continue;
+    if (joint.mimic == nullptr) continue;
+    const XMLElement& mimic = *joint.mimic;
+    const std::string wanted = attribute_or_empty(mimic, "joint");
+    if (wanted.empty()) continue;  // the grammar has said so
     const UrdfJoint* leader = outline.find_joint(wanted);
+    std::string what = "joint ";
+    what.append(quoted(joint.name)).append(" mimics joint ").append(quoted(wanted));
     if (leader == nullptr) {
-      document.refuse_value(*joint.mimic, "joint",
-                            "joint " + quoted(joint.name) + " mimics joint " + quoted(wanted) +
-                                ", which does not exist" + did_you_mean(wanted, outline.joint_names()));
+      const std::string hint = did_you_mean(wanted, outline.joint_names());
+      document.refuse_value(mimic, "joint", what + ", which does not exist" + hint);
     } else if (!joint.moves()) {
-      document.refuse(*joint.mimic, "joint " + quoted(joint.name) + " is fixed and cannot mimic another");
+      document.refuse(mimic, "joint " + quoted(joint.name) + " is fixed and cannot mimic another");
     } else if (!leader->moves()) {
-      document.refuse_value(*joint.mimic, "joint",
-                            "joint " + quoted(joint.name) + " mimics joint " + quoted(wanted) + ", which is fixed");
+      document.refuse_value(mimic, "joint", what + ", which is fixed");
     } else if (const std::string path = ring(outline, joint); !path.empty() && !in_rings.contains(joint.name)) {
-      document.refuse_value(*joint.mimic, "joint", "joints mimic each other in a ring: " + path);
-      for (const UrdfJoint* at = &joint; in_rings.insert(at->name).second;) {
+      document.refuse_value(mimic, "joint", "joints mimic each other in a ring: " + path);
+      for (const UrdfJoint* at = &joint; at != nullptr && at->mimic != nullptr && in_rings.insert(at->name).second;) {
         at = outline.find_joint(attribute_or_empty(*at->mimic, "joint"));
       }
     }

@@ -23,6 +23,7 @@ const Item* find_named(const std::vector<Item>& items, std::string_view name) {
 template <typename Item>
 std::vector<std::string> names_of(const std::vector<Item>& items) {
   std::vector<std::string> names;
+  names.reserve(items.size());
   for (const Item& item : items) names.push_back(item.name);
   return names;
 }

@@ -98,15 +98,16 @@ class TreeCheck {
   }
 
   void refuse_loop(const std::string& start) {
+    constexpr std::size_t most_shown = 8;
     sound_ = false;
+    std::vector<std::string> names{shown(start)};  // upwards
+    for (std::string at = above_.at(start)->parent; at != start; at = above_.at(at)->parent) names.push_back(shown(at));
     std::string text = shown(start);
-    int shown_links = 0;
-    for (std::string at = above_.at(start)->parent; at != start; at = above_.at(at)->parent) {
-      if (++shown_links <= 8) text = shown(at) + " -> " + text;
+    for (std::size_t i = names.size(); i-- > 0;) {
+      if (i < most_shown) text.append(" -> ").append(names[i]);
+      if (i == most_shown) text.append(" -> ...");
     }
-    document_.refuse(*above_.at(start)->element, "joints in a loop: " + shown(start) + " -> " +
-                                                     (shown_links > 8 ? "... -> " : "") + text +
-                                                     "; a URDF is a tree with one root");
+    document_.refuse(*above_.at(start)->element, "joints in a loop: " + text + "; a URDF is a tree with one root");
   }
 
   // A body is a link with all that is fixed to it. The root may be without mass: a base that is bolted to the world.
