@@ -1,9 +1,11 @@
 #include "kadans/telemetry/mcap_writer.h"
 
 #include <algorithm>
+#include <csignal>
 #include <cstring>
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include "kadans/signal/random.h"
 #include "kadans/telemetry/mcap_reader.h"
@@ -39,7 +41,7 @@ void write_run(McapWriter& writer, const std::string& path, std::uint32_t messag
   RandomStream random(1, "test");
   for (std::uint32_t i = 0; i < messages; ++i) {
     const std::uint64_t payload = random.next();
-    const std::int64_t time_ns = i / 2 * 10 * ms;
+    const std::int64_t time_ns = std::int64_t{i / 2} * 10 * ms;
     REQUIRE(writer.write(i % 2 == 0 ? a : b, i, time_ns, std::as_bytes(std::span(&payload, 1))));
   }
 }
@@ -61,6 +63,26 @@ std::vector<ChunkEnd> chunk_ends(const std::vector<std::byte>& file, std::size_t
   }
   return ends;
 }
+
+// While it stands, no file of this process grows beyond so many bytes: a disk that is full.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit lower{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &lower);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
 
 }  // namespace
 
@@ -175,6 +197,30 @@ TEST_CASE("McapWriter: a full disk is reported with the file's name and refuses 
   CHECK_FALSE(writer.flush());
   CHECK_FALSE(writer.close());
   CHECK_FALSE(writer.close());
+}
+
+TEST_CASE("McapWriter: when the disk fills up in the middle, the file keeps its whole chunks and nothing else") {
+  const ScratchFile file;
+  McapWriter writer({.chunk_bytes = 10'000, .compression_level = 0});
+  REQUIRE(writer.open(file.path()));
+  const auto channel = writer.add_channel("/a", "json", 0);
+  const std::string payload(1000, ' ');
+  std::uint32_t accepted = 0;
+  bool flushed = false, attached = false;
+  {
+    const FileSizeLimit limit(100'000);
+    while (accepted < 1000 && writer.write(channel, accepted, accepted, bytes_of(payload))) ++accepted;
+    flushed = writer.flush();
+    attached = writer.attach("a", "text/plain", 0, bytes_of("small enough to fit"));
+  }
+  CHECK_FALSE(flushed);
+  CHECK_FALSE(attached);
+  CHECK_FALSE(writer.close());
+  CHECK(writer.error() == file.path() + ": cannot write the record: File too large");
+  CHECK(accepted == 99);  // nine to a chunk; the eleventh chunk was refused
+  CHECK(file.bytes().size() == writer.file_bytes());
+  CHECK(read_all(file.path()).sequences.size() == 90);
+  CHECK(read_all(file.path()).problem.find("the file ends without a footer") != std::string::npos);
 }
 
 TEST_CASE("McapWriter: a folder that is not there is reported when opening") {

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "kadans/telemetry/mcap_reader.h"
+#include "kadans/testing/real_time_guard.h"
 #include "scratch_file.h"
 
 using namespace kadans;
@@ -137,6 +138,16 @@ TEST_CASE("Recorder: when nobody drains, rows are dropped, counted, and told in 
     if (entry.topic == "/log") CHECK(entry.payload.find("952 rows and 0 events so far") != std::string::npos);
   }
   CHECK(entries.back().sequence == rows);
+}
+
+TEST_CASE("Recorder::record neither allocates, locks nor touches files, also when the ring is full") {
+  Recorder recorder(wide_table(498));
+  const std::vector<double> row(498, 1.0);
+  {
+    const testing::RealTimeGuard guard;  // aborts
+    for (std::uint64_t tick = 0; tick < 1100; ++tick) recorder.record(tick, 0, row);
+  }
+  CHECK(recorder.dropped() == 1100 - 1048);
 }
 
 TEST_CASE("Recorder counts a row of the wrong size as dropped") {
