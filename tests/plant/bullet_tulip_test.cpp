@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "kadans/model/urdf.h"
+#include "kadans/testing/allocation_count.h"
 #include "small_robots.h"
 
 using namespace kadans;
@@ -158,4 +159,15 @@ TEST_CASE("TULip falls the same way twice") {
   run(first, 3000);
   run(second, 3000);
   CHECK(state_hash(first) == state_hash(second));
+}
+
+TEST_CASE("A standing TULip's plant allocates nothing, neither in read and write nor in a step") {
+  const Robot robot = tulip(Drives::elastic);
+  BulletPlant plant(robot.model, robot.settings, 1);
+  JointPdHold hold(robot);
+  for (int i = 0; i < 1000; ++i) hold.tick(plant);
+  const testing::AllocationCount heap;
+  for (int i = 0; i < 1000; ++i) hold.tick(plant);
+  const long allocations = heap.count();
+  CHECK(allocations == 0);
 }

@@ -63,7 +63,8 @@ struct PlantSettings {
   int solver_iterations = 10;
   bool fixed_base = false;  // the base link is bolted to the world
   bool self_collision = true;
-  // Where the robot starts. With stand_on_ground the base's z is chosen so that the lowest collision point touches z = 0.
+  // Where the robot starts. With stand_on_ground the base's z is chosen so that the lowest collision point touches z = 0
+  // (a fixed base stays where it is put).
   Pose base;
   bool stand_on_ground = true;
   std::vector<double> position_rad;  // one a joint

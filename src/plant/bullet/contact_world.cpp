@@ -81,7 +81,6 @@ ContactWorld::ContactWorld(const Options& options, PairMask& mask) : dispatcher_
   world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver_, &configuration_);
   world_->setGravity(options.gravity_m_s2);
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
-  world_->getDispatchInfo().m_deterministicOverlappingPairs = true;
   world_->getDispatchInfo().m_useContinuous = false;
   btContactSolverInfo& info = world_->getSolverInfo();
   info.m_splitImpulse = false;

@@ -116,6 +116,9 @@ void Drive::end_step(double position_rad, double velocity_rad_s, double dt_s) {
 void Drive::hash(StateHash& hash) const noexcept {
   hash.add(state_.rotor_rad);
   hash.add(state_.rotor_velocity_rad_s);
+  for (const auto kind : {JointRows::linear, JointRows::servo, JointRows::friction, JointRows::limit}) {
+    hash.add(rows_->impulse(kind));  // the solver starts from it
+  }
 }
 
 }  // namespace kadans::bullet

@@ -46,10 +46,6 @@ class Drive {
 
   const State& state() const noexcept { return state_; }
   bool elastic() const noexcept { return settings_.spring_Nm_per_rad > 0; }
-  // More than one row may act on the joint at a time, which the solver takes longer to balance.
-  bool many_rows() const noexcept {
-    return !elastic() && (settings_.rotor_inertia_kg_m2 > 0 || settings_.coulomb_Nm > 0);
-  }
   void hash(StateHash& hash) const noexcept;
 
  private:
