@@ -3,8 +3,8 @@
 // What differs from Bullet's defaults, and why:
 // - no split impulse: the multibody solver never applies the split part, so joint limits would vanish;
 // - friction cone off, two fixed friction directions: standing feet do not creep;
-// - pairs sorted, islands unused (one robot is one island), nothing sleeps: the order of the solver is the same every
-// run;
+// - islands unused (one robot is one island), nothing sleeps: the order of the solver is the same every run. Pairs keep
+//   the order they came in, which a new world repeats; Bullet's option to sort them allocates in every step;
 // - the solver starts from the last step's impulses and runs all its iterations (residual threshold 0); in a step in
 //   which a joint runs into its limit it runs limit_iterations_factor times as many, because a light foot between the
 //   ground and an ankle's limit is where the iteration converges slowest.
