@@ -115,12 +115,12 @@ void check_mimics(UrdfDocument& document, const UrdfOutline& outline) {
     std::string what = "joint ";
     what.append(quoted(joint.name)).append(" mimics joint ").append(quoted(wanted));
     if (leader == nullptr) {
-      const std::string hint = did_you_mean(wanted, outline.joint_names());
-      document.refuse_value(mimic, "joint", what + ", which does not exist" + hint);
+      what.append(", which does not exist").append(did_you_mean(wanted, outline.joint_names()));
+      document.refuse_value(mimic, "joint", what);
     } else if (!joint.moves()) {
       document.refuse(mimic, "joint " + quoted(joint.name) + " is fixed and cannot mimic another");
     } else if (!leader->moves()) {
-      document.refuse_value(mimic, "joint", what + ", which is fixed");
+      document.refuse_value(mimic, "joint", what.append(", which is fixed"));
     } else if (const std::string path = ring(outline, joint); !path.empty() && !in_rings.contains(joint.name)) {
       document.refuse_value(mimic, "joint", "joints mimic each other in a ring: " + path);
       for (const UrdfJoint* at = &joint; at != nullptr && at->mimic != nullptr && in_rings.insert(at->name).second;) {
