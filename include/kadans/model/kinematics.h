@@ -16,7 +16,7 @@ Quat conjugate(const Quat& q) noexcept;
 Quat normalized(const Quat& q) noexcept;
 Quat from_axis_angle(const Vec3& unit_axis, double angle_rad) noexcept;
 Quat from_roll_pitch_yaw(double roll_rad, double pitch_rad, double yaw_rad) noexcept;  // Rz(yaw) Ry(pitch) Rx(roll)
-Vec3 roll_pitch_yaw(const Quat& q) noexcept;  // roll, pitch, yaw; pitch in [-pi/2, pi/2]
+Vec3 roll_pitch_yaw(const Quat& q) noexcept;          // roll, pitch, yaw; pitch in [-pi/2, pi/2]
 Pose compose(const Pose& a, const Pose& b) noexcept;  // b given in a's frame
 Vec3 transform(const Pose& pose, const Vec3& point) noexcept;
 

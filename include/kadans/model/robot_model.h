@@ -69,9 +69,9 @@ struct Mimic {  // position = multiplier * position of `joint` + offset
 struct Joint {
   std::string name;
   JointType type = JointType::revolute;
-  std::size_t parent = 0;  // index of the parent link; the child is link (this joint's index + 1)
-  Pose origin;             // joint frame in the parent link's frame
-  Vec3 axis{1, 0, 0};      // unit vector in the joint frame
+  std::size_t parent = 0;               // index of the parent link; the child is link (this joint's index + 1)
+  Pose origin;                          // joint frame in the parent link's frame
+  Vec3 axis{1, 0, 0};                   // unit vector in the joint frame
   double lower_rad = 0, upper_rad = 0;  // infinite for continuous joints
   double effort_max_Nm = 0;             // 0: passive, no motor
   double velocity_max_rad_s = 0;
@@ -83,7 +83,7 @@ struct Joint {
 
 struct RobotModel {
   std::string name;
-  std::string file;  // where it came from
+  std::string file;           // where it came from
   std::vector<Link> links;    // links[0] is the floating base; parents come before children
   std::vector<Joint> joints;  // size() == links.size() - 1, at most max_joints
 
