@@ -96,7 +96,7 @@ TEST_CASE("A script that fails while it runs is told with its line; the robot st
   const auto json = parsed(outcome);
   CHECK(json["passed"] == false);
   CHECK(has(json["errors"][0].get<std::string>(), "behaviors/tulip/squat.lua:9:"));
-  CHECK(json["checks"][0]["name"] == "stays up");
+  CHECK(json["checks"][0]["name"] == "stays up, lowest height in m");
   CHECK(json["checks"][0]["passed"] == true);
 }
 

@@ -20,6 +20,8 @@ TEST_CASE("TULip squats three times within every bound of its scenario, for seve
       CHECK(check.passed);
     }
     CHECK(result.passed);
+    const auto height_m = [&](std::size_t check) { return result.checks.at(check).value; };
+    CHECK(height_m(2) - height_m(1) == doctest::Approx(0.10).epsilon(0.05));  // standing minus crouching
     CHECK(result.faults.empty());
     CHECK(result.commands_refused == 0);
     CHECK(robot.host().finished());
