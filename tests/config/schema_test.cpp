@@ -37,8 +37,9 @@ void check_value(const Json& schema, const Json& value, const std::string& path)
     const Json properties = schema.value("properties", Json::object());
     for (const auto& [key, member] : value.items()) {
       const Json rest = schema.at("additionalProperties");
-      REQUIRE_MESSAGE((properties.contains(key) || rest.is_object()), "unknown key " << key);
-      check_value(properties.contains(key) ? properties[key] : rest, member, path + "/" + key);
+      const bool named = properties.contains(key);
+      REQUIRE_MESSAGE((named || rest.is_object()), "unknown key in " << path);
+      check_value(named ? properties[key] : rest, member, path + "/" + key);
     }
   } else if (type == "array") {
     REQUIRE(value.is_array());
