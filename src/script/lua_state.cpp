@@ -12,6 +12,7 @@
 namespace kadans {
 namespace {
 
+constexpr std::uint64_t collect_bytes_min = 2048;
 constexpr std::size_t source_bytes_max = std::size_t{1} << 20;
 
 void* allocate(void* user, void* block, std::size_t old_bytes, std::size_t new_bytes) {
@@ -158,12 +159,12 @@ int LuaState::line_of(std::string_view chunk, int from, std::string_view text) c
 
 void LuaState::collect() noexcept {
   const std::uint64_t fresh = core_->heap.allocated_bytes() - collected_at_;
+  if (fresh < collect_bytes_min) return;  // it adds up over the ticks
   collected_at_ = core_->heap.allocated_bytes();
-  lua_sethook(lua_, nullptr, 0, 0);
   if (core_->heap.used_bytes() > settings_.limits.memory_bytes / 4 * 3) {
     lua_gc(lua_, LUA_GCCOLLECT, 0);
   } else {
-    lua_gc(lua_, LUA_GCSTEP, static_cast<int>(8 + fresh / 512));
+    lua_gc(lua_, LUA_GCSTEP, static_cast<int>(fresh / 256));
   }
   lua_gc(lua_, LUA_GCSTOP, 0);  // a step starts the collector again
 }
