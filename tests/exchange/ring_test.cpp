@@ -74,6 +74,16 @@ TEST_CASE("Ring takes a batch whole or not at all") {
   CHECK(waiting(ring) == std::vector{1, 2, 3, 4, 5, 6, 7, 8});
 }
 
+TEST_CASE("Ring takes a batch that lies in two places as one, whole or not at all, across the end of its slots") {
+  SmallRing ring = ring_after(6);
+  CHECK(ring.try_push(std::array{1}, std::array{2, 3, 4}));
+  CHECK(ring.try_push(std::array{5, 6}, {}));
+  CHECK_FALSE(ring.try_push(std::array{7, 8}, std::array{9}));
+  CHECK(ring.size() == 6);
+  CHECK(ring.try_push({}, std::array{7, 8}));
+  CHECK(waiting(ring) == std::vector{1, 2, 3, 4, 5, 6, 7, 8});
+}
+
 TEST_CASE("Ring takes a batch as large as its capacity, none larger, and an empty one always") {
   SmallRing ring;
   CHECK_FALSE(ring.try_push(std::array{0, 1, 2, 3, 4, 5, 6, 7, 8}));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -71,19 +72,22 @@ TEST_CASE("uniform numbers keep to the range asked for") {
 TEST_CASE("normal numbers have mean 0, deviation 1, no skew and the tails of the bell curve") {
   RandomStream stream(7, "normal");
   constexpr int count = 200'000;
-  double sum = 0, squares = 0, cubes = 0;
+  double sum = 0, squares = 0, cubes = 0, neighbours = 0, last = 0;
   int beyond_one = 0, beyond_three = 0;
   for (int i = 0; i < count; ++i) {
     const double x = stream.normal();
     sum += x;
     squares += x * x;
     cubes += x * x * x;
+    neighbours += x * last;
+    last = x;
     if (std::abs(x) > 1) ++beyond_one;
     if (std::abs(x) > 3) ++beyond_three;
   }
   CHECK(std::abs(sum / count) < 0.009);
   CHECK(std::abs(squares / count - 1) < 0.013);
   CHECK(std::abs(cubes / count) < 0.035);
+  CHECK(std::abs(neighbours / count) < 0.009);  // each number is independent of the one before
   CHECK(std::abs(beyond_one / double{count} - 0.3173) < 0.0042);
   CHECK(std::abs(beyond_three / double{count} - 0.0027) < 0.0005);
 }
