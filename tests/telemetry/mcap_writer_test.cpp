@@ -48,7 +48,7 @@ void write_run(McapWriter& writer, const std::string& path, std::uint32_t messag
 
 // Where each chunk's record ends, and how many messages stand before that, by walking the opcodes.
 struct ChunkEnd {
-  std::size_t offset = 0;
+  std::size_t start = 0, offset = 0;
   std::size_t messages = 0;
 };
 std::vector<ChunkEnd> chunk_ends(const std::vector<std::byte>& file, std::size_t messages_per_chunk) {
@@ -57,8 +57,9 @@ std::vector<ChunkEnd> chunk_ends(const std::vector<std::byte>& file, std::size_t
     std::uint64_t length = 0;
     std::memcpy(&length, file.data() + at + 1, sizeof length);
     const auto opcode = static_cast<McapOpcode>(file[at]);
+    const std::size_t start = at;
     at += mcap_record_head + static_cast<std::size_t>(length);
-    if (opcode == McapOpcode::chunk) ends.push_back({at, (ends.size() + 1) * messages_per_chunk});
+    if (opcode == McapOpcode::chunk) ends.push_back({start, at, (ends.size() + 1) * messages_per_chunk});
     if (opcode == McapOpcode::data_end) break;
   }
   return ends;
@@ -165,6 +166,21 @@ TEST_CASE("McapWriter: a file cut anywhere streams every message of the chunks b
     CHECK(std::ranges::is_sorted(read.sequences));
     CHECK_FALSE(read.complete);
     CHECK(read.problem.find("the file ends") != std::string::npos);
+  }
+}
+
+TEST_CASE("McapWriter: each chunk alone tells the schemas and channels of its messages") {
+  const ScratchFile file, alone;
+  McapWriter writer;
+  write_run(writer, file.path(), 1000);
+  REQUIRE(writer.close());
+  const std::vector<std::byte> whole = file.bytes();
+  for (const ChunkEnd& chunk : chunk_ends(whole, 100)) {
+    std::vector<std::byte> bytes(whole.begin(), whole.begin() + mcap_magic.size());
+    bytes.insert(bytes.end(), whole.begin() + static_cast<std::ptrdiff_t>(chunk.start),
+                 whole.begin() + static_cast<std::ptrdiff_t>(chunk.offset));
+    alone.write(bytes);
+    CHECK(read_all(alone.path()).sequences.size() == 100);
   }
 }
 
