@@ -68,6 +68,11 @@ std::unique_ptr<ControlSystem> make_control_system(const RobotConfig& config) {
   catalog.sets = config.sets;
   catalog.poses = config.poses;
   catalog.initial_set = config.initial_set;
+  for (std::size_t i = 0; i < config.model.joints.size(); ++i) {
+    const DriveSettings& drive = config.plant.drives[i];
+    catalog.drives.push_back(
+        {config.safety.joints[i].effort_max_Nm, drive.position_gain_Nm_per_rad, drive.velocity_gain_Nms_per_rad});
+  }
   for (const ObjectConfig& object : config.objects) {
     const auto index = static_cast<std::uint32_t>(system->objects.size());
     system->objects.push_back(make_object(config, object));

@@ -14,6 +14,10 @@ std::vector<std::string> names_of(const std::vector<Named>& all) {
   return names;
 }
 
+bool contains(const std::vector<PlacedName>& names, const std::string& name) {
+  return std::any_of(names.begin(), names.end(), [&](const PlacedName& one) { return one.name == name; });
+}
+
 }  // namespace
 
 void RobotReader::control(Fields& f) {
@@ -89,8 +93,12 @@ void RobotReader::control_set(Fields& entry) {
   std::vector<PlacedName> objects;
   entry.strings("objects", objects, {1, max_objects}, "names of its control objects, in the order of computing",
                 Need::required);
+  std::vector<PlacedName> sum, blend, priority;
+  entry.strings("sum", sum, {1, max_objects}, "those of them that add to what stands before them");
+  entry.strings("blend", blend, {1, max_objects}, "those that mix with it, by their parameter SET.OBJECT.weight");
+  entry.strings("priority", priority, {1, max_objects}, "those that replace it while they claim the joint");
   const std::vector<std::string> names = names_of(config_.objects);
-  std::vector<std::size_t> owner(joint_names_.size(), names.size());  // the object of this set that drives a joint
+  std::vector<std::size_t> owner(joint_names_.size(), names.size());  // the object of this set that sets a joint
   for (const PlacedName& object : objects) {
     const auto found = std::find(names.begin(), names.end(), object.name);
     const auto index = static_cast<std::uint32_t>(found - names.begin());
@@ -100,15 +108,24 @@ void RobotReader::control_set(Fields& entry) {
       problems_.add(object.place, "control object " + in_quotes(object.name) + " stands twice in this set");
     } else {
       set.objects.push_back(index);
-      claim_joints(index, object.place, owner);
+      set.compositions.push_back(contains(sum, object.name)        ? Composition::sum
+                                 : contains(blend, object.name)    ? Composition::blend
+                                 : contains(priority, object.name) ? Composition::priority
+                                                                   : Composition::set);
+      claim_joints(index, set.compositions.back() == Composition::set, object.place, owner);
+    }
+  }
+  for (const auto* composed : {&sum, &blend, &priority}) {
+    for (const PlacedName& object : *composed) {
+      if (!contains(objects, object.name)) problems_.add_unknown(object.place, "object of this set", object.name, names_of(objects));
     }
   }
   config_.sets.push_back(std::move(set));
 }
 
-void RobotReader::claim_joints(std::size_t object, TextPlace place, std::vector<std::size_t>& owner) {
+void RobotReader::claim_joints(std::size_t object, bool sets, TextPlace place, std::vector<std::size_t>& owner) {
   for (const std::size_t joint : config_.objects[object].joints) {
-    if (owner[joint] < config_.objects.size()) {
+    if (sets && owner[joint] < config_.objects.size()) {
       problems_.add(place, "control objects '" + config_.objects[owner[joint]].name + "' and '" +
                                config_.objects[object].name + "' of one set both drive joint '" + joint_names_[joint] +
                                "'");

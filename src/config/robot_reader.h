@@ -39,7 +39,7 @@ class RobotReader {
   void object(Fields& f);
   void object_joints(const std::vector<PlacedName>& patterns, ObjectConfig& object);
   void control_set(Fields& entry);
-  void claim_joints(std::size_t object, TextPlace place, std::vector<std::size_t>& owner);
+  void claim_joints(std::size_t object, bool sets, TextPlace place, std::vector<std::size_t>& owner);
   void pose(Fields& entry);
   void pose_value(const Fields& entry, const NumberEntry& value, PoseInfo& pose);
 

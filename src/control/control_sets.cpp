@@ -1,6 +1,5 @@
 #include "kadans/control/control_sets.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -11,14 +10,18 @@ void check_set(const Catalog& catalog, const ControlSetInfo& set) {
   std::vector<char> driven(max_joints, 0);
   std::vector<char> listed(catalog.objects.size(), 0);
   if (set.objects.empty()) throw std::invalid_argument("control set " + set.name + " has no control object");
-  for (const std::uint32_t index : set.objects) {
-    const ObjectInfo& object = catalog.objects.at(index);
-    if (std::exchange(listed[index], 1)) {
+  if (!set.compositions.empty() && set.compositions.size() != set.objects.size()) {
+    throw std::invalid_argument("control set " + set.name + ": one composition an object is wanted");
+  }
+  for (std::size_t i = 0; i < set.objects.size(); ++i) {
+    const ObjectInfo& object = catalog.objects.at(set.objects[i]);
+    const bool sets = set.compositions.empty() || set.compositions[i] == Composition::set;
+    if (std::exchange(listed[set.objects[i]], 1)) {
       throw std::invalid_argument("control set " + set.name + " lists " + object.name + " twice");
     }
     for (const std::size_t joint : object.joints) {
-      if (std::exchange(driven.at(joint), 1)) {
-        throw std::invalid_argument("control set " + set.name + ": more than one object drives joint " +
+      if (std::exchange(driven.at(joint), 1) && sets) {
+        throw std::invalid_argument("control set " + set.name + ": more than one object sets joint " +
                                     catalog.model->joints.at(joint).name);
       }
     }
@@ -27,10 +30,10 @@ void check_set(const Catalog& catalog, const ControlSetInfo& set) {
 
 }  // namespace
 
-ControlSets::ControlSets(const Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects)
+ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects)
     : catalog_(catalog),
       objects_(std::move(objects)),
-      running_(objects_.size(), 0),
+      switchover_(catalog.drives, catalog.switch_fade_s),
       active_(catalog.initial_set),
       computing_(static_cast<std::uint32_t>(catalog.sets.size())) {
   if (objects_.size() > max_objects) {
@@ -40,29 +43,74 @@ ControlSets::ControlSets(const Catalog& catalog, std::vector<std::unique_ptr<Con
   if (objects_.size() != catalog.objects.size()) throw std::invalid_argument("the catalog lists other control objects");
   if (catalog.initial_set >= catalog.sets.size()) throw std::invalid_argument("there is no initial control set");
   for (const ControlSetInfo& set : catalog.sets) check_set(catalog, set);
+  for (std::size_t i = 0; i < objects_.size(); ++i) proposals_.push_back(std::make_unique<ActuationFrame>());
+  plans_.reserve(catalog.sets.size());  // parameters point into the members
+  for (const ControlSetInfo& set : catalog.sets) make_plan(catalog, set);
+  declare(catalog);
 }
 
-void ControlSets::change_over(const ControlInput& input, ActuationFrame& actuation) noexcept {
-  const auto& objects = catalog_.sets[active_].objects;
-  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
-    if (std::find(objects.begin(), objects.end(), i) == objects.end()) running_[i] = 0;
+void ControlSets::make_plan(Catalog& catalog, const ControlSetInfo& set) {
+  Plan& plan = plans_.emplace_back();
+  plan.members.reserve(set.objects.size());
+  for (std::size_t i = 0; i < set.objects.size(); ++i) {
+    const std::uint32_t index = set.objects[i];
+    const ObjectInfo& object = catalog.objects[index];
+    const Composition composition = set.compositions.empty() ? Composition::set : set.compositions[i];
+    plan.members.push_back({index, object.divisor, composition, 1});
+    plan.objects |= 1U << index;
+    if (composition != Composition::blend) continue;
+    catalog.parameters.add({set.name + "." + object.name + ".weight", "", 0, 1, 1, "Its share in the joints it blends."},
+                           &plan.members.back().weight, max_objects);
   }
-  for (std::uint32_t joint = 0; joint < actuation.joint_count; ++joint) actuation.joints[joint] = {};
-  for (const std::uint32_t index : objects) {
-    if (!std::exchange(running_[index], 1)) objects_[index]->start(input);
+}
+
+void ControlSets::declare(Catalog& catalog) {
+  for (std::size_t i = 0; i < catalog.model->joints.size(); ++i) {
+    catalog.signals.add({"composition." + catalog.model->joints[i].name + ".writers", "",
+                         "Control objects that have a share in its actuation, a bit each."},
+                        &writers_[i]);
   }
-  computing_ = active_;
+  catalog.signals.add({"composition.switch_share", "", "Largest step that the last switch absorbed, as a share of the "
+                                                       "joint's torque limit."},
+                      &switchover_.absorbed_share());
+}
+
+void ControlSets::start_newcomers(const ControlInput& input) noexcept {
+  const Plan& plan = plans_[active_];
+  for (const Member& member : plan.members) {
+    if ((running_ >> member.object & 1U) == 0) objects_[member.object]->start(input);
+  }
+  running_ = plan.objects;
+}
+
+void ControlSets::compose_joints(const Member& member, ActuationFrame& actuation) noexcept {
+  const ActuationFrame& proposal = *proposals_[member.object];
+  const std::uint32_t bit = 1U << member.object;
+  for (const std::size_t joint : catalog_.objects[member.object].joints) {
+    const bool replaces = member.composition == Composition::set || member.composition == Composition::priority;
+    if (!compose(member.composition, member.weight, proposal.joints[joint], actuation.joints[joint])) continue;
+    writers_[joint] = replaces ? bit : writers_[joint] | bit;
+  }
 }
 
 void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept {
+  const bool first = computing_ == plans_.size();
   const bool changed = computing_ != active_;
-  if (changed) change_over(input, actuation);
-  for (const std::uint32_t index : catalog_.sets[active_].objects) {
-    const std::uint32_t divisor = catalog_.objects[index].divisor;
-    if (tick % divisor != 0 && !changed) continue;
-    const ControlInput slower{input.joints, input.status, input.last, input.time_ns, input.dt_s * divisor};
-    objects_[index]->step(slower, actuation);
+  if (changed) start_newcomers(input);
+  computing_ = active_;
+  for (std::uint32_t joint = 0; joint < actuation.joint_count; ++joint) {
+    actuation.joints[joint] = {};
+    writers_[joint] = 0;
   }
+  for (const Member& member : plans_[active_].members) {
+    if (tick % member.divisor == 0 || changed) {
+      const ControlInput slower{input.joints, input.status, input.last, input.time_ns, input.dt_s * member.divisor};
+      objects_[member.object]->step(slower, *proposals_[member.object]);
+    }
+    compose_joints(member, actuation);
+  }
+  if (changed && !first) switchover_.begin(input.joints, input.dt_s, input.last, actuation);
+  switchover_.apply(input.dt_s, actuation);
 }
 
 void ControlSets::fill(std::uint32_t& active_set, std::uint32_t& count,
@@ -70,7 +118,7 @@ void ControlSets::fill(std::uint32_t& active_set, std::uint32_t& count,
   active_set = active_;
   count = static_cast<std::uint32_t>(objects_.size());
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    status[i] = {.active = running_[i] != 0, .motion_remaining_s = objects_[i]->motion_remaining_s()};
+    status[i] = {.active = (running_ >> i & 1U) != 0, .motion_remaining_s = objects_[i]->motion_remaining_s()};
   }
 }
 

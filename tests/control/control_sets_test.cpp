@@ -132,7 +132,7 @@ TEST_CASE("Sets that cannot work are refused before the loop, by name") {
     return two;
   };
   catalog.sets = {{"clash", {0, 1}}};
-  CHECK(refusal(catalog, objects()) == "control set clash: more than one object drives joint knee");
+  CHECK(refusal(catalog, objects()) == "control set clash: more than one object sets joint knee");
   catalog.sets = {{"twice", {0, 0}}};
   CHECK(refusal(catalog, objects()) == "control set twice lists a twice");
   catalog.sets = {{"empty", {}}};

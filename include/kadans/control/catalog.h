@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "kadans/control/composition.h"
+#include "kadans/control/switchover.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/parameter.h"
 #include "kadans/signal/setpoint.h"
@@ -33,7 +35,8 @@ struct ObjectInfo {
 
 struct ControlSetInfo {
   std::string name;
-  std::vector<std::uint32_t> objects;  // in the order of computing
+  std::vector<std::uint32_t> objects;      // in the order of computing
+  std::vector<Composition> compositions{};  // one an object; empty: every object sets its joints
 };
 
 // Positions for some joints, by name; what a behavior moves to.
@@ -51,6 +54,8 @@ struct Catalog {
   std::vector<ControlSetInfo> sets;
   std::vector<PoseInfo> poses;
   std::uint32_t initial_set = 0;
+  std::vector<DriveLaw> drives;  // one a joint; empty: switching is not smoothed
+  double switch_fade_s = Switchover::default_fade_s;
 };
 
 }  // namespace kadans

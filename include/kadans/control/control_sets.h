@@ -1,5 +1,11 @@
 // All control objects and the sets in which they work together. Sets are built and checked before the loop; one of them
-// is active. Objects of the active set compute in the order of the set; a joint that none of them drives is off.
+// is active. Objects of the active set compute in the order of the set, and compose what they propose for a joint
+// (composition.h); a joint that none of them drives is off. A change of the active set makes no step (switchover.h) and
+// costs the starting of the objects that come in, whatever the number of sets.
+//
+// Signals     composition.<joint>.writers     the objects that have a share in its actuation, a bit each
+//             composition.switch_share        the largest step that the last switch absorbed, as a share of the limit
+// Parameters  <set>.<object>.weight           of an object that blends
 #pragma once
 
 #include <cstdint>
@@ -8,16 +14,18 @@
 
 #include "kadans/control/catalog.h"
 #include "kadans/control/control_object.h"
+#include "kadans/control/switchover.h"
 
 namespace kadans {
 
 class ControlSets {
  public:
-  // Keeps a reference to the catalog. `objects` as numbered there. Throws std::invalid_argument on a set that names no
-  // object or an object twice, on two objects of a set that drive the same joint, and on too many objects.
-  ControlSets(const Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects);
+  // Keeps a reference to the catalog and declares signals and parameters in it. `objects` as numbered there. Throws
+  // std::invalid_argument on a set that names no object or an object twice, on an object that sets a joint which an
+  // earlier one of the set drives, and on too many objects.
+  ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects);
 
-  // Control thread. Computes the actuation of the active set's joints; the others' is left as it is.
+  // Control thread. Computes the actuation of all joints.
   void step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept;
   // Control thread. The set computes from the next step on; objects that were not active start from the present state.
   void switch_to(std::uint32_t set) noexcept { active_ = set; }
@@ -32,13 +40,30 @@ class ControlSets {
   std::size_t size() const noexcept { return objects_.size(); }
 
  private:
-  void change_over(const ControlInput& input, ActuationFrame& actuation) noexcept;
+  struct Member {
+    std::uint32_t object;
+    std::uint32_t divisor;
+    Composition composition;
+    double weight;
+  };
+  struct Plan {  // a set, laid out for the tick
+    std::vector<Member> members;
+    std::uint32_t objects = 0;  // a bit an object
+  };
+  void make_plan(Catalog& catalog, const ControlSetInfo& set);
+  void declare(Catalog& catalog);
+  void start_newcomers(const ControlInput& input) noexcept;
+  void compose_joints(const Member& member, ActuationFrame& actuation) noexcept;
 
   const Catalog& catalog_;
   std::vector<std::unique_ptr<ControlObject>> objects_;
-  std::vector<char> running_;  // by object
+  std::vector<std::unique_ptr<ActuationFrame>> proposals_;  // by object; stand while a slower object rests
+  std::vector<Plan> plans_;                                 // by set
+  std::array<std::uint32_t, max_joints> writers_{};
+  Switchover switchover_;
+  std::uint32_t running_ = 0;  // a bit an object
   std::uint32_t active_;
-  std::uint32_t computing_;  // the set of the last step; size of the catalog's sets before the first
+  std::uint32_t computing_;  // the set of the last step; the number of sets before the first
 };
 
 }  // namespace kadans

@@ -38,7 +38,7 @@ class CommandInbox {
   std::uint32_t commands_per_tick_max_;
   std::int64_t age_max_ns_;
   State state_;
-  std::array<bool, max_objects> retuned_{};
+  std::array<bool, max_objects + 1> retuned_{};  // by owner; the last one: parameters of control sets
 };
 
 }  // namespace kadans

@@ -1,0 +1,61 @@
+// Switching control sets while the robot moves, without a step in torque.
+//
+// Each control object that comes in starts from the measured state and the last actuation. What is left is a difference
+// between the torque that the drive gave in the last tick and the torque that it will give for the new actuation. The
+// switchover adds this difference to the new actuation, so that the first step is none, and lets it fade away along a
+// minimum-jerk curve within fade_s: bumpless transfer by an output offset (Astrom and Hagglund, Advanced PID Control,
+// ISA 2006, sec. 13.5), applied to the drive's torque so that it holds across modes.
+//
+// The torque of a drive in position or velocity mode follows from its own gains. There the offset moves the set-point,
+// which costs nothing of the torque's range.
+//
+// One owner, the control thread; nothing here allocates, locks or throws.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+// What the control side has to know of a drive to foresee its torque.
+struct DriveLaw {
+  double effort_max_Nm = 0;
+  double position_gain_Nm_per_rad = 0;   // of its position mode
+  double velocity_gain_Nms_per_rad = 0;  // of its position and velocity modes
+};
+
+class Switchover {
+ public:
+  // One law a joint. Without laws (tests of single objects) nothing is smoothed.
+  explicit Switchover(std::vector<DriveLaw> drives, double fade_s = default_fade_s);
+
+  // In the tick that computes the new set for the first time: `before` is what the plant was told in this tick, `after`
+  // what was computed for the next one.
+  void begin(const JointStates& joints, double dt_s, const ActuationFrame& before, const ActuationFrame& after) noexcept;
+  // Each tick, last: adds what is left of the offset.
+  void apply(double dt_s, ActuationFrame& actuation) noexcept;
+
+  bool fading() const noexcept { return remaining_s_ > 0; }
+  // The largest step that the last switch would have made on a joint without the offset, as a share of its limit.
+  const double& absorbed_share() const noexcept { return absorbed_share_; }
+
+  static constexpr double default_fade_s = 0.2;
+
+ private:
+  void shift(const DriveLaw& drive, double offset_Nm, JointActuation& actuation) const noexcept;
+
+  std::vector<DriveLaw> drives_;
+  double fade_s_;
+  double remaining_s_ = 0;
+  double absorbed_share_ = 0;
+  std::array<double, max_joints> offset_Nm_{};
+};
+
+// The torque that a drive gives in effort, position or velocity mode, not limited, when the joint will be at
+// position_rad with velocity_rad_s.
+double drive_torque_Nm(const DriveLaw& drive, const JointActuation& actuation, double position_rad,
+                       double velocity_rad_s) noexcept;
+
+}  // namespace kadans

@@ -1,0 +1,45 @@
+#include "kadans/control/composition.h"
+
+namespace kadans {
+namespace {
+
+bool blend(double weight, const JointActuation& proposal, JointActuation& actuation) noexcept {
+  if (proposal.mode != actuation.mode) {
+    if (!(weight >= 0.5)) return false;
+    actuation = proposal;
+    return true;
+  }
+  const auto between = [weight](double a, double b) { return a + weight * (b - a); };
+  actuation.effort_Nm = between(actuation.effort_Nm, proposal.effort_Nm);
+  actuation.position_rad = between(actuation.position_rad, proposal.position_rad);
+  actuation.velocity_rad_s = between(actuation.velocity_rad_s, proposal.velocity_rad_s);
+  return weight > 0;
+}
+
+bool sum(const JointActuation& proposal, JointActuation& actuation) noexcept {
+  if (proposal.mode == ActuationMode::off) return false;
+  if (actuation.mode == ActuationMode::off) {
+    actuation = proposal;
+  } else {
+    actuation.effort_Nm += proposal.effort_Nm;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool compose(Composition composition, double weight, const JointActuation& proposal,
+             JointActuation& actuation) noexcept {
+  switch (composition) {
+    case Composition::set: break;
+    case Composition::sum: return sum(proposal, actuation);
+    case Composition::blend: return blend(weight, proposal, actuation);
+    case Composition::priority:
+      if (proposal.mode == ActuationMode::off) return false;
+      break;
+  }
+  actuation = proposal;
+  return true;
+}
+
+}  // namespace kadans
