@@ -136,6 +136,17 @@ TEST_CASE("An arm that swings in stops at the torso, and swings through when sel
   }
 }
 
+TEST_CASE("A child swings through its parent: what a joint holds together does not collide") {
+  Robot robot = pendulum(0.5, 0.18, 0.02);
+  robot.model.links[0].collisions.push_back({"post", "base", {{0, 0, 0.3}, {1, 0, 0, 0}}, Box{{0.1, 0.1, 0.3}}});
+  robot.model.links[1].collisions.push_back({"arm", "arm", {{0, 0, -0.18}, {1, 0, 0, 0}}, Box{{0.04, 0.04, 0.3}}});
+  robot.drive().torque_max_Nm = 1;
+  BulletPlant plant(robot.model, robot.settings, 1);
+  plant.write(effort(0.1));
+  run(plant, 2000);
+  CHECK(plant.truth().position_rad[0] == doctest::Approx(0.1 / 0.02 * 2 * 2 / 2).epsilon(0.01));  // over the top
+}
+
 TEST_CASE("Links that overlap at the zero pose, grandparent and grandchild, leave each other alone") {
   Robot robot = torso_with_arm(-0.01);  // the arm reaches 1 cm into the torso
   BulletPlant plant(robot.model, robot.settings, 1);
