@@ -98,14 +98,14 @@ TEST_CASE("A position drive's gain is in Nm/rad: it gives way by load / gain") {
 TEST_CASE("A velocity drive cannot be asked beyond its no-load speed") {
   Robot robot = driven_arm({.torque_max_Nm = 5,
                             .velocity_max_rad_s = 6,
-                            .knee_velocity_rad_s = 3,
+                            .knee_velocity_rad_s = 6,
                             .rotor_inertia_kg_m2 = 0.01,
                             .velocity_gain_Nms_per_rad = 100});
   BulletPlant plant(robot.model, robot.settings, 1);
   plant.write(velocity(20));
   run(plant, 2000);
   CHECK(plant.truth().velocity_rad_s[0] > 5.5);
-  CHECK(plant.truth().velocity_rad_s[0] < 6.1);
+  CHECK(plant.truth().velocity_rad_s[0] < 6.3);
 }
 
 TEST_CASE("A velocity drive keeps its speed under load, within its torque") {

@@ -174,3 +174,21 @@ TEST_CASE("A push acts once, at its point") {
   CHECK_THROWS_AS(plant.push(1, {1, 0, 0}, {}), std::invalid_argument);
   CHECK_THROWS_AS(plant.push(0, {NAN, 0, 0}, {}), std::invalid_argument);
 }
+
+TEST_CASE("A full inertia tensor answers a torque with its inverse") {
+  Robot robot = falling_box();
+  robot.settings.gravity_m_s2 = {0, 0, 0};
+  Inertia& inertia = robot.model.links[0].inertia;
+  inertia.xx = 0.05;
+  inertia.yy = 0.03;
+  inertia.zz = 0.06;
+  inertia.xy = 0.02;
+  BulletPlant plant(robot.model, robot.settings, 1);
+  plant.push(0, {0, 0, 10}, {0, 0.5, 0});  // together a torque of 10 Nm about x
+  plant.push(0, {0, 0, -10}, {0, -0.5, 0});
+  plant.step(ms);
+  const double determinant = 0.05 * 0.03 - 0.02 * 0.02;
+  CHECK(plant.truth().base_angular_velocity_rad_s[0] == doctest::Approx(0.01 * 0.03 / determinant).epsilon(1e-6));
+  CHECK(plant.truth().base_angular_velocity_rad_s[1] == doctest::Approx(-0.01 * 0.02 / determinant).epsilon(1e-6));
+  CHECK(std::abs(plant.truth().base_angular_velocity_rad_s[2]) < 1e-9);
+}
