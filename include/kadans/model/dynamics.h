@@ -1,0 +1,119 @@
+// Rigid-body dynamics of a RobotModel, with a bolted or a floating base:
+//
+//   M(q) dv + h(q, v) = tau
+//
+// v are the generalised velocities, size() of them, first those of a floating base, then the joints in the model's
+// order: linear velocity of the base frame's origin, angular velocity, both in world axes (m/s, rad/s); rad/s, or m/s
+// for a prismatic joint. tau likewise: the force and, about the base frame's origin, the moment on the base (N, Nm);
+// joint torques in Nm, or N. dv is the plain time derivative of v, so that the origin's acceleration is what a camera
+// would see. Mimic joints count as joints of their own.
+//
+// Everything is worked out in world axes with three-dimensional vectors: the bias by the recursive Newton-Euler
+// algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 5.3; Luh, Walker and Paul 1980), the mass
+// matrix from composite bodies (section 6.2; Walker and Orin 1982). A drive's rotor, reflected to its joint, adds its
+// inertia to the diagonal (section 9.6); the rotors' gyroscopic torques are left out.
+//
+// Bullet's inverse dynamics would be the library for this, but Debian packages it without its headers; the tests hold
+// this code against Bullet's forward dynamics instead.
+//
+// One owner, any thread. Nothing but the constructor allocates or throws. Values that are not finite give results that
+// are not.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kadans/model/kinematics.h"
+#include "kadans/model/robot_model.h"
+
+namespace kadans {
+
+class Dynamics {
+ public:
+  enum class Base : std::uint8_t { fixed, floating };
+  struct Config {
+    Base base = Base::fixed;
+    Vec3 gravity_m_s2{0, 0, -9.81};           // world axes
+    std::vector<double> rotor_inertia_kg_m2;  // reflected to the joint, one a joint; empty: none
+  };
+  // Of the base link's frame, in the world. A fixed base may be put, turned and moved anyhow, without acceleration.
+  struct BaseState {
+    Pose pose;
+    Vec3 velocity_m_s{}, angular_velocity_rad_s{};  // world axes
+  };
+
+  // Keeps a reference to the model, which must outlive it. Throws std::invalid_argument for rotors that are not one a
+  // joint.
+  Dynamics(const RobotModel& model, Config config);
+  explicit Dynamics(const RobotModel& model) : Dynamics(model, Config()) {}
+
+  // One position and one velocity a joint. All results below hold until the next update.
+  void update(std::span<const double> position_rad, std::span<const double> velocity_rad_s,
+              const BaseState& base) noexcept;
+
+  std::size_t size() const noexcept { return base_size_ + joint_count_; }  // degrees of freedom, n
+  std::size_t base_size() const noexcept { return base_size_; }            // 6 or 0
+
+  // n x n, symmetric, in full.
+  const Eigen::MatrixXd& mass_matrix() const noexcept { return mass_; }
+  // n: Coriolis, centrifugal and gravity forces, h.
+  const Eigen::VectorXd& bias() const noexcept { return bias_; }
+  // n: what holds the robot against gravity when it is at rest.
+  const Eigen::VectorXd& gravity() const noexcept { return gravity_; }
+  // How gravity() changes with the joints' positions: joint_count x joint_count, symmetric, Nm/rad. The second
+  // derivative of the potential energy.
+  void gravity_gradient(Eigen::Ref<Eigen::MatrixXd> gradient) const noexcept;
+  // tau for dv, both n.
+  void inverse_dynamics(const Eigen::Ref<const Eigen::VectorXd>& acceleration,
+                        Eigen::Ref<Eigen::VectorXd> force) noexcept;
+
+  // 6 x n: velocity of a point of a link (rows 0..2, m/s) and of the link's turning (rows 3..5, rad/s), world axes.
+  void link_jacobian(std::size_t link, const Vec3& point_in_link_m,
+                     Eigen::Ref<Eigen::MatrixXd> jacobian) const noexcept;
+  // 3 x n: velocity of the centre of mass, world axes.
+  void com_jacobian(Eigen::Ref<Eigen::MatrixXd> jacobian) const noexcept;
+  Vec3 com_m() const noexcept;
+  double mass_kg() const noexcept { return bodies_[0].mass_kg; }
+  double potential_energy_J() const noexcept;  // 0 with the centre of mass at the world's origin
+  const Pose& link(std::size_t index) const noexcept { return kinematics_.link(index); }
+
+ private:
+  // A link, in world axes, and with it everything that hangs on it. One a link.
+  struct Body {
+    Eigen::Vector3d origin, axis;                        // of the joint that moves it
+    Eigen::Vector3d angular_velocity, com_arm;           // com_arm: from origin to its own centre of mass
+    Eigen::Matrix3d inertia;                             // its own, about its centre of mass
+    Eigen::Vector3d angular_acceleration, acceleration;  // of the origin, gravity taken off
+    Eigen::Vector3d force, moment;                       // on it, moment about origin
+    double mass_kg;                                      // from here on: of it and all that hangs on it
+    Eigen::Vector3d com;
+    Eigen::Matrix3d composite_inertia;  // about com
+  };
+  bool prismatic(std::size_t link) const noexcept { return model_->joints[link - 1].type == JointType::prismatic; }
+  std::size_t parent(std::size_t link) const noexcept { return model_->joints[link - 1].parent; }
+  std::ptrdiff_t index(std::size_t link) const noexcept { return static_cast<std::ptrdiff_t>(base_size_ + link - 1); }
+
+  void place(std::size_t link) noexcept;
+  void accelerate(std::size_t link, double velocity, double acceleration) noexcept;
+  // Newton-Euler, outwards and inwards. Without acceleration: none anywhere.
+  void newton_euler(const Eigen::VectorXd* acceleration, Eigen::Ref<Eigen::VectorXd> force) noexcept;
+  void gather_composites() noexcept;
+  void fill_mass() noexcept;
+  void fill_mass_column(std::size_t link) noexcept;
+  void fill_gravity() noexcept;
+
+  const RobotModel* model_;
+  Config config_;
+  Eigen::Vector3d gravity_m_s2_;
+  std::size_t joint_count_, base_size_;
+  Kinematics kinematics_;
+  std::vector<double> velocity_rad_s_;
+  std::vector<Body> bodies_;
+  Eigen::MatrixXd mass_;
+  Eigen::VectorXd bias_, gravity_, acceleration_;
+};
+
+}  // namespace kadans
