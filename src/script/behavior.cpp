@@ -111,7 +111,7 @@ std::string Behavior::outcome() const {
 
 std::string Behavior::state() const {
   StateIndex at = 0;
-  for (StateIndex i = 1; i < parts_->chart.states.size(); ++i) {
+  for (StateIndex i = 1; i < parts_->chart.size(); ++i) {
     if (parts_->runner->active(i) && parts_->chart.states[i].parent == at) at = i;
   }
   return parts_->chart.states[at].path;

@@ -163,12 +163,12 @@ EventId Chart::intern(std::string_view event) {
 
 void Chart::resolve(std::vector<InputProblem>& problems) {
   Resolver resolver{*this, problems};
-  for (StateIndex i = 0; i < states.size(); ++i) {
+  for (StateIndex i = 0; i < size(); ++i) {
     resolver.siblings(i);
     resolver.kinds(i);
     if (states[i].kind != Kind::history) resolver.initial(i);
   }
-  for (StateIndex i = 0; i < states.size(); ++i) {
+  for (StateIndex i = 0; i < size(); ++i) {
     if (states[i].kind == Kind::history) resolver.history(i);
   }
   for (Transition& transition : transitions) resolver.transition(transition);

@@ -54,7 +54,7 @@ void ChartRunner::cancel_run(lua_State* state, StateIndex index) {
 }
 
 // Whether what the coroutine waits for is over; pushes what its wait() returns.
-bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread, int& arguments) noexcept {
+bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread, int& arguments) const noexcept {
   if (!run.thread_started) return arguments = 2, true;
   if (run.motion != nullptr) {
     const Bindings& bindings = bindings_of(state);

@@ -16,12 +16,12 @@ struct Reader {
   lua_State* state;
   Chart& chart;
 
-  int reference(int table, const char* key) {
+  int reference(int table, const char* key) const {
     lua_getfield(state, table, key);
     if (lua_isnil(state, -1)) return lua_pop(state, 1), Chart::no_function;
     return luaL_ref(state, LUA_REGISTRYINDEX);
   }
-  const char* text(int table, const char* key) {  // anchored by the table
+  const char* text(int table, const char* key) const {  // anchored by the table
     lua_getfield(state, table, key);
     const char* value = lua_tostring(state, -1);
     lua_pop(state, 1);
@@ -162,7 +162,7 @@ struct Reader {
     check_controls(place, name, parent);
   }
 
-  void check_arguments(int behavior, int given, const char* name, const Place& place) {
+  void check_arguments(int behavior, int given, const char* name, const Place& place) const {
     push_node_body(state, behavior);
     lua_getfield(state, -1, "args");
     for (lua_pushnil(state); lua_next(state, given) != 0; lua_pop(state, 1)) {

@@ -95,7 +95,7 @@ void ChartRunner::take_step(lua_State* state) {
     mark_entry(transition.target);
     mark_ancestors(transition.target, transition.domain);
   }
-  for (StateIndex index = 0; index < run_.size(); ++index) {
+  for (StateIndex index = 0; index < chart_.size(); ++index) {
     if (!run_[index].entering) continue;
     step = true;
     run_[index].entering = false;
@@ -205,7 +205,7 @@ void ChartRunner::remember(StateIndex index) noexcept {
 
 void ChartRunner::list_active() noexcept {
   active_.clear();
-  for (StateIndex index = 0; index < run_.size(); ++index) {
+  for (StateIndex index = 0; index < chart_.size(); ++index) {
     if (run_[index].active) active_.push_back(index);
   }
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <lua.hpp>
 
 #include "bindings.h"
@@ -100,10 +102,8 @@ void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
 }
 
 bool ChartRunner::took(EventId event) const noexcept {
-  for (const std::uint16_t number : selected_) {
-    if (chart_.transitions[number].on == event) return true;
-  }
-  return false;
+  return std::any_of(selected_.begin(), selected_.end(),
+                     [&](std::uint16_t number) { return chart_.transitions[number].on == event; });
 }
 
 }  // namespace kadans

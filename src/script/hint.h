@@ -15,7 +15,7 @@ using Hint = std::array<char, 320>;
 
 // What is near, or begins like it (a unit forgotten), or else all names when they are few.
 inline std::string hint_text(const std::string& wrong, const std::vector<std::string>& names) {
-  const std::string near = did_you_mean(wrong, names);
+  std::string near = did_you_mean(wrong, names);
   if (!near.empty() || names.empty()) return near;
   for (const std::string& name : names) {
     if (wrong.size() >= 3 && name.starts_with(wrong)) return ", did you mean '" + name + "'?";

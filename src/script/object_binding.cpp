@@ -30,7 +30,7 @@ const ObjectInfo& check_object(lua_State* state, std::uint32_t& number) {
     lua_pop(state, 2);
   }
   if (handle == nullptr) luaL_error(state, "call it on a control object, with a colon: m.object:method(...)");
-  number = *static_cast<const std::uint32_t*>(handle);
+  number = handle != nullptr ? *static_cast<const std::uint32_t*>(handle) : 0;
   return bindings_of(state).catalog->objects[number];
 }
 

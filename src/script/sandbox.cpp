@@ -54,7 +54,7 @@ int print(lua_State* state) {
   luaL_Buffer buffer;
   luaL_buffinit(state, &buffer);
   for (int i = 1; i <= count; ++i) {
-    if (i > 1) luaL_addchar(&buffer, ' ');
+    if (i > 1) luaL_addlstring(&buffer, " ", 1);
     if (luaL_callmeta(state, i, "__tostring") == 0) {
       if (lua_isstring(state, i) != 0) {
         lua_pushvalue(state, i);

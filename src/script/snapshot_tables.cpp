@@ -8,6 +8,7 @@ namespace kadans {
 namespace {
 
 // The field names, interned once: their strings sit on the stack while the tables are refilled.
+// NOLINTBEGIN(readability-identifier-naming): they carry their units as the fields do
 enum Key : int {
   position_rad = 1,
   velocity_rad_s,
@@ -31,6 +32,7 @@ enum Key : int {
   tick,
   key_count
 };
+// NOLINTEND(readability-identifier-naming)
 constexpr const char* key_names[] = {"",
                                      "position_rad",
                                      "velocity_rad_s",

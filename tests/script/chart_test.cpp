@@ -43,7 +43,7 @@ TEST_CASE("states nest: entry goes from outer to inner, exit from inner to outer
                10) == "B+ a+ b+ c+ c- b- a- d+ B- ");
 }
 
-TEST_CASE("the first tick enters the initial states and nothing else; during runs from the outside in") {
+TEST_CASE("the first tick enters the initial states and nothing else, during runs from the outside in") {
   CHECK(played(R"(return k.behavior 't' { initial = 'a', during = log 'B',
     k.state 'a' { enter = log 'a+', during = log 'a', { to = 'b' } }, k.state 'b' { during = log 'b' } })",
                2) == "a+ B a B b ");

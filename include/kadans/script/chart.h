@@ -72,6 +72,7 @@ struct Chart {
   bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // or the same
     return state >= ancestor && state < states[ancestor].end;
   }
+  StateIndex size() const noexcept { return static_cast<StateIndex>(states.size()); }
   EventId intern(std::string_view event);
   EventId find_event(std::string_view event) const noexcept;
 

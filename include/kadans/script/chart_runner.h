@@ -108,7 +108,7 @@ class ChartRunner {
   void start_run(lua_State* state, StateIndex index);
   void resume_run(lua_State* state, StateIndex index);
   void cancel_run(lua_State* state, StateIndex index);
-  bool ready(lua_State* state, StateRun& run, lua_State* thread, int& arguments) noexcept;
+  bool ready(lua_State* state, StateRun& run, lua_State* thread, int& arguments) const noexcept;
 
   const Chart& chart_;
   const RunnerTables& tables_;
