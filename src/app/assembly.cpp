@@ -3,32 +3,34 @@
 #include <stdexcept>
 
 #include "kadans/config/project_root.h"
-#include "kadans/control/joint_pid.h"
+#include "kadans/control/plugin_library.h"
 #include "kadans/estimate/signals.h"
 #include "kadans/plant/bullet/bullet_plant.h"
 #include "kadans/plant/ideal_plant.h"
+#include "shipped_types.h"
 
 namespace kadans {
 namespace {
 
 constexpr double feet_settle_s = 0.5;
 
-struct ControlObjectType {
-  const char* name;
-  std::unique_ptr<ControlObject> (*make)(const ObjectSetup&);
-};
-constexpr ControlObjectType types[] = {{"joint_pid", make_joint_pid}};
-
-std::unique_ptr<ControlObject> make_object(const RobotConfig& config, const ObjectConfig& object) {
-  for (const ControlObjectType& type : types) {
-    if (object.type.name != type.name) continue;
-    try {
-      return type.make({config.model, object.joints});
-    } catch (const std::invalid_argument& error) {
-      refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
-    }
+std::unique_ptr<ControlObject> make_object(const Robot& robot, const ObjectConfig& object) {
+  const RobotConfig& config = robot.config;
+  const MakeControlObject* make = robot.types.find(object.type.name);
+  if (make == nullptr) refuse_unknown(config.file, object.type, "type of control object", robot.types.names());
+  try {
+    return (*make)({config.model, object.joints});
+  } catch (const std::invalid_argument& error) {
+    refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
   }
-  refuse_unknown(config.file, object.type, "type of control object", control_object_types());
+}
+
+void declare(const RobotConfig& config, const ObjectConfig& object, ControlObject& made, Declaration& declaration) {
+  try {
+    made.declare(declaration);
+  } catch (const std::invalid_argument& error) {
+    refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
+  }
 }
 
 std::unique_ptr<ModelPlant> make_plant(PlantKind kind, const RobotConfig& config, std::uint64_t seed) {
@@ -55,13 +57,23 @@ std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Cata
 
 }  // namespace
 
-std::vector<std::string> control_object_types() {
-  std::vector<std::string> names;
-  for (const ControlObjectType& type : types) names.emplace_back(type.name);
-  return names;
+Robot read_robot(const std::filesystem::path& file) {
+  Robot robot;
+  add_shipped_types(robot.types);
+  robot.types.add_registered();
+  for (const PluginFile& plugin : read_plugin_files(file)) {
+    try {
+      load_plugin(plugin.file, robot.types);
+    } catch (const std::invalid_argument& error) {
+      refuse(file.string(), plugin.place, error.what());
+    }
+  }
+  robot.config = read_robot_config(file, robot.types.names());
+  return robot;
 }
 
-std::unique_ptr<ControlSystem> make_control_system(const RobotConfig& config) {
+std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
+  const RobotConfig& config = robot.config;
   auto system = std::make_unique<ControlSystem>();
   Catalog& catalog = system->catalog;
   catalog.model = &config.model;
@@ -75,11 +87,11 @@ std::unique_ptr<ControlSystem> make_control_system(const RobotConfig& config) {
   }
   for (const ObjectConfig& object : config.objects) {
     const auto index = static_cast<std::uint32_t>(system->objects.size());
-    system->objects.push_back(make_object(config, object));
+    system->objects.push_back(make_object(robot, object));
     Declaration declaration(object.name, index, catalog.parameters, catalog.setpoints, catalog.signals);
     const auto first_parameter = static_cast<ParameterId>(catalog.parameters.size());
     const auto first_setpoint = static_cast<SetpointId>(catalog.setpoints.size());
-    system->objects.back()->declare(declaration);
+    declare(config, object, *system->objects.back(), declaration);
     ObjectInfo info{.name = object.name,
                     .type = object.type.name,
                     .joints = object.joints,
@@ -98,23 +110,23 @@ std::unique_ptr<ControlSystem> make_control_system(const RobotConfig& config) {
 }
 
 Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log)
-    : scenario_(scenario), log_(log), robot_(read_robot_config(scenario.robot, control_object_types())) {
+    : scenario_(scenario), log_(log), robot_(read_robot(scenario.robot)) {
   control_system_ = make_control_system(robot_);
   Catalog& catalog = control_system_->catalog;
   try {
-    plant_ = make_plant(scenario.plant, robot_, seed);
+    plant_ = make_plant(scenario.plant, robot_.config, seed);
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
-    estimator_ = std::make_unique<Estimator>(robot_.model, robot_.estimate, robot_.engine.control_period_s);
-    safety_ = std::make_unique<Safety>(robot_.safety, robot_.model);
+    estimator_ = std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
+    safety_ = std::make_unique<Safety>(robot_.config.safety, robot_.config.model);
   } catch (const std::invalid_argument& error) {
-    throw InputError({.file = robot_.file, .message = error.what()});
+    throw InputError({.file = robot_.config.file, .message = error.what()});
   }
   exchange_ = std::make_unique<EngineExchange>();
-  truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.plant), feet_settle_s);
-  control_ = std::make_unique<ControlEngine>(robot_.engine, *plant_, *estimator_, *safety_, *sets_, catalog, *exchange_);
+  truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.config.plant), feet_settle_s);
+  control_ = std::make_unique<ControlEngine>(robot_.config.engine, *plant_, *estimator_, *safety_, *sets_, catalog, *exchange_);
   host_ = make_host(scenario, catalog, seed, log);
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host_.get());
-  lockstep_ = std::make_unique<Lockstep>(robot_.engine, *plant_, *control_, *behaviors_);
+  lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);
 }
 
 RunParts Assembly::parts() noexcept { return {*plant_, *control_, *behaviors_, *lockstep_, *truth_, log_}; }

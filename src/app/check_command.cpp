@@ -25,8 +25,8 @@ std::string check_urdf(const std::string& file) {
 }
 
 std::string check_robot(const std::string& file) {
-  const RobotConfig config = read_robot_config(file, control_object_types());
-  const auto system = make_control_system(config);
+  const Robot robot = read_robot(file);
+  const auto system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));
   return "robot: " + std::to_string(sets.size()) + " control objects, " +
          std::to_string(system->catalog.sets.size()) + " control sets, " +
@@ -52,11 +52,11 @@ std::string check_lua(const std::string& file, const std::string& robot) {
                                                  "; name one with --robot FILE"});
     }
   }
-  const RobotConfig robot_config = read_robot_config(config, control_object_types());
-  const auto system = make_control_system(robot_config);
+  const Robot made_for = read_robot(config);
+  const auto system = make_control_system(made_for);
   const std::vector<InputProblem> problems = check_behavior(project_root(file), file, system->catalog);
   if (!problems.empty()) throw InputError(problems);
-  return "behavior: fits " + robot_config.name;
+  return "behavior: fits " + made_for.config.name;
 }
 
 std::string check_json(const std::string& file) {

@@ -8,6 +8,8 @@
 namespace kadans {
 namespace {
 
+constexpr std::size_t plugins_max = 64;
+
 void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
   f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
   f.number("behavior_period_s", engine.behavior_period_s, {1e-5, 10, "s"},
@@ -28,6 +30,8 @@ void RobotReader::read(Fields& f) {
   std::string schema;
   f.string("$schema", schema, "the schema of this file, for editors");
   f.string("name", config_.name, "the robot's name", Need::required);
+  f.strings("plugins", config_.plugins, {1, plugins_max},
+            "shared libraries that bring types of control objects, from the project root");
   load_model(f);
   f.object("engine", "periods and bounds of the engines",
            [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
@@ -87,6 +91,21 @@ RobotConfig read_robot_config_text(const std::string& text, const std::string& f
 
 RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types) {
   return read_robot_config_text(read_text_file(file), file.string(), object_types);
+}
+
+std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot) {
+  const JsonValue json = parse_json(read_text_file(robot), robot.string());
+  const JsonMember* list = json.find("plugins");
+  std::vector<PluginFile> files;
+  if (list == nullptr) return files;
+  Problems problems(robot.string());
+  for (const JsonValue& name : list->value.items) {
+    if (name.kind != JsonValue::Kind::string || files.size() == plugins_max) break;
+    const std::filesystem::path file = resolve_file(name.text, name.place, "plugins", problems);
+    if (!file.empty()) files.push_back({file, name.place});
+  }
+  problems.throw_if_any();
+  return files;
 }
 
 FieldInfo describe_robot_config() {

@@ -2,12 +2,14 @@
 // the way of the data; each keeps references to those before it.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "kadans/config/robot_config.h"
 #include "kadans/config/scenario_config.h"
+#include "kadans/control/control_object_types.h"
 #include "kadans/engine/lockstep.h"
 #include "kadans/plant/plant.h"
 #include "kadans/scenario/check.h"
@@ -16,8 +18,13 @@
 
 namespace kadans {
 
-// The types of control objects that the program knows, for the configuration's "type".
-std::vector<std::string> control_object_types();
+// A robot as its files describe it, and the types of control objects that it may be made of.
+struct Robot {
+  ControlObjectTypes types;  // shipped, registered by this program, brought by the robot's plug-ins
+  RobotConfig config;
+};
+// Loads the plug-ins that the file names; they stay loaded. Throws InputError with everything that is wrong.
+Robot read_robot(const std::filesystem::path& file);
 
 // Control objects of a configuration with their parameters set, and the catalog that describes them.
 struct ControlSystem {
@@ -25,7 +32,7 @@ struct ControlSystem {
   std::vector<std::unique_ptr<ControlObject>> objects;
 };
 // Throws InputError at the place in the configuration that is wrong.
-std::unique_ptr<ControlSystem> make_control_system(const RobotConfig& config);
+std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 
 class Assembly {
  public:
@@ -33,7 +40,7 @@ class Assembly {
   // must outlive the assembly.
   Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log);
 
-  const RobotConfig& robot() const noexcept { return robot_; }
+  const RobotConfig& robot() const noexcept { return robot_.config; }
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
   const ScriptHost& host() const noexcept { return *host_; }
   RunParts parts() noexcept;
@@ -45,7 +52,7 @@ class Assembly {
  private:
   const ScenarioConfig& scenario_;
   RunLog& log_;
-  RobotConfig robot_;
+  Robot robot_;
   std::unique_ptr<ModelPlant> plant_;
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;

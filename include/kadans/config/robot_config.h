@@ -41,6 +41,7 @@ struct ObjectConfig {
 struct RobotConfig {
   std::string file;
   std::string name;
+  std::vector<PlacedName> plugins;  // shared libraries with types of control objects, as written
   RobotModel model;
   EngineSettings engine;
   PlantSettings plant;
@@ -58,6 +59,15 @@ struct RobotConfig {
 RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types);
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
                                    std::span<const std::string> object_types);
+
+// A plug-in that the file names, found.
+struct PluginFile {
+  std::filesystem::path file;
+  TextPlace place;
+};
+// The plug-ins alone: they must be loaded before the types of control objects are known. Throws InputError when the file
+// is no JSON or names a plug-in that is not there; other mistakes are read_robot_config's to tell.
+std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot);
 
 // Sets the configured parameters in the tables of `catalog`, whose objects were made from config.objects in their
 // order, and fills the objects' presets. Throws InputError on a pattern that fits no parameter of the object, with the

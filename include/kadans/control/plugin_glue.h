@@ -1,0 +1,100 @@
+// Makes a plug-in of control objects: in one source file of a shared library,
+//
+//   KADANS_PLUGIN(kadans::plugin_type<make_spring>("spring"), kadans::plugin_type<make_damper>("damper"))
+//
+// where make_spring is a std::unique_ptr<kadans::ControlObject> (const kadans::ObjectSetup&). The object sees the model
+// as in the program, but for shapes and file names.
+//
+// No exception leaves the library: what make_spring and declare() throw becomes the reason of a refusal. step() and the
+// others that the control thread calls are noexcept in ControlObject: a throw that leaves them ends the process, as
+// everywhere.
+#pragma once
+
+#include <cstdio>
+#include <exception>
+#include <iterator>
+#include <memory>
+
+#include "kadans/control/control_object.h"
+#include "kadans/control/plugin.h"
+
+namespace kadans {
+
+// A control object on the plug-in's side, with tables of its own.
+class PluginInstance {
+ public:
+  using Make = std::unique_ptr<ControlObject> (*)(const ObjectSetup&);
+  PluginInstance(const PluginSetup& setup, Make make);  // throws what `make` throws
+
+  void declare(const PluginDeclaration& program);  // throws what the object's declare() throws
+  void start(const PluginInput& input) noexcept;
+  void step(const PluginInput& input, ActuationFrame& actuation) noexcept;
+  void set_parameter(std::uint32_t parameter, double value) noexcept;
+  void read_signals(double* values) const noexcept;
+  ControlObject& object() noexcept { return *object_; }
+
+ private:
+  RobotModel model_;
+  ParameterTable parameters_;
+  SetpointTable setpoints_;
+  SignalTable signals_;
+  std::unique_ptr<ControlObject> object_;
+};
+
+// True when `work` did not throw; else the error tells why.
+template <typename Work>
+bool without_exception(PluginError& error, Work&& work) noexcept {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& exception) {
+    std::snprintf(error.text, sizeof error.text, "%s", exception.what());
+  } catch (...) {
+    std::snprintf(error.text, sizeof error.text, "it threw something that is no std::exception");
+  }
+  return false;
+}
+
+template <PluginInstance::Make make>
+void* plugin_create(const PluginSetup* setup, PluginError* error) noexcept {
+  PluginInstance* made = nullptr;
+  without_exception(*error, [&] { made = std::make_unique<PluginInstance>(*setup, make).release(); });
+  return made;
+}
+
+template <PluginInstance::Make make>
+PluginType plugin_type(const char* name) noexcept {
+  constexpr auto instance = [](void* object) noexcept -> PluginInstance& { return *static_cast<PluginInstance*>(object); };
+  return {
+      .name = name,
+      .create = plugin_create<make>,
+      .destroy = [](void* o) { const std::unique_ptr<PluginInstance> owned(&instance(o)); },
+      .declare = [](void* o, const PluginDeclaration* program, PluginError* error) -> std::int32_t {
+        return without_exception(*error, [&] { instance(o).declare(*program); }) ? 1 : 0;
+      },
+      .start = [](void* o, const PluginInput* input) { instance(o).start(*input); },
+      .step = [](void* o, const PluginInput* input, ActuationFrame* actuation) { instance(o).step(*input, *actuation); },
+      .set_parameter = [](void* o, std::uint32_t number, double value) { instance(o).set_parameter(number, value); },
+      .parameters_changed = [](void* o) { instance(o).object().parameters_changed(); },
+      .set_point = [](void* o, std::uint32_t channel, double value,
+                      double duration_s) { instance(o).object().set_point(channel, value, duration_s); },
+      .cancel_motion = [](void* o, std::uint32_t channel) { instance(o).object().cancel_motion(channel); },
+      .motion_remaining_s = [](void* o) { return instance(o).object().motion_remaining_s(); },
+      .read_signals = [](void* o, double* values) { instance(o).read_signals(values); },
+      .update = [](void* o, const Snapshot* snapshot) { instance(o).object().update(*snapshot); },
+  };
+}
+
+}  // namespace kadans
+
+#define KADANS_PLUGIN(...)                                                                    \
+  extern "C" __attribute__((visibility("default"))) const ::kadans::Plugin* kadans_plugin() { \
+    static const ::kadans::PluginType types[] = {__VA_ARGS__};                                \
+    static const ::kadans::Plugin plugin = [] {                                               \
+      ::kadans::Plugin filled = ::kadans::plugin_sizes();                                     \
+      filled.type_count = static_cast<std::uint32_t>(std::size(types));                       \
+      filled.types = types;                                                                   \
+      return filled;                                                                          \
+    }();                                                                                      \
+    return &plugin;                                                                           \
+  }

@@ -1,0 +1,96 @@
+#include "kadans/app/program.h"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "commands.h"
+#include "kadans/signal/nearest_name.h"
+#include "terminal.h"
+#include "version.h"
+
+namespace kadans {
+namespace {
+
+constexpr const char* about =
+    "Kadans: a scriptable control runtime for robots.\n"
+    "A 1 kHz core executes compiled control objects; behaviors in Lua tell them what to do.\n";
+
+constexpr const char* examples =
+    "Examples:\n"
+    "  kadans sim config/scenarios/squat.json             run a scenario, read what happened\n"
+    "  kadans sim config/scenarios/squat.json --json      the same as one JSON object\n"
+    "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
+    "\n"
+    "Results go to stdout, progress and errors to stderr.\n"
+    "Exit codes: 0 passed, 1 failed, 2 wrong usage or input, 3 internal error, 130 interrupted.\n";
+
+void add_sim(CLI::App& app, SimOptions& options) {
+  CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
+  sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->required()->type_name("FILE");
+  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")->type_name("N");
+  sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
+      ->type_name("S")
+      ->check(CLI::Range(0.001, 1e6));
+  CLI::Option* record =
+      sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
+  sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
+  sim->add_flag("--json", options.json, "Print one JSON object instead of text");
+  sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
+}
+
+void add_check(CLI::App& app, CheckOptions& options) {
+  CLI::App* check = app.add_subcommand("check", "Say what is wrong in files, without running them");
+  check->add_option("files", options.files, "URDF, robot or scenario configuration (JSON), behavior (Lua)")
+      ->required()
+      ->type_name("FILE...");
+  check->add_option("--robot", options.robot, "Robot that behaviors are checked against (default: by their folder)")
+      ->type_name("FILE");
+}
+
+// "kadans smi": the word that was meant.
+std::string hint(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return {};
+    names.push_back(command->get_name());
+  }
+  return "unknown command '" + std::string(argv[1]) + "'" + did_you_mean(argv[1], names);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(about, "kadans");
+  app.footer(examples);
+  app.set_version_flag("--version", std::string("kadans ") + version);
+  app.require_subcommand(1);
+  SimOptions sim;
+  CheckOptions check;
+  add_sim(app, sim);
+  add_check(app, check);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    const std::string meant = hint(app, argc, argv);
+    print_error(meant.empty() ? error.what() : meant);
+    std::fprintf(stderr, "Run 'kadans --help' or 'kadans COMMAND --help'.\n");
+    return exit_usage;
+  }
+  return app.got_subcommand("sim") ? run_sim(sim) : run_check(check);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const InputError& error) {
+    print_problems(error);
+    return exit_usage;
+  } catch (const std::exception& error) {
+    print_error(std::string("internal: ") + error.what());
+    return exit_internal;
+  }
+}
+
+}  // namespace kadans
