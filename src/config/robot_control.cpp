@@ -44,6 +44,8 @@ void RobotReader::object(Fields& f) {
   f.strings("joints", patterns, {1, max_joints}, "patterns of the motor joints that it drives", Need::required);
   f.integer("divisor", object.divisor, {1, 1000}, "low level every n-th control tick");
   f.integer("high_level_divisor", object.high_level_divisor, {1, 1000}, "high level every n-th behavior tick");
+  f.object("options", "what its type asks for beyond parameters",
+           [&](Fields& e) { e.text_entries(object.options, "as the type says"); });
   f.object("parameters", "first values by parameter pattern",
            [&](Fields& e) { e.number_entries(object.parameters, any_number, "in the parameter's unit"); });
   f.map("presets", "named values that a behavior may choose", [&](Fields& e) {
@@ -88,8 +90,6 @@ void RobotReader::object_joints(const std::vector<PlacedName>& patterns, ObjectC
 }
 
 void RobotReader::control_set(Fields& entry) {
-  ControlSetInfo set;
-  set.name = entry.key();
   std::vector<PlacedName> objects;
   entry.strings("objects", objects, {1, max_objects}, "names of its control objects, in the order of computing",
                 Need::required);
@@ -97,30 +97,42 @@ void RobotReader::control_set(Fields& entry) {
   entry.strings("sum", sum, {1, max_objects}, "those of them that add to what stands before them");
   entry.strings("blend", blend, {1, max_objects}, "those that mix with it, by their parameter SET.OBJECT.weight");
   entry.strings("priority", priority, {1, max_objects}, "those that replace it while they claim the joint");
+  for (const auto* composed : {&sum, &blend, &priority}) {
+    for (const PlacedName& object : *composed) {
+      if (contains(objects, object.name)) continue;
+      problems_.add_unknown(object.place, "control object", object.name, names_of(objects), "of this set");
+    }
+  }
+  ControlSetInfo set;
+  set.name = entry.key();
   const std::vector<std::string> names = names_of(config_.objects);
   std::vector<std::size_t> owner(joint_names_.size(), names.size());  // the object of this set that sets a joint
   for (const PlacedName& object : objects) {
-    const auto found = std::find(names.begin(), names.end(), object.name);
-    const auto index = static_cast<std::uint32_t>(found - names.begin());
-    if (found == names.end()) {
-      problems_.add_unknown(object.place, "control object", object.name, names);
-    } else if (std::find(set.objects.begin(), set.objects.end(), index) != set.objects.end()) {
-      problems_.add(object.place, "control object " + in_quotes(object.name) + " stands twice in this set");
-    } else {
-      set.objects.push_back(index);
-      set.compositions.push_back(contains(sum, object.name)        ? Composition::sum
-                                 : contains(blend, object.name)    ? Composition::blend
-                                 : contains(priority, object.name) ? Composition::priority
-                                                                   : Composition::set);
-      claim_joints(index, set.compositions.back() == Composition::set, object.place, owner);
-    }
-  }
-  for (const auto* composed : {&sum, &blend, &priority}) {
-    for (const PlacedName& object : *composed) {
-      if (!contains(objects, object.name)) problems_.add_unknown(object.place, "object of this set", object.name, names_of(objects));
-    }
+    const Composition composition = contains(sum, object.name)        ? Composition::sum
+                                    : contains(blend, object.name)    ? Composition::blend
+                                    : contains(priority, object.name) ? Composition::priority
+                                                                      : Composition::set;
+    if (!add_to_set(object, composition, set)) continue;
+    claim_joints(set.objects.back(), composition == Composition::set, object.place, owner);
   }
   config_.sets.push_back(std::move(set));
+}
+
+bool RobotReader::add_to_set(const PlacedName& object, Composition composition, ControlSetInfo& set) {
+  const std::vector<std::string> names = names_of(config_.objects);
+  const auto found = std::find(names.begin(), names.end(), object.name);
+  if (found == names.end()) {
+    problems_.add_unknown(object.place, "control object", object.name, names);
+    return false;
+  }
+  const auto index = static_cast<std::uint32_t>(found - names.begin());
+  if (std::find(set.objects.begin(), set.objects.end(), index) != set.objects.end()) {
+    problems_.add(object.place, "control object " + in_quotes(object.name) + " stands twice in this set");
+    return false;
+  }
+  set.objects.push_back(index);
+  set.compositions.push_back(composition);
+  return true;
 }
 
 void RobotReader::claim_joints(std::size_t object, bool sets, TextPlace place, std::vector<std::size_t>& owner) {

@@ -39,6 +39,7 @@ class RobotReader {
   void object(Fields& f);
   void object_joints(const std::vector<PlacedName>& patterns, ObjectConfig& object);
   void control_set(Fields& entry);
+  bool add_to_set(const PlacedName& object, Composition composition, ControlSetInfo& set);
   void claim_joints(std::size_t object, bool sets, TextPlace place, std::vector<std::size_t>& owner);
   void pose(Fields& entry);
   void pose_value(const Fields& entry, const NumberEntry& value, PoseInfo& pose);

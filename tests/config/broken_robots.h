@@ -115,6 +115,8 @@ inline constexpr Broken broken_robots[] = {
      "53:51: control object 'posture' stands twice in this set"},
     {"\"posture\": { \"objects\": [\"posture\"] }", "\"posture\": { \"objects\": [\"posture\", \"arms\"] }",
      "53:51: control objects 'posture' and 'arms' of one set both drive joint 'l_shoulder_pitch'"},
+    {"\"posture\": { \"objects\": [\"posture\"] }", "\"posture\": { \"objects\": [\"posture\"], \"sum\": [\"arms\"] }",
+     "53:60: unknown control object 'arms' of this set (known: posture)"},
     {"\"posture\": { \"objects\": [\"posture\"] }", "\"posture\": [\"posture\"]",
      "53:26: control.sets.posture must be an object, not an array: control sets: the control objects that are active "
      "together\n54:20: unknown control set 'posture' (known: wave)"},

@@ -92,6 +92,13 @@ TEST_CASE("Sets number their control objects, and the initial one is found by na
   CHECK(config.initial_set == 1);
 }
 
+TEST_CASE("Objects of one set may share a joint when all but one of them compose") {
+  const RobotConfig config =
+      read_with("{ \"objects\": [\"posture\"] }", "{ \"objects\": [\"posture\", \"arms\"], \"sum\": [\"arms\"] }");
+  CHECK(config.sets[0].objects == std::vector<std::uint32_t>{0, 1});
+  CHECK(config.sets[0].compositions == std::vector<Composition>{Composition::set, Composition::sum});
+}
+
 TEST_CASE("A pose gives some joints their positions, the start pose the others too") {
   const RobotConfig config = read(right_robot);
   REQUIRE(config.poses.size() == 1);

@@ -87,8 +87,8 @@ TEST_CASE("A field's range, unit, default and meaning stand in the schema") {
   CHECK(period["description"] == "period of the control engine, in s");
   CHECK(schema["required"] == Json({"name", "urdf", "control"}));
   const Json& drive = schema["properties"]["plant"]["properties"]["drives"]["additionalProperties"];
-  CHECK(drive["properties"].contains("spring_Nm_per_rad"));
-  CHECK(drive["additionalProperties"] == false);
+  CHECK(drive.at("properties").contains("spring_Nm_per_rad"));
+  CHECK(drive.value("additionalProperties", true) == false);
 }
 
 }  // namespace kadans
