@@ -74,7 +74,7 @@ TEST_CASE("A script that does not parse is refused with its line before anything
   CHECK_FALSE(std::filesystem::exists(project / "squat.mcap"));
 }
 
-TEST_CASE("A script that fails while it runs is told with its line; the robot stays up and the run fails") {
+TEST_CASE("A script that fails while it runs is told with its line, the robot stays up and the run fails") {
   const auto project = project_copy("sim_script_error");
   write(project / "behaviors/tulip/squat.lua",
         "local k = require \"kadans\"\n"
@@ -100,7 +100,7 @@ TEST_CASE("A script that fails while it runs is told with its line; the robot st
   CHECK(json["checks"][0]["passed"] == true);
 }
 
-TEST_CASE("A record that was asked for and cannot be written is an error; the usual one is not") {
+TEST_CASE("A record that was asked for and cannot be written is an error, the usual one is not") {
   const auto project = project_copy("sim_no_disk");
   const Outcome asked = run(std::string(squat) + " --duration 1 --record nowhere/run.mcap", project);
   CHECK(asked.exit_code == 2);

@@ -20,7 +20,7 @@ TEST_CASE("set replaces what was there") {
   CHECK(joint.effort_Nm == 1);
 }
 
-TEST_CASE("sum adds effort and keeps the mode; a joint that is off takes the proposal's") {
+TEST_CASE("sum adds effort and keeps the mode, a joint that is off takes the proposal's") {
   JointActuation joint = position(0.5);
   CHECK(compose(Composition::sum, 1, effort(4), joint));
   CHECK(joint.mode == ActuationMode::position);

@@ -83,7 +83,7 @@ TEST_CASE("A transaction that is too old expires") {
   CHECK(bench.inbox.state().refused == 1);
 }
 
-TEST_CASE("At most a fixed number of commands is applied in a tick; the rest waits its turn") {
+TEST_CASE("At most a fixed number of commands is applied in a tick, the rest waits its turn") {
   Inbox bench;
   for (int i = 0; i < 3; ++i) {
     bench.sender.begin(0);

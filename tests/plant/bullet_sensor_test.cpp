@@ -61,7 +61,7 @@ TEST_CASE("Every step is a new reading, and reading twice is not") {
   CHECK(third.time_ns == second.time_ns + ms);
 }
 
-TEST_CASE("At rest the IMU feels gravity upwards, in its own axes; in free fall nothing") {
+TEST_CASE("At rest the IMU feels gravity upwards, in its own axes, in free fall nothing") {
   Robot robot = box(2, {0.2, 0.2, 0.2});
   robot.settings.imu.pose.orientation = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};  // its z along the body's x
   BulletPlant plant(robot.model, robot.settings, 1);

@@ -189,4 +189,17 @@ Findings check_name(std::string_view path) {
   return {};
 }
 
+Findings check_test_names(std::string_view path, std::string_view text) {
+  constexpr std::string_view opening = "TEST_CASE(\"";
+  Findings findings;
+  for (std::size_t at = text.find(opening); at != std::string_view::npos; at = text.find(opening, at + 1)) {
+    const std::size_t begin = at + opening.size();
+    const std::string_view name = text.substr(begin, text.find('"', begin) - begin);
+    if (name.find_first_of("[];") != std::string_view::npos) {
+      findings.push_back(std::string(path) + ": the name of test \"" + std::string(name) + "\" holds one of [ ] ;");
+    }
+  }
+  return findings;
+}
+
 }  // namespace kadans::layout

@@ -28,5 +28,7 @@ Findings check_links(std::string_view path, std::string_view cmake_text, const s
 Findings check_length(std::string_view path, std::string_view text);
 // No word in the names of the folders and of the file is utils, common, helpers, misc or manager, nor their kin.
 Findings check_name(std::string_view path);
+// CTest takes the names of test cases as a list: ';', '[' and ']' would tear them apart and the case would never run.
+Findings check_test_names(std::string_view path, std::string_view text);
 
 }  // namespace kadans::layout

@@ -62,7 +62,7 @@ TEST_CASE("at_end looks at the last value alone") {
   CHECK_FALSE(judged(check, {1, 1, 0}).passed);
 }
 
-TEST_CASE("A window leaves out what is before and after it; one that is never reached does not pass") {
+TEST_CASE("A window leaves out what is before and after it, one that is never reached does not pass") {
   ScenarioCheck check{.name = "n", .kind = CheckKind::always, .signal = "x", .max = 1, .from_s = 1, .until_s = 2};
   CHECK(judged(check, {9, 1, 1, 9}).passed);
   CHECK_FALSE(judged(check, {0, 0, 9, 0}).passed);

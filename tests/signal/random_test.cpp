@@ -36,7 +36,7 @@ TEST_CASE("RandomStream gives the same numbers for a seed and a name on every ma
   }
 }
 
-TEST_CASE("uniform numbers fill [0, 1) evenly") {
+TEST_CASE("uniform numbers fill the range from 0 to below 1 evenly") {
   RandomStream stream(7, "uniform");
   constexpr int count = 100'000;
   std::array<int, 10> bins{};
