@@ -8,6 +8,11 @@ void MinimumJerk::reset(double position) noexcept {
   remaining_s_ = 0;
 }
 
+void MinimumJerk::start(double position, double velocity, double target, double duration_s) noexcept {
+  state_ = {position, velocity, 0};
+  move(target, duration_s);
+}
+
 void MinimumJerk::move(double target, double duration_s) noexcept {
   if (!(duration_s > 0)) return reset(target);
   target_ = target;

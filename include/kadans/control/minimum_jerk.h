@@ -13,6 +13,8 @@ class MinimumJerk {
 
   // At rest at `position`, at once.
   void reset(double position) noexcept;
+  // At `position`, moving with `velocity`, to rest at `target` after duration_s > 0.
+  void start(double position, double velocity, double target, double duration_s) noexcept;
   // Reaches `target` at rest after duration_s > 0; at once for 0.
   void move(double target, double duration_s) noexcept;
   // Comes to rest in duration_s, half the way that its velocity would have brought it.

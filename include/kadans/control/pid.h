@@ -33,8 +33,9 @@ class Pid {
     bool saturated = false;
   };
 
-  // Takes over at the measured state so that the next output is effort_Nm, as far as the integral's limit allows.
-  void start(double position_rad, double velocity_rad_s, double effort_Nm) noexcept;
+  // Takes over at the measured state so that the next output is effort_Nm, as far as the integral's limit allows, when
+  // the reference is there and moves with reference_velocity.
+  void start(double position_rad, double velocity_rad_s, double effort_Nm, double reference_velocity_rad_s = 0) noexcept;
   // Returns the effort. Values that are not finite give a result that is not finite; the safety layer stops it.
   double step(double reference_rad, double reference_velocity_rad_s, double position_rad, double velocity_rad_s,
               double dt_s) noexcept;

@@ -1,0 +1,99 @@
+// Plays a periodic motion and the torque that belongs to it, around the posture in which it started, in effort mode:
+// type "feedforward_player". What is known beforehand is fed forward, a PD only corrects (Craig, Introduction to
+// Robotics, 3rd ed., sec. 9.9); the series may come from a model, from a record of an earlier run or from iterative
+// learning.
+//
+//   phi' = 2 pi rate,   s_x(phi) = sum over n = 1..3 of  x_cos<n> cos(n phi) + x_sin<n> sin(n phi)
+//   q_ref = q_0 + A s_position(phi)
+//   u = limit(u_0 + A s_effort(phi) + kp (q_ref - q) + kd (v_ref - v), +-effort_max)
+//
+// All joints share one phase, which begins at 0 at the start. A, the amplitude, is a set-point of each joint: 0 at the
+// start, so the series is faded in and out by moving it. q_0 is where the joint comes to rest after the start, u_0 the
+// torque that was there.
+//
+// Set-points  <joint>.amplitude, 0..1, reached along a minimum-jerk curve in the time given.
+// Parameters  rate_Hz of the object; gains and series of each joint. A coefficient that changes counts at once: change
+// it
+//             while the amplitude is 0.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "kadans/control/jointwise.h"
+#include "kadans/control/minimum_jerk.h"
+
+namespace kadans {
+
+inline constexpr std::size_t harmonic_count = 3;
+
+// The phase that all joints of a player share, with the cosines and sines of its multiples.
+class PlayerPhase {
+ public:
+  void start() noexcept;
+  void step(double rate_Hz, double dt_s) noexcept;
+
+  double turns = 0;  // 0..1
+  double rate_rad_s = 0;
+  std::array<double, harmonic_count> cosine{}, sine{};
+};
+
+// A Fourier series without its constant term.
+struct HarmonicSeries {
+  std::array<double, harmonic_count> cosine{}, sine{};
+  double value(const PlayerPhase& phase) const noexcept;
+  double rate(const PlayerPhase& phase) const noexcept;  // its derivative by time
+};
+
+class PlayerLaw {
+ public:
+  struct Config {
+    double kp_Nm_per_rad = 0;   // 0..5000
+    double kd_Nms_per_rad = 0;  // 0..500
+    double effort_max_Nm = 0;
+    HarmonicSeries position_rad, effort_Nm;
+  };
+  struct State {
+    double amplitude = 0;
+    double reference_rad = 0, reference_velocity_rad_s = 0;
+    double feedforward_Nm = 0;  // u_0 and the series
+    double error_rad = 0;
+    double effort_Nm = 0;
+    bool saturated = false;
+  };
+  static constexpr std::uint32_t channels = 1;
+
+  explicit PlayerLaw(const JointAxis& axis) : axis_(axis) {}
+  void follow(const PlayerPhase& phase) noexcept { phase_ = &phase; }  // before start
+  void declare(AxisTables& tables);
+  void start(const Handover& handover) noexcept;
+  JointActuation step(const JointState& state, double dt_s) noexcept;
+  void set_point(std::uint32_t which, double value, double duration_s) noexcept;
+  void cancel(std::uint32_t which) noexcept;
+  double remaining_s() const noexcept { return amplitude_.remaining_s(); }
+
+ private:
+  JointAxis axis_;
+  Config config_;
+  State state_;
+  MinimumJerk posture_, amplitude_;
+  double effort_before_Nm_ = 0;
+  const PlayerPhase* phase_ = nullptr;
+};
+
+class FeedforwardPlayer final : public Jointwise<PlayerLaw> {
+ public:
+  explicit FeedforwardPlayer(const ObjectSetup& setup);
+  void declare(Declaration& declaration) override;
+  void start(const ControlInput& input) noexcept override;
+  void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
+
+ private:
+  double rate_Hz_ = 1;
+  PlayerPhase phase_;
+  bool fresh_ = false;
+};
+
+std::unique_ptr<ControlObject> make_feedforward_player(const ObjectSetup& setup);
+
+}  // namespace kadans

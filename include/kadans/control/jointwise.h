@@ -1,0 +1,110 @@
+// A control object that treats each of its joints by the same law and independently: this template is the object, `Law`
+// is the mathematics of one joint. A law is
+//
+//   explicit Law(const JointAxis& axis);
+//   static constexpr std::uint32_t channels;                               // its set-points, numbered from 0
+//   void declare(AxisTables& tables);
+//   void start(const Handover& handover) noexcept;                         // takes over from the measured state
+//   JointActuation step(const JointState& state, double dt_s) noexcept;
+//   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
+//   void cancel(std::uint32_t which) noexcept;
+//   double remaining_s() const noexcept;
+//
+// The step in the tick of the start passes no time (dt_s = 0), so that a reference which starts where the joint is does
+// not run ahead of the measurement.
+//
+// A joint whose measured state is not finite gets an actuation that is not finite, which the safety layer stops, and
+// leaves nothing behind: where it is measured again it is taken over anew.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "kadans/control/control_object.h"
+#include "kadans/control/handover.h"
+#include "kadans/control/joint_axis.h"
+
+namespace kadans {
+
+template <typename Law>
+class Jointwise : public ControlObject {
+ public:
+  // Throws std::invalid_argument for a passive joint.
+  explicit Jointwise(const ObjectSetup& setup) {
+    for (JointAxis& axis : joint_axes(setup)) {
+      Law law(axis);
+      parts_.push_back({std::move(axis), std::move(law)});
+    }
+  }
+
+  void declare(Declaration& declaration) override {
+    std::uint32_t channel = 0;
+    for (Part& part : parts_) {
+      AxisTables tables(declaration, part.axis, channel);
+      part.law.declare(tables);
+      channel += Law::channels;
+    }
+  }
+
+  void start(const ControlInput& input) noexcept override {
+    for (Part& part : parts_) take_over(part, input);
+  }
+
+  void step(const ControlInput& input, ActuationFrame& actuation) noexcept override {
+    for (Part& part : parts_) {
+      if (!measured(part, input)) part.running = false;
+      if (!part.running) take_over(part, input);
+      const double dt_s = std::exchange(part.fresh, false) ? 0 : input.dt_s;
+      actuation.joints[part.axis.joint] =
+          part.running ? part.law.step(input.joints.joints[part.axis.joint], dt_s) : not_finite();
+    }
+  }
+
+  void set_point(std::uint32_t channel, double value, double duration_s) noexcept override {
+    parts_[channel / Law::channels].law.set_point(channel % Law::channels, value, duration_s);
+  }
+  void cancel_motion(std::uint32_t channel) noexcept override {
+    parts_[channel / Law::channels].law.cancel(channel % Law::channels);
+  }
+  double motion_remaining_s() const noexcept override {
+    double remaining_s = 0;
+    for (const Part& part : parts_) remaining_s = std::max(remaining_s, part.law.remaining_s());
+    return remaining_s;
+  }
+
+ protected:
+  std::size_t size() const noexcept { return parts_.size(); }
+  Law& law(std::size_t i) noexcept { return parts_[i].law; }
+  const JointAxis& axis(std::size_t i) const noexcept { return parts_[i].axis; }
+
+ private:
+  struct Part {
+    JointAxis axis;
+    Law law;
+    bool running = false;
+    bool fresh = false;  // started, not stepped yet
+  };
+
+  static bool measured(const Part& part, const ControlInput& input) noexcept {
+    const JointState& state = input.joints.joints[part.axis.joint];
+    return std::isfinite(state.position_rad) && std::isfinite(state.velocity_rad_s) && std::isfinite(state.effort_Nm);
+  }
+  static void take_over(Part& part, const ControlInput& input) noexcept {
+    part.running = part.fresh = measured(part, input);
+    if (!part.running) return;
+    const std::size_t joint = part.axis.joint;
+    part.law.start({input.joints.joints[joint], input.last.joints[joint], input.dt_s});
+  }
+  static JointActuation not_finite() noexcept {
+    return {.effort_Nm = std::numeric_limits<double>::quiet_NaN(), .mode = ActuationMode::effort};
+  }
+
+  std::vector<Part> parts_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,66 @@
+// A motion from any state to rest at a target, as fast as limits of velocity, acceleration and jerk allow; the target
+// may change at any time. The plan is made when it changes, in bounded time, and followed exactly: each phase is a
+// cubic.
+//
+// A plan changes the velocity to a peak, keeps it for a while and changes it to 0. Both changes take the least time
+// that acceleration and jerk allow (Biagiotti and Melchiorri, Trajectory Planning for Automatic Machines and Robots,
+// Springer 2008, sec. 3.4; with a start in motion Kroeger and Wahl 2010, IEEE Trans. Robotics 26(1)). The way that
+// remains when the present motion is brought to rest says in which direction the peak lies; the way grows with the
+// peak, so either the velocity limit is the peak and is kept for a while, or a search in a bracket finds the peak that
+// needs no cruise. A slower motion of a given duration is the same with a lower peak.
+//
+// From rest to rest this is the optimum in time, it never turns back and never passes the target. From a state in
+// motion it keeps the limits as well and is near the optimum. A state outside the limits is brought inside with the
+// jerk and the acceleration allowed.
+//
+// One owner; nothing here allocates, locks or throws. The limits are greater than 0; units are up to the owner.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace kadans {
+
+class MotionProfile {
+ public:
+  struct Limits {
+    double velocity = 1, acceleration = 10, jerk = 100;
+  };
+  struct State {
+    double position = 0, velocity = 0, acceleration = 0;
+  };
+
+  // At rest at `position`, at once.
+  void reset(double position) noexcept;
+  // In motion; follow with move or stop.
+  void set_state(const State& state) noexcept;
+  // Reaches `target` at rest after `duration`. False when that is too soon: then as soon as the limits allow.
+  bool move(double target, const Limits& limits, double duration_s = 0) noexcept;
+  // Comes to rest as soon as the limits allow.
+  void stop(const Limits& limits) noexcept;
+
+  const State& step(double dt_s) noexcept;
+  const State& state() const noexcept { return state_; }
+  double target() const noexcept { return target_; }
+  double remaining_s() const noexcept { return remaining_s_; }  // 0 at rest
+
+  // Constant jerk for a time.
+  struct Phase {
+    double jerk = 0, duration_s = 0;
+  };
+
+ private:
+  static constexpr std::size_t phase_count = 7;  // change, cruise, change
+
+  void begin_plan(double target) noexcept;
+
+  std::array<Phase, phase_count> phases_{};
+  std::size_t phase_ = phase_count;  // under way
+  double time_s_ = 0;                // since the phase began
+  State phase_start_;
+  State state_;
+  double target_ = 0;
+  double remaining_s_ = 0;
+};
+
+}  // namespace kadans

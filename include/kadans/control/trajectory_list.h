@@ -1,0 +1,100 @@
+// A list of via points for each joint, followed by a PID in effort mode: type "trajectory_list". Behaviors fill the
+// list by set-points with durations, a high level in C++ by append(); the low level fetches a point when it has reached
+// the one before, without ever waiting.
+//
+// Between two points runs a cubic Hermite polynomial. A point without a velocity gets one from its neighbours, so that
+// the motion stays monotone between points (Fritsch and Carlson 1980, SIAM J. Numer. Anal. 17(2)): 0 where the
+// direction turns and at the end. So the reference stays between the points that lie around it. A point that arrives
+// while the last one is under way still changes the velocity there.
+//
+// Set-points  <joint>.position_rad. With append = 1 each is added to the list, to be reached its duration after the one
+//             before; with 0 it replaces what is left of the list. A duration of 0 is at once.
+// Underrun    a point announced that more would come and none has: the reference comes to rest there, the signal
+//             underrun stays set until the next point, underruns counts them. A point for which there is no room, or
+//             which is not acceptable, is refused; dropped counts those of set-points.
+// Threads     append() belongs to the behavior thread, all else to the control thread.
+#pragma once
+
+#include <limits>
+#include <memory>
+
+#include "kadans/control/jointwise.h"
+#include "kadans/control/pid.h"
+#include "kadans/exchange/ring.h"
+
+namespace kadans {
+
+struct ViaPoint {
+  static constexpr double chosen = std::numeric_limits<double>::quiet_NaN();
+
+  double position_rad = 0;
+  double velocity_rad_s = chosen;  // or a finite one: passed at that velocity
+  double duration_s = 0;           // after the point before; at least duration_min_s
+  bool more = false;               // the writer means to follow it up in time
+
+  static constexpr double duration_min_s = 0.001;
+};
+
+class TrajectoryLaw {
+ public:
+  struct State {
+    std::uint32_t waiting = 0;  // points in the list, the one under way not among them
+    std::uint32_t underruns = 0;
+    std::uint32_t dropped = 0;
+    bool underrun = false;
+  };
+  static constexpr std::uint32_t channels = 1;
+  static constexpr std::size_t capacity = 64;
+
+  explicit TrajectoryLaw(const JointAxis& axis) : axis_(axis) {}
+  void declare(AxisTables& tables);
+  void start(const Handover& handover) noexcept;
+  JointActuation step(const JointState& state, double dt_s) noexcept;
+  void set_point(std::uint32_t which, double value, double duration_s) noexcept;
+  void cancel(std::uint32_t which) noexcept;
+  double remaining_s() const noexcept;
+
+  // Behavior thread. False, and nothing changes, when the list is full, the position is not within the joint's limits,
+  // or the duration is too short.
+  [[nodiscard]] bool append(const ViaPoint& point) noexcept;
+
+ private:
+  struct Segment {
+    double from_rad = 0, from_rad_s = 0, to_rad = 0, to_rad_s = 0;
+    double duration_s = 0, time_s = 0;
+    bool moving = false;
+    bool open = false;  // the end's velocity may still change
+    bool more = false;
+  };
+
+  std::size_t waiting() const noexcept { return commanded_.size() + handed_.size(); }
+  const ViaPoint& peek(std::size_t i) const noexcept;
+  void drop_first() noexcept;
+  void clear() noexcept;
+  void fetch() noexcept;
+  void stop() noexcept;
+  void choose_end_velocity() noexcept;
+  void advance(double dt_s) noexcept;
+  void evaluate() noexcept;
+
+  JointAxis axis_;
+  Pid pid_;
+  State state_;
+  double append_ = 1;
+  Segment segment_;
+  double reference_rad_ = 0, reference_rad_s_ = 0;
+  Ring<ViaPoint, capacity> commanded_;  // both ends in the control thread
+  Ring<ViaPoint, capacity> handed_;     // from the behavior thread
+};
+
+// Derive from it and override update() for a high level of your own.
+class TrajectoryList : public Jointwise<TrajectoryLaw> {
+ public:
+  using Jointwise::Jointwise;
+  // Behavior thread; `i` as in ObjectSetup::joints. False as in TrajectoryLaw.
+  [[nodiscard]] bool append(std::size_t i, const ViaPoint& point) noexcept { return law(i).append(point); }
+};
+
+std::unique_ptr<ControlObject> make_trajectory_list(const ObjectSetup& setup);
+
+}  // namespace kadans

@@ -1,0 +1,64 @@
+#include "kadans/control/handover.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kadans {
+namespace {
+
+constexpr double stop_s = handover_stop_s;
+constexpr double stop_shortest_s = 0.02;  // close to the joint's limit
+constexpr double still_rad_s = 1e-6;
+
+}  // namespace
+
+double effort_before_Nm(const Handover& handover) noexcept {
+  switch (handover.last.mode) {
+    case ActuationMode::off:
+      return 0;
+    case ActuationMode::effort:
+      return handover.last.effort_Nm;
+    case ActuationMode::position:
+    case ActuationMode::velocity:
+      return handover.state.effort_Nm;
+  }
+  return 0;
+}
+
+PositionStart position_before(const Handover& handover) noexcept {
+  const auto& [state, last, dt_s] = handover;
+  const double ahead_rad = state.position_rad + 2 * dt_s * state.velocity_rad_s;
+  switch (last.mode) {
+    case ActuationMode::off:
+      break;
+    case ActuationMode::effort:
+      return {ahead_rad, state.velocity_rad_s, last.effort_Nm};
+    case ActuationMode::velocity:
+      return {ahead_rad, last.velocity_rad_s, last.effort_Nm};
+    case ActuationMode::position:
+      return {last.position_rad + dt_s * last.velocity_rad_s, last.velocity_rad_s, last.effort_Nm};
+  }
+  return {ahead_rad, state.velocity_rad_s, 0};
+}
+
+VelocityStart velocity_before(const Handover& handover) noexcept {
+  if (handover.last.mode == ActuationMode::velocity) return {handover.last.velocity_rad_s, handover.last.effort_Nm};
+  return {handover.state.velocity_rad_s, effort_before_Nm(handover)};
+}
+
+void continue_motion(MinimumJerk& reference, double position_rad, double velocity_rad_s,
+                     const JointAxis& axis) noexcept {
+  const double target_rad = std::clamp(position_rad + 0.5 * stop_s * velocity_rad_s, axis.lower_rad, axis.upper_rad);
+  const double way_rad = target_rad - position_rad;
+  if (std::abs(velocity_rad_s) < still_rad_s && std::abs(way_rad) < still_rad_s) return reference.reset(position_rad);
+  const bool towards = way_rad * velocity_rad_s > 0;
+  const double duration_s = towards ? std::clamp(2 * way_rad / velocity_rad_s, stop_shortest_s, stop_s) : stop_s;
+  reference.start(position_rad, velocity_rad_s, target_rad, duration_s);
+}
+
+void FadingEffort::start(double effort_Nm) noexcept {
+  effort_Nm_.reset(effort_Nm);
+  if (effort_Nm != 0) effort_Nm_.move(0, fade_s);
+}
+
+}  // namespace kadans
