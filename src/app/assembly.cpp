@@ -1,5 +1,7 @@
 #include "kadans/app/assembly.h"
 
+#include <algorithm>
+#include <map>
 #include <stdexcept>
 
 #include "kadans/config/project_root.h"
@@ -14,12 +16,40 @@ namespace {
 
 constexpr double feet_settle_s = 0.5;
 
+ObjectOptions options_of(const ObjectConfig& object) {
+  std::map<std::string, std::string> texts;
+  for (const TextEntry& entry : object.options) texts[entry.key] = entry.text;
+  return texts;
+}
+
+// Of an option's text, or of the object when it has none.
+TextPlace place_of(const ObjectConfig& object, const std::string& option) {
+  const auto given = std::ranges::find(object.options, option, &TextEntry::key);
+  return given == object.options.end() ? object.place : given->text_place;
+}
+
+void refuse_unasked(const RobotConfig& config, const ObjectConfig& object, const std::vector<std::string>& asked) {
+  for (const TextEntry& entry : object.options) {
+    if (std::ranges::find(asked, entry.key) != asked.end()) continue;
+    if (asked.empty()) {
+      refuse(config.file, entry.place, "control objects of type " + in_quotes(object.type.name) + " have no options");
+    }
+    refuse_unknown(config.file, {entry.key, entry.place}, "option", asked);
+  }
+}
+
 std::unique_ptr<ControlObject> make_object(const Robot& robot, const ObjectConfig& object) {
   const RobotConfig& config = robot.config;
   const MakeControlObject* make = robot.types.find(object.type.name);
   if (make == nullptr) refuse_unknown(config.file, object.type, "type of control object", robot.types.names());
+  const ObjectSetup setup{config.model, object.joints, options_of(object)};
   try {
-    return (*make)({config.model, object.joints});
+    std::unique_ptr<ControlObject> made = (*make)(setup);
+    refuse_unasked(config, object, setup.options.asked());
+    return made;
+  } catch (const OptionError& error) {
+    refuse(config.file, place_of(object, error.option()),
+           "control object " + in_quotes(object.name) + ": " + error.what());
   } catch (const std::invalid_argument& error) {
     refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
   }
@@ -116,14 +146,16 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   try {
     plant_ = make_plant(scenario.plant, robot_.config, seed);
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
-    estimator_ = std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
+    estimator_ =
+        std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
     safety_ = std::make_unique<Safety>(robot_.config.safety, robot_.config.model);
   } catch (const std::invalid_argument& error) {
     throw InputError({.file = robot_.config.file, .message = error.what()});
   }
   exchange_ = std::make_unique<EngineExchange>();
   truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.config.plant), feet_settle_s);
-  control_ = std::make_unique<ControlEngine>(robot_.config.engine, *plant_, *estimator_, *safety_, *sets_, catalog, *exchange_);
+  control_ = std::make_unique<ControlEngine>(robot_.config.engine, *plant_, *estimator_, *safety_, *sets_, catalog,
+                                             *exchange_);
   host_ = make_host(scenario, catalog, seed, log);
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host_.get());
   lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);

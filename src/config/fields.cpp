@@ -55,6 +55,23 @@ void Fields::number_entries(std::vector<NumberEntry>& entries, NumberRange range
   }
 }
 
+void Fields::text_entries(std::vector<TextEntry>& entries, std::string_view doc) {
+  any_key_ = true;
+  if (value_ == nullptr) {
+    described_->kind = FieldInfo::Kind::map;
+    described_->fields.assign(1, {.kind = FieldInfo::Kind::string, .doc = std::string(doc)});
+    return;
+  }
+  for (const JsonMember& member : value_->members) {
+    if (member.name == doc_key) continue;
+    if (member.value.kind == JsonValue::Kind::string) {
+      entries.push_back({member.name, member.value.text, member.place, member.value.place});
+    } else {
+      wrong_type(member.value, path(member.name), "a string", doc);
+    }
+  }
+}
+
 Fields Fields::open_child(const JsonValue& value, std::string path) const {
   Fields child(value, *problems_);
   child.path_ = std::move(path);

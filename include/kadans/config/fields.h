@@ -53,6 +53,14 @@ struct NumberEntry {
   TextPlace value_place;  // of the number
 };
 
+// A key that the file chose, with its text: {"link": "l_foot"}.
+struct TextEntry {
+  std::string key;
+  std::string text;
+  TextPlace place;       // of the key
+  TextPlace text_place;  // of the text
+};
+
 // What a field is, for the schema and the manual.
 struct FieldInfo {
   enum class Kind : std::uint8_t { boolean, integer, number, string, object, list, map };
@@ -86,6 +94,8 @@ class Fields {
                Need need = Need::optional);
   // The members of this object itself: any keys, each with a number.
   void number_entries(std::vector<NumberEntry>& entries, NumberRange range, std::string_view doc);
+  // Likewise, each with a string.
+  void text_entries(std::vector<TextEntry>& entries, std::string_view doc);
 
   template <std::integral T>
   bool integer(std::string_view name, T& value, IntegerRange range, std::string_view doc, Need need = Need::optional) {

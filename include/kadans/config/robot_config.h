@@ -34,6 +34,7 @@ struct ObjectConfig {
   std::vector<std::size_t> joints;       // in the order of the model
   std::uint32_t divisor = 1;             // low level every n-th control tick
   std::uint32_t high_level_divisor = 1;  // high level every n-th behavior tick
+  std::vector<TextEntry> options;        // what its type asks for beyond parameters
   std::vector<NumberEntry> parameters;   // key: pattern over the object's parameter names, without its own
   std::vector<PresetConfig> presets;
 };

@@ -11,8 +11,10 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "kadans/control/object_options.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/frames.h"
 #include "kadans/signal/parameter.h"
@@ -59,6 +61,7 @@ class Declaration {
 struct ObjectSetup {
   const RobotModel& model;
   std::vector<std::size_t> joints;  // the joints it drives, indices into the model; at least one, none twice
+  ObjectOptions options{};
 };
 
 class ControlObject {

@@ -1,0 +1,103 @@
+// A spring and a damper between a point of a limb and its reference, in effort mode: type "task_impedance" (Hogan 1985,
+// Impedance Control, J. Dyn. Sys. Meas. Control 107, without shaping the inertia; Khatib 1987, IEEE J. Robotics and
+// Automation 3(1), for J^T).
+//
+//   F = K (x_ref - x) + D (v_ref - v), its length limited to force_max
+//   u = limit(J^T F + posture (q_start - q) - damping qd + I, +-effort_max)
+//
+// x is the point, v = J qd its velocity, J how it moves with the joints; all in the base frame, worked out in the tick
+// along the limb's own joints. Joints of the limb that other objects drive, and passive ones, count for x and v. What
+// the point leaves free (a leg's foot may turn) is the joints' own springs' and dampers' matter; the springs hold the
+// pose of the start and so act on the point too. Nothing compensates gravity: compose with a gravity_compensation
+// ("sum").
+//
+// Options     link: the link that the point belongs to; required.
+// Set-points  x_m, y_m, z_m: of the point, in the base frame; reached by a minimum-jerk motion in the time given.
+// Parameters  point_x_m, point_y_m, point_z_m: the point in the link's frame (a new one is taken over as at the start);
+//             a Config a direction: x.stiffness_N_per_m and so on; force_max_N; a JointConfig a joint.
+// Signals     a State a direction, a JointState a joint, force_limited.
+// Start       the reference is where the point is. Torque that the law does not explain fades within 0.2 s.
+// Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops. While one of
+//             the limb is not, where the point is is unknown: F is 0, and the reference is taken anew after.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "kadans/control/control_object.h"
+#include "kadans/control/effort_takeover.h"
+#include "kadans/control/joint_axis.h"
+#include "kadans/control/limb_chain.h"
+#include "kadans/control/minimum_jerk.h"
+
+namespace kadans {
+
+class TaskImpedance final : public ControlObject {
+ public:
+  struct Config {                  // of a direction
+    double stiffness_N_per_m = 0;  // 0..50000
+    double damping_Ns_per_m = 0;   // 0..5000
+  };
+  struct State {  // of a direction
+    double reference_m = 0;
+    double position_m = 0;
+    double error_m = 0;
+    double force_N = 0;
+  };
+  struct JointConfig {
+    double posture_Nm_per_rad = 0;   // 0..5000
+    double damping_Nms_per_rad = 0;  // 0..500
+    double effort_max_Nm = 0;        // 0..the joint's
+  };
+  struct JointOutput {
+    double effort_Nm = 0;
+    bool saturated = false;
+  };
+
+  // Throws std::invalid_argument for a passive joint, no or an unknown link, and a joint that does not move it.
+  explicit TaskImpedance(const ObjectSetup& setup);
+
+  void declare(Declaration& declaration) override;
+  void start(const ControlInput& input) noexcept override;
+  void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
+  void set_point(std::uint32_t channel, double value, double duration_s) noexcept override;
+  void cancel_motion(std::uint32_t channel) noexcept override;
+  double motion_remaining_s() const noexcept override;
+  void parameters_changed() noexcept override;
+
+ private:
+  struct Direction {
+    Config config;
+    State state;
+    MinimumJerk reference;
+  };
+  struct Part {
+    JointAxis axis;
+    std::size_t segment = 0;  // of the chain
+    JointConfig config;
+    JointOutput output;
+    double posture_rad = 0;
+    EffortTakeover takeover;
+  };
+  void declare_direction(Declaration& declaration, std::size_t direction);
+  void declare_joint(Declaration& declaration, Part& part);
+  bool measured(const JointStates& joints) const noexcept;
+  void take_over_point(const JointStates& joints) noexcept;
+  void pull(const JointStates& joints, double dt_s) noexcept;
+  double law_Nm(const Part& part, const JointState& joint) const noexcept;
+
+  LimbChain chain_;
+  std::vector<Part> parts_;
+  std::array<Direction, 3> directions_;
+  Vec3 point_in_link_m_{};
+  Vec3 point_started_m_{};  // point_in_link_m_ of the reference
+  double force_max_N_ = 0;
+  bool force_limited_ = false;
+  bool located_ = false;  // the reference belongs to a point whose place is known
+  bool fresh_ = false;    // started, not stepped yet
+};
+
+std::unique_ptr<ControlObject> make_task_impedance(const ObjectSetup& setup);
+
+}  // namespace kadans
