@@ -11,7 +11,8 @@ using State = MotionProfile::State;
 using Phase = MotionProfile::Phase;
 
 constexpr int search_steps_max = 60;
-constexpr double search_tolerance = 1e-10;  // of the way; the rest is cruised
+// Of the way that is left; the rest is cruised, so the target is met exactly and the duration to about this share.
+constexpr double fastest_tolerance = 1e-8, slower_tolerance = 1e-6;
 
 State advance(const State& s, double jerk, double t) noexcept {
   return {s.position + t * (s.velocity + t * (0.5 * s.acceleration + t * jerk / 6)),
@@ -88,7 +89,7 @@ Plan fastest_plan(const State& from, double way, double way_to_stop, const Limit
   if (fast.way() <= way) return fast;
   const auto too_far = [&](double peak) { return plan_with_peak(from, peak, limits).way() - way; };
   const double peak = zero_from_below(too_far, 0, way_to_stop - way, limits.velocity, fast.way() - way,
-                                      search_tolerance * std::abs(way - way_to_stop));
+                                      fastest_tolerance * std::abs(way - way_to_stop));
   return plan_with_peak(from, peak, limits);
 }
 
@@ -101,7 +102,7 @@ Plan slower_plan(const State& from, double way, double way_to_stop, double durat
     return peak * (duration_s - plan.duration_s()) - (way - plan.way());
   };
   const double peak = zero_from_below(surplus, 0, way_to_stop - way, fastest.peak, surplus(fastest.peak),
-                                      search_tolerance * std::abs(way - way_to_stop));
+                                      slower_tolerance * std::abs(way - way_to_stop));
   return plan_with_peak(from, peak, limits);
 }
 

@@ -88,7 +88,12 @@ TEST_CASE("MotionProfile reaches any target from any state within the limits, co
     const double to = random.uniform(-3, 3);
     MotionProfile profile;
     profile.set_state(random_state(random, limits));
+    MotionProfile stopping = profile;
+    stopping.stop(limits);
     REQUIRE(profile.move(to, limits));
+    // Never later than who would stop first and go from there.
+    const double by_stopping_s = stopping.remaining_s() + optimal_time_s(std::abs(to - stopping.target()), limits);
+    REQUIRE(profile.remaining_s() <= by_stopping_s * (1 + 1e-6));
     bool within = true;
     int ticks = 0;
     for (; profile.remaining_s() > 0 && ticks < 2'000'000; ++ticks) within = within && step_within(profile, limits);
