@@ -106,16 +106,6 @@ void ComputedTorque::aim(Part& part, const ControlInput& input) noexcept {
       reference.acceleration + c.kp_per_s2 * s.error_rad + c.kd_per_s * (reference.velocity - joint.velocity_rad_s);
 }
 
-double ComputedTorque::law_Nm(std::size_t index, const ModelData& model) const noexcept {
-  const Part& part = parts_[index];
-  double sum_Nm = model.bias_Nm[index] + part.config.viscous_Nms_per_rad * part.state.reference_velocity_rad_s +
-                  part.config.rotor_inertia_kg_m2 * part.state.acceleration_rad_s2;
-  for (std::size_t j = 0; j < parts_.size(); ++j) {
-    if (parts_[j].running || j == index) sum_Nm += model.mass(index, j) * parts_[j].state.acceleration_rad_s2;
-  }
-  return sum_Nm;
-}
-
 double ComputedTorque::settle(Part& part, double law_Nm, bool known, double dt_s) noexcept {
   const Config& c = part.config;
   State& s = part.state;
@@ -135,12 +125,19 @@ void ComputedTorque::step(const ControlInput& input, ActuationFrame& actuation) 
   const ModelData& model = data_.read();
   const bool known = model.time_ns >= started_ns_;
   model_age_s_ = 1e-9 * static_cast<double>(input.time_ns - (known ? model.time_ns : started_ns_));
-  for (Part& part : parts_) aim(part, input);
+  std::array<double, max_joints> acceleration_rad_s2{};
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    aim(parts_[i], input);
+    acceleration_rad_s2[i] = parts_[i].running ? parts_[i].state.acceleration_rad_s2 : 0;
+  }
+  const std::array<double, max_joints> inertial_Nm = model.mass.times(acceleration_rad_s2, parts_.size());
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
     double effort_Nm = std::numeric_limits<double>::quiet_NaN();
     if (part.running) {
-      effort_Nm = settle(part, law_Nm(i, model), known, part.fresh ? 0 : input.dt_s);
+      const double law_Nm = inertial_Nm[i] + part.config.rotor_inertia_kg_m2 * acceleration_rad_s2[i] +
+                            model.bias_Nm[i] + part.config.viscous_Nms_per_rad * part.state.reference_velocity_rad_s;
+      effort_Nm = settle(part, law_Nm, known, part.fresh ? 0 : input.dt_s);
       part.fresh = false;
     }
     actuation.joints[part.axis.joint] = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};

@@ -8,6 +8,7 @@
 namespace kadans {
 namespace {
 
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr double gain_rate_per_s = 1 / FadingEffort::fade_s;
 
 }  // namespace
@@ -60,31 +61,28 @@ void GravityCompensation::start(const ControlInput& input) noexcept {
   }
 }
 
-double GravityCompensation::law_Nm(std::size_t index, const GravityData& data,
-                                   const ControlInput& input) const noexcept {
-  double sum_Nm = data.gravity_Nm[index];
-  for (std::size_t j = 0; j < parts_.size(); ++j) {
-    const double way_rad = input.joints.joints[parts_[j].axis.joint].position_rad - data.position_rad[j];
-    if (std::isfinite(way_rad) || j == index) sum_Nm += data.slope_Nm_per_rad(index, j) * way_rad;
-  }
-  return gain_ * sum_Nm;
-}
-
 void GravityCompensation::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const GravityData& data = data_.read();
   const bool known = data.time_ns >= started_ns_;
   model_age_s_ = 1e-9 * static_cast<double>(input.time_ns - (known ? data.time_ns : started_ns_));
   const double most = gain_rate_per_s * input.dt_s;
   gain_ += std::clamp(config_.gain - gain_, -most, most);
+  std::array<double, max_joints> way_rad{};
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const double position_rad = input.joints.joints[parts_[i].axis.joint].position_rad;
+    if (std::isfinite(position_rad)) way_rad[i] = position_rad - data.position_rad[i];
+  }
+  const std::array<double, max_joints> change_Nm = data.slope_Nm_per_rad.times(way_rad, parts_.size());
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
     State& s = part.state;
-    const double law = law_Nm(i, data, input);
+    const bool measured = std::isfinite(input.joints.joints[part.axis.joint].position_rad);
+    const double law_Nm = measured ? gain_ * (data.gravity_Nm[i] + change_Nm[i]) : not_measured;
     double integral_Nm = 0;  // there is none
-    const double offset_Nm = part.takeover.step(law, known, part.fresh ? 0 : input.dt_s, integral_Nm, 0);
+    const double offset_Nm = part.takeover.step(law_Nm, known, part.fresh ? 0 : input.dt_s, integral_Nm, 0);
     part.fresh = false;
-    s.effort_Nm = std::clamp(law + offset_Nm, -part.effort_max_Nm, part.effort_max_Nm);
-    s.saturated = s.effort_Nm != law + offset_Nm;
+    s.effort_Nm = std::clamp(law_Nm + offset_Nm, -part.effort_max_Nm, part.effort_max_Nm);
+    s.saturated = s.effort_Nm != law_Nm + offset_Nm;
     if (std::isfinite(s.effort_Nm)) part.takeover.leave(s.effort_Nm);
     actuation.joints[part.axis.joint] = {.effort_Nm = s.effort_Nm, .mode = ActuationMode::effort};
   }

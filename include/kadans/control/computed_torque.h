@@ -8,8 +8,8 @@
 // obeys e'' + kd e' + kp e = 0, whatever the pose. The high level computes M and h (model/dynamics.h), about 4 us for
 // TULip, for half of its period ahead, the middle of the time in which they are used; the low level takes the newest
 // there are and never waits. They hold for the robot as it hangs from its base, the base carried evenly and pointing
-// where the estimator says: limbs in the air, or a robot on a stand. Where feet bear the robot the model is short of its
-// weight; the integral then has to carry it. Joints that other objects drive, and passive ones, count as not
+// where the estimator says: limbs in the air, or a robot on a stand. Where feet bear the robot the model is short of
+// its weight; the integral then has to carry it. Joints that other objects drive, and passive ones, count as not
 // accelerating.
 //
 // Set-points  <joint>.position_rad (within the joint's limits), reached by a minimum-jerk motion in the time given.
@@ -89,7 +89,6 @@ class ComputedTorque final : public ControlObject {
   static void declare(AxisTables& tables, Part& part);
   static void take_over(Part& part, const ControlInput& input) noexcept;
   static void aim(Part& part, const ControlInput& input) noexcept;
-  double law_Nm(std::size_t index, const ModelData& model) const noexcept;
   static double settle(Part& part, double law_Nm, bool known, double dt_s) noexcept;
 
   std::vector<Part> parts_;            // control thread

@@ -72,7 +72,6 @@ class GravityCompensation final : public ControlObject {
     EffortTakeover takeover;
     bool fresh = false;
   };
-  double law_Nm(std::size_t index, const GravityData& data, const ControlInput& input) const noexcept;
 
   std::vector<Part> parts_;            // control thread
   Config config_;                      // control thread

@@ -16,6 +16,21 @@ struct JointMatrix {
   double& operator()(std::size_t row, std::size_t column) noexcept { return lower[place(row, column)]; }
   double operator()(std::size_t row, std::size_t column) const noexcept { return lower[place(row, column)]; }
 
+  // The product with the first `size` of `in`; row by row along the triangle, each entry used for both its places.
+  std::array<double, max_joints> times(const std::array<double, max_joints>& in, std::size_t size) const noexcept {
+    std::array<double, max_joints> out{};
+    const double* entry = lower.data();
+    for (std::size_t row = 0; row < size; ++row) {
+      double sum = 0;
+      for (std::size_t column = 0; column < row; ++column, ++entry) {
+        sum += *entry * in[column];
+        out[column] += *entry * in[row];
+      }
+      out[row] += sum + *entry++ * in[row];
+    }
+    return out;
+  }
+
  private:
   static constexpr std::size_t place(std::size_t row, std::size_t column) noexcept {
     return row >= column ? row * (row + 1) / 2 + column : column * (column + 1) / 2 + row;

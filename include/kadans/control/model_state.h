@@ -14,8 +14,8 @@ class ModelState {
  public:
   explicit ModelState(const RobotModel& model);
 
-  // The dynamics become those of the snapshot, the joints moved on evenly by ahead_s. False, and they stay as they were,
-  // when something in the snapshot is not finite.
+  // The dynamics become those of the snapshot, the joints moved on evenly by ahead_s. False, and they stay as they
+  // were, when something in the snapshot is not finite.
   [[nodiscard]] bool update(const Snapshot& snapshot, double ahead_s = 0) noexcept;
 
   const Dynamics& dynamics() const noexcept { return dynamics_; }
