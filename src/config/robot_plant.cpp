@@ -1,4 +1,4 @@
-// The parts of a robot's configuration that stand on plant, start, estimator and safety.
+// The parts of a robot's configuration that stand on plant, start and estimator.
 #include <algorithm>
 #include <array>
 
@@ -167,53 +167,6 @@ void RobotReader::estimate(Fields& f) {
       entry.integer("sample_divisor", divisor, {1, 1000}, "sampled every n-th control tick");
     });
   });
-}
-
-void RobotReader::limits(Fields& entry) {
-  each_joint(entry, config_.safety.joints, [&](JointLimits& limits) {
-    entry.number("lower_rad", limits.lower_rad, {-1e3, 1e3, "rad"}, "lower position limit, else the URDF's");
-    entry.number("upper_rad", limits.upper_rad, {-1e3, 1e3, "rad"}, "upper position limit, else the URDF's");
-    entry.number("velocity_max_rad_s", limits.velocity_max_rad_s, {0, 1e3, "rad/s"}, "speed limit, else the URDF's");
-    entry.number("effort_max_Nm", limits.effort_max_Nm, {0, 1e4, "Nm"}, "torque limit, else the URDF's");
-  });
-  if (!have_model_) return;
-  for (const std::size_t i : matching(entry.key(), joint_names_)) {
-    if (!within_urdf(entry, config_.safety.joints[i], config_.model.joints[i])) return;
-  }
-}
-
-// Limits may only be narrower than the URDF's.
-bool RobotReader::within_urdf(const Fields& entry, const JointLimits& l, const Joint& joint) {
-  const auto refuse_field = [&](const char* field, double urdf) {
-    problems_.add(entry.place(field), entry.path(field) + " goes beyond the URDF's " + number_text(urdf) +
-                                          " of joint '" + joint.name + "'; limits may only be narrowed");
-    return false;
-  };
-  if (!(l.lower_rad >= joint.lower_rad)) return refuse_field("lower_rad", joint.lower_rad);
-  if (!(l.upper_rad <= joint.upper_rad)) return refuse_field("upper_rad", joint.upper_rad);
-  if (!(l.velocity_max_rad_s <= joint.velocity_max_rad_s)) {
-    return refuse_field("velocity_max_rad_s", joint.velocity_max_rad_s);
-  }
-  if (!(l.effort_max_Nm <= joint.effort_max_Nm)) return refuse_field("effort_max_Nm", joint.effort_max_Nm);
-  if (l.lower_rad <= l.upper_rad) return true;
-  problems_.add(entry.place("upper_rad"), entry.path() + ": lower_rad " + number_text(l.lower_rad) +
-                                              " is above upper_rad " + number_text(l.upper_rad) + " for joint '" +
-                                              joint.name + "'");
-  return false;
-}
-
-void RobotReader::safety(Fields& f) {
-  SafetySettings& safety = config_.safety;
-  f.map("limits", "limits by joint pattern, narrower than the URDF's", [&](Fields& entry) { limits(entry); });
-  f.number("position_margin_rad", safety.position_margin_rad, {0, 1, "rad"}, "beyond a limit before it is a fault");
-  f.number("velocity_margin", safety.velocity_margin, {1, 10}, "times the limit before it is a fault");
-  f.number("damping_Nms_per_rad", safety.damping_Nms_per_rad, {0, 100, "Nms/rad"}, "of a joint that damps");
-  f.number("heartbeat_timeout_s", safety.heartbeat_timeout_s, {0.01, 60, "s"},
-           "silence of the behavior engine that counts");
-  f.integer("silent_ticks_max", safety.silent_ticks_max, {1, 10000}, "missing readings in a row that count");
-  f.integer("overruns_in_a_row_max", safety.overruns_in_a_row_max, {1, 10000}, "overruns in a row that count");
-  f.number("hold_s", safety.hold_s, {0, 60, "s"}, "after a lost heartbeat: hold this long, then damp");
-  f.number("damp_s", safety.damp_s, {0, 60, "s"}, "damp this long, then off");
 }
 
 }  // namespace kadans

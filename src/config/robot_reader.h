@@ -30,7 +30,10 @@ class RobotReader {
   void foot(Fields& f);
   void start(Fields& f);
   void estimate(Fields& f);
+
+  // robot_safety.cpp
   void safety(Fields& f);
+  void reaction(Fields& entry);
   void limits(Fields& entry);
   bool within_urdf(const Fields& entry, const JointLimits& limits, const Joint& joint);
 

@@ -8,7 +8,11 @@ namespace kadans {
 
 CommandInbox::CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& sets,
                            std::uint32_t commands_per_tick_max, std::int64_t age_max_ns)
-    : queue_(queue), catalog_(catalog), sets_(sets), commands_per_tick_max_(commands_per_tick_max), age_max_ns_(age_max_ns) {
+    : queue_(queue),
+      catalog_(catalog),
+      sets_(sets),
+      commands_per_tick_max_(commands_per_tick_max),
+      age_max_ns_(age_max_ns) {
   if (commands_per_tick_max_ + 1 < max_transaction) {
     throw std::invalid_argument("commands_per_tick_max " + std::to_string(commands_per_tick_max_) +
                                 " would never let the largest transaction pass: at least " +
@@ -18,30 +22,49 @@ CommandInbox::CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& s
 
 bool CommandInbox::acceptable(const Command& command) const noexcept {
   switch (command.kind) {
-    case CommandKind::transaction: return false;  // a header inside a transaction
-    case CommandKind::set_parameter: return catalog_.parameters.accepts(command.index, command.value);
+    case CommandKind::transaction:
+      return false;  // a header inside a transaction
+    case CommandKind::set_parameter:
+      return catalog_.parameters.accepts(command.index, command.value);
     case CommandKind::set_point:
       return catalog_.setpoints.accepts(command.index, command.value) && command.duration_s >= 0 &&
              command.duration_s <= motion_duration_max_s;
-    case CommandKind::cancel_motion: return command.index < catalog_.setpoints.size();
-    case CommandKind::switch_set: return command.index < catalog_.sets.size();
-    case CommandKind::clear_faults: return true;
+    case CommandKind::cancel_motion:
+      return command.index < catalog_.setpoints.size();
+    case CommandKind::switch_set:
+      return command.index < catalog_.sets.size();
+    case CommandKind::clear_faults:
+      return true;
   }
   return false;
 }
 
-bool CommandInbox::transaction_acceptable(std::uint32_t count) const noexcept {
+bool CommandInbox::held(const Command& command, const Catalog& catalog, const Safety& safety) noexcept {
+  if (command.kind == CommandKind::clear_faults || command.kind == CommandKind::cancel_motion) return false;
+  if (safety.robot_level() >= SafetyLevel::hold) return true;
+  if (command.kind != CommandKind::set_point) return false;
+  const std::uint32_t joint = catalog.setpoints[command.index].joint;
+  return joint < catalog.model->joints.size() && safety.joint_level(joint) >= SafetyLevel::hold;
+}
+
+bool CommandInbox::transaction_acceptable(std::uint32_t count, const Safety& safety) const noexcept {
+  bool cleared = false;
   for (std::uint32_t i = 1; i <= count; ++i) {
-    if (!acceptable(queue_.peek(i))) return false;
+    const Command& command = queue_.peek(i);
+    if (!acceptable(command)) return false;
+    cleared = cleared || command.kind == CommandKind::clear_faults;
+    if (!cleared && held(command, catalog_, safety)) return false;
   }
   return true;
 }
 
 void CommandInbox::execute(const Command& command, Safety& safety) noexcept {
   switch (command.kind) {
-    case CommandKind::transaction: break;
+    case CommandKind::transaction:
+      break;
     case CommandKind::set_parameter:
-      if (catalog_.parameters.set(command.index, command.value)) retuned_[catalog_.parameters.owner(command.index)] = true;
+      if (catalog_.parameters.set(command.index, command.value))
+        retuned_[catalog_.parameters.owner(command.index)] = true;
       break;
     case CommandKind::set_point: {
       const Setpoint& setpoint = catalog_.setpoints[command.index];
@@ -53,8 +76,12 @@ void CommandInbox::execute(const Command& command, Safety& safety) noexcept {
       sets_.object(setpoint.owner).cancel_motion(setpoint.channel);
       break;
     }
-    case CommandKind::switch_set: sets_.switch_to(command.index); break;
-    case CommandKind::clear_faults: safety.clear(); break;
+    case CommandKind::switch_set:
+      sets_.switch_to(command.index);
+      break;
+    case CommandKind::clear_faults:
+      safety.clear();
+      break;
   }
 }
 
@@ -79,14 +106,15 @@ void CommandInbox::apply(std::uint64_t tick, std::int64_t now_ns, Safety& safety
     }
     if (header.count > share) return;
     const bool fresh = now_ns - header.time_ns <= age_max_ns_;
-    if (fresh && transaction_acceptable(header.count)) {
+    if (fresh && transaction_acceptable(header.count, safety)) {
       for (std::uint32_t i = 1; i <= header.count; ++i) execute(queue_.peek(i), safety);
       notify_owners();
       state_.applied += header.count;
       state_.last_transaction = header.sequence;
     } else {
       state_.refused += header.count;
-      safety.raise({.code = FaultCode::command_refused, .tick = tick, .value = static_cast<double>(header.sequence)});
+      const FaultCode code = fresh ? FaultCode::command_refused : FaultCode::command_old;
+      safety.raise({.code = code, .tick = tick, .value = static_cast<double>(header.sequence)});
     }
     share -= header.count;
     queue_.drop(header.count + 1);

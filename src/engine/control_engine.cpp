@@ -23,7 +23,9 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
                  .dt_s = dt_s,
                  .missed_ticks = missed,
                  .heartbeat_age_s = 1e-9 * static_cast<double>(time_ns - exchange_.heartbeat.read()),
+                 .sensors = sensors_,
                  .joints = snapshot_.joints,
+                 .base = snapshot_.status.base,
                  .health = estimator_.health()},
                 actuation_, snapshot_.status.safety);
   plant_.write(actuation_);

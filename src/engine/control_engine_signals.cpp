@@ -13,10 +13,7 @@ void ControlEngine::declare_signals(Catalog& catalog) {
   table.add({"engine.commands.applied", "", "Commands applied since the start."}, &inbox_.state().applied);
   table.add({"engine.commands.refused", "", "Commands refused since the start."}, &inbox_.state().refused);
   table.add({"engine.control_set", "", "Number of the active control set."}, &snapshot_.control_set);
-  table.add({"safety.faults", "", "Faults since the start or the last clearing."},
-            &snapshot_.status.safety.fault_count);
-  table.add({"safety.level", "", "Rung of the ladder: 0 normal, 1 limited, 2 hold, 3 damp, 4 off."},
-            &safety_.level_signal());
+  safety_.declare_signals(table, *catalog.model);
 }
 
 }  // namespace kadans

@@ -1,146 +1,185 @@
 #include "kadans/safety/safety.h"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
 
 namespace kadans {
 namespace {
 
-bool finite(const JointActuation& a) noexcept {
-  return std::isfinite(a.effort_Nm) && std::isfinite(a.position_rad) && std::isfinite(a.velocity_rad_s);
-}
-
-void check_limits(const JointLimits& limits, const Joint& joint) {
-  const bool sane = limits.lower_rad <= limits.upper_rad && limits.velocity_max_rad_s >= 0 && limits.effort_max_Nm >= 0;
-  if (!sane) throw std::invalid_argument("safety limits of joint " + joint.name + " make no sense");
-}
+constexpr double dt_max_s = 1;  // a step in time that is longer, or none, is not believed
 
 }  // namespace
-
-Safety::Safety(const SafetySettings& settings, const RobotModel& model)
-    : settings_(settings), joint_count_(model.joints.size()) {
-  if (settings_.joints.size() != joint_count_) {
-    throw std::invalid_argument("safety limits for " + std::to_string(settings_.joints.size()) + " joints, the robot has " +
-                                std::to_string(joint_count_));
-  }
-  for (std::size_t i = 0; i < joint_count_; ++i) check_limits(settings_.joints[i], model.joints[i]);
-}
 
 void Safety::raise(const Fault& fault) noexcept {
   if (fault_count_++ == 0) first_fault_ = fault;
   (void)log_.try_push(fault);
+  pending_ |= bit(fault.code);
 }
 
 void Safety::clear() noexcept {
-  joint_levels_.fill(SafetyLevel::normal);
-  robot_level_ = SafetyLevel::normal;
-  heartbeat_lost_ = false;
-  lost_for_s_ = 0;
-  overruns_in_a_row_ = 0;
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    joints_[i].ladder.clear();
+    joints_[i].cut = 0;
+  }
+  for (Ladder& ladder : foot_ladders_) ladder.clear();
+  robot_.clear();
+  engine_.clear();
+  pending_ = cut_ = 0;
+  lasting_s_ = 0;
   fault_count_ = 0;
   first_fault_ = {};
 }
 
-void Safety::degrade_joint(std::size_t joint, SafetyLevel level, const Fault& fault) noexcept {
-  if (joint_levels_[joint] >= level) return;
-  joint_levels_[joint] = level;
-  raise(fault);
+FaultMask Safety::watch_body(const SafetyInput& in, double dt_s) noexcept {
+  return engine_.look(in.heartbeat_age_s, in.missed_ticks) | imu_.look(in.sensors.imu, in.health.imu) |
+         fall_.look(in.base, in.sensors.imu, dt_s);
 }
 
-// A silent behavior engine: hold at once, damp after hold_s, off after another damp_s. A heartbeat that returns while
-// holding lifts the hold; from damp on only clearing does.
-void Safety::watch_engine(const SafetyInput& input) noexcept {
-  if (input.missed_ticks > 0) {
-    const auto missed = static_cast<double>(input.missed_ticks);
-    raise({.code = FaultCode::tick_overrun, .tick = input.tick, .value = missed});
-    if (++overruns_in_a_row_ >= settings_.overruns_in_a_row_max) robot_level_ = std::max(robot_level_, SafetyLevel::damp);
-  } else {
-    overruns_in_a_row_ = 0;
+FaultMask Safety::watch_feet(const SafetyInput& in, double dt_s) noexcept {
+  FaultMask all = 0;
+  const std::uint32_t count = std::min(in.health.foot_count, in.sensors.foot_count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const FaultMask found = feet_[i].look(in.sensors.feet[i], in.health.feet[i]);
+    if (found == 0 && foot_ladders_[i].idle()) continue;
+    FaultMask fresh = foot_ladders_[i].update(found, dt_s, settings_.reactions, &Reaction::joint);
+    for (; fresh != 0; fresh &= fresh - 1) {
+      const std::uint16_t joint = i < settings_.foot_joints.size() ? settings_.foot_joints[i] : no_joint;
+      Fault fault{.code = first_of(fresh), .joint = joint, .tick = in.tick};
+      feet_[i].describe(in.health.feet[i], fault);
+      raise(fault);
+    }
+    all |= found;
   }
-  const bool lost = !(input.heartbeat_age_s <= settings_.heartbeat_timeout_s);
-  if (lost && !heartbeat_lost_) {
-    raise({.code = FaultCode::heartbeat_lost,
-           .tick = input.tick,
-           .value = input.heartbeat_age_s,
-           .limit = settings_.heartbeat_timeout_s});
+  return all;
+}
+
+FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actuation, double dt_s) noexcept {
+  FaultMask all = 0;
+  lost_ = 0;
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    JointGuard& joint = joints_[i];
+    const JointWatch::Input look{in.joints.joints[i], in.sensors.joints[i], in.health.joints[i],
+                                 actuation.joints[i], joint.last_Nm,        dt_s};
+    const FaultMask found = joint.watch.look(look);
+    joint.finite = (found & bit(FaultCode::actuation_not_finite)) == 0;
+    if ((found | joint.cut) == 0 && joint.ladder.idle()) continue;
+    FaultMask fresh = joint.ladder.update(found | joint.cut, dt_s, settings_.reactions, &Reaction::joint) & found;
+    for (; fresh != 0; fresh &= fresh - 1) {
+      Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(i), .tick = in.tick};
+      joint.watch.describe(look, fault);
+      raise(fault);
+    }
+    all |= found;
+    lost_ += joint.ladder.level() >= SafetyLevel::damp ? 1 : 0;
   }
-  heartbeat_lost_ = lost;
-  if (lost) {
-    lost_for_s_ += input.dt_s;
-    const SafetyLevel level = lost_for_s_ <= settings_.hold_s                      ? SafetyLevel::hold
-                              : lost_for_s_ <= settings_.hold_s + settings_.damp_s ? SafetyLevel::damp
-                                                                                   : SafetyLevel::off;
-    robot_level_ = std::max(robot_level_, level);
-  } else if (robot_level_ == SafetyLevel::hold) {
-    robot_level_ = SafetyLevel::normal;
-    lost_for_s_ = 0;
+  return all;
+}
+
+// `body`: what the robot's own watches found and is still to be reported; `others`: already reported.
+void Safety::judge_robot(const SafetyInput& in, FaultMask body, FaultMask others, double dt_s) noexcept {
+  const FaultMask faults = body | others;
+  if (faults == 0 && robot_.idle()) return;
+  FaultMask fresh = robot_.update(faults, dt_s, settings_.reactions, &Reaction::robot) & body;
+  for (; fresh != 0; fresh &= fresh - 1) {
+    Fault fault{.code = first_of(fresh), .tick = in.tick};
+    imu_.describe(in.health.imu, fault);
+    fall_.describe(in.base, fault);
+    engine_.describe(fault);
+    if (fault.code == FaultCode::joints_lost) {
+      fault.value = lost_;
+      fault.limit = settings_.joints_lost_max;
+    }
+    raise(fault);
+  }
+  escalate(faults, dt_s);
+}
+
+void Safety::escalate(FaultMask faults, double dt_s) noexcept {
+  if ((faults & escalating_) != 0) {
+    lasting_s_ += dt_s;
+    if (lasting_s_ > settings_.hold_s) robot_.latch(SafetyLevel::damp);
+    if (lasting_s_ > settings_.hold_s + settings_.damp_s) robot_.latch(SafetyLevel::off);
+  } else if (robot_.level() < SafetyLevel::damp) {
+    lasting_s_ = 0;
   }
 }
 
-void Safety::watch_joint(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept {
-  const JointState& state = input.joints.joints[joint];
-  const JointLimits& limits = settings_.joints[joint];
-  const SensorState& sensor = input.health.joints[joint];
-  const auto fault = [&](FaultCode code, double value, double limit) {
-    return Fault{code, static_cast<std::uint16_t>(joint), input.tick, value, limit};
-  };
-  if (!sensor.finite) degrade_joint(joint, SafetyLevel::off, fault(FaultCode::sensor_not_finite, state.position_rad, 0));
-  const std::uint32_t silent_max = settings_.silent_ticks_max + sensor.period_ticks - 1;
-  if (sensor.silent_ticks > silent_max) {
-    degrade_joint(joint, SafetyLevel::off, fault(FaultCode::sensor_silent, sensor.silent_ticks, silent_max));
-  }
-  if (!finite(actuation)) {
-    degrade_joint(joint, SafetyLevel::damp, fault(FaultCode::actuation_not_finite, actuation.effort_Nm, 0));
-  }
-  if (limits.effort_max_Nm == 0) return;  // passive: nothing to take away
-  const double lower = limits.lower_rad - settings_.position_margin_rad;
-  const double upper = limits.upper_rad + settings_.position_margin_rad;
-  if (!(state.position_rad >= lower && state.position_rad <= upper)) {
-    const double broken = state.position_rad < limits.lower_rad ? limits.lower_rad : limits.upper_rad;
-    degrade_joint(joint, SafetyLevel::damp, fault(FaultCode::position_limit, state.position_rad, broken));
-  }
-  const double fastest = limits.velocity_max_rad_s * settings_.velocity_margin;
-  if (!(std::abs(state.velocity_rad_s) <= fastest)) {
-    degrade_joint(joint, SafetyLevel::damp, fault(FaultCode::velocity_limit, state.velocity_rad_s, fastest));
+void Safety::cut_joint(const SafetyInput& in, std::size_t index, double dt_s, JointActuation& actuation) noexcept {
+  JointGuard& joint = joints_[index];
+  actuation.effort_Nm *= fall_.share();
+  const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), joint.authority, joint.last_Nm,
+                                   dt_s};
+  joint.cut = joint.limiter.limit(limits, actuation);
+  if (joint.cut == 0) return;
+  cut_ |= joint.cut;
+  FaultMask fresh = joint.ladder.update(joint.cut, 0, settings_.reactions, &Reaction::joint);
+  for (; fresh != 0; fresh &= fresh - 1) {
+    Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(index), .tick = in.tick};
+    joint.limiter.describe(limits, fault);
+    raise(fault);
   }
 }
 
-void Safety::limit_joint(const SafetyInput& input, std::size_t joint, JointActuation& actuation) noexcept {
-  const double effort_max_Nm = settings_.joints[joint].effort_max_Nm;
-  const SafetyLevel level = std::max(joint_levels_[joint], robot_level_);
-  if (effort_max_Nm == 0 || level == SafetyLevel::off) {
+// The usual case in a few comparisons: nothing is wrong with joint or robot, and what is asked is well within the
+// limits.
+bool Safety::passes(const SafetyInput& in, std::size_t index, double dt_s, const JointActuation& actuation) noexcept {
+  JointGuard& joint = joints_[index];
+  const bool calm = joint.ladder.idle() && robot_.level() == SafetyLevel::normal && joint.finite &&
+                    joint.authority == 1 && joint.cut == 0 && fall_.phase() != FallWatch::Phase::falling &&
+                    actuation.mode == ActuationMode::effort;
+  const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, dt_s};
+  if (!calm || joint.limiter.passive() || !joint.limiter.free(limits, actuation.effort_Nm)) return false;
+  joint.last_Nm = actuation.effort_Nm;
+  joint.level_number = 0;
+  return true;
+}
+
+void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, JointActuation& actuation) noexcept {
+  JointGuard& joint = joints_[index];
+  joint.cut = 0;
+  SafetyLevel level = joint_level(index);
+  // The drive makes the torque in its own modes: it can be given back, or softened, as torque only.
+  const bool by_drive = actuation.mode == ActuationMode::position || actuation.mode == ActuationMode::velocity;
+  const bool reduced = joint.authority < 1 || fall_.share() < 1;
+  const bool damps = level == SafetyLevel::damp || !joint.finite || (by_drive && reduced);
+  if (level >= SafetyLevel::damp) {
+    joint.authority = 0;
+  } else if (joint.authority < 1) {
+    joint.authority = std::min(1.0, joint.authority + dt_s / settings_.recover_s);
+  }
+  if (joint.limiter.passive() || level == SafetyLevel::off) {
     actuation = {};
-    return;
+  } else if (damps) {
+    actuation = joint.limiter.damp(in.joints.joints[index]);
+  } else if (actuation.mode != ActuationMode::off) {
+    cut_joint(in, index, dt_s, actuation);
+  } else {
+    actuation = {};
   }
-  if (level == SafetyLevel::damp) {
-    const double effort_Nm = -settings_.damping_Nms_per_rad * input.joints.joints[joint].velocity_rad_s;
-    actuation = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};
-  }
-  const bool too_much = !(std::abs(actuation.effort_Nm) <= effort_max_Nm);
-  if (too_much && !limiting_[joint]) {
-    raise({FaultCode::effort_limit, static_cast<std::uint16_t>(joint), input.tick, actuation.effort_Nm, effort_max_Nm});
-  }
-  if (too_much) actuation.effort_Nm = std::clamp(actuation.effort_Nm, -effort_max_Nm, effort_max_Nm);
-  limiting_[joint] = too_much;
-  limited_ = limited_ || too_much;
+  joint.last_Nm = actuation.effort_Nm;
+  joint.level_number = static_cast<std::uint32_t>(joint_level(index));
 }
 
-void Safety::check(const SafetyInput& input, ActuationFrame& actuation, SafetyStatus& status) noexcept {
-  limited_ = false;
-  watch_engine(input);
-  SafetyLevel worst = robot_level_;
-  for (std::size_t joint = 0; joint < joint_count_; ++joint) {
-    watch_joint(input, joint, actuation.joints[joint]);
-    limit_joint(input, joint, actuation.joints[joint]);
-    worst = std::max(worst, joint_levels_[joint]);
+void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatus& status) noexcept {
+  const double dt_s = in.dt_s > 0 && in.dt_s <= dt_max_s ? in.dt_s : 0;
+  const FaultMask raised = pending_ | cut_;
+  pending_ = cut_ = 0;
+  const FaultMask joints = watch_joints(in, actuation, dt_s);
+  const FaultMask feet = watch_feet(in, dt_s);
+  const FaultMask body = watch_body(in, dt_s) | bit_if(lost_ > settings_.joints_lost_max, FaultCode::joints_lost);
+  judge_robot(in, body, raised | joints | feet, dt_s);
+  pending_ = 0;  // what was raised here has been judged here
+  SafetyLevel worst = robot_.level();
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    if (passes(in, i, dt_s, actuation.joints[i])) continue;
+    limit_joint(in, i, dt_s, actuation.joints[i]);
+    worst = std::max(worst, joint_level(i));
   }
-  if (limited_) worst = std::max(worst, SafetyLevel::limited);
+  pending_ = 0;
   status.level = worst;
   status.fault_count = fault_count_;
   status.first_fault = first_fault_;
   level_number_ = static_cast<std::uint32_t>(worst);
+  robot_level_number_ = static_cast<std::uint32_t>(robot_.level());
 }
 
 }  // namespace kadans

@@ -1,33 +1,72 @@
 #include "kadans/signal/fault.h"
 
+#include <array>
+
 #include "kadans/signal/status.h"
 
 namespace kadans {
+namespace {
+
+struct CodeText {
+  FaultCode code;
+  const char* name;
+  const char* key;
+};
+
+using enum FaultCode;
+constexpr std::array<CodeText, fault_codes> texts{{
+    {none, "none", ""},
+    {position_limit, "position_limit", "safety.position_margin_rad"},
+    {velocity_limit, "velocity_limit", "safety.velocity_margin"},
+    {effort_limit, "effort_limit", "safety.limits.effort_max_Nm"},
+    {actuation_not_finite, "actuation_not_finite", "safety.reactions"},
+    {sensor_not_finite, "sensor_not_finite", "safety.reactions"},
+    {sensor_silent, "sensor_silent", "safety.silent_ticks_max"},
+    {heartbeat_lost, "heartbeat_lost", "safety.heartbeat_timeout_s"},
+    {tick_overrun, "tick_overrun", "engine.control_period_s"},
+    {command_refused, "command_refused", "safety.reactions"},
+    {soft_stop, "soft_stop", "safety.soft_stop.zone_rad"},
+    {soft_speed, "soft_speed", "safety.limits.velocity_max_rad_s"},
+    {effort_rate_limit, "effort_rate_limit", "safety.limits.effort_rate_max_Nm_s"},
+    {power_limit, "power_limit", "safety.limits.power_max_W"},
+    {motor_warm, "motor_warm", "safety.thermal.warm_C"},
+    {motor_hot, "motor_hot", "safety.thermal.hot_C"},
+    {sensor_stuck, "sensor_stuck", "safety.sensors.stuck_ticks"},
+    {sensor_jump, "sensor_jump", "safety.sensors.jump_rad"},
+    {imu_silent, "imu_silent", "safety.silent_ticks_max"},
+    {imu_stuck, "imu_stuck", "safety.sensors.imu_stuck_ticks"},
+    {imu_jump, "imu_jump", "safety.sensors.gyro_step_rad_s"},
+    {imu_not_finite, "imu_not_finite", "safety.reactions"},
+    {foot_silent, "foot_silent", "safety.silent_ticks_max"},
+    {foot_stuck, "foot_stuck", "safety.sensors.foot_stuck_ticks"},
+    {foot_jump, "foot_jump", "safety.sensors.foot_force_max_N"},
+    {foot_not_finite, "foot_not_finite", "safety.reactions"},
+    {tilt, "tilt", "safety.tilt_max_rad"},
+    {fall, "fall", "safety.fall.pitch_max_rad"},
+    {impact, "impact", "safety.fall.impact_max_m_s2"},
+    {command_old, "command_old", "engine.command_age_max_s"},
+    {overruns, "overruns", "safety.overruns_in_a_row_max"},
+    {joints_lost, "joints_lost", "safety.joints_lost_max"},
+}};
+
+constexpr bool in_order() {
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (static_cast<std::size_t>(texts[i].code) != i) return false;
+  }
+  return true;
+}
+static_assert(in_order());
+
+}  // namespace
 
 const char* name(FaultCode code) noexcept {
-  switch (code) {
-    case FaultCode::none:
-      return "none";
-    case FaultCode::position_limit:
-      return "position_limit";
-    case FaultCode::velocity_limit:
-      return "velocity_limit";
-    case FaultCode::effort_limit:
-      return "effort_limit";
-    case FaultCode::actuation_not_finite:
-      return "actuation_not_finite";
-    case FaultCode::sensor_not_finite:
-      return "sensor_not_finite";
-    case FaultCode::sensor_silent:
-      return "sensor_silent";
-    case FaultCode::heartbeat_lost:
-      return "heartbeat_lost";
-    case FaultCode::tick_overrun:
-      return "tick_overrun";
-    case FaultCode::command_refused:
-      return "command_refused";
-  }
-  return "unknown";
+  const auto index = static_cast<std::size_t>(code);
+  return index < texts.size() ? texts[index].name : "unknown";
+}
+
+const char* configuration_key(FaultCode code) noexcept {
+  const auto index = static_cast<std::size_t>(code);
+  return index < texts.size() ? texts[index].key : "";
 }
 
 const char* name(SafetyLevel level) noexcept {

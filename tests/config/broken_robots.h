@@ -85,6 +85,11 @@ inline constexpr Broken broken_robots[] = {
     {"\"hold_s\": 1", "\"hold_s\": 1e9, \"damp_s\": -1",
      "40:15: safety.hold_s is 1e9, must be 0..60 s: after a lost heartbeat: hold this long, then damp\n40:30: "
      "safety.damp_s is -1, must be 0..60 s: damp this long, then off"},
+    {"\"hold_s\": 1", "\"reactions\": { \"sensor_junp\": { \"joint\": \"off\" } }",
+     "40:20: unknown fault 'sensor_junp', did you mean 'sensor_jump'?"},
+    {"\"hold_s\": 1", "\"reactions\": { \"fall\": { \"robot\": \"dampen\" } }",
+     "40:39: safety.reactions.fall.robot: unknown value 'dampen', did you mean 'damp'?"},
+    {"\"hold_s\": 1", "\"thermal\": { \"hot_C\": 90 }", "40:16: safety.thermal: ambient_C < warm_C <= hot_C must hold"},
     {"\"type\": \"joint_pid\"", "\"type\": \"joint_pdi\"",
      "46:17: unknown type of control object 'joint_pdi', did you mean 'joint_pid'?"},
     {"\"name\": \"posture\"", "\"name\": \"pos.ture\"",

@@ -1,150 +1,26 @@
-#include "kadans/safety/safety.h"
-
+// The safety layer as a whole: what passes, what the runtime's own failures do, faults and their clearing.
 #include <doctest/doctest.h>
 
-#include <cmath>
-#include <limits>
-#include <memory>
-
+#include "bench.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;
-
-namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-RobotModel robot() {
-  RobotModel model;
-  model.links.resize(3);
-  model.joints.resize(2);
-  model.joints[0].name = "knee";
-  model.joints[1].name = "toe";
-  return model;
-}
-
-SafetySettings settings() {
-  SafetySettings settings;
-  settings.joints = {{.lower_rad = 0, .upper_rad = 2, .velocity_max_rad_s = 8, .effort_max_Nm = 25},
-                     {.lower_rad = -0.4, .upper_rad = 0.4, .velocity_max_rad_s = 20, .effort_max_Nm = 0}};
-  return settings;
-}
-
-struct Bench {
-  std::unique_ptr<Safety> safety = std::make_unique<Safety>(settings(), robot());
-  JointStates joints;
-  SensorHealth health;
-  ActuationFrame asked, written;
-  SafetyStatus status;
-  double heartbeat_age_s = 0;
-  std::uint32_t missed_ticks = 0;
-  std::uint64_t tick = 0;
-
-  Bench() {
-    joints.count = asked.joint_count = 2;
-    joints.joints[0].position_rad = 1;
-    asked.joints[0] = {.effort_Nm = 5, .mode = ActuationMode::effort};
-  }
-  const JointActuation& check() {
-    written = asked;
-    safety->check({tick++, 0.001, missed_ticks, heartbeat_age_s, joints, health}, written, status);
-    return written.joints[0];
-  }
-  void check_for(double time_s) {
-    for (int i = 0; i < std::lround(time_s / 0.001); ++i) check();
-  }
-  Fault fault() {
-    Fault fault;
-    (void)safety->log().try_pop(fault);
-    return fault;
-  }
-};
-
-bool damps(const JointActuation& actuation, double velocity_rad_s) {
-  return actuation.mode == ActuationMode::effort && actuation.effort_Nm == doctest::Approx(-2.0 * velocity_rad_s);
-}
-
-}  // namespace
+using namespace kadans::safety_bench;
 
 TEST_CASE("What is within the limits passes untouched") {
   Bench bench;
-  CHECK(bench.check().effort_Nm == 5);
+  bench.check_for(1);
+  CHECK(bench.written.joints[0].effort_Nm == 5);
   CHECK(bench.status.level == SafetyLevel::normal);
-  CHECK(bench.status.fault_count == 0);
+  CHECK(bench.codes().empty());
 }
 
-TEST_CASE("Too much torque is limited and flagged once, and forgotten when it is over") {
+TEST_CASE("A passive joint is never actuated") {
   Bench bench;
-  bench.asked.joints[0].effort_Nm = -40;
-  CHECK(bench.check().effort_Nm == -25);
-  CHECK(bench.status.level == SafetyLevel::limited);
+  bench.asked.joints[1] = {.effort_Nm = 3, .mode = ActuationMode::effort};
   bench.check();
-  CHECK(bench.status.fault_count == 1);
-  CHECK(bench.fault().code == FaultCode::effort_limit);
-  bench.asked.joints[0].effort_Nm = 5;
-  CHECK(bench.check().effort_Nm == 5);
-  CHECK(bench.status.level == SafetyLevel::normal);
-}
-
-TEST_CASE("An actuation that is not finite makes the joint damp until faults are cleared") {
-  for (const double bad : {not_a_number, std::numeric_limits<double>::infinity()}) {
-    Bench bench;
-    bench.joints.joints[0].velocity_rad_s = 3;
-    bench.asked.joints[0].effort_Nm = bad;
-    CHECK(damps(bench.check(), 3));
-    bench.asked.joints[0].effort_Nm = 5;
-    CHECK(damps(bench.check(), 3));
-    CHECK(bench.status.level == SafetyLevel::damp);
-    CHECK(bench.status.first_fault.code == FaultCode::actuation_not_finite);
-    bench.safety->clear();
-    CHECK(bench.check().effort_Nm == 5);
-    CHECK(bench.status.level == SafetyLevel::normal);
-    CHECK(bench.status.fault_count == 0);
-  }
-}
-
-TEST_CASE("A position beyond limit and margin, or NaN, makes the joint damp") {
-  for (const double position_rad : {2.06, -0.06, not_a_number}) {
-    Bench bench;
-    bench.joints.joints[0].position_rad = position_rad;
-    bench.joints.joints[0].velocity_rad_s = 1;
-    CHECK(damps(bench.check(), 1));
-    CHECK(bench.status.first_fault.code == FaultCode::position_limit);
-    CHECK(bench.status.first_fault.joint == 0);
-  }
-  Bench bench;
-  bench.joints.joints[0].position_rad = 2.04;
-  CHECK(bench.check().effort_Nm == 5);
-}
-
-TEST_CASE("A velocity beyond limit and margin makes the joint damp, with no more than its torque") {
-  Bench bench;
-  bench.joints.joints[0].velocity_rad_s = 12.5;
-  CHECK(bench.check().effort_Nm == doctest::Approx(-25));
-  CHECK(bench.status.first_fault.code == FaultCode::velocity_limit);
-  CHECK(bench.status.first_fault.limit == doctest::Approx(12));
-}
-
-TEST_CASE("A sensor that is silent too long, or not finite, takes its joint off") {
-  Bench silent;
-  silent.health.joints[0].silent_ticks = 5;
-  CHECK(silent.check().mode == ActuationMode::effort);
-  silent.health.joints[0].silent_ticks = 6;
-  CHECK(silent.check().mode == ActuationMode::off);
-  CHECK(silent.status.first_fault.code == FaultCode::sensor_silent);
-  Bench broken;
-  broken.health.joints[0].finite = false;
-  CHECK(broken.check().mode == ActuationMode::off);
-  CHECK(broken.status.first_fault.code == FaultCode::sensor_not_finite);
-}
-
-TEST_CASE("A joint that is sampled slower may be silent for its period") {
-  Bench bench;
-  bench.health.joints[0].period_ticks = 10;
-  bench.health.joints[0].silent_ticks = 14;
-  CHECK(bench.check().mode == ActuationMode::effort);
-  bench.health.joints[0].silent_ticks = 15;
-  CHECK(bench.check().mode == ActuationMode::off);
+  CHECK(bench.written.joints[1].mode == ActuationMode::off);
+  CHECK(bench.written.joints[1].effort_Nm == 0);
 }
 
 TEST_CASE("A lost heartbeat holds, then damps, then takes all torque; only holding is undone by its return") {
@@ -152,10 +28,10 @@ TEST_CASE("A lost heartbeat holds, then damps, then takes all torque; only holdi
   bench.heartbeat_age_s = 0.2;
   bench.check();
   CHECK(bench.status.level == SafetyLevel::hold);
-  CHECK(bench.fault().code == FaultCode::heartbeat_lost);
+  CHECK(bench.codes() == "heartbeat_lost");
   CHECK(bench.written.joints[0].effort_Nm == 5);  // the last set-points go on
   bench.heartbeat_age_s = 0;
-  bench.check();
+  bench.check_for(0.03);
   CHECK(bench.status.level == SafetyLevel::normal);
   bench.heartbeat_age_s = 0.2;
   bench.check_for(1.1);
@@ -167,53 +43,184 @@ TEST_CASE("A lost heartbeat holds, then damps, then takes all torque; only holdi
   bench.check_for(2.1);
   CHECK(bench.status.level == SafetyLevel::off);
   CHECK(bench.written.joints[0].mode == ActuationMode::off);
+  CHECK(bench.count(FaultCode::heartbeat_lost) == 3);  // each time it was lost, no more
 }
 
-TEST_CASE("Overruns are counted; too many in a row degrade") {
+TEST_CASE("A heartbeat of no age that makes sense counts as lost") {
+  Bench bench;
+  bench.heartbeat_age_s = not_a_number;
+  bench.check();
+  CHECK(bench.status.level == SafetyLevel::hold);
+}
+
+TEST_CASE("Overruns are counted; too many in a row make the robot damp until cleared") {
   Bench bench;
   bench.missed_ticks = 1;
   for (int i = 0; i < 4; ++i) bench.check();
   bench.missed_ticks = 0;
   bench.check();
   CHECK(bench.status.level == SafetyLevel::normal);
-  CHECK(bench.status.fault_count == 4);
+  CHECK(bench.codes() == "tick_overrun");
   bench.missed_ticks = 2;
-  for (int i = 0; i < 5; ++i) bench.check();
+  CHECK(bench.ticks_until(FaultCode::overruns) == 5);
   CHECK(bench.status.level == SafetyLevel::damp);
+  bench.missed_ticks = 0;
+  bench.check_for(1);
+  CHECK(bench.status.level == SafetyLevel::damp);
+  bench.safety->clear();
+  bench.check();
+  CHECK(bench.safety->robot_level() == SafetyLevel::normal);
 }
 
-TEST_CASE("A passive joint is never actuated") {
+TEST_CASE("The first fault is kept, with joint, tick, value and limit; later ones are counted") {
   Bench bench;
-  bench.asked.joints[1] = {.effort_Nm = 3, .mode = ActuationMode::effort};
   bench.check();
-  CHECK(bench.written.joints[1].mode == ActuationMode::off);
-  CHECK(bench.written.joints[1].effort_Nm == 0);
+  bench.ask(40);
+  bench.check();
+  bench.place(3);
+  bench.check();
+  const Fault& first = bench.status.first_fault;
+  CHECK(first.code == FaultCode::effort_limit);
+  CHECK(first.joint == 0);
+  CHECK(first.tick == 1);
+  CHECK(first.value == 40);
+  CHECK(first.limit == 25);
+  CHECK(bench.status.fault_count == bench.faults.size());
+  CHECK(bench.faults.size() >= 2);
 }
 
-TEST_CASE("The first fault is kept, later ones are counted") {
+TEST_CASE("Clearing forgets the faults, and the next check judges anew") {
   Bench bench;
-  bench.asked.joints[0].effort_Nm = 40;
+  bench.place(2.1, 1);
   bench.check();
-  bench.joints.joints[0].position_rad = 3;
+  CHECK(bench.status.level == SafetyLevel::damp);
+  bench.safety->clear();
   bench.check();
-  CHECK(bench.status.first_fault.code == FaultCode::effort_limit);
-  CHECK(bench.status.first_fault.tick == 0);
-  CHECK(bench.status.fault_count >= 2);
+  CHECK(bench.status.level == SafetyLevel::damp);  // it is still there
+  for (const double back_rad : {2.08, 2.06, 2.04, 2.02, 2.0, 1.98, 1.96, 1.94}) {
+    bench.place(back_rad);
+    bench.check();
+  }
+  bench.safety->clear();
+  bench.check_for(0.6);
+  CHECK(bench.status.level == SafetyLevel::normal);
+  CHECK(bench.status.fault_count == 0);
+  CHECK(bench.status.first_fault.code == FaultCode::none);
+}
+
+TEST_CASE("A joint that comes back gets its torque back over recover_s") {
+  Bench bench;
+  bench.ask(20);
+  bench.check();
+  bench.ask(not_a_number);
+  bench.check();
+  bench.ask(20);
+  bench.safety->clear();
+  bench.check();
+  CHECK(bench.written.joints[0].effort_Nm < 0.1);
+  CHECK(bench.safety->joint_level(0) == SafetyLevel::limited);
+  bench.check_for(0.25);
+  CHECK(bench.written.joints[0].effort_Nm == doctest::Approx(0.5 * 25).epsilon(0.02));
+  bench.check_for(0.25);
+  CHECK(bench.written.joints[0].effort_Nm == 20);
+  CHECK(bench.safety->joint_level(0) == SafetyLevel::normal);
+  CHECK(bench.status.fault_count == 0);
+}
+
+TEST_CASE("When too many joints are lost the robot damps") {
+  SafetySettings one = settings();
+  one.joints_lost_max = 1;
+  Bench bench(one);
+  bench.health.joints[0].finite = false;
+  bench.check();
+  CHECK(bench.safety->robot_level() == SafetyLevel::normal);
+  bench.health.joints[1].finite = false;
+  bench.check();
+  CHECK(bench.codes() == "sensor_not_finite sensor_not_finite joints_lost");
+  CHECK(bench.safety->robot_level() == SafetyLevel::damp);
+  bench.check_for(0.5);
+  CHECK(bench.count(FaultCode::joints_lost) == 1);
+}
+
+TEST_CASE("A reaction of the configuration replaces the default one") {
+  SafetySettings mild = settings();
+  mild.reactions[static_cast<std::size_t>(FaultCode::position_limit)] = {
+      .joint = SafetyLevel::limited, .robot = SafetyLevel::hold, .exit_s = 0.2};
+  Bench bench(mild);
+  bench.place(2.06);
+  bench.check();
+  CHECK(bench.safety->robot_level() == SafetyLevel::hold);
+  CHECK(bench.written.joints[0].mode == ActuationMode::effort);
+  bench.place(1);
+  bench.check_for(0.18);
+  CHECK(bench.safety->robot_level() == SafetyLevel::hold);
+  bench.check_for(0.04);
+  CHECK(bench.safety->robot_level() == SafetyLevel::normal);
+}
+
+TEST_CASE("What others raise is counted, and its reaction follows in the next check") {
+  SafetySettings strict = settings();
+  strict.reactions[static_cast<std::size_t>(FaultCode::command_refused)] = {.robot = SafetyLevel::hold};
+  Bench bench(strict);
+  bench.check();
+  bench.safety->raise({.code = FaultCode::command_refused, .tick = 1, .value = 7});
+  CHECK(bench.safety->robot_level() == SafetyLevel::normal);
+  bench.check();
+  CHECK(bench.safety->robot_level() == SafetyLevel::hold);
+  CHECK(bench.status.fault_count == 1);
+  bench.check_for(0.1);
+  CHECK(bench.safety->robot_level() == SafetyLevel::normal);
 }
 
 TEST_CASE("Limits that make no sense are refused before the loop") {
-  SafetySettings wrong = settings();
-  wrong.joints[0].effort_max_Nm = not_a_number;
-  CHECK_THROWS_AS(Safety(wrong, robot()), std::invalid_argument);
-  wrong.joints.pop_back();
-  CHECK_THROWS_AS(Safety(wrong, robot()), std::invalid_argument);
+  const auto refused = [](auto&& spoil) {
+    SafetySettings wrong = settings();
+    spoil(wrong);
+    CHECK_THROWS_AS(Safety(wrong, robot()), std::invalid_argument);
+  };
+  refused([](SafetySettings& s) { s.joints[0].effort_max_Nm = not_a_number; });
+  refused([](SafetySettings& s) { s.joints[0].thermal_time_constant_s = 0; });
+  refused([](SafetySettings& s) { s.joints.pop_back(); });
+  refused([](SafetySettings& s) { s.velocity_margin = 0.5; });
+  refused([](SafetySettings& s) { s.recover_s = 0; });
+  refused([](SafetySettings& s) { s.thermal.warm_C = s.thermal.ambient_C; });
+  refused([](SafetySettings& s) { s.fall.soft_share = 1.5; });
 }
 
-TEST_CASE("Checking allocates nothing") {
+TEST_CASE("Levels and temperatures are signals") {
+  Bench bench;
+  SignalTable table;
+  bench.safety->declare_signals(table, robot());
+  std::vector<double> row(table.size());
+  bench.ask(not_a_number);
+  bench.check();
+  table.gather(row);
+  CHECK(row[table.find("safety.level").value()] == 3);
+  CHECK(row[table.find("safety.robot_level").value()] == 0);
+  CHECK(row[table.find("safety.knee.level").value()] == 3);
+  CHECK(row[table.find("safety.toe.level").value()] == 0);
+  CHECK(row[table.find("safety.faults").value()] == 1);
+  CHECK(row[table.find("safety.knee.temperature_C").value()] == doctest::Approx(25));
+  CHECK(!table.find("safety.toe.temperature_C"));
+}
+
+TEST_CASE("Checking allocates nothing, whatever is wrong") {
   Bench bench;
   bench.asked.joints[0].effort_Nm = not_a_number;
+  bench.place(5, 50);
+  bench.health.joints[1].finite = false;
+  bench.health.imu.silent_ticks = 100;
+  bench.base.pitch_rad = 2;
+  bench.base.tilt_rad = 2;
+  bench.missed_ticks = 1;
+  bench.heartbeat_age_s = 9;
   const kadans::testing::AllocationCount heap;
-  bench.check();
+  for (std::uint64_t tick = 0; tick < 100; ++tick) {
+    bench.written = bench.asked;
+    bench.safety->check({tick, dt_s, 1, 9, bench.sensors, bench.joints, bench.base, bench.health}, bench.written,
+                        bench.status);
+  }
   const auto allocations = heap.count();
   CHECK(allocations == 0);
+  CHECK(bench.status.fault_count > 5);
 }

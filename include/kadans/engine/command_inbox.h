@@ -1,5 +1,9 @@
 // The control engine's end of the command queue: whole transactions only, checked before the first effect, at most a
 // fixed number of commands a tick. A transaction with one bad command is refused whole and counted.
+//
+// While the robot is held, or worse, its set-points, parameters and control set stay what they are: commands that would
+// change them are refused, unless the same transaction clears the faults first. A joint that is held alone refuses its
+// set-point.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +19,8 @@ class CommandInbox {
   CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& sets, std::uint32_t commands_per_tick_max,
                std::int64_t age_max_ns);
 
-  // Control thread. Applies what arrived, oldest first; what exceeds the tick's share waits for the next. A fault of the
-  // safety layer says when something was refused.
+  // Control thread. Applies what arrived, oldest first; what exceeds the tick's share waits for the next. A fault of
+  // the safety layer says when something was refused.
   void apply(std::uint64_t tick, std::int64_t now_ns, Safety& safety) noexcept;
 
   struct State {
@@ -28,7 +32,8 @@ class CommandInbox {
 
  private:
   bool acceptable(const Command& command) const noexcept;
-  bool transaction_acceptable(std::uint32_t count) const noexcept;
+  static bool held(const Command& command, const Catalog& catalog, const Safety& safety) noexcept;
+  bool transaction_acceptable(std::uint32_t count, const Safety& safety) const noexcept;
   void execute(const Command& command, Safety& safety) noexcept;
   void notify_owners() noexcept;
 

@@ -1,22 +1,32 @@
-// The safety layer: between what control objects computed and what the plant is told. It looks at the state and at the
-// actuation of the last tick and lets the robot do less, rung by rung: normal, limited, hold, damp, off.
+// The safety layer: between what control objects computed and what the plant is told. It looks at the sensors, the
+// state and the actuation of the last tick and lets the robot do less, rung by rung: normal, limited, hold, damp, off.
 //
-// A joint that breaks a limit, loses its sensor or is given a value that is not finite degrades alone and stays there
-// until the faults are cleared. The robot as a whole goes to hold, then damp, then off when the behavior engine falls
-// silent: hold keeps the last set-points, damp turns every joint into a damper, off gives no torque.
+// Watches find what is wrong (joint_watch.h, body_watch.h, fall_watch.h, engine_watch.h), how soon stands in
+// detection.h. Reactions say which rung follows (reaction.h), ladders keep it until it may be left (ladder.h). What is
+// asked of a joint that still works is cut to its limits (joint_limiter.h); an actuation that is not finite is never
+// written, whatever the configuration says. A joint that comes back from damp or off gets its torque back over
+// recover_s.
 //
 // One owner, the control thread; check() neither allocates, locks nor throws.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include "kadans/estimate/sensor_health.h"
 #include "kadans/exchange/ring.h"
 #include "kadans/model/robot_model.h"
+#include "kadans/safety/body_watch.h"
+#include "kadans/safety/engine_watch.h"
+#include "kadans/safety/fall_watch.h"
+#include "kadans/safety/joint_limiter.h"
+#include "kadans/safety/joint_watch.h"
+#include "kadans/safety/ladder.h"
 #include "kadans/safety/settings.h"
 #include "kadans/signal/fault.h"
 #include "kadans/signal/frames.h"
+#include "kadans/signal/signal.h"
 #include "kadans/signal/status.h"
 
 namespace kadans {
@@ -29,7 +39,9 @@ struct SafetyInput {
   double dt_s;
   std::uint32_t missed_ticks;  // skipped before this one
   double heartbeat_age_s;      // since the behavior engine's last tick
+  const SensorFrame& sensors;
   const JointStates& joints;
+  const BaseStatus& base;
   const SensorHealth& health;
 };
 
@@ -38,37 +50,68 @@ class Safety {
   // Throws std::invalid_argument unless there is one sane set of limits a joint of the model.
   Safety(const SafetySettings& settings, const RobotModel& model);
 
+  // Before the loop. safety.level, .robot_level, .faults, .fall, .impact_m_s2, .missed_ticks and, by joint,
+  // safety.<joint>.level, .temperature_C.
+  void declare_signals(SignalTable& table, const RobotModel& model) const;
+
   // Limits the actuation in place, so that what remains may be written, and reports into `status`.
   void check(const SafetyInput& input, ActuationFrame& actuation, SafetyStatus& status) noexcept;
-  // Notes a fault that somebody else found; it does not change the level.
+  // Notes a fault that somebody else found; its reaction follows in the next check.
   void raise(const Fault& fault) noexcept;
   // Lifts all latches: the next check judges anew.
   void clear() noexcept;
 
   // Faults as they happen, for another thread to pop. A full log drops, first_fault stays.
   FaultLog& log() noexcept { return log_; }
-  SafetyLevel joint_level(std::size_t joint) const noexcept { return joint_levels_[joint]; }
-  const std::uint32_t& level_signal() const noexcept { return level_number_; }
+  const SafetySettings& settings() const noexcept { return settings_; }
+  SafetyLevel robot_level() const noexcept { return robot_.level(); }
+  // The worse of the joint's own rung and the robot's; limited while its torque comes back.
+  SafetyLevel joint_level(std::size_t joint) const noexcept {
+    const SafetyLevel recovering = joints_[joint].authority < 1 ? SafetyLevel::limited : SafetyLevel::normal;
+    return std::max({joints_[joint].ladder.level(), robot_.level(), recovering});
+  }
+  double temperature_C(std::size_t joint) const noexcept { return joints_[joint].watch.thermal().temperature_C(); }
+  FallWatch::Phase fall_phase() const noexcept { return fall_.phase(); }
 
  private:
-  void watch_engine(const SafetyInput& input) noexcept;
-  void watch_joint(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept;
-  void limit_joint(const SafetyInput& input, std::size_t joint, JointActuation& actuation) noexcept;
-  void degrade_joint(std::size_t joint, SafetyLevel level, const Fault& fault) noexcept;
+  struct JointGuard {
+    JointWatch watch;
+    JointLimiter limiter;
+    Ladder ladder;
+    bool finite = true;    // what was asked for in this tick
+    FaultMask cut = 0;     // by the limiter, in the last tick
+    double authority = 1;  // share of the torque limit; grows after damp and off
+    double last_Nm = 0;    // written in the last tick
+    std::uint32_t level_number = 0;
+  };
+
+  FaultMask watch_body(const SafetyInput& input, double dt_s) noexcept;
+  FaultMask watch_feet(const SafetyInput& input, double dt_s) noexcept;
+  FaultMask watch_joints(const SafetyInput& input, const ActuationFrame& actuation, double dt_s) noexcept;
+  void judge_robot(const SafetyInput& input, FaultMask body, FaultMask others, double dt_s) noexcept;
+  void escalate(FaultMask faults, double dt_s) noexcept;
+  bool passes(const SafetyInput& input, std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
+  void limit_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
+  void cut_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
 
   SafetySettings settings_;
   std::size_t joint_count_;
-  std::array<SafetyLevel, max_joints> joint_levels_{};
-  SafetyLevel robot_level_ = SafetyLevel::normal;
-  std::array<bool, max_joints> limiting_{};
-  bool limited_ = false;  // any joint, in this tick
-  bool heartbeat_lost_ = false;
-  double lost_for_s_ = 0;
-  std::uint32_t overruns_in_a_row_ = 0;
+  std::array<JointGuard, max_joints> joints_{};
+  std::array<FootWatch, max_feet> feet_{};
+  std::array<Ladder, max_feet> foot_ladders_{};  // only to report each foot's faults once
+  ImuWatch imu_;
+  FallWatch fall_;
+  EngineWatch engine_;
+  Ladder robot_;
+  FaultMask escalating_ = 0;  // codes whose reaction escalates
+  FaultMask pending_ = 0;     // raised by others since the last check
+  FaultMask cut_ = 0;         // of any joint, in the last tick
+  std::uint32_t lost_ = 0;    // joints that damp or are off by themselves
+  double lasting_s_ = 0;      // of what escalates
   std::uint32_t fault_count_ = 0;
   Fault first_fault_;
   FaultLog log_;
-  std::uint32_t level_number_ = 0;
+  std::uint32_t level_number_ = 0, robot_level_number_ = 0;
 };
 
 }  // namespace kadans

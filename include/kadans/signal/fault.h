@@ -1,4 +1,6 @@
-// Fault codes: what went wrong, where and when. A fault names the limit behind it, so that a person can look it up.
+// Fault codes: what went wrong, where and when. A fault names the limit behind it and the key of the robot's
+// configuration that sets this limit, so that a person can look it up. What follows from a fault is the safety layer's
+// reaction (safety/reaction.h); when each is found stands in safety/detection.h.
 #pragma once
 
 #include <cstddef>
@@ -6,25 +8,57 @@
 
 namespace kadans {
 
+// At most 32: the safety layer keeps a bit for each.
 enum class FaultCode : std::uint16_t {
   none,
-  position_limit,        // a joint passed its limit
-  velocity_limit,        // a joint was faster than its limit
-  effort_limit,          // a control object asked for more torque than the joint may have: limited
-  actuation_not_finite,  // a control object wrote NaN or infinity: the joint damps
-  sensor_not_finite,     // a sensor delivered NaN or infinity
-  sensor_silent,         // a sensor delivered no new reading
-  heartbeat_lost,        // the behavior engine stopped ticking
-  tick_overrun,          // a tick of the control engine came late
-  command_refused,       // a command was not finite, out of range, unknown or too old
+  // Of a joint, or of what a control object wrote for it.
+  position_limit,        // passed its limit and the margin
+  velocity_limit,        // faster than its limit and the margin
+  effort_limit,          // asked for more torque than it may have: limited
+  actuation_not_finite,  // asked for NaN or infinity: never written
+  sensor_not_finite,     // its sensor delivered NaN or infinity
+  sensor_silent,         // its sensor delivered no new reading
+  // Of the runtime.
+  heartbeat_lost,   // the behavior engine stopped ticking
+  tick_overrun,     // a tick of the control engine came late
+  command_refused,  // a command was not finite, out of range, unknown, or the robot was held
+  // Of a joint again.
+  soft_stop,          // pushed into the zone before its position limit: faded out
+  soft_speed,         // driven on beyond its speed limit: faded out
+  effort_rate_limit,  // its torque was to change faster than it may: limited
+  power_limit,        // torque times speed beyond the limit: limited
+  motor_warm,         // its winding, by the thermal model, is warm: torque is derated
+  motor_hot,          // its winding reached its limit
+  sensor_stuck,       // its reading stays exactly the same although the motor moves or pushes
+  sensor_jump,        // its reading stepped further than the joint can move
+  // Of the inertial measurement unit and the feet.
+  imu_silent,
+  imu_stuck,
+  imu_jump,  // a rate or acceleration beyond what the sensor can measure, or a step in the rate
+  imu_not_finite,
+  foot_silent,
+  foot_stuck,
+  foot_jump,  // a force beyond what the sensor can measure
+  foot_not_finite,
+  // Of the robot.
+  tilt,         // leans more than it should
+  fall,         // is falling
+  impact,       // hit something while falling
+  command_old,  // a transaction came too late
+  overruns,     // too many late ticks in a row
+  joints_lost,  // too many joints damp or are off
 };
+inline constexpr std::size_t fault_codes = 32;
+
 const char* name(FaultCode code) noexcept;
+// The key of the robot's configuration that decides when this is a fault; "" for none.
+const char* configuration_key(FaultCode code) noexcept;
 
 inline constexpr std::uint16_t no_joint = 0xffff;
 
 struct Fault {
   FaultCode code = FaultCode::none;
-  std::uint16_t joint = no_joint;     // index in the model, or no_joint
+  std::uint16_t joint = no_joint;     // index in the model (a foot's: the joint that carries it), or no_joint
   alignas(8) std::uint64_t tick = 0;  // of the control engine
   double value = 0;                   // what was seen
   double limit = 0;                   // what was allowed

@@ -1,0 +1,50 @@
+// Whether the robot stands, leans, falls or lies.
+//
+//   upright  until roll, pitch or the rate of turning is beyond its limit for time_s: then it falls
+//   falling  torque is a share of what it is else, so that joints give way; impacts are recorded; until it has turned
+//            slower than rest_rate for rest_s: then it lies
+//   fallen   torque is back, to get up; until it has been well within the limits for rest_s. Falling again from here
+//            takes the rate alone, since a robot that gets up is beyond the angles.
+// The limits are those of small humanoids in the RoboCup leagues: 60 degrees of roll, 45 of pitch, 7 rad/s for 40 ms.
+//
+// One owner, the control thread; nothing here allocates or throws.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/safety/fault_mask.h"
+#include "kadans/safety/settings.h"
+#include "kadans/signal/status.h"
+
+namespace kadans {
+
+class FallWatch {
+ public:
+  enum class Phase : std::uint8_t { upright, falling, fallen };
+
+  explicit FallWatch(const SafetySettings& settings) noexcept
+      : settings_(settings.fall), tilt_max_rad_(settings.tilt_max_rad) {}
+
+  FaultMask look(const BaseStatus& base, const ImuSample& sample, double dt_s) noexcept;
+  // Value and limit of a fault that look() has just found.
+  void describe(const BaseStatus& base, Fault& fault) const noexcept;
+
+  Phase phase() const noexcept { return phase_; }
+  const std::uint32_t& phase_number() const noexcept { return phase_number_; }
+  // Of every torque.
+  double share() const noexcept { return phase_ == Phase::falling ? settings_.soft_share : 1; }
+  const double& impact_m_s2() const noexcept { return impact_m_s2_; }  // the largest of the last fall
+
+ private:
+  bool beyond(const BaseStatus& base, double rate_rad_s) const noexcept;
+  void advance(const BaseStatus& base, double rate_rad_s, double dt_s) noexcept;
+
+  FallSettings settings_;
+  double tilt_max_rad_;
+  Phase phase_ = Phase::upright;
+  std::uint32_t phase_number_ = 0;
+  double for_s_ = 0;  // what would end the phase has lasted
+  double impact_m_s2_ = 0;
+};
+
+}  // namespace kadans

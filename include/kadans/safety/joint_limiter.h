@@ -1,0 +1,73 @@
+// What is left of the torque asked for one joint: within its limit, derated when warm, no further into the soft stops,
+// no further beyond the speed limit, within its power, and no faster than its rate.
+//
+// The limits are an interval that the torque is cut to, so the order in which they come does not matter; the rate comes
+// first, so that none of them waits for it. In position and velocity mode the drive makes the torque and keeps its own
+// limit; here the set-point stays within the soft stops and the speed limit, and the torque added is cut as above.
+//
+// One owner, the control thread; nothing here allocates or throws.
+#pragma once
+
+#include <cmath>
+
+#include "kadans/safety/fault_mask.h"
+#include "kadans/safety/settings.h"
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+class JointLimiter {
+ public:
+  struct Input {
+    const JointState& state;
+    double derating;  // share of the torque limit that the winding allows
+    double recovery;  // share of what is left that a joint has which comes back; no fault when it cuts
+    double last_Nm;   // torque written in the last tick
+    double dt_s;
+  };
+
+  JointLimiter() = default;
+  JointLimiter(const SafetySettings& settings, const JointLimits& limits) noexcept;
+
+  // `actuation` is finite. Cuts it in place; returns which limits cut.
+  FaultMask limit(const Input& input, JointActuation& actuation) noexcept {
+    return actuation.mode == ActuationMode::effort && free(input, actuation.effort_Nm) ? 0 : cut(input, actuation);
+  }
+  // -damping * velocity, within torque and power; off when the velocity is not finite.
+  JointActuation damp(const JointState& state) const noexcept;
+  // Value and limit of a fault that limit() has just found.
+  void describe(const Input& input, Fault& fault) const noexcept;
+
+  // Whether none of the limits is near: the usual case, in a few comparisons.
+  bool free(const Input& input, double asked_Nm) const noexcept;
+  bool passive() const noexcept { return effort_max_Nm_ == 0; }
+
+ private:
+  struct Interval {
+    double low, high;
+  };
+  FaultMask cut(const Input& input, JointActuation& actuation) noexcept;
+  Interval soft_stops(double position_rad, Interval effort_Nm) const noexcept;
+  Interval soft_speed(double velocity_rad_s, Interval effort_Nm) const noexcept;
+  double power_bound_Nm(double velocity_rad_s, double effort_Nm) const noexcept;
+  FaultMask limit_set_point(JointActuation& actuation) noexcept;
+  FaultMask who_cut(const Input& input, double asked_Nm) const noexcept;
+
+  double effort_max_Nm_ = 0;  // 0: passive
+  double rate_Nm_s_ = 0, power_max_W_ = 0;
+  double velocity_max_rad_s_ = 0, velocity_fade_rad_s_ = 0;
+  double lower_rad_ = 0, upper_rad_ = 0, zone_rad_ = 0, stiffness_Nm_per_rad_ = 0;
+  double damping_Nms_per_rad_ = 0;
+  double asked_Nm_ = 0, asked_set_point_ = 0;  // of the last cut, to describe it
+};
+
+// Here, because it runs for every joint in every tick.
+inline bool JointLimiter::free(const Input& in, double asked_Nm) const noexcept {
+  const double speed_rad_s = std::abs(in.state.velocity_rad_s);
+  return std::abs(asked_Nm) <= effort_max_Nm_ * in.derating * in.recovery &&
+         std::abs(asked_Nm - in.last_Nm) <= rate_Nm_s_ * in.dt_s && speed_rad_s <= velocity_max_rad_s_ &&
+         speed_rad_s * effort_max_Nm_ <= power_max_W_ && in.state.position_rad >= lower_rad_ + zone_rad_ &&
+         in.state.position_rad <= upper_rad_ - zone_rad_;
+}
+
+}  // namespace kadans

@@ -1,0 +1,110 @@
+// What is wrong with one joint: its sensor, its state and what is asked of it, looked at in every tick. It only finds;
+// what follows is the ladder's matter.
+//
+// A reading jumps when it is further from the last one than twice the speed limit allows for in the time between them.
+// A reading is stuck when it stays exactly the same for stuck_ticks readings although the motor, behind its spring,
+// moved, or the control objects pulled harder and harder; standing still alone is no fault, since a resolution that is
+// finite repeats itself.
+//
+// One owner, the control thread; nothing here allocates or throws.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "kadans/estimate/sensor_health.h"
+#include "kadans/safety/fault_mask.h"
+#include "kadans/safety/settings.h"
+#include "kadans/safety/thermal_model.h"
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+class JointWatch {
+ public:
+  struct Input {
+    const JointState& state;
+    const JointSample& sample;
+    const SensorState& health;
+    const JointActuation& asked;
+    double written_Nm;  // in the last tick
+    double dt_s;
+  };
+
+  JointWatch() = default;
+  JointWatch(const SafetySettings& settings, const JointLimits& limits) noexcept;
+
+  FaultMask look(const Input& input) noexcept;
+  // Value and limit of a fault that look() has just found.
+  void describe(const Input& input, Fault& fault) const noexcept;
+
+  const ThermalModel& thermal() const noexcept { return thermal_; }
+  // The share of its torque that the winding allows, down to the continuous torque's.
+  double derating() const noexcept { return derating_; }
+
+ private:
+  FaultMask look_at_reading(const Input& input) noexcept;
+  bool stuck(const Input& input) noexcept;
+  // What the motor is asked for, as one number that a joint follows: torque, or else the position.
+  static double demand(const Input& input) noexcept {
+    return input.asked.mode == ActuationMode::position ? input.asked.position_rad : input.asked.effort_Nm;
+  }
+  FaultMask derate() noexcept;
+
+  double lowest_rad_ = 0, highest_rad_ = 0;  // limits with their margins
+  double fastest_rad_s_ = 0;
+  double jump_rad_ = 0, jump_rad_s_ = 0;
+  double stuck_motion_rad_ = 0, stuck_effort_Nm_ = 0;
+  double warm_C_ = 0, hot_C_ = 0, continuous_share_ = 1;
+  double lower_rad_ = 0, upper_rad_ = 0;
+  std::uint32_t stuck_ticks_ = 0, silent_ticks_max_ = 0;
+  bool passive_ = true;
+
+  ThermalModel thermal_;
+  double derating_ = 1;
+  bool seen_ = false;                       // any reading
+  double reading_rad_ = 0;                  // the last one
+  double step_rad_ = 0, step_max_rad_ = 0;  // from the one before it, and what was possible
+  double since_s_ = 0;                      // since the last one
+  std::uint32_t same_ = 0;                  // readings in a row equal to it; what the motor did meanwhile:
+  double motor_rad_ = 0, asked_ = 0;        // when it was first read
+  double motor_low_rad_ = 0, motor_high_rad_ = 0, asked_low_ = 0, asked_high_ = 0;
+};
+
+// Here, because it runs for every joint in every tick.
+inline FaultMask JointWatch::look(const Input& in) noexcept {
+  using enum FaultCode;
+  since_s_ += in.dt_s;
+  // 0 * NaN and 0 * infinity are NaN.
+  const bool finite = 0 * in.asked.effort_Nm + 0 * in.asked.position_rad + 0 * in.asked.velocity_rad_s == 0;
+  FaultMask found = bit_if(!in.health.finite, sensor_not_finite) | bit_if(!finite, actuation_not_finite) |
+                    bit_if(in.health.silent_ticks > silent_ticks_max_ + in.health.period_ticks - 1, sensor_silent);
+  if (in.health.silent_ticks == 0 && in.health.finite) found |= look_at_reading(in);
+  if (passive_) return found;  // nothing to take away
+  found |= bit_if(!(in.state.position_rad >= lowest_rad_ && in.state.position_rad <= highest_rad_), position_limit) |
+           bit_if(!(std::abs(in.state.velocity_rad_s) <= fastest_rad_s_), velocity_limit);
+  thermal_.step(std::max(std::abs(in.state.effort_Nm), std::abs(in.written_Nm)), in.dt_s);
+  derating_ = 1;
+  return thermal_.temperature_C() <= warm_C_ ? found : found | derate();
+}
+
+inline FaultMask JointWatch::look_at_reading(const Input& in) noexcept {
+  const double position_rad = in.sample.position_rad;
+  const bool first = !seen_;
+  step_rad_ = position_rad - reading_rad_;
+  step_max_rad_ = jump_rad_ + jump_rad_s_ * since_s_;
+  reading_rad_ = position_rad;
+  since_s_ = 0;
+  seen_ = true;
+  if (first || step_rad_ != 0) {
+    same_ = 0;
+    motor_rad_ = in.sample.motor_position_rad;
+    asked_ = demand(in);
+  }
+  if (first) return 0;
+  return bit_if(!(std::abs(step_rad_) <= step_max_rad_), FaultCode::sensor_jump) |
+         bit_if(step_rad_ == 0 && stuck(in), FaultCode::sensor_stuck);
+}
+
+}  // namespace kadans

@@ -1,0 +1,35 @@
+// What follows from a fault: the rungs of the ladder that it asks for, and how they are left again. Each fault code has
+// one, and each is a key of the robot's configuration.
+//
+// The ladder:  normal   everything goes on
+//              limited  what was asked was made less, or something is reported that costs nothing yet
+//              hold     the control set keeps its last set-points: commands that would change them are refused
+//              damp     every torque is -damping times velocity
+//              off      no torque
+// A joint stands on the worst of its own rung and the robot's.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "kadans/signal/fault.h"
+#include "kadans/signal/status.h"
+
+namespace kadans {
+
+struct Reaction {
+  SafetyLevel joint = SafetyLevel::normal;  // of the joint concerned, if there is one
+  SafetyLevel robot = SafetyLevel::normal;
+  bool latch = false;     // until faults are cleared; else the rung is left when the fault is over for exit_s
+  bool escalate = false;  // while it lasts the robot goes on: after hold_s from hold to damp, after damp_s to off,
+                          // and both stay until cleared
+  double exit_s = 0.05;   // the fault must be over for so long before its rung is left
+};
+
+using Reactions = std::array<Reaction, fault_codes>;  // by fault code
+
+// A joint whose own limit or actuation failed damps. A joint that is not measured any more is off, because damping
+// needs its velocity. Without an IMU or a heartbeat the robot holds.
+Reactions default_reactions() noexcept;
+
+}  // namespace kadans

@@ -1,0 +1,98 @@
+#include "kadans/safety/body_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kadans {
+namespace {
+
+double largest(const Vec3& v) noexcept { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
+
+double largest_step(const Vec3& a, const Vec3& b) noexcept { return largest({a[0] - b[0], a[1] - b[1], a[2] - b[2]}); }
+
+constexpr double negative_share = 0.01;  // of the range: a pressure sensor's zero may drift so far below
+
+}  // namespace
+
+FaultMask ImuWatch::look(const ImuSample& sample, const SensorState& health) noexcept {
+  using enum FaultCode;
+  if (!settings_.imu) return 0;
+  FaultMask found =
+      bit_if(!health.finite, imu_not_finite) | bit_if(health.silent_ticks > silent_ticks_max_, imu_silent);
+  if (health.silent_ticks > 0 || !health.finite) return found;
+  const Vec3& gyro = sample.angular_velocity_rad_s;
+  const Vec3& acceleration = sample.acceleration_m_s2;
+  const bool repeated = seen_ && gyro == gyro_rad_s_ && acceleration == acceleration_m_s2_;
+  found |= bit_if(repeats_.same(repeated, settings_.imu_stuck_ticks), imu_stuck);
+  const double step_rad_s = seen_ ? largest_step(gyro, gyro_rad_s_) : 0;
+  const auto check = [&](double value, double most) {
+    if (value <= most) return;
+    jump_ = value;
+    jump_max_ = most;
+    found |= bit(imu_jump);
+  };
+  check(step_rad_s, settings_.gyro_step_rad_s);
+  check(largest(gyro), settings_.gyro_max_rad_s);
+  check(largest(acceleration), settings_.acceleration_max_m_s2);
+  gyro_rad_s_ = gyro;
+  acceleration_m_s2_ = acceleration;
+  seen_ = true;
+  return found;
+}
+
+void ImuWatch::describe(const SensorState& health, Fault& fault) const noexcept {
+  switch (fault.code) {
+    case FaultCode::imu_silent:
+      fault.value = health.silent_ticks;
+      fault.limit = silent_ticks_max_;
+      break;
+    case FaultCode::imu_stuck:
+      fault.value = repeats_.count();
+      fault.limit = settings_.imu_stuck_ticks;
+      break;
+    case FaultCode::imu_jump:
+      fault.value = jump_;
+      fault.limit = jump_max_;
+      break;
+    default:
+      break;
+  }
+}
+
+FaultMask FootWatch::look(const FootSample& sample, const SensorState& health) noexcept {
+  using enum FaultCode;
+  FaultMask found =
+      bit_if(!health.finite, foot_not_finite) | bit_if(health.silent_ticks > silent_ticks_max_, foot_silent);
+  if (health.silent_ticks > 0 || !health.finite) return found;
+  const auto [low, high] = std::minmax_element(sample.force_N.begin(), sample.force_N.end());
+  // In the air all forces are none, again and again.
+  const bool repeated = sample.force_N == force_N_ && *low > 0;
+  found |= bit_if(repeats_.same(repeated, stuck_ticks_), foot_stuck);
+  if (*high > force_max_N_ || *low < -negative_share * force_max_N_) {
+    worst_N_ = *high > force_max_N_ ? *high : *low;
+    found |= bit(foot_jump);
+  }
+  force_N_ = sample.force_N;
+  return found;
+}
+
+void FootWatch::describe(const SensorState& health, Fault& fault) const noexcept {
+  switch (fault.code) {
+    case FaultCode::foot_silent:
+      fault.value = health.silent_ticks;
+      fault.limit = silent_ticks_max_;
+      break;
+    case FaultCode::foot_stuck:
+      fault.value = repeats_.count();
+      fault.limit = stuck_ticks_;
+      break;
+    case FaultCode::foot_jump:
+      fault.value = worst_N_;
+      fault.limit = force_max_N_;
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace kadans

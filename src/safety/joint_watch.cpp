@@ -1,0 +1,101 @@
+#include "kadans/safety/joint_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kadans {
+namespace {
+
+constexpr double continuous_share_default = 0.6;
+
+double first_not_finite(const JointActuation& a) noexcept {
+  if (!std::isfinite(a.effort_Nm)) return a.effort_Nm;
+  return std::isfinite(a.position_rad) ? a.velocity_rad_s : a.position_rad;
+}
+
+}  // namespace
+
+JointWatch::JointWatch(const SafetySettings& settings, const JointLimits& limits) noexcept
+    : lowest_rad_(limits.lower_rad - settings.position_margin_rad),
+      highest_rad_(limits.upper_rad + settings.position_margin_rad),
+      fastest_rad_s_(limits.velocity_max_rad_s * settings.velocity_margin),
+      jump_rad_(settings.sensors.jump_rad),
+      jump_rad_s_(2 * limits.velocity_max_rad_s),
+      stuck_motion_rad_(settings.sensors.stuck_motion_rad),
+      stuck_effort_Nm_(settings.sensors.stuck_effort_share * limits.effort_max_Nm),
+      warm_C_(settings.thermal.warm_C),
+      hot_C_(settings.thermal.hot_C),
+      lower_rad_(limits.lower_rad),
+      upper_rad_(limits.upper_rad),
+      stuck_ticks_(settings.sensors.stuck_ticks),
+      silent_ticks_max_(settings.silent_ticks_max),
+      passive_(limits.effort_max_Nm == 0) {
+  if (passive_) return;
+  const double wanted_Nm =
+      limits.continuous_Nm > 0 ? limits.continuous_Nm : continuous_share_default * limits.effort_max_Nm;
+  const double continuous_Nm = std::min(wanted_Nm, limits.effort_max_Nm);
+  continuous_share_ = continuous_Nm / limits.effort_max_Nm;
+  thermal_ = ThermalModel(settings.thermal, continuous_Nm, limits.thermal_time_constant_s);
+}
+
+FaultMask JointWatch::derate() noexcept {
+  const double temperature_C = thermal_.temperature_C();
+  const double heat = std::min(1.0, (temperature_C - warm_C_) / std::max(hot_C_ - warm_C_, 1e-6));
+  derating_ = 1 - heat * (1 - continuous_share_);
+  return bit(temperature_C >= hot_C_ ? FaultCode::motor_hot : FaultCode::motor_warm);
+}
+
+bool JointWatch::stuck(const Input& in) noexcept {
+  if (same_ == 0) {
+    motor_low_rad_ = motor_high_rad_ = motor_rad_;
+    asked_low_ = asked_high_ = asked_;
+  }
+  motor_low_rad_ = std::min(motor_low_rad_, in.sample.motor_position_rad);
+  motor_high_rad_ = std::max(motor_high_rad_, in.sample.motor_position_rad);
+  asked_low_ = std::min(asked_low_, demand(in));
+  asked_high_ = std::max(asked_high_, demand(in));
+  if (++same_ < stuck_ticks_ || passive_) return false;
+  const double asked_max = in.asked.mode == ActuationMode::position ? stuck_motion_rad_ : stuck_effort_Nm_;
+  return motor_high_rad_ - motor_low_rad_ > stuck_motion_rad_ || asked_high_ - asked_low_ > asked_max;
+}
+
+void JointWatch::describe(const Input& in, Fault& fault) const noexcept {
+  using enum FaultCode;
+  switch (fault.code) {
+    case position_limit:
+      fault.value = in.state.position_rad;
+      fault.limit = in.state.position_rad < lower_rad_ ? lower_rad_ : upper_rad_;
+      break;
+    case velocity_limit:
+      fault.value = in.state.velocity_rad_s;
+      fault.limit = fastest_rad_s_;
+      break;
+    case actuation_not_finite:
+      fault.value = first_not_finite(in.asked);
+      break;
+    case sensor_not_finite:
+      fault.value = in.sample.position_rad;
+      break;
+    case sensor_silent:
+      fault.value = in.health.silent_ticks;
+      fault.limit = silent_ticks_max_ + in.health.period_ticks - 1;
+      break;
+    case sensor_stuck:
+      fault.value = same_;
+      fault.limit = stuck_ticks_;
+      break;
+    case sensor_jump:
+      fault.value = step_rad_;
+      fault.limit = step_max_rad_;
+      break;
+    case motor_warm:
+    case motor_hot:
+      fault.value = thermal_.temperature_C();
+      fault.limit = fault.code == motor_warm ? warm_C_ : hot_C_;
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace kadans
