@@ -43,14 +43,18 @@ namespace {
 
 constexpr double cancel_time_s = 0.1;
 
-void declare_series(AxisTables& tables, const std::string& what, const char* unit, double most,
-                    HarmonicSeries& series) {
+void declare_series(AxisTables& tables, const char* what, const char* unit, double most, HarmonicSeries& series) {
+  const auto coefficient = [&](const char* function, const char* doc, std::size_t order, double* value) {
+    const std::string number = std::to_string(order);
+    std::string name = what;
+    name.append("_").append(function).append(number).append("_").append(unit);
+    std::string sentence = doc;
+    sentence.append(" of order ").append(number).append(" in the ").append(what).append(".");
+    tables.tunable(name.c_str(), unit, -most, most, 0, value, sentence.c_str());
+  };
   for (std::size_t n = 0; n < harmonic_count; ++n) {
-    const std::string order = std::to_string(n + 1);
-    tables.tunable((what + "_cos" + order + "_" + unit).c_str(), unit, -most, most, 0, &series.cosine[n],
-                   ("Cosine of order " + order + " in the " + what + ".").c_str());
-    tables.tunable((what + "_sin" + order + "_" + unit).c_str(), unit, -most, most, 0, &series.sine[n],
-                   ("Sine of order " + order + " in the " + what + ".").c_str());
+    coefficient("cos", "Cosine", n + 1, &series.cosine[n]);
+    coefficient("sin", "Sine", n + 1, &series.sine[n]);
   }
 }
 

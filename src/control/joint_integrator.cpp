@@ -26,6 +26,8 @@ void IntegratorLaw::start(const Handover& handover) noexcept {
   const PositionStart before = position_before(handover);
   state_ = {};
   state_.reference_rad = before.position_rad;
+  lowest_rad_ = std::min(axis_.lower_rad, before.position_rad);
+  highest_rad_ = std::max(axis_.upper_rad, before.position_rad);
   ramp_.start(before.velocity_rad_s, handover_stop_s);
   fading_.start(before.effort_Nm);
 }
@@ -41,7 +43,7 @@ JointActuation IntegratorLaw::step(const JointState& joint, double dt_s) noexcep
   const double velocity_rad_s = ramp_.step(dt_s, config_.acceleration_max_rad_s2, below_rad, above_rad);
   s.setpoint_rad_s = ramp_.goal();
   s.reference_velocity_rad_s = velocity_rad_s;
-  s.reference_rad += dt_s * velocity_rad_s;
+  s.reference_rad = std::clamp(s.reference_rad + dt_s * velocity_rad_s, lowest_rad_, highest_rad_);
   s.limited = ramp_.limited();
   s.effort_Nm = fading_.step(dt_s);
   return {.effort_Nm = s.effort_Nm,

@@ -77,6 +77,23 @@ TEST_CASE("JointIntegrator never passes a limit or its acceleration, whatever is
   }
 }
 
+TEST_CASE(
+    "JointIntegrator taken over too fast to stop before a limit brakes as hard as it may and stays at the limit") {
+  ObjectBench bench(make_joint_integrator);
+  bench.joints.joints[0] = {.position_rad = 1.95, .velocity_rad_s = 3};
+  bench.start();
+  double before_rad_s = 3;
+  for (int i = 0; i < 300; ++i) {
+    bench.compute();
+    const JointActuation& asked = bench.computed.joints[0];
+    REQUIRE(asked.position_rad <= 2.0);
+    REQUIRE(before_rad_s - asked.velocity_rad_s <= 0.02 * (1 + 1e-9));
+    before_rad_s = asked.velocity_rad_s;
+  }
+  CHECK(bench.computed.joints[0].position_rad == 2.0);
+  CHECK(before_rad_s == 0);
+}
+
 TEST_CASE("JointIntegrator does not run away from a blocked joint by more than lead_max") {
   ObjectBench bench(make_joint_integrator);
   bench.set("hip.lead_max_rad", 0.1);

@@ -4,8 +4,9 @@
 //
 //   dv/dt within +-acceleration_max towards the set-point,  dq_ref/dt = v
 //
-// The motion brakes before the joint's limits (velocity_ramp.h) and stops at them. With lead_max_rad above 0 it also
-// brakes before it is so far ahead of the measured joint: a blocked joint does not wind the position up.
+// The motion brakes before the joint's limits (velocity_ramp.h) and stops at them; one that is taken over too fast for
+// that brakes as hard as it may. With lead_max_rad above 0 it also brakes before it is so far ahead of the measured
+// joint: a blocked joint does not wind the position up.
 //
 // Set-points  <joint>.velocity_rad_s, reached in the time given or as soon as acceleration_max allows.
 // Start       from the drive's last set-point, or from the measured state with a fading torque; the set-point is 0.
@@ -47,6 +48,7 @@ class IntegratorLaw {
   State state_;
   VelocityRamp ramp_;
   FadingEffort fading_;
+  double lowest_rad_ = 0, highest_rad_ = 0;  // the joint's range, and where it was at the start
 };
 
 std::unique_ptr<ControlObject> make_joint_integrator(const ObjectSetup& setup);
