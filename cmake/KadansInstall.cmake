@@ -19,7 +19,7 @@ configure_package_config_file(cmake/kadansConfig.cmake.in "${PROJECT_BINARY_DIR}
                               INSTALL_DESTINATION "${package_dir}" PATH_VARS CMAKE_INSTALL_DATADIR)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/kadansConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/kadansConfig.cmake" "${PROJECT_BINARY_DIR}/kadansConfigVersion.cmake"
-              cmake/KadansDependencies.cmake DESTINATION "${package_dir}")
+              cmake/KadansDependencies.cmake cmake/KadansPlugin.cmake DESTINATION "${package_dir}")
 
 install(DIRECTORY include/kadans DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 foreach(folder IN ITEMS models behaviors config)

@@ -25,4 +25,11 @@ struct CheckOptions {
 };
 int run_check(const CheckOptions& options);
 
+struct NewControlObjectOptions {
+  std::string name;
+  std::string folder = ".";  // in which its own folder is made
+  bool plugin = false;
+};
+int run_new_control_object(const NewControlObjectOptions& options);
+
 }  // namespace kadans

@@ -1,7 +1,8 @@
 #include "kadans/app/program.h"
 
-#include <CLI/CLI.hpp>
 #include <exception>
+
+#include <CLI/CLI.hpp>
 
 #include "commands.h"
 #include "kadans/signal/nearest_name.h"
@@ -20,6 +21,7 @@ constexpr const char* examples =
     "  kadans sim config/scenarios/squat.json             run a scenario, read what happened\n"
     "  kadans sim config/scenarios/squat.json --json      the same as one JSON object\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
+    "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
     "\n"
     "Results go to stdout, progress and errors to stderr.\n"
     "Exit codes: 0 passed, 1 failed, 2 wrong usage or input, 3 internal error, 130 interrupted.\n";
@@ -47,6 +49,16 @@ void add_check(CLI::App& app, CheckOptions& options) {
       ->type_name("FILE");
 }
 
+void add_new(CLI::App& app, NewControlObjectOptions& options) {
+  CLI::App* made = app.add_subcommand("new", "Write a first version of something of your own");
+  made->require_subcommand(1);
+  CLI::App* object = made->add_subcommand("control-object", "A control object: source, test and what builds them");
+  object->add_option("name", options.name, "Its type's name, for example knee_damper")->required()->type_name("NAME");
+  object->add_option("--in", options.folder, "Folder in which its own folder is made (default: here)")
+      ->type_name("FOLDER");
+  object->add_flag("--plugin", options.plugin, "As a plug-in instead of a program of its own");
+}
+
 // "kadans smi": the word that was meant.
 std::string hint(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
@@ -67,6 +79,8 @@ int run(int argc, char** argv) {
   CheckOptions check;
   add_sim(app, sim);
   add_check(app, check);
+  NewControlObjectOptions new_object;
+  add_new(app, new_object);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -76,6 +90,7 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "Run 'kadans --help' or 'kadans COMMAND --help'.\n");
     return exit_usage;
   }
+  if (app.got_subcommand("new")) return run_new_control_object(new_object);
   return app.got_subcommand("sim") ? run_sim(sim) : run_check(check);
 }
 

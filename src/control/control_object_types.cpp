@@ -15,10 +15,12 @@ RegisteredControlObject::RegisteredControlObject(const char* name, Make make) no
     : name_(name), make_(make), next_(std::exchange(newest_registered, this)) {}
 
 void ControlObjectTypes::add(const std::string& name, MakeControlObject make, const std::string& source) {
-  if (name.empty() || !make) throw std::invalid_argument("a type of control object needs a name and a function that makes it");
+  if (name.empty() || !make)
+    throw std::invalid_argument("a type of control object needs a name and a function that makes it");
   const auto taken = std::ranges::find(types_, name, &Type::name);
   if (taken != types_.end()) {
-    throw std::invalid_argument("the type of control object '" + name + "' of " + source + " is taken by " + taken->source);
+    throw std::invalid_argument("the type of control object '" + name + "' of " + source + " is taken by " +
+                                taken->source);
   }
   types_.push_back({name, std::move(make), source});
 }

@@ -46,6 +46,12 @@ RobotModel model_of(const PluginSetup& setup) {
   return model;
 }
 
+ObjectOptions options_of(const PluginSetup& setup) {
+  std::map<std::string, std::string> texts;
+  for (std::uint32_t i = 0; i < setup.option_count; ++i) texts[setup.options[i].name] = setup.options[i].text;
+  return texts;
+}
+
 ControlInput input_of(const PluginInput& input) noexcept {
   return {*input.joints, *input.status, *input.last, input.time_ns, input.dt_s};
 }
@@ -53,7 +59,9 @@ ControlInput input_of(const PluginInput& input) noexcept {
 }  // namespace
 
 PluginInstance::PluginInstance(const PluginSetup& setup, Make make) : model_(model_of(setup)) {
-  object_ = make({model_, {setup.driven, setup.driven + setup.driven_count}});
+  const ObjectSetup passed{model_, {setup.driven, setup.driven + setup.driven_count}, options_of(setup)};
+  object_ = make(passed);
+  for (const std::string& option : passed.options.asked()) setup.asked(setup.program, option.c_str());
   if (!object_) throw std::invalid_argument("it made no object");
 }
 
@@ -63,12 +71,13 @@ void PluginInstance::declare(const PluginDeclaration& program) {
   const std::size_t own = std::string(own_name).size() + 1;
   for (ParameterId id = 0; id < parameters_.size(); ++id) {
     const Parameter& p = parameters_.info(id);
-    program.parameter(program.program, without_prefix(p.name, own), p.unit.c_str(), p.min, p.max, p.initial, p.doc.c_str());
+    program.parameter(program.program, without_prefix(p.name, own), p.unit.c_str(), p.min, p.max, p.initial,
+                      p.doc.c_str());
   }
   for (SetpointId id = 0; id < setpoints_.size(); ++id) {
     const Setpoint& s = setpoints_[id];
-    program.setpoint(program.program, without_prefix(s.name, own), s.unit.c_str(), s.min, s.max, s.doc.c_str(), s.channel,
-                     s.joint);
+    program.setpoint(program.program, without_prefix(s.name, own), s.unit.c_str(), s.min, s.max, s.doc.c_str(),
+                     s.channel, s.joint);
   }
   const std::size_t control = std::string("control.").size() + own;
   for (SignalId id = 0; id < signals_.size(); ++id) {

@@ -1,12 +1,12 @@
 #include "kadans/control/plugin_library.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cstring>
 #include <span>
 #include <stdexcept>
+
+#include <dlfcn.h>
 
 #include "plugin_object.h"
 
@@ -32,8 +32,8 @@ Entry open_library(const std::filesystem::path& file) {
 void check_sizes(const std::filesystem::path& file, const Plugin& plugin) {
   constexpr Plugin own = plugin_sizes();
   if (plugin.abi_version != own.abi_version) {
-    refuse_plugin(file, "is made for version " + std::to_string(plugin.abi_version) + " of the seam, this program has " +
-                            std::to_string(own.abi_version) + ": build it again");
+    refuse_plugin(file, "is made for version " + std::to_string(plugin.abi_version) +
+                            " of the seam, this program has " + std::to_string(own.abi_version) + ": build it again");
   }
   const struct {
     const char* what;
@@ -58,9 +58,8 @@ void check_sizes(const std::filesystem::path& file, const Plugin& plugin) {
 
 bool right_name(const char* name) {
   if (name == nullptr || strnlen(name, name_max + 1) > name_max || *name == '\0') return false;
-  return std::all_of(name, name + std::strlen(name), [](char c) {
-    return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-  });
+  return std::all_of(name, name + std::strlen(name),
+                     [](char c) { return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
 }
 
 bool complete(const PluginType& type) {
@@ -90,8 +89,9 @@ void load_plugin(const std::filesystem::path& file, ControlObjectTypes& types) {
     if (!right_name(type.name)) refuse_plugin(file, "names a type with other than 1..64 of a-z, 0-9 and _");
     if (!complete(type)) refuse_plugin(file, "lacks a function of type " + std::string(type.name));
     try {
-      types.add(type.name, [&type](const ObjectSetup& setup) { return std::make_unique<PluginObject>(type, setup); },
-                "the plug-in");
+      types.add(
+          type.name, [&type](const ObjectSetup& setup) { return std::make_unique<PluginObject>(type, setup); },
+          "the plug-in");
     } catch (const std::invalid_argument& error) {
       refuse_plugin(file, error.what());
     }

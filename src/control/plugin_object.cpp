@@ -54,18 +54,26 @@ struct PluginObject::Told {
   static Told& of(void* program) { return *static_cast<Told*>(program); }
   PluginDeclaration seam() {
     return {.program = this,
-            .parameter = [](void* program, const char* name, const char* unit, double min, double max, double initial,
-                            const char* doc) {
-              of(program).parameters.push_back({text(name), text(unit), min, max, initial, text(doc)});
-            },
-            .setpoint = [](void* program, const char* name, const char* unit, double min, double max, const char* doc,
-                           std::uint32_t channel, std::uint32_t joint) {
-              of(program).setpoints.push_back({.name = text(name), .unit = text(unit), .min = min, .max = max,
-                                               .doc = text(doc), .channel = channel, .joint = joint});
-            },
-            .signal = [](void* program, const char* name, const char* unit, const char* doc) {
-              of(program).signals.push_back({text(name), text(unit), text(doc)});
-            }};
+            .parameter =
+                [](void* program, const char* name, const char* unit, double min, double max, double initial,
+                   const char* doc) {
+                  of(program).parameters.push_back({text(name), text(unit), min, max, initial, text(doc)});
+                },
+            .setpoint =
+                [](void* program, const char* name, const char* unit, double min, double max, const char* doc,
+                   std::uint32_t channel, std::uint32_t joint) {
+                  of(program).setpoints.push_back({.name = text(name),
+                                                   .unit = text(unit),
+                                                   .min = min,
+                                                   .max = max,
+                                                   .doc = text(doc),
+                                                   .channel = channel,
+                                                   .joint = joint});
+                },
+            .signal =
+                [](void* program, const char* name, const char* unit, const char* doc) {
+                  of(program).signals.push_back({text(name), text(unit), text(doc)});
+                }};
   }
 };
 
@@ -83,16 +91,25 @@ void PluginObject::call(Call&& call) const noexcept {
 PluginObject::PluginObject(const PluginType& type, const ObjectSetup& setup) : type_(type), joints_(setup.joints) {
   std::vector<PluginLink> links;
   std::vector<PluginJoint> joints;
+  std::vector<PluginOption> options;
   for (const Link& link : setup.model.links) links.push_back(link_of(link));
   for (const Joint& joint : setup.model.joints) joints.push_back(joint_of(joint));
+  for (const auto& [name, given] : setup.options.given()) options.push_back({name.c_str(), given.c_str()});
   const std::vector<std::uint32_t> driven(setup.joints.begin(), setup.joints.end());
-  const PluginSetup passed_setup{setup.model.name.c_str(),
-                                 links.data(),
-                                 joints.data(),
-                                 driven.data(),
-                                 static_cast<std::uint32_t>(links.size()),
-                                 static_cast<std::uint32_t>(joints.size()),
-                                 static_cast<std::uint32_t>(driven.size())};
+  std::vector<std::string> asked;
+  const PluginSetup passed_setup{
+      .program = &asked,
+      .asked = [](void* program,
+                  const char* option) { static_cast<std::vector<std::string>*>(program)->push_back(text(option)); },
+      .options = options.data(),
+      .robot = setup.model.name.c_str(),
+      .links = links.data(),
+      .joints = joints.data(),
+      .driven = driven.data(),
+      .option_count = static_cast<std::uint32_t>(options.size()),
+      .link_count = static_cast<std::uint32_t>(links.size()),
+      .joint_count = static_cast<std::uint32_t>(joints.size()),
+      .driven_count = static_cast<std::uint32_t>(driven.size())};
   PluginError error{};
   try {
     object_ = type_.create(&passed_setup, &error);
@@ -100,6 +117,7 @@ PluginObject::PluginObject(const PluginType& type, const ObjectSetup& setup) : t
     throw std::invalid_argument("the plug-in threw while it made the object");
   }
   if (object_ == nullptr) throw std::invalid_argument(reason(error));
+  for (const std::string& option : asked) (void)setup.options.find(option);
 }
 
 PluginObject::~PluginObject() {

@@ -32,7 +32,8 @@ struct Sine {
 };
 
 Sine sine_at(double wanted_Hz, const SweepOptions& options, double dt_s) {
-  const long long ticks = std::max<long long>(2LL * options.periods, std::llround(options.periods / (wanted_Hz * dt_s)));
+  const long long ticks =
+      std::max<long long>(2LL * options.periods, std::llround(options.periods / (wanted_Hz * dt_s)));
   const long long settle = std::llround(std::ceil(options.settle_s / dt_s));
   return {static_cast<double>(options.periods) / (static_cast<double>(ticks) * dt_s), settle, ticks};
 }

@@ -75,8 +75,8 @@ void JointBench::add_objects(const std::vector<BenchObject>& objects) {
     Declaration declaration(object.name, index, catalog_.parameters, catalog_.setpoints, catalog_.signals);
     made.back()->declare(declaration);
     made.back()->parameters_changed();
-    catalog_.objects.push_back({.name = object.name, .type = object.name, .joints = {0}, .parameters = {}, .setpoints = {},
-                                .presets = {}});
+    catalog_.objects.push_back(
+        {.name = object.name, .type = object.name, .joints = {0}, .parameters = {}, .setpoints = {}, .presets = {}});
     catalog_.sets.push_back({.name = object.name, .objects = {index}});
   }
   sets_ = std::make_unique<ControlSets>(catalog_, std::move(made));
@@ -106,7 +106,8 @@ SetpointId JointBench::find_setpoint(std::string_view name) const {
 
 void JointBench::set_point(double value, double duration_s) {
   for (SetpointId id = 0; id < catalog_.setpoints.size(); ++id) {
-    if (catalog_.setpoints[id].owner == sets_->active()) return set_point(catalog_.setpoints[id].name, value, duration_s);
+    if (catalog_.setpoints[id].owner == sets_->active())
+      return set_point(catalog_.setpoints[id].name, value, duration_s);
   }
   throw std::invalid_argument("control object " + catalog_.objects[sets_->active()].name + " has no set-point");
 }

@@ -13,8 +13,8 @@ constexpr std::int64_t substep_ns = 50'000;
 
 void require(const char* key, double value, double min, double max) {
   if (value >= min && value <= max) return;
-  throw std::invalid_argument("one-joint plant: " + std::string(key) + " is " + std::to_string(value) + ", must be in " +
-                              std::to_string(min) + ".." + std::to_string(max));
+  throw std::invalid_argument("one-joint plant: " + std::string(key) + " is " + std::to_string(value) +
+                              ", must be in " + std::to_string(min) + ".." + std::to_string(max));
 }
 
 // The velocity after dt_s under a torque, viscous friction and Coulomb friction, which never turns it round.
@@ -60,8 +60,8 @@ void OneJointPlant::read(SensorFrame& sensors) noexcept {
 
 void OneJointPlant::write(const ActuationFrame& actuation) noexcept {
   const JointActuation& asked = actuation.joints[0];
-  const bool finite = std::isfinite(asked.effort_Nm) && std::isfinite(asked.position_rad) &&
-                      std::isfinite(asked.velocity_rad_s);
+  const bool finite =
+      std::isfinite(asked.effort_Nm) && std::isfinite(asked.position_rad) && std::isfinite(asked.velocity_rad_s);
   written_[ticks_ % written_.size()] = finite && actuation.joint_count > 0 ? asked : JointActuation{};
 }
 

@@ -18,7 +18,8 @@ std::vector<double> sampled(double duration_s, double dt_s, Value&& value) {
 
 }  // namespace
 
-std::vector<double> sine_reference(double amplitude, double frequency_Hz, double duration_s, double dt_s, double offset) {
+std::vector<double> sine_reference(double amplitude, double frequency_Hz, double duration_s, double dt_s,
+                                   double offset) {
   return chirp_reference(amplitude, frequency_Hz, frequency_Hz, duration_s, dt_s, offset);
 }
 

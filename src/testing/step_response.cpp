@@ -71,7 +71,9 @@ StepResponse step_response(JointBench& bench, const StepOptions& options) {
 }
 
 bool operator<=(const StepResponse& response, const StepLimits& limits) noexcept {
-  const auto within = [](double value, double limit) { return limit == std::numeric_limits<double>::infinity() || value <= limit; };
+  const auto within = [](double value, double limit) {
+    return limit == std::numeric_limits<double>::infinity() || value <= limit;
+  };
   return within(response.rise_time_s, limits.rise_time_s) &&
          within(response.overshoot_percent, limits.overshoot_percent) &&
          within(response.settling_time_s, limits.settling_time_s) &&
@@ -86,8 +88,9 @@ std::ostream& operator<<(std::ostream& out, const StepResponse& r) {
 }
 
 std::ostream& operator<<(std::ostream& out, const StepLimits& limits) {
-  return out << "rise <= " << limits.rise_time_s << " s, overshoot <= " << limits.overshoot_percent << " %, settled <= "
-             << limits.settling_time_s << " s, steady-state error <= " << limits.steady_state_error;
+  return out << "rise <= " << limits.rise_time_s << " s, overshoot <= " << limits.overshoot_percent
+             << " %, settled <= " << limits.settling_time_s
+             << " s, steady-state error <= " << limits.steady_state_error;
 }
 
 }  // namespace kadans::testing

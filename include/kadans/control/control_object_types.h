@@ -3,7 +3,8 @@
 // Types come from three sides: those shipped with Kadans, which the app lists; those of a program that links Kadans,
 // which registers them before main():
 //
-//   KADANS_REGISTER_CONTROL_OBJECT("spring", make_spring)   // std::unique_ptr<ControlObject> make_spring(const ObjectSetup&)
+//   KADANS_REGISTER_CONTROL_OBJECT("spring", make_spring)   // std::unique_ptr<ControlObject> make_spring(const
+//   ObjectSetup&)
 //
 // and those of plug-ins (plugin_library.h). A name belongs to one of them: the second who claims it is refused.
 //
@@ -62,8 +63,8 @@ class RegisteredControlObject {
 // else refers to.
 #define KADANS_REGISTER_CONTROL_OBJECT(name, make) KADANS_REGISTER_CONTROL_OBJECT_AT(name, make, __COUNTER__)
 #define KADANS_REGISTER_CONTROL_OBJECT_AT(name, make, count) KADANS_REGISTER_CONTROL_OBJECT_AS(name, make, count)
-#define KADANS_REGISTER_CONTROL_OBJECT_AS(name, make, count)                             \
-  namespace {                                                                            \
+#define KADANS_REGISTER_CONTROL_OBJECT_AS(name, make, count)                                    \
+  namespace {                                                                                   \
   const ::kadans::RegisteredControlObject kadans_registered_control_object_##count(name, make); \
-  }                                                                                      \
-  static_assert(true)  /* takes the semicolon */
+  }                                                                                             \
+  static_assert(true) /* takes the semicolon */

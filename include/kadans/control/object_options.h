@@ -23,6 +23,7 @@ class ObjectOptions {
     const auto found = texts_.find(name);
     return found == texts_.end() ? nullptr : &found->second;
   }
+  const std::map<std::string, std::string>& given() const noexcept { return texts_; }
   // The names that find was asked for.
   const std::vector<std::string>& asked() const noexcept { return asked_; }
 

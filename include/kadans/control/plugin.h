@@ -41,12 +41,20 @@ struct alignas(8) PluginJoint {
   double mimic_multiplier, mimic_offset;
 };
 
+struct PluginOption {
+  const char* name;
+  const char* text;
+};
+
 struct PluginSetup {
+  void* program;
+  void (*asked)(void* program, const char* option);  // the object knows this option, given or not
+  const PluginOption* options;                       // as given
   const char* robot;
   const PluginLink* links;
   const PluginJoint* joints;
   const std::uint32_t* driven;  // the joints that the object drives
-  std::uint32_t link_count, joint_count, driven_count;
+  std::uint32_t option_count, link_count, joint_count, driven_count;
 };
 
 struct alignas(8) PluginInput {
@@ -74,7 +82,7 @@ struct PluginError {
 // One type of control object; no function is missing.
 struct PluginType {
   const char* name;
-  void* (*create)(const PluginSetup*, PluginError*);                            // nullptr: refused, error says why
+  void* (*create)(const PluginSetup*, PluginError*);  // nullptr: refused, error says why
   void (*destroy)(void* object);
   std::int32_t (*declare)(void* object, const PluginDeclaration*, PluginError*);  // 0: refused, error says why
   void (*start)(void* object, const PluginInput*);

@@ -41,6 +41,8 @@ class PluginInstance {
   std::unique_ptr<ControlObject> object_;
 };
 
+inline PluginInstance& plugin_instance(void* object) noexcept { return *static_cast<PluginInstance*>(object); }
+
 // True when `work` did not throw; else the error tells why.
 template <typename Work>
 bool without_exception(PluginError& error, Work&& work) noexcept {
@@ -64,24 +66,25 @@ void* plugin_create(const PluginSetup* setup, PluginError* error) noexcept {
 
 template <PluginInstance::Make make>
 PluginType plugin_type(const char* name) noexcept {
-  constexpr auto instance = [](void* object) noexcept -> PluginInstance& { return *static_cast<PluginInstance*>(object); };
   return {
       .name = name,
       .create = plugin_create<make>,
-      .destroy = [](void* o) { const std::unique_ptr<PluginInstance> owned(&instance(o)); },
+      .destroy = [](void* o) { const std::unique_ptr<PluginInstance> owned(&plugin_instance(o)); },
       .declare = [](void* o, const PluginDeclaration* program, PluginError* error) -> std::int32_t {
-        return without_exception(*error, [&] { instance(o).declare(*program); }) ? 1 : 0;
+        return without_exception(*error, [&] { plugin_instance(o).declare(*program); }) ? 1 : 0;
       },
-      .start = [](void* o, const PluginInput* input) { instance(o).start(*input); },
-      .step = [](void* o, const PluginInput* input, ActuationFrame* actuation) { instance(o).step(*input, *actuation); },
-      .set_parameter = [](void* o, std::uint32_t number, double value) { instance(o).set_parameter(number, value); },
-      .parameters_changed = [](void* o) { instance(o).object().parameters_changed(); },
+      .start = [](void* o, const PluginInput* input) { plugin_instance(o).start(*input); },
+      .step = [](void* o, const PluginInput* input,
+                 ActuationFrame* actuation) { plugin_instance(o).step(*input, *actuation); },
+      .set_parameter = [](void* o, std::uint32_t number,
+                          double value) { plugin_instance(o).set_parameter(number, value); },
+      .parameters_changed = [](void* o) { plugin_instance(o).object().parameters_changed(); },
       .set_point = [](void* o, std::uint32_t channel, double value,
-                      double duration_s) { instance(o).object().set_point(channel, value, duration_s); },
-      .cancel_motion = [](void* o, std::uint32_t channel) { instance(o).object().cancel_motion(channel); },
-      .motion_remaining_s = [](void* o) { return instance(o).object().motion_remaining_s(); },
-      .read_signals = [](void* o, double* values) { instance(o).read_signals(values); },
-      .update = [](void* o, const Snapshot* snapshot) { instance(o).object().update(*snapshot); },
+                      double duration_s) { plugin_instance(o).object().set_point(channel, value, duration_s); },
+      .cancel_motion = [](void* o, std::uint32_t channel) { plugin_instance(o).object().cancel_motion(channel); },
+      .motion_remaining_s = [](void* o) { return plugin_instance(o).object().motion_remaining_s(); },
+      .read_signals = [](void* o, double* values) { plugin_instance(o).read_signals(values); },
+      .update = [](void* o, const Snapshot* snapshot) { plugin_instance(o).object().update(*snapshot); },
   };
 }
 

@@ -9,9 +9,9 @@
 // The rest of the kit does not need doctest: results are printed by operator<<, with any framework.
 #pragma once
 
-#include <doctest/doctest.h>
-
 #include <sstream>
+
+#include <doctest/doctest.h>
 
 #include "kadans/testing/allocation_count.h"
 #include "kadans/testing/frequency_response.h"

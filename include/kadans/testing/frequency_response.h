@@ -1,5 +1,5 @@
-// Gain and phase over frequency, measured on the bench with one sine after another (a chirp that waits at each frequency
-// until the answer is steady, so that the numbers are exact and not smeared).
+// Gain and phase over frequency, measured on the bench with one sine after another (a chirp that waits at each
+// frequency until the answer is steady, so that the numbers are exact and not smeared).
 //
 // measure_loop adds a torque at the joint and looks how much of it the control object takes back. This is the open loop
 // cut at the drive, whatever the law inside, with all delays: from it come the margins.
@@ -36,10 +36,10 @@ using FrequencyResponse = std::vector<FrequencyPoint>;
 
 // What is not within the measured frequencies is NaN.
 struct LoopMargins {
-  double crossover_Hz = 0;       // where the gain falls below 1, last
-  double phase_margin_deg = 0;   // there
-  double delay_margin_s = 0;     // what the loop bears beyond the delays it has
-  double gain_margin = 0;        // factor on the loop, where the phase is -180 degrees, beyond the crossover
+  double crossover_Hz = 0;      // where the gain falls below 1, last
+  double phase_margin_deg = 0;  // there
+  double delay_margin_s = 0;    // what the loop bears beyond the delays it has
+  double gain_margin = 0;       // factor on the loop, where the phase is -180 degrees, beyond the crossover
 };
 
 // Both throw std::invalid_argument on options that make no sense and std::runtime_error when the joint does not stay

@@ -1,5 +1,6 @@
-// A test bench for control objects: one joint (one_joint_plant.h), its estimate, and the objects, ticked in the order of
-// the control engine: read, estimate, write what was computed in the last tick, compute. So one tick of delay is in it.
+// A test bench for control objects: one joint (one_joint_plant.h), its estimate, and the objects, ticked in the order
+// of the control engine: read, estimate, write what was computed in the last tick, compute. So one tick of delay is in
+// it.
 //
 //   JointBench bench({.plant = {.inertia_kg_m2 = 0.05}}, make_joint_pid);
 //   bench.set("kp_Nm_per_rad", 100);
@@ -7,9 +8,9 @@
 //   bench.run(1.0);
 //   CHECK(bench.position_rad() == doctest::Approx(0.5));
 //
-// The robot is a link on a bolted base, its model made to fit the plant. Each object is alone in a control set of its own
-// name; the first is active. There is no safety layer: a torque beyond the limit is limited, an actuation that is not
-// finite is not written, and both are counted. Names are given without what stands before them when that is clear:
+// The robot is a link on a bolted base, its model made to fit the plant. Each object is alone in a control set of its
+// own name; the first is active. There is no safety layer: a torque beyond the limit is limited, an actuation that is
+// not finite is not written, and both are counted. Names are given without what stands before them when that is clear:
 // "kp_Nm_per_rad" for "object.joint.kp_Nm_per_rad".
 //
 // One thread. Building it and naming things allocate; tick() does not, as long as the objects do not.

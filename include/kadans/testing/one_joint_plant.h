@@ -1,12 +1,12 @@
-// One joint and its drive, for tests of control objects: enough physics to tell a good law from a bad one, little enough
-// that the right answer can be written down.
+// One joint and its drive, for tests of control objects: enough physics to tell a good law from a bad one, little
+// enough that the right answer can be written down.
 //
 //   rigid    (inertia + rotor) dw/dt = drive - viscous w - coulomb sign(w) - gravity sin(q) + load + push
 //   elastic  (spring > 0) the rotor is a body of its own between drive and spring; friction is the rotor's
 //
 // Joints are integrated in steps of 50 us (semi-implicit Euler, friction implicit: a joint that friction holds stands).
-// An actuation acts `delay_ticks` steps after it was written; it takes one tick more to be computed (joint_bench.h). What
-// is not finite is not obeyed: the drive is off.
+// An actuation acts `delay_ticks` steps after it was written; it takes one tick more to be computed (joint_bench.h).
+// What is not finite is not obeyed: the drive is off.
 #pragma once
 
 #include <array>
@@ -36,9 +36,9 @@ class OneJointPlant final : public Plant {
   struct State {
     double position_rad = 0, velocity_rad_s = 0;              // of the link
     double motor_position_rad = 0, motor_velocity_rad_s = 0;  // of the rotor; the link's own when rigid
-    double torque_Nm = 0;        // of the drive: mean over the last step
-    double first_torque_Nm = 0, last_torque_Nm = 0;  // at its beginning and at its end
-    bool saturated = false;      // at any time of it
+    double torque_Nm = 0;                                     // of the drive: mean over the last step
+    double first_torque_Nm = 0, last_torque_Nm = 0;           // at its beginning and at its end
+    bool saturated = false;                                   // at any time of it
   };
   static constexpr std::uint32_t max_delay_ticks = 63;
 

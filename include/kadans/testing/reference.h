@@ -6,7 +6,8 @@
 namespace kadans::testing {
 
 // offset + amplitude sin(2 pi f t); at t = 0 it stands at the offset, moving.
-std::vector<double> sine_reference(double amplitude, double frequency_Hz, double duration_s, double dt_s, double offset = 0);
+std::vector<double> sine_reference(double amplitude, double frequency_Hz, double duration_s, double dt_s,
+                                   double offset = 0);
 // A sine whose frequency grows evenly from low_Hz to high_Hz.
 std::vector<double> chirp_reference(double amplitude, double low_Hz, double high_Hz, double duration_s, double dt_s,
                                     double offset = 0);

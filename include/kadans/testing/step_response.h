@@ -24,12 +24,12 @@ struct StepOptions {
 struct StepResponse {
   double from = 0, to = 0;  // rad
   double dt_s = 0;
-  std::vector<double> values;        // position a tick; the first one before the step
-  double rise_time_s = 0;            // from 10 % to 90 % of the way
-  double overshoot_percent = 0;      // of the way; 0 when it does not pass the goal
-  double peak_time_s = 0;            // of the largest value on the way
-  double settling_time_s = 0;        // after which it stays within 2 % of the way around the goal
-  double steady_state_error = 0;     // goal minus the mean of the last tenth, rad
+  std::vector<double> values;     // position a tick; the first one before the step
+  double rise_time_s = 0;         // from 10 % to 90 % of the way
+  double overshoot_percent = 0;   // of the way; 0 when it does not pass the goal
+  double peak_time_s = 0;         // of the largest value on the way
+  double settling_time_s = 0;     // after which it stays within 2 % of the way around the goal
+  double steady_state_error = 0;  // goal minus the mean of the last tenth, rad
 };
 
 struct StepLimits {
