@@ -1,0 +1,189 @@
+#include "check_source.h"
+
+#include <algorithm>
+#include <array>
+
+#include "check_arguments.h"
+#include "hint.h"
+#include "source_scopes.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::array<const char*, 3> always_there{"vars", "args", "*"};
+
+// Fields that scripts write themselves: `m.vars.x = `, in one file.
+class Writes final : public SourceListener {
+ public:
+  void used(const SourceUse& use, const std::vector<SourceToken>& /*tokens*/) override {
+    const auto& path = use.meaning.path;
+    if (use.assigned && use.meaning.role == SourceRole::machine && path.size() >= 2 && path[0] == "vars") {
+      vars.push_back(path[1]);
+    }
+  }
+  std::vector<std::string> vars;
+};
+
+class SourceCheck final : public SourceListener {
+ public:
+  SourceCheck(const Behavior::Parts& parts, const KnownNames& known, const LuaState::Source& source,
+              std::vector<InputProblem>& problems)
+      : parts_(parts), known_(known), source_(source), problems_(problems), arguments_(parts) {
+    const auto vars = known.vars.find(source.chunk);
+    has_behavior_ = vars != known.vars.end();
+    if (has_behavior_) vars_ = vars->second;
+  }
+
+  void run() {
+    SourceScopes scopes(lex_source(source_.text));
+    Writes writes;
+    scopes.tell(writes);
+    vars_.insert(vars_.end(), writes.vars.begin(), writes.vars.end());
+    std::sort(vars_.begin(), vars_.end());
+    scopes.tell(*this);
+  }
+
+  void used(const SourceUse& use, const std::vector<SourceToken>& tokens) override {
+    if (!use.known) return unknown(use);
+    if (use.guard) guard(use);
+    switch (use.meaning.role) {
+      case SourceRole::machine:
+        return machine(use, tokens);
+      case SourceRole::snapshot:
+        if (use.assigned) return problem(place(use), "s is read-only: '" + use.meaning.path.back() + "' cannot be set");
+        return fields(use, known_.snapshot, "s");
+      case SourceRole::module:
+        fields(use, known_.module, "kadans");
+        if (use.meaning.path == std::vector<std::string>{"pose"} && use.arguments != 0) {
+          tell(arguments_.pose_name(tokens, use.arguments));
+        }
+        return;
+      case SourceRole::parameters:
+        return parameter(use);
+      default:
+        return;
+    }
+  }
+
+ private:
+  static int place(const SourceUse& use) { return use.lines.empty() ? use.line : use.lines.back(); }
+  void problem(int line, std::string message) { problems_.push_back({source_.chunk, line, 0, std::move(message)}); }
+  void tell(const std::vector<ArgumentProblem>& found) {
+    for (const ArgumentProblem& wrong : found) problem(wrong.line, wrong.message);
+  }
+
+  void unknown(const SourceUse& use) {
+    if (known_.globals.fields.contains(use.name)) return;
+    if (use.assigned && use.meaning.path.empty()) {
+      return problem(use.line, "'" + use.name + "' would be a global: write local " + use.name);
+    }
+    problem(use.line, "unknown name '" + use.name + "'" + hint_text(use.name, known_.globals.names()));
+  }
+
+  void guard(const SourceUse& use) {
+    const auto& path = use.meaning.path;
+    const bool of_machine = use.meaning.role == SourceRole::machine;
+    const std::string dotted = path.empty() ? use.name : "m." + path.front() + (path.size() > 1 ? "." + path[1] : "");
+    if (use.assigned && of_machine && !path.empty()) {
+      problem(use.line, "a guard writes: '" + dotted + "' must not change while it is asked");
+    } else if (use.assigned && use.outer) {
+      problem(use.line, "a guard writes: '" + use.name + "' must not change while it is asked");
+    } else if (of_machine && !use.method.empty() && (path.empty() || path.front() != "vars")) {
+      problem(use.line, "a guard acts: '" + use.method + "' belongs into enter, during, run or action");
+    }
+  }
+
+  // Each field on the way must be there; the ones before `written` were looked at where they were named.
+  void fields(const SourceUse& use, const KnownNames::Shape& root, std::string shown) {
+    const KnownNames::Shape* at = &root;
+    const auto& path = use.meaning.path;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      if (path[i] == "*" || at->open) return;
+      const auto found = at->fields.find(path[i]);
+      if (found == at->fields.end()) {
+        if (i + use.written >= path.size() && !at->fields.empty()) {
+          problem(use.lines[i], shown + " has no '" + path[i] + "'" + hint_text(path[i], at->names()));
+        }
+        return;
+      }
+      at = &found->second;
+      shown += "." + path[i];
+    }
+  }
+
+  void machine(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+    const auto& path = use.meaning.path;
+    if (path.empty()) {
+      if (!use.method.empty() && !known_.machine.fields.contains(use.method)) {
+        problem(use.line, "m has no '" + use.method + "'" + hint_text(use.method, known_.machine.names()));
+      }
+      if (use.method == "emit") event(tokens, use.arguments);
+      return;
+    }
+    const ObjectInfo* object = arguments_.object(path.front());
+    if (object == nullptr || !known_.machine.fields.contains(path.front())) return machine_field(use, object);
+    if (use.assigned) return problem(use.line, "m is read-only: '" + path.front() + "' cannot be set");
+    const std::string method = path.size() > 1 ? path[1] : use.method;
+    if (method.empty() || method == "*") return;
+    const auto& methods = known_.object_methods;
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) {
+      return problem(place(use), "a control object has no '" + method + "'" + hint_text(method, methods));
+    }
+    if (path.size() > 1 && use.arguments != 0) {
+      return problem(place(use), "call it with a colon: m." + path.front() + ":" + method + "(...)");
+    }
+    if (use.arguments != 0) tell(arguments_.of_method(*object, method, tokens, use.arguments));
+  }
+
+  void machine_field(const SourceUse& use, const ObjectInfo* object) {
+    const auto& path = use.meaning.path;
+    if (object != nullptr) {
+      return problem(place(use), "control object '" + path.front() + "' is not in this behavior's control set, '" +
+                                     parts_.chart.machines.front().controls + "'");
+    }
+    const bool free = std::find(always_there.begin(), always_there.end(), path.front()) != always_there.end();
+    if (use.assigned && (!free || path.size() == 1)) {
+      return problem(place(use), "m is read-only: '" + path.front() + "' cannot be set; keep it in m.vars");
+    }
+    fields(use, known_.machine, "m");
+    if (!has_behavior_ || path.front() != "vars" || path.size() < 2 || path[1] == "*" || use.assigned) return;
+    if (std::binary_search(vars_.begin(), vars_.end(), path[1])) return;
+    problem(place(use), "m.vars has no '" + path[1] + "'" + hint_text(path[1], vars_) + ": declare it in vars = { }");
+  }
+
+  void event(const std::vector<SourceToken>& tokens, std::size_t at) {
+    if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
+    const EventId id = parts_.chart.find_event(tokens[at].text);
+    if (id != no_event && id != run_done_event) return;
+    problem(tokens[at].line, "nothing in this behavior waits for the event '" + tokens[at].text + "'" +
+                                 hint_text(tokens[at].text, parts_.chart.events));
+  }
+
+  void parameter(const SourceUse& use) {
+    const auto declared = known_.parameters.find(source_.chunk);
+    if (use.meaning.path.empty() || declared == known_.parameters.end()) return;
+    const std::string& name = use.meaning.path.front();
+    if (use.assigned) {
+      return problem(place(use), "a behavior does not set its own parameters: keep what changes in m.vars");
+    }
+    const auto& names = declared->second;
+    if (name == "*" || std::find(names.begin(), names.end(), name) != names.end()) return;
+    problem(place(use), "k.params has no '" + name + "'" + hint_text(name, names));
+  }
+
+  const Behavior::Parts& parts_;
+  const KnownNames& known_;
+  const LuaState::Source& source_;
+  std::vector<InputProblem>& problems_;
+  ArgumentCheck arguments_;
+  std::vector<std::string> vars_;
+  bool has_behavior_ = false;
+};
+
+}  // namespace
+
+void check_sources(const Behavior::Parts& parts, const KnownNames& known, std::vector<InputProblem>& problems) {
+  for (const LuaState::Source& source : parts.lua->sources()) SourceCheck(parts, known, source, problems).run();
+}
+
+}  // namespace kadans

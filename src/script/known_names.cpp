@@ -1,0 +1,97 @@
+#include "known_names.h"
+
+#include "kadans/signal/input_error.h"
+#include "lua_core.h"
+#include "sandbox.h"
+
+namespace kadans {
+namespace {
+
+constexpr int depth_max = 6;
+
+struct Reading {
+  Behavior::Parts* parts;
+  KnownNames* known;
+};
+
+// [-0 +0] The table or read-only table at `index`. Nothing here raises but for want of memory.
+void read_shape(lua_State* state, int index, KnownNames::Shape& shape, int depth) {
+  luaL_checkstack(state, 8, "shape");
+  if (depth > depth_max || !lua_istable(state, index)) return;
+  const int top = lua_gettop(state);
+  if (!push_content(state, index)) lua_pushvalue(state, index);
+  const int content = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, content) != 0; lua_pop(state, 1)) {
+    if (lua_type(state, -2) != LUA_TSTRING) continue;
+    const char* name = lua_tostring(state, -2);
+    KnownNames::Shape& field = shape.fields[name];
+    if (name[0] == '_') continue;  // _G
+    read_shape(state, lua_gettop(state), field, depth + 1);
+  }
+  lua_settop(state, top);
+}
+
+void read_keys(lua_State* state, int reference, std::vector<std::string>& names) {
+  if (reference == Chart::no_function) return;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
+  KnownNames::Shape shape;
+  read_shape(state, lua_gettop(state), shape, depth_max);
+  lua_pop(state, 1);
+  for (const auto& [name, ignored] : shape.fields) names.push_back(name);
+}
+
+void read_methods(lua_State* state, std::vector<std::string>& names) {
+  push_object(state, 0);
+  lua_getmetatable(state, -1);
+  lua_getfield(state, -1, "__index");
+  KnownNames::Shape shape;
+  read_shape(state, lua_gettop(state), shape, depth_max);
+  names = shape.names();
+  lua_pop(state, 3);
+}
+
+int read(lua_State* state) {
+  const auto& reading = *static_cast<Reading*>(lua_touserdata(state, 1));
+  const Behavior::Parts& parts = *reading.parts;
+  KnownNames& known = *reading.known;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.machines.front().content);
+  read_shape(state, lua_gettop(state), known.machine, 0);
+  known.machine.fields["vars"].open = true;
+  known.machine.fields["args"].open = true;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.snapshot);
+  read_shape(state, lua_gettop(state), known.snapshot, 0);
+  lua_getfield(state, LUA_REGISTRYINDEX, "kadans.modules");
+  lua_getfield(state, -1, "kadans");
+  read_shape(state, lua_gettop(state), known.module, 0);
+  push_environment(state);
+  read_shape(state, lua_gettop(state), known.globals, 0);
+  read_methods(state, known.object_methods);
+  for (const Chart::Machine& machine : parts.chart.machines) {
+    read_keys(state, machine.vars, known.vars[parts.chart.states[machine.root].chunk]);
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::vector<std::string> KnownNames::Shape::names() const {
+  std::vector<std::string> all;
+  for (const auto& [name, ignored] : fields) all.push_back(name);
+  return all;
+}
+
+KnownNames read_known_names(Behavior::Parts& parts) {
+  KnownNames known;
+  Reading reading{&parts, &known};
+  if (!parts.lua->call(read, &reading, parts.settings.limits.load_instructions, 0)) {
+    const ScriptError& error = parts.lua->error();
+    throw InputError({error.file.data(), error.line, 0, error.message.data()});
+  }
+  known.motion_fields = {"cancel", "done", "wait"};
+  for (const ScriptParameter& parameter : parts.lua->core().parameters) {
+    known.parameters[parameter.chunk].push_back(parameter.name);
+  }
+  return known;
+}
+
+}  // namespace kadans

@@ -1,0 +1,29 @@
+// The names that the functions of a behavior may use, read from the tables that they will be given: what `m`, `s`, the
+// `kadans` module and the globals hold.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "behavior_parts.h"
+
+namespace kadans {
+
+struct KnownNames {
+  // A table by its fields; a field that is no table has an empty shape.
+  struct Shape {
+    std::map<std::string, Shape> fields;
+    bool open = false;  // holds what an author puts there: vars, args
+    std::vector<std::string> names() const;
+  };
+  Shape machine, snapshot, module, globals;
+  std::vector<std::string> object_methods, motion_fields;
+  std::map<std::string, std::vector<std::string>> parameters;  // by the file that declares them
+  std::map<std::string, std::vector<std::string>> vars;        // by the file of the behavior
+};
+
+// Of a behavior that is loaded.
+KnownNames read_known_names(Behavior::Parts& parts);
+
+}  // namespace kadans

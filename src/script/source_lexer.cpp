@@ -1,0 +1,124 @@
+#include "source_lexer.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace kadans {
+namespace {
+
+constexpr std::array<std::string_view, 22> keywords{
+    "and",   "break", "do",  "else", "elseif", "end",    "false", "for",  "function", "goto",  "if",
+    "in",    "local", "nil", "not",  "or",     "repeat", "return", "then", "true",     "until", "while"};
+constexpr std::array<std::string_view, 8> long_symbols{"...", "..", "==", "~=", "<=", ">=", "::", "//"};
+
+bool starts_name(char c) noexcept { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; }
+bool digit(char c) noexcept { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool in_name(char c) noexcept { return starts_name(c) || digit(c); }
+
+class Lexer {
+ public:
+  explicit Lexer(std::string_view text) : text_(text) {
+    if (text_.starts_with('#')) skip_line();
+  }
+
+  std::vector<SourceToken> run() {
+    while (at_ < text_.size()) step();
+    add(SourceToken::Kind::end, "");
+    return std::move(tokens_);
+  }
+
+ private:
+  char here(std::size_t ahead = 0) const noexcept { return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0'; }
+  void add(SourceToken::Kind kind, std::string_view text) { tokens_.push_back({kind, std::string(text), line_}); }
+  void skip_line() {
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+  }
+
+  void step() {
+    const char c = here();
+    if (std::isspace(static_cast<unsigned char>(c)) != 0) {
+      line_ += c == '\n' ? 1 : 0;
+      ++at_;
+    } else if (text_.substr(at_).starts_with("--")) {
+      at_ += 2;
+      if (!long_bracket(false)) skip_line();
+    } else if (starts_name(c)) {
+      name();
+    } else if (digit(c) || (c == '.' && digit(here(1)))) {
+      number();
+    } else if (c == '"' || c == '\'') {
+      quoted(c);
+    } else if (!long_bracket(true)) {
+      symbol();
+    }
+  }
+
+  void name() {
+    const std::size_t start = at_;
+    while (in_name(here())) ++at_;
+    const std::string_view word = text_.substr(start, at_ - start);
+    const bool key = std::find(keywords.begin(), keywords.end(), word) != keywords.end();
+    add(key ? SourceToken::Kind::keyword : SourceToken::Kind::name, word);
+  }
+
+  void number() {
+    const std::size_t start = at_;
+    const bool hex = here() == '0' && (here(1) == 'x' || here(1) == 'X');
+    while (in_name(here()) || here() == '.' ||
+           (!hex && (here() == '+' || here() == '-') && (text_[at_ - 1] == 'e' || text_[at_ - 1] == 'E'))) {
+      ++at_;
+    }
+    add(SourceToken::Kind::number, text_.substr(start, at_ - start));
+  }
+
+  void quoted(char quote) {
+    const std::size_t start = ++at_;
+    const int first = line_;
+    while (at_ < text_.size() && here() != quote) {
+      if (here() == '\\') ++at_;
+      line_ += here() == '\n' ? 1 : 0;
+      ++at_;
+    }
+    tokens_.push_back({SourceToken::Kind::text, std::string(text_.substr(start, at_ - start)), first});
+    ++at_;
+  }
+
+  // [[ ... ]] and [==[ ... ]==]; false when there is none here.
+  bool long_bracket(bool keep) {
+    if (here() != '[') return false;
+    std::size_t level = 0;
+    while (here(1 + level) == '=') ++level;
+    if (here(1 + level) != '[') return false;
+    const std::size_t start = at_ + level + 2;
+    const std::string close = "]" + std::string(level, '=') + "]";
+    const std::size_t found = std::min(text_.find(close, start), text_.size());
+    const std::string_view inside = text_.substr(start, found - start);
+    if (keep) add(SourceToken::Kind::text, inside);
+    line_ += static_cast<int>(std::count(inside.begin(), inside.end(), '\n'));
+    at_ = std::min(found + close.size(), text_.size());
+    return true;
+  }
+
+  void symbol() {
+    for (const std::string_view longer : long_symbols) {
+      if (!text_.substr(at_).starts_with(longer)) continue;
+      add(SourceToken::Kind::symbol, longer);
+      at_ += longer.size();
+      return;
+    }
+    add(SourceToken::Kind::symbol, text_.substr(at_, 1));
+    ++at_;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+  std::vector<SourceToken> tokens_;
+};
+
+}  // namespace
+
+std::vector<SourceToken> lex_source(std::string_view text) { return Lexer(text).run(); }
+
+}  // namespace kadans

@@ -1,0 +1,25 @@
+// Lua source taken apart into tokens, for checks that look at a script without running it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kadans {
+
+struct SourceToken {
+  enum class Kind : std::uint8_t { name, keyword, text, number, symbol, end };
+  Kind kind = Kind::end;
+  std::string text;  // of a string: what stands between the quotes, escapes as written
+  int line = 0;
+
+  bool is(std::string_view wanted) const noexcept {
+    return (kind == Kind::keyword || kind == Kind::symbol) && text == wanted;
+  }
+};
+
+// Comments are left out; the last token is of kind `end`. The text has been compiled before, so it is well formed.
+std::vector<SourceToken> lex_source(std::string_view text);
+
+}  // namespace kadans
