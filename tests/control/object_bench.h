@@ -51,7 +51,7 @@ class ObjectBench {
     return row_[*id];
   }
   ControlInput input() const noexcept { return {joints, status, written, 0, dt_s}; }
-  void start() noexcept { object->start(input()); }
+  void start() const noexcept { object->start(input()); }
   void compute() noexcept { object->step(input(), computed); }
 
   // One tick of the engine and the plant.
