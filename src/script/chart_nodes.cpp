@@ -10,8 +10,8 @@ namespace {
 const char node_key = 0;
 
 constexpr const char* behavior_keys[] = {"version", "controls", "vars", "args",   "migrate", "initial",
-                                         "always",  "enter",    "exit", "during", "run",     nullptr};
-constexpr const char* state_keys[] = {"initial", "enter", "exit", "during", "run", "always", nullptr};
+                                         "always",  "enter",    "exit", "during", "run",     "endless", nullptr};
+constexpr const char* state_keys[] = {"initial", "enter", "exit", "during", "run", "always", "endless", nullptr};
 constexpr const char* parallel_keys[] = {"enter", "exit", "during", "run", "always", nullptr};
 constexpr const char* final_keys[] = {"outcome", "enter", nullptr};
 constexpr const char* history_keys[] = {"deep", "to", nullptr};
@@ -44,7 +44,7 @@ const char* wanted_type(const char* key) noexcept {
     if (std::strcmp(key, name) == 0) return "table";
   }
   if (std::strcmp(key, "version") == 0) return "number";
-  return std::strcmp(key, "deep") == 0 ? "boolean" : nullptr;
+  return std::strcmp(key, "deep") == 0 || std::strcmp(key, "endless") == 0 ? "boolean" : nullptr;
 }
 
 void check_types(lua_State* state, int table, const Place& place, const char* const* names) {
