@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "behavior_parts.h"
+#include "kadans/engine/clock.h"
 #include "lua_core.h"
 
 namespace kadans {
@@ -45,8 +46,9 @@ bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
 }
 
 Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
-    : parts_(std::make_unique<Parts>(settings, catalog, log)) {
+    : parts_(std::make_unique<Parts>(settings, catalog, log)), past_(std::make_unique<Past>()) {
   load_behavior(*parts_);
+  publish_status();
 }
 
 Behavior::~Behavior() = default;
@@ -54,14 +56,17 @@ Behavior::~Behavior() = default;
 bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
   Parts& parts = *parts_;
   if (failed() || finished()) return false;
+  forget_past(snapshot.time_ns);
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
-  if (!parts.runner->started() && bindings.set != nullptr) {
+  if (!parts.set_asked_for && bindings.set != nullptr) {
+    parts.set_asked_for = true;
     const auto wanted = static_cast<std::uint32_t>(bindings.set - parts.catalog.sets.data());
     if (wanted != snapshot.control_set) (void)bindings.send({.kind = CommandKind::switch_set, .index = wanted});
   }
   if (!parts.run(tick_chart)) {
     commands.discard();
+    if (take_back(snapshot, commands)) return true;
     parts.failed = true;
     parts.error = parts.lua->error();
     if (parts.error.breach == ScriptBreach::none) stop(snapshot, commands);
@@ -72,8 +77,22 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
     parts.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "queue_full: the commands of this tick were refused, all of them");
   }
-  parts.lua->collect();
+  publish_status();
   return !finished();
+}
+
+void Behavior::publish_status() noexcept {
+  Parts& parts = *parts_;
+  const auto store = [](std::atomic<std::uint32_t>& to, std::uint64_t value) {
+    to.store(static_cast<std::uint32_t>(value), std::memory_order_relaxed);
+  };
+  store(status_.instructions, parts.lua->core().budget.spent());
+  const bool wall = parts.settings.limits.tick_wall_ns > 0;
+  const std::int64_t began_ns = wall ? WallClock{}.now_ns() : 0;
+  parts.lua->collect();
+  store(status_.gc_pause_ns, wall ? static_cast<std::uint64_t>(WallClock{}.now_ns() - began_ns) : 0);
+  store(status_.heap_bytes, parts.lua->used_bytes());
+  store(status_.state, parts.runner->innermost());
 }
 
 void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -109,13 +128,9 @@ std::string Behavior::outcome() const {
   return outcome == no_event ? "" : parts_->chart.events[static_cast<std::size_t>(outcome)];
 }
 
-std::string Behavior::state() const {
-  StateIndex at = 0;
-  for (StateIndex i = 1; i < parts_->chart.size(); ++i) {
-    if (parts_->runner->active(i) && parts_->chart.states[i].parent == at) at = i;
-  }
-  return parts_->chart.states[at].path;
-}
+std::string Behavior::state() const { return parts_->chart.states[parts_->runner->innermost()].path; }
+
+const ControlSetInfo* Behavior::control_set() const noexcept { return parts_->bindings.set; }
 
 std::vector<ScriptParameter> Behavior::parameters() const {
   const auto& all = parts_->lua->core().parameters;

@@ -48,8 +48,9 @@ void find_control_set(Behavior::Parts& parts) {
 
 }  // namespace
 
-void load_behavior(Behavior::Parts& parts) {
+void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   const Behavior::Settings& settings = parts.settings;
+  if (instructions == 0) instructions = settings.limits.load_instructions;
   parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = settings.root,
                                                             .folder = settings.file.parent_path(),
                                                             .name = settings.file.stem().string(),
@@ -58,13 +59,13 @@ void load_behavior(Behavior::Parts& parts) {
                                                             .voice = &parts});
   parts.bindings.catalog = &parts.catalog;
   parts.lua->core().bindings = &parts.bindings;
-  if (!parts.lua->call(read_file, &parts, settings.limits.load_instructions, 0)) {
+  if (!parts.lua->call(read_file, &parts, instructions, 0)) {
     throw InputError(problem_of(parts.lua->error()));
   }
   parts.chart.resolve(parts.problems);
   find_control_set(parts);
   if (!parts.problems.empty()) throw InputError(parts.problems);
-  if (!parts.lua->call(open_bindings, &parts, settings.limits.load_instructions, 0)) {
+  if (!parts.lua->call(open_bindings, &parts, instructions, 0)) {
     throw InputError(problem_of(parts.lua->error()));
   }
   parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bindings.h"
 #include "kadans/script/behavior.h"
@@ -34,12 +35,29 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   std::unique_ptr<ChartRunner> runner;
   Transition transition;  // reused, so that its strings keep their room
   ScriptError error;
-  bool failed = false, stopping = false;
+  bool failed = false;
+  bool set_asked_for = false;  // the switch to the behavior's control set was sent
   std::uint64_t transactions_refused = 0;
   std::vector<InputProblem> problems;
 };
 
-// Reads the file, makes the chart and the bindings. Throws InputError.
-void load_behavior(Behavior::Parts& parts);
+struct Behavior::Past {
+  std::unique_ptr<Parts> parts;
+  std::vector<bool> left;  // its states that the swap left
+  std::int64_t swapped_ns = 0;
+  std::vector<LuaState::Source> taken_back;  // files that failed in their first second
+  std::string complaint;                     // said last, not to be repeated
+};
+
+// Reads the file, makes the chart and the bindings. 0 instructions: as many as loading may take. Throws InputError.
+void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
+
+// behavior_adoption.cpp. Lets `fresh`, newly loaded, stand where `old` stands: active states, vars, parameters, random
+// numbers; `old` is not changed. False: fresh.lua->error() says why.
+bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,
+                    const Snapshot& snapshot, CommandSender& commands) noexcept;
+// Leaves the states that are marked, in a transaction of its own. False: an exit raised.
+bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
+                  CommandSender& commands) noexcept;
 
 }  // namespace kadans

@@ -93,11 +93,14 @@ struct Reader {
       made.initial_name = text(body, made.kind == Chart::Kind::history ? "to" : "initial");
       made.outcome_name = text(body, "outcome");
       if (made.kind == Chart::Kind::final_state) {
+        made.outcome_given = !made.outcome_name.empty();
         if (made.outcome_name.empty()) made.outcome_name = "done";
         made.outcome = chart.intern(made.outcome_name);
       }
       lua_getfield(state, body, "deep");
       made.deep = lua_toboolean(state, -1) != 0;
+      lua_getfield(state, body, "endless");
+      made.endless = lua_toboolean(state, -1) != 0;
       made.first_transition = static_cast<std::uint16_t>(chart.transitions.size());
     }
     const std::uint16_t transitions = read_transitions(body, index, place);
@@ -205,6 +208,7 @@ struct Reader {
     machine.controls = text(body, "controls");
     machine.vars = reference(body, "vars");
     machine.arguments = reference(body, "args");
+    machine.migrate = reference(body, "migrate");
     machine.given = given;
     lua_getfield(state, body, "version");
     machine.version = static_cast<int>(lua_tointeger(state, -1));

@@ -36,6 +36,8 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   if (!started_) {
     started_ = true;
     mark_entry(0);
+  } else if (filling_) {
+    filling_ = false;
   } else {
     std::fill(guards_.begin(), guards_.end(), Guard::unknown);
     const auto oldest = [this] { return event_count_ > 0 ? events_[event_first_] : no_event; };

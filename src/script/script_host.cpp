@@ -6,7 +6,8 @@
 
 namespace kadans {
 
-ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log) : log_(log) {
+ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
+    : log_(log), root_(settings.root), reloads_(settings.reloads), safe_(settings.safe, catalog) {
   std::vector<InputProblem> problems;
   for (const ScriptPlay& play : settings.play) {
     const std::filesystem::path file = play.file.is_absolute() ? play.file : settings.root / play.file;
@@ -23,11 +24,14 @@ ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, Behavio
     }
   }
   if (!problems.empty()) throw InputError(problems);
+  const auto earlier = [](const ScriptReload& a, const ScriptReload& b) { return a.at_ns < b.at_ns; };
+  std::stable_sort(reloads_.begin(), reloads_.end(), earlier);
 }
 
 ScriptHost::~ScriptHost() = default;
 
 void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  reload(snapshot, commands);
   for (std::size_t i = 0; i < behaviors_.size(); ++i) {
     Played& played = behaviors_[i];
     const auto earlier = behaviors_.begin() + static_cast<std::ptrdiff_t>(i);
@@ -35,12 +39,17 @@ void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcep
                                    [&](const Played& other) { return other.lane == played.lane && !other.over; });
     if (!played.over && !waits) play(played, snapshot, commands);
   }
+  if (!safe_.due(snapshot.time_ns)) return;
+  safe_.move(snapshot, commands, [this](std::uint32_t object) { return plays_with(object); });
 }
 
 void ScriptHost::play(Played& played, const Snapshot& snapshot, CommandSender& commands) noexcept {
   if (played.behavior->tick(snapshot, commands)) return;
   played.over = true;
-  if (played.behavior->failed()) report_failure(*played.behavior, snapshot.time_ns);
+  if (played.behavior->failed()) {
+    report_failure(*played.behavior, snapshot.time_ns);
+    safe_.failed(snapshot.time_ns, played.behavior->control_set());
+  }
   if (played.behavior->outcome() != "done") close_lane(played.lane);
 }
 

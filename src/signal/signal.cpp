@@ -33,11 +33,18 @@ SignalId SignalTable::add(Signal signal, const std::uint32_t* source) {
   return id;
 }
 
+SignalId SignalTable::add(Signal signal, const std::atomic<std::uint32_t>* source) {
+  const SignalId id = add_info(std::move(signal));
+  shared_.push_back({id, source});
+  return id;
+}
+
 void SignalTable::gather(std::span<double> row) const noexcept {
   assert(row.size() == infos_.size());
   for (const auto& [id, value] : doubles_) row[id] = *value;
   for (const auto& [id, value] : bools_) row[id] = *value ? 1.0 : 0.0;
   for (const auto& [id, value] : counts_) row[id] = static_cast<double>(*value);
+  for (const auto& [id, value] : shared_) row[id] = static_cast<double>(value->load(std::memory_order_relaxed));
 }
 
 std::optional<SignalId> SignalTable::find(std::string_view name) const {

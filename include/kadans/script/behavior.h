@@ -4,6 +4,14 @@
 // goes wrong in a tick stops the behavior: its transaction is dropped, error() says where and why. After an error in
 // the script the states are left with their `exit`, as on every way out; after a breach of the budget nothing of it
 // runs again.
+//
+// A reload replaces the Lua state by a new one between two ticks; the control engine does not notice. What stays: the
+// active states with their time, waiting events, histories, `vars` (plain data and motions; another `version` goes
+// through `migrate`, or starts with the declared ones), parameters that somebody changed and that are still in range,
+// random numbers. Motions under way go on. A coroutine cannot be carried into another Lua state, so the `run` of a state
+// that stays begins anew, unless it was over. Files whose text is the same change nothing at all. Any failure, up to
+// the guards tried against the present snapshot, leaves the old version as it was; so does an error in the first
+// second of the new one, then with the vars of the swap.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +22,7 @@
 
 #include "kadans/control/catalog.h"
 #include "kadans/engine/behavior_host.h"
+#include "kadans/script/behavior_status.h"
 #include "kadans/script/chart.h"
 #include "kadans/script/script_error.h"
 #include "kadans/script/script_limits.h"
@@ -40,6 +49,12 @@ class Behavior {
   bool tick(const Snapshot& snapshot, CommandSender& commands) noexcept;
   // Behavior thread: leaves all states, in a transaction of its own.
   void stop(const Snapshot& snapshot, CommandSender& commands) noexcept;
+  // Behavior thread, between ticks. Reads the files again, the behavior's from `file` when one is given; says in the log
+  // what came of it. chart() and name() are of the new version then.
+  enum class Reload : std::uint8_t { unchanged, taken, refused };
+  Reload reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file = {}) noexcept;
+  std::vector<std::filesystem::path> files() const;
+
   // False: unknown to this behavior, or its queue is full.
   [[nodiscard]] bool post(const std::string& event) noexcept;
 
@@ -53,6 +68,8 @@ class Behavior {
   std::uint64_t transactions_refused() const noexcept;
   std::uint64_t events_unhandled() const noexcept;
   std::size_t heap_bytes() const noexcept;
+  const BehaviorStatus& status() const noexcept { return status_; }
+  const ControlSetInfo* control_set() const noexcept;  // nullptr: it takes any
   std::vector<ScriptParameter> parameters() const;
   // Behavior thread, between ticks. False, and nothing changes, on an unknown name or a value outside its range.
   [[nodiscard]] bool set_parameter(const std::string& name, double value) noexcept;
@@ -60,7 +77,17 @@ class Behavior {
   struct Parts;
 
  private:
+  struct Past;  // the version before, until the new one has proved itself
+
+  bool take_back(const Snapshot& snapshot, CommandSender& commands) noexcept;
+  void swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, CommandSender& commands) noexcept;
+  Reload refuse(std::int64_t time_ns, const std::string& why) noexcept;
+  void forget_past(std::int64_t now_ns) noexcept;
+  void publish_status() noexcept;
+
   std::unique_ptr<Parts> parts_;
+  std::unique_ptr<Past> past_;
+  BehaviorStatus status_;
 };
 
 }  // namespace kadans

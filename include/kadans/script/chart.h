@@ -32,6 +32,8 @@ struct Chart {
     int line = 0;
     Kind kind = Kind::state;
     bool deep = false;          // history
+    bool endless = false;       // means to stay: no way out is no mistake
+    bool outcome_given = false; // final states: the author wrote it
     bool machine_root = false;  // a behavior, the played one or a called one
     StateIndex parent = no_state;
     StateIndex end = 0;             // one past the last state inside
@@ -59,6 +61,7 @@ struct Chart {
     StateIndex root = 0;
     int vars = no_function, arguments = no_function;  // registry: what is declared
     int given = no_function;                          // registry: what the caller gives
+    int migrate = no_function;                        // registry: makes vars of those of another version
     std::string controls;
     int version = 0;
   };

@@ -55,10 +55,24 @@ class ChartRunner {
   // False when the queue is full: counted.
   bool post(EventId event) noexcept;
 
+  // A reload: `map` says which state of this chart each state of the old one is, or no_state. Before the first tick.
+  // What is active, its time, histories and waiting events are taken over; a coroutine cannot be: `run` begins anew,
+  // unless it was over. Where an active state is gone, the next tick enters the initial state around it.
+  void take_over(lua_State* state, const ChartRunner& old, const std::vector<StateIndex>& map);
+  // Evaluates the guards of all active states, for what they raise.
+  void try_guards(lua_State* state);
+  // Leaves these states, `exit` innermost first.
+  void leave_marked(lua_State* state, const std::vector<bool>& marks, std::int64_t now_ns);
+  // Tells the sink which states are gone.
+  void report_gone(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept;
+  // The next tick enters again what leave_marked() left.
+  void enter_again(const std::vector<bool>& marks) noexcept;
+
   bool started() const noexcept { return started_; }
   bool finished() const noexcept { return finished_; }
   EventId outcome() const noexcept { return run_[0].outcome; }
   bool active(StateIndex state) const noexcept { return run_[state].active; }
+  StateIndex innermost() const noexcept;  // active, the first of several; 0 when none is
   double state_time_s(StateIndex state) const noexcept;
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }
   std::uint64_t events_refused() const noexcept { return refused_; }
@@ -100,7 +114,13 @@ class ChartRunner {
   void remember(StateIndex index) noexcept;
   void list_active() noexcept;
   void report(std::uint16_t transition) noexcept;
-  StateIndex first_leaf() const noexcept;
+
+  // chart_adoption.cpp
+  void take_over_state(const ChartRunner& old, StateIndex from, StateIndex to) noexcept;
+  void take_over_history(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept;
+  void fill_gaps() noexcept;
+  void fill(StateIndex around, StateIndex entered) noexcept;
+  EventId known_event(const ChartRunner& old, EventId event) const noexcept;
 
   // chart_calls.cpp
   void set_time(lua_State* state, StateIndex index);
@@ -124,6 +144,7 @@ class ChartRunner {
   std::uint64_t unhandled_ = 0, refused_ = 0;
   std::int64_t now_ns_ = 0;
   bool started_ = false, finished_ = false;
+  bool filling_ = false;  // the next tick enters what a reload left empty, and takes no transition
   Motion* wait_motion_ = nullptr;
   std::int64_t wait_ns_ = 0;
 };

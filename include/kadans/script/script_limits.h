@@ -10,6 +10,7 @@ namespace kadans {
 struct ScriptLimits {
   std::uint64_t tick_instructions = 200'000;
   std::uint64_t load_instructions = 5'000'000;
+  std::uint64_t reload_instructions = 1'000'000;  // less: meanwhile the behaviors stand still
   std::int64_t tick_wall_ns = 0;  // 0: no limit, as it must be on a virtual clock, where a run repeats bit for bit
   std::size_t memory_bytes = std::size_t{4} << 20;
   std::size_t block_bytes = std::size_t{576} << 10;  // one string, one table's array; the deepest stack fits

@@ -2,6 +2,7 @@
 // them into one row of numbers a tick; recorder, checks, viewers and scripts know them by name.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -27,6 +28,7 @@ class SignalTable {
   SignalId add(Signal signal, const double* source);
   SignalId add(Signal signal, const bool* source);
   SignalId add(Signal signal, const std::uint32_t* source);
+  SignalId add(Signal signal, const std::atomic<std::uint32_t>* source);  // written by another thread
 
   // Control thread. row.size() == size(), asserted; booleans become 0 and 1. No allocation.
   void gather(std::span<double> row) const noexcept;
@@ -51,6 +53,7 @@ class SignalTable {
   std::vector<Source<double>> doubles_;
   std::vector<Source<bool>> bools_;
   std::vector<Source<std::uint32_t>> counts_;
+  std::vector<Source<std::atomic<std::uint32_t>>> shared_;
 };
 
 }  // namespace kadans

@@ -1,0 +1,51 @@
+// Where the robot goes when a script failed: the control set holds its last set-points, then, after a while, moves to
+// a pose of the configuration. Joints that a behavior which still plays may move are left to it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "kadans/control/catalog.h"
+#include "kadans/engine/transaction.h"
+#include "kadans/signal/status.h"
+
+namespace kadans {
+
+class SafePosture {
+ public:
+  struct Settings {
+    std::string pose;      // "": the robot stays as it is
+    double after_s = 0.5;  // since the failure
+    double time_s = 1.5;   // of the motion
+  };
+  // Throws InputError on an unknown pose. The catalog must outlive it.
+  SafePosture(Settings settings, const Catalog& catalog);
+
+  // Behavior thread. A behavior on this control set failed; nullptr: it may have moved everything.
+  void failed(std::int64_t now_ns, const ControlSetInfo* set) noexcept;
+  bool due(std::int64_t now_ns) const noexcept { return waiting_ && now_ns >= due_ns_; }
+  // Sends the motion for the objects of the failed sets that are in the active one and not kept. Tries again in the next
+  // tick when the queue is full. `kept`: one an object.
+  template <typename Kept>
+  void move(const Snapshot& snapshot, CommandSender& commands, Kept kept) noexcept {
+    commands.begin(snapshot.time_ns);
+    for (const std::uint32_t object : catalog_.sets[snapshot.control_set].objects) {
+      if (concerned_[object] && !kept(object)) add(object, commands);
+    }
+    finish(commands);
+  }
+  bool moved() const noexcept { return moved_; }
+
+ private:
+  void add(std::uint32_t object, CommandSender& commands) noexcept;
+  void finish(CommandSender& commands) noexcept;
+
+  Settings settings_;
+  const Catalog& catalog_;
+  const PoseInfo* pose_ = nullptr;
+  bool concerned_[max_objects]{};
+  bool waiting_ = false, moved_ = false, full_ = false, any_ = false;
+  std::int64_t due_ns_ = 0;
+};
+
+}  // namespace kadans

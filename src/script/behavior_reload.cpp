@@ -1,0 +1,115 @@
+#include <exception>
+#include <fstream>
+#include <iterator>
+
+#include "behavior_parts.h"
+#include "chart_map.h"
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::int64_t probation_ns = 1'000'000'000;
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Whether the files hold these texts; the first is looked for at `first`.
+bool holds(const std::filesystem::path& first, const std::vector<LuaState::Source>& sources) {
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (read_text(i == 0 ? first : sources[i].path) != sources[i].text) return false;
+  }
+  return !sources.empty() && first.parent_path() == sources.front().path.parent_path();
+}
+
+std::vector<bool> marks(const ChartRunner& runner, const std::vector<StateIndex>& map) {
+  std::vector<bool> gone(map.size(), false);
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    gone[i] = map[i] == no_state && runner.active(static_cast<StateIndex>(i));
+  }
+  return gone;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> Behavior::files() const {
+  std::vector<std::filesystem::path> all;
+  for (const LuaState::Source& source : parts_->lua->sources()) all.push_back(source.path);
+  return all;
+}
+
+Behavior::Reload Behavior::refuse(std::int64_t time_ns, const std::string& why) noexcept {
+  if (why == past_->complaint) return Reload::refused;
+  past_->complaint = why;
+  parts_->log.message(time_ns, BehaviorLog::Severity::warning, name(), "reload refused, the old version goes on: " + why);
+  return Reload::refused;
+}
+
+Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& commands,
+                                  const std::filesystem::path& file) noexcept {
+  const std::filesystem::path wanted = file.empty() ? parts_->settings.file : file;
+  if (failed() || finished() || holds(wanted, parts_->lua->sources())) return Reload::unchanged;
+  if (file.empty() && holds(wanted, past_->taken_back)) return Reload::unchanged;
+  Settings settings = parts_->settings;
+  settings.file = wanted;
+  std::unique_ptr<Parts> fresh;
+  try {
+    fresh = std::make_unique<Parts>(settings, parts_->catalog, parts_->log);
+    fresh->bindings.now_ns = snapshot.time_ns;
+    load_behavior(*fresh, settings.limits.reload_instructions);
+  } catch (const std::exception& error) {
+    return refuse(snapshot.time_ns, error.what());
+  }
+  if (!holds(wanted, fresh->lua->sources())) return refuse(snapshot.time_ns, "the file changed while it was read");
+  if (!adopt_behavior(*fresh, *parts_, map_states(parts_->chart, fresh->chart), snapshot, commands)) {
+    return refuse(snapshot.time_ns, fresh->lua->error().text());
+  }
+  swap(std::move(fresh), snapshot, commands);
+  return Reload::taken;
+}
+
+void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, CommandSender& commands) noexcept {
+  Parts& old = *parts_;
+  past_->complaint.clear();
+  if (old.runner->started()) {
+    const std::vector<StateIndex> map = map_states(old.chart, fresh->chart);
+    fresh->runner->report_gone(*old.runner, map);
+    past_->left = marks(*old.runner, map);
+    if (!leave_states(old, past_->left, snapshot, commands)) {
+      old.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
+                      "a state that is gone could not be left: " + old.lua->error().text());
+    }
+    past_->parts = std::move(parts_);
+    past_->swapped_ns = snapshot.time_ns;
+  }
+  parts_ = std::move(fresh);
+  status_.reloads.fetch_add(1, std::memory_order_relaxed);
+  parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(),
+                      "reloaded " + parts_->lua->sources().front().chunk);
+}
+
+bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  if (past_->parts == nullptr || snapshot.time_ns - past_->swapped_ns >= probation_ns) return false;
+  Parts& failing = *parts_;
+  Parts& old = *past_->parts;
+  const ScriptError error = failing.lua->error();
+  past_->taken_back = failing.lua->sources();
+  if (error.breach == ScriptBreach::none) {  // what the new version entered itself
+    std::vector<StateIndex> map = map_states(failing.chart, old.chart);
+    for (StateIndex& index : map) index = index != no_state && old.runner->active(index) ? index : no_state;
+    (void)leave_states(failing, marks(*failing.runner, map), snapshot, commands);
+  }
+  old.runner->enter_again(past_->left);
+  parts_ = std::move(past_->parts);
+  parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
+                      "new version taken back, the old one goes on: " + error.text());
+  return true;
+}
+
+void Behavior::forget_past(std::int64_t now_ns) noexcept {
+  if (past_->parts != nullptr && now_ns - past_->swapped_ns >= probation_ns) past_->parts.reset();
+}
+
+}  // namespace kadans

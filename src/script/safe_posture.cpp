@@ -1,0 +1,54 @@
+#include "kadans/script/safe_posture.h"
+
+#include <cmath>
+#include <vector>
+
+#include "hint.h"
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+
+SafePosture::SafePosture(Settings settings, const Catalog& catalog) : settings_(std::move(settings)), catalog_(catalog) {
+  std::vector<std::string> names;
+  for (const PoseInfo& pose : catalog.poses) {
+    names.push_back(pose.name);
+    if (pose.name == settings_.pose) pose_ = &pose;
+  }
+  if (pose_ != nullptr || settings_.pose.empty()) return;
+  throw InputError({.message = "unknown pose '" + settings_.pose + "' in 'safe'" + hint_text(settings_.pose, names)});
+}
+
+void SafePosture::failed(std::int64_t now_ns, const ControlSetInfo* set) noexcept {
+  if (pose_ == nullptr) return;
+  for (std::uint32_t object = 0; set == nullptr && object < catalog_.objects.size(); ++object) concerned_[object] = true;
+  if (set != nullptr) {
+    for (const std::uint32_t object : set->objects) concerned_[object] = true;
+  }
+  waiting_ = true;
+  due_ns_ = now_ns + std::llround(settings_.after_s * 1e9);
+}
+
+void SafePosture::add(std::uint32_t object, CommandSender& commands) noexcept {
+  for (const SetpointId id : catalog_.objects[object].setpoints) {
+    const Setpoint& setpoint = catalog_.setpoints[id];
+    if (!std::string_view(setpoint.name).ends_with(".position_rad")) continue;
+    for (const auto& [joint, position_rad] : pose_->position_rad) {
+      if (joint != setpoint.joint || !(position_rad >= setpoint.min && position_rad <= setpoint.max)) continue;
+      any_ = true;
+      full_ = !commands.add({.kind = CommandKind::set_point,
+                             .index = id,
+                             .value = position_rad,
+                             .duration_s = settings_.time_s}) ||
+              full_;
+    }
+  }
+}
+
+void SafePosture::finish(CommandSender& commands) noexcept {
+  const bool sent = commands.commit() != 0 && !full_;
+  waiting_ = any_ && !sent;
+  moved_ = moved_ || (any_ && sent);
+  full_ = any_ = false;
+}
+
+}  // namespace kadans
