@@ -1,0 +1,30 @@
+// Changes what the behaviors of an assembly see, for their tests: a robot on the ideal plant never falls by itself.
+#pragma once
+
+#include "kadans/engine/behavior_host.h"
+
+namespace kadans {
+
+class SnapshotFilter {
+ public:
+  virtual ~SnapshotFilter() = default;
+  // Behavior thread, before each behavior tick.
+  virtual void change(Snapshot& snapshot) noexcept = 0;
+};
+
+class FilteredHost final : public BehaviorHost {
+ public:
+  FilteredHost(BehaviorHost& host, SnapshotFilter& filter) noexcept : host_(host), filter_(filter) {}
+  void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override {
+    seen_ = snapshot;
+    filter_.change(seen_);
+    host_.tick(seen_, commands);
+  }
+
+ private:
+  BehaviorHost& host_;
+  SnapshotFilter& filter_;
+  Snapshot seen_;
+};
+
+}  // namespace kadans

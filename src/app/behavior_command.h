@@ -1,0 +1,23 @@
+// `kadans behavior check | graph | test`: what an author does with a behavior before it moves a robot.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace kadans {
+
+struct BehaviorOptions {
+  std::vector<std::string> files;
+  std::string robot;            // configuration; "" = by the behavior's folder
+  std::string format = "mermaid";  // of the graph
+};
+
+void add_behavior(CLI::App& app, BehaviorOptions& options);
+// After parsing. Returns the program's exit code.
+int run_behavior(const CLI::App& app, const BehaviorOptions& options);
+
+}  // namespace kadans

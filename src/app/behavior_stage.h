@@ -1,0 +1,23 @@
+// Robots on the ideal plant, for tests of behaviors.
+#pragma once
+
+#include <filesystem>
+
+#include "kadans/script/behavior_test.h"
+
+namespace kadans {
+
+// The configuration of the robot that a behavior is for: config/<name of its folder>/robot.json, or else the only robot
+// of the project. Throws InputError when there is none, or more than one.
+std::filesystem::path robot_of_behavior(const std::filesystem::path& behavior);
+
+class IdealStages final : public TestStages {
+ public:
+  explicit IdealStages(std::filesystem::path robot) : robot_(std::move(robot)) {}  // "": by the behavior's folder
+  std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const std::string& robot) override;
+
+ private:
+  std::filesystem::path robot_;
+};
+
+}  // namespace kadans

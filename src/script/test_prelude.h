@@ -1,0 +1,157 @@
+// The part of the test kit that is Lua.
+#pragma once
+
+namespace kadans {
+
+// Given (play, advance, read, change, report, new_test); returns describe, it, before_each, expect, k.play.
+inline constexpr char test_prelude[] = R"(
+local play, advance, read, change, report, new_test = ...
+local names, hooks, inside = {}, {}, false
+
+local function show(value, depth)
+  if type(value) == "string" then return string.format("%q", value) end
+  if type(value) == "number" then return string.format("%.9g", value) end
+  if type(value) ~= "table" or depth > 3 then return tostring(value) end
+  local parts = {}
+  for key, field in pairs(value) do
+    local left = type(key) == "number" and "" or tostring(key) .. " = "
+    parts[#parts + 1] = left .. show(field, depth + 1)
+  end
+  return "{ " .. table.concat(parts, ", ") .. " }"
+end
+
+local function same(a, b)
+  if type(a) ~= "table" or type(b) ~= "table" then return a == b end
+  for key, field in pairs(a) do
+    if not same(field, rawget(b, key)) then return false end
+  end
+  for key in pairs(b) do
+    if rawget(a, key) == nil then return false end
+  end
+  return true
+end
+
+local function number(value) return type(value) == "number" end
+local matchers = {
+  to_equal = function(a, b) return same(a, b), "to equal " .. show(b, 0) end,
+  to_be_near = function(a, b, within)
+    local bound = within or 1e-6
+    return number(a) and math.abs(a - b) <= bound, "to be near " .. show(b, 0) .. " within " .. show(bound, 0)
+  end,
+  to_be_above = function(a, b) return number(a) and a > b, "to be above " .. show(b, 0) end,
+  to_be_below = function(a, b) return number(a) and a < b, "to be below " .. show(b, 0) end,
+  to_contain = function(a, b)
+    return type(a) == "string" and a:find(b, 1, true) ~= nil, "to contain " .. show(b, 0)
+  end,
+  to_be_true = function(a) return a == true, "to be true" end,
+  to_be_false = function(a) return a == false, "to be false" end,
+  to_be_nil = function(a) return a == nil, "to be nil" end,
+  to_raise = function(a, part)
+    local ok, message = pcall(a)
+    local found = not ok and (part == nil or tostring(message):find(part, 1, true) ~= nil)
+    return found, "to raise " .. show(part or "an error", 0) .. (ok and "" or ", not " .. show(message, 0))
+  end,
+}
+
+local function expectation(value, wanted, word)
+  local made = {}
+  for name, matcher in pairs(matchers) do
+    made[name] = function(...)
+      local good, text = matcher(value, ...)
+      if (not not good) ~= wanted then error("expected " .. show(value, 0) .. word .. text, 2) end
+    end
+  end
+  return setmetatable(made, { __index = function(_, key)
+    error("expect(...) has no '" .. tostring(key) .. "'; there is: to_equal, to_be_near, to_be_above, to_be_below, " ..
+          "to_contain, to_be_true, to_be_false, to_be_nil, to_raise, and never", 2)
+  end })
+end
+
+local function expect(value)
+  local made = expectation(value, true, " ")
+  made.never = expectation(value, false, " never ")
+  return made
+end
+
+local function describe(name, body)
+  names[#names + 1], hooks[#hooks + 1] = name, {}
+  body()
+  names[#names], hooks[#hooks] = nil, nil
+end
+
+local function before_each(body)
+  local level = hooks[#hooks]
+  if level == nil then error("before_each belongs into describe", 2) end
+  level[#level + 1] = body
+end
+
+local function it(name, body)
+  if inside then error("it belongs into describe, not into another it", 2) end
+  inside = true
+  new_test()
+  local ok, message = pcall(function()
+    for _, level in ipairs(hooks) do
+      for _, hook in ipairs(level) do hook() end
+    end
+    body()
+  end)
+  inside = false
+  local full = table.concat(names, " ") .. (#names > 0 and " " or "") .. name
+  report(full, not ok and tostring(message) or "")
+end
+
+local methods = {}
+function methods.advance(run, seconds)
+  if type(seconds) ~= "number" or not (seconds >= 0 and seconds <= 3600) then
+    error("advance needs seconds, 0..3600", 2)
+  end
+  advance(run.id, seconds)
+end
+-- Advances until the behavior is in this state; raises when it is not within max_s (default 60).
+function methods.advance_to(run, state, max_s)
+  local left_s = max_s or 60
+  while run.state ~= state do
+    if left_s <= 0 or run.outcome ~= "" then
+      error(string.format("%q was not reached within %g s: the behavior is in %q", state, max_s or 60,
+                          run.outcome == "" and run.state or run.outcome), 2)
+    end
+    advance(run.id, 0.01)
+    left_s = left_s - 0.01
+  end
+end
+-- Advances until the behavior is over and returns its outcome.
+function methods.finish(run, max_s)
+  local left_s = max_s or 60
+  while run.outcome == "" and left_s > 0 do
+    advance(run.id, 0.01)
+    left_s = left_s - 0.01
+  end
+  return run.outcome
+end
+function methods.emit(run, event)
+  if not change(run.id, "event", event, 0) then error("nothing waits for the event '" .. tostring(event) .. "'", 2) end
+end
+function methods.set_parameter(run, name, value)
+  if not change(run.id, "parameter", name, value) then
+    error("no parameter '" .. tostring(name) .. "', or the value is outside its range", 2)
+  end
+end
+local levels = { normal = 0, limited = 1, hold = 2, damp = 3, off = 4 }
+function methods.set_sensor(run, name, value)
+  local as_number = value
+  if value == true then as_number = 1 elseif value == false then as_number = 0 end
+  if type(value) == "string" then as_number = levels[value] end
+  if type(as_number) ~= "number" then error("set_sensor needs a number, true, false or a safety level", 2) end
+  if not change(run.id, "sensor", name, as_number) then
+    error("no sensor '" .. tostring(name) .. "': it is written like \"base.pitch_rad\"", 2)
+  end
+end
+
+local function test_play(file, options)
+  local id = play(file, options and options.robot or "")
+  return setmetatable({ id = id }, { __index = function(_, key) return methods[key] or read(id, key) end })
+end
+return describe, it, before_each, expect, test_play
+)";
+
+}  // namespace kadans
