@@ -18,6 +18,23 @@ for program in "$work"/build/run_*; do
   "$program"
 done
 
+# What `kadans new control-object` writes builds and passes as it stands, as a program and as a plug-in.
+if [ -x "$work/moved/bin/kadans" ]; then
+  "$work/moved/bin/kadans" new control-object first_try
+  "$work/moved/bin/kadans" new control-object second_try --plugin
+  if "$work/moved/bin/kadans" new control-object first_try; then
+    echo "a control object was overwritten"
+    exit 1
+  fi
+  for name in first_try second_try; do
+    cmake -S "$name" -B "$name/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$1" >>"$work/configure.log"
+    cmake --build "$name/build" --parallel "$(nproc)"
+    "$name/build/${name}_test"
+  done
+  first_try/build/kadans_first_try check "$work/moved/share/kadans/config/tulip/robot.json"
+  test -f second_try/build/second_try.so
+fi
+
 share="$work/moved/share/kadans"
 if [ -x "$work/moved/bin/kadans" ]; then
   "$work/moved/bin/kadans" --version
