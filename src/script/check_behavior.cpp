@@ -1,6 +1,12 @@
 #include "kadans/script/check_behavior.h"
 
-#include "kadans/script/behavior.h"
+#include <algorithm>
+#include <tuple>
+
+#include "behavior_parts.h"
+#include "check_chart.h"
+#include "check_source.h"
+#include "known_names.h"
 
 namespace kadans {
 namespace {
@@ -17,12 +23,22 @@ class Silence final : public BehaviorLog {
 std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
                                          const Catalog& catalog) {
   Silence silence;
+  const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
+  Behavior::Parts parts(settings, catalog, silence);
+  std::vector<InputProblem> problems;
   try {
-    const Behavior loaded({.root = root, .file = file.is_absolute() ? file : root / file}, catalog, silence);
+    load_behavior(parts, settings.limits.load_instructions);
+    check_chart(parts.chart, problems);
+    check_sources(parts, read_known_names(parts), problems);
   } catch (const InputError& error) {
     return error.problems();
   }
-  return {};
+  // A behavior that is called twice is told once.
+  const auto key = [](const InputProblem& problem) { return std::tie(problem.file, problem.line, problem.message); };
+  std::ranges::stable_sort(problems, {}, key);
+  const auto again = std::ranges::unique(problems, {}, key);
+  problems.erase(again.begin(), again.end());
+  return problems;
 }
 
 }  // namespace kadans
