@@ -31,9 +31,12 @@ bool sum(const JointActuation& proposal, JointActuation& actuation) noexcept {
 bool compose(Composition composition, double weight, const JointActuation& proposal,
              JointActuation& actuation) noexcept {
   switch (composition) {
-    case Composition::set: break;
-    case Composition::sum: return sum(proposal, actuation);
-    case Composition::blend: return blend(weight, proposal, actuation);
+    case Composition::set:
+      break;
+    case Composition::sum:
+      return sum(proposal, actuation);
+    case Composition::blend:
+      return blend(weight, proposal, actuation);
     case Composition::priority:
       if (proposal.mode == ActuationMode::off) return false;
       break;

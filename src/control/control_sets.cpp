@@ -34,8 +34,7 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
     : catalog_(catalog),
       objects_(std::move(objects)),
       switchover_(catalog.drives, catalog.switch_fade_s),
-      active_(catalog.initial_set),
-      computing_(static_cast<std::uint32_t>(catalog.sets.size())) {
+      active_(catalog.initial_set) {
   if (objects_.size() > max_objects) {
     throw std::invalid_argument(std::to_string(objects_.size()) + " control objects, at most " +
                                 std::to_string(max_objects) + " are possible");
@@ -59,8 +58,9 @@ void ControlSets::make_plan(Catalog& catalog, const ControlSetInfo& set) {
     plan.members.push_back({index, object.divisor, composition, 1});
     plan.objects |= 1U << index;
     if (composition != Composition::blend) continue;
-    catalog.parameters.add({set.name + "." + object.name + ".weight", "", 0, 1, 1, "Its share in the joints it blends."},
-                           &plan.members.back().weight, max_objects);
+    catalog.parameters.add(
+        {set.name + "." + object.name + ".weight", "", 0, 1, 1, "Its share in the joints it blends."},
+        &plan.members.back().weight, max_objects);
   }
 }
 
@@ -70,8 +70,9 @@ void ControlSets::declare(Catalog& catalog) {
                          "Control objects that have a share in its actuation, a bit each."},
                         &writers_[i]);
   }
-  catalog.signals.add({"composition.switch_share", "", "Largest step that the last switch absorbed, as a share of the "
-                                                       "joint's torque limit."},
+  catalog.signals.add({"composition.switch_share", "",
+                       "Largest step that the last switch absorbed, as a share of the "
+                       "joint's torque limit."},
                       &switchover_.absorbed_share());
 }
 
@@ -81,6 +82,11 @@ void ControlSets::start_newcomers(const ControlInput& input) noexcept {
     if ((running_ >> member.object & 1U) == 0) objects_[member.object]->start(input);
   }
   running_ = plan.objects;
+}
+
+void ControlSets::switch_to(std::uint32_t set) noexcept {
+  switched_ = switched_ || set != active_;
+  active_ = set;
 }
 
 void ControlSets::compose_joints(const Member& member, ActuationFrame& actuation) noexcept {
@@ -94,10 +100,9 @@ void ControlSets::compose_joints(const Member& member, ActuationFrame& actuation
 }
 
 void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept {
-  const bool first = computing_ == plans_.size();
-  const bool changed = computing_ != active_;
+  const bool first = !std::exchange(computed_, true);
+  const bool changed = std::exchange(switched_, false) || first;
   if (changed) start_newcomers(input);
-  computing_ = active_;
   for (std::uint32_t joint = 0; joint < actuation.joint_count; ++joint) {
     actuation.joints[joint] = {};
     writers_[joint] = 0;

@@ -29,9 +29,12 @@ double drive_torque_Nm(const DriveLaw& drive, const JointActuation& actuation, d
                        double velocity_rad_s) noexcept {
   const double velocity_Nm = drive.velocity_gain_Nms_per_rad * (actuation.velocity_rad_s - velocity_rad_s);
   switch (actuation.mode) {
-    case ActuationMode::off: return 0;
-    case ActuationMode::effort: return actuation.effort_Nm;
-    case ActuationMode::velocity: return actuation.effort_Nm + velocity_Nm;
+    case ActuationMode::off:
+      return 0;
+    case ActuationMode::effort:
+      return actuation.effort_Nm;
+    case ActuationMode::velocity:
+      return actuation.effort_Nm + velocity_Nm;
     case ActuationMode::position:
       return actuation.effort_Nm + velocity_Nm +
              drive.position_gain_Nm_per_rad * (actuation.position_rad - position_rad);

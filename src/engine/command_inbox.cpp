@@ -58,7 +58,7 @@ bool CommandInbox::transaction_acceptable(std::uint32_t count, const Safety& saf
   return true;
 }
 
-void CommandInbox::execute(const Command& command, Safety& safety) noexcept {
+void CommandInbox::execute(const Command& command, const ControlInput& input, Safety& safety) noexcept {
   switch (command.kind) {
     case CommandKind::transaction:
       break;
@@ -77,7 +77,9 @@ void CommandInbox::execute(const Command& command, Safety& safety) noexcept {
       break;
     }
     case CommandKind::switch_set:
+      notify_owners();  // an object starts with the parameters set before it
       sets_.switch_to(command.index);
+      sets_.start_newcomers(input);
       break;
     case CommandKind::clear_faults:
       safety.clear();
@@ -91,7 +93,7 @@ void CommandInbox::notify_owners() noexcept {
   }
 }
 
-void CommandInbox::apply(std::uint64_t tick, std::int64_t now_ns, Safety& safety) noexcept {
+void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept {
   std::uint32_t share = commands_per_tick_max_;
   std::size_t waiting = queue_.size();
   while (waiting > 0) {
@@ -105,9 +107,9 @@ void CommandInbox::apply(std::uint64_t tick, std::int64_t now_ns, Safety& safety
       return;
     }
     if (header.count > share) return;
-    const bool fresh = now_ns - header.time_ns <= age_max_ns_;
+    const bool fresh = input.time_ns - header.time_ns <= age_max_ns_;
     if (fresh && transaction_acceptable(header.count, safety)) {
-      for (std::uint32_t i = 1; i <= header.count; ++i) execute(queue_.peek(i), safety);
+      for (std::uint32_t i = 1; i <= header.count; ++i) execute(queue_.peek(i), input, safety);
       notify_owners();
       state_.applied += header.count;
       state_.last_transaction = header.sequence;

@@ -30,8 +30,9 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
                 actuation_, snapshot_.status.safety);
   plant_.write(actuation_);
   written_ = actuation_;
-  inbox_.apply(tick_, time_ns, safety_);
-  sets_.step(tick_, {snapshot_.joints, snapshot_.status, written_, time_ns, dt_s}, actuation_);
+  const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
+  inbox_.apply(tick_, input, safety_);
+  sets_.step(tick_, input, actuation_);
   publish(time_ns);
   ++tick_;
 }

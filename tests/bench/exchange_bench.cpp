@@ -13,7 +13,8 @@ void bench_exchange(Report& report) {
   const double copy_ns = time_ns([&] { keep(payload), copy = payload, keep(copy); }, 10000);
   const auto latest = std::make_unique<Latest<Payload>>();
   const double write_ns = time_ns([&] { keep(payload), latest->publish(payload); }, 10000);
-  const double read_ns = time_ns([&] { latest->publish(payload), copy = latest->read(), keep(copy); }, 10000) - write_ns;
+  const double read_ns =
+      time_ns([&] { latest->publish(payload), copy = latest->read(), keep(copy); }, 10000) - write_ns;
   const auto ring = std::make_unique<Ring<Payload, 8>>();
   const double queue_ns = time_ns([&] { (void)ring->try_push(payload), (void)ring->try_pop(copy), keep(copy); }, 10000);
   report.add("exchange_ns.copy_512", "plain copy, 512 bytes", copy_ns, "ns");

@@ -1,12 +1,14 @@
-#include <CLI/CLI.hpp>
 #include <map>
+
+#include <CLI/CLI.hpp>
 
 #include "report.h"
 
 int main(int argc, char** argv) {
   using namespace kadans::bench;
-  const std::map<std::string, void (*)(Report&)> parts = {
-      {"control", bench_control}, {"exchange", bench_exchange}, {"plant", bench_simulation}, {"record", bench_record}};
+  const std::map<std::string, void (*)(Report&)> parts = {{"behavior", bench_behavior}, {"control", bench_control},
+                                                          {"exchange", bench_exchange}, {"plant", bench_simulation},
+                                                          {"record", bench_record},     {"switch", bench_switch}};
   CLI::App app("Kadans benchmarks", "kadans_bench");
   std::vector<std::string> only;
   bool json = false;

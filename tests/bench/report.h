@@ -37,7 +37,8 @@ inline double median(std::vector<double> values) {
 
 inline double now_ns() {
   return static_cast<double>(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count());
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+          .count());
 }
 
 // Median time of one call, in ns, from `batches` batches of `calls` calls after a tenth of them to warm up.
@@ -58,9 +59,11 @@ void keep(T& value) {
   asm volatile("" : : "r"(&value) : "memory");
 }
 
+void bench_behavior(Report& report);
 void bench_control(Report& report);
 void bench_exchange(Report& report);
 void bench_record(Report& report);
 void bench_simulation(Report& report);
+void bench_switch(Report& report);
 
 }  // namespace kadans::bench

@@ -16,7 +16,8 @@ void bench_simulation(Report& report) {
     steps_us.push_back(1e-3 * time_ns([&] { parts.plant.step(1'000'000); }, 10, 50));
   }
   report.add("sim_realtime_factor", "squat, simulated seconds per second", median(factors), "x");
-  report.add("plant_step_us.kadans", "one step of the plant, TULip standing on its last torques", median(steps_us), "us");
+  report.add("plant_step_us.kadans", "one step of the plant, TULip standing on its last torques", median(steps_us),
+             "us");
 }
 
 }  // namespace kadans::bench

@@ -1,10 +1,10 @@
 #include "kadans/control/switchover.h"
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <doctest/doctest.h>
 
 #include "kadans/testing/allocation_count.h"
 
@@ -50,8 +50,8 @@ JointActuation velocity(double velocity_rad_s) {
 }  // namespace
 
 TEST_CASE("Across all modes the first torque is the last one, and after 0.2 s it is the new law's own") {
-  const JointActuation laws[] = {effort(12),     effort(-60),   position(0.53), position(0.2),
-                                 position(5),    velocity(0.7), velocity(-9),   JointActuation{}};
+  const JointActuation laws[] = {effort(12),  effort(-60),   position(0.53), position(0.2),
+                                 position(5), velocity(0.7), velocity(-9),   JointActuation{}};
   for (const JointActuation& before : laws) {
     for (const JointActuation& after : laws) {
       Bench bench;

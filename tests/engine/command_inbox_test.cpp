@@ -1,9 +1,9 @@
 #include "kadans/engine/command_inbox.h"
 
-#include <doctest/doctest.h>
-
 #include <array>
 #include <limits>
+
+#include <doctest/doctest.h>
 
 #include "bench.h"
 #include "kadans/engine/transaction.h"
@@ -15,6 +15,7 @@ namespace {
 struct Inbox : bench::Robot {
   CommandInbox inbox{exchange->commands, catalog, sets, 256, 100'000'000};
   CommandSender sender{exchange->commands};
+  ActuationFrame computed;
 
   ParameterId parameter(const char* name) const { return catalog.parameters.find(name).value(); }
   Command set_kp(double value) const {
@@ -32,6 +33,9 @@ struct Inbox : bench::Robot {
     for (const Command& command : {commands...}) REQUIRE(sender.add(command));
     REQUIRE(sender.commit() > 0);
   }
+  ControlInput at(std::int64_t time_ns) const {
+    return {control.state().joints, control.state().status, control.actuation(), time_ns, 0.001};
+  }
   double kp() const { return catalog.parameters.get(parameter("posture.knee.kp_Nm_per_rad")); }
 };
 
@@ -40,12 +44,23 @@ struct Inbox : bench::Robot {
 TEST_CASE("A transaction is applied whole, in one tick") {
   Inbox bench;
   bench.send(0, bench.set_kp(77), bench.move_hip(0.5, 1.0));
-  bench.inbox.apply(1, 1'000'000, bench.safety);
+  bench.inbox.apply(1, bench.at(1'000'000), bench.safety);
   CHECK(bench.kp() == 77);
   CHECK(bench.sets.object(0).motion_remaining_s() == 1.0);
   CHECK(bench.inbox.state().last_transaction == 1);
   CHECK(bench.inbox.state().applied == 2);
   CHECK(bench.inbox.state().refused == 0);
+}
+
+TEST_CASE("A set-point behind a switch in the same transaction counts for the objects that come in") {
+  Inbox bench;
+  const SetpointId knee = bench.catalog.setpoints.find("spare.knee.position_rad").value();
+  bench.send(0, Command{.kind = CommandKind::switch_set, .index = 1},
+             Command{.kind = CommandKind::set_point, .index = knee, .value = 0.5, .duration_s = 1.0});
+  bench.inbox.apply(1, bench.at(0), bench.safety);
+  bench.sets.step(1, bench.at(0), bench.computed);
+  CHECK(bench.sets.active() == 1);
+  CHECK(bench.sets.object(1).motion_remaining_s() == doctest::Approx(0.999));
 }
 
 TEST_CASE("One bad command refuses its whole transaction, and the next one is applied") {
@@ -65,7 +80,7 @@ TEST_CASE("One bad command refuses its whole transaction, and the next one is ap
                           Command{.kind = static_cast<CommandKind>(99)}};
   for (const Command& command : bad) bench.send(0, bench.set_kp(99), command);
   bench.send(0, bench.set_kp(50));
-  bench.inbox.apply(1, 0, bench.safety);
+  bench.inbox.apply(1, bench.at(0), bench.safety);
   CHECK(bench.kp() == 50);
   CHECK(bench.inbox.state().refused == 2 * bad.size());
   Fault fault;
@@ -78,7 +93,7 @@ TEST_CASE("One bad command refuses its whole transaction, and the next one is ap
 TEST_CASE("A transaction that is too old expires") {
   Inbox bench;
   bench.send(0, bench.set_kp(77));
-  bench.inbox.apply(1, 100'000'001, bench.safety);
+  bench.inbox.apply(1, bench.at(100'000'001), bench.safety);
   CHECK(bench.kp() == 40);
   CHECK(bench.inbox.state().refused == 1);
 }
@@ -90,10 +105,10 @@ TEST_CASE("At most a fixed number of commands is applied in a tick, the rest wai
     for (int j = 0; j < 120; ++j) REQUIRE(bench.sender.add(bench.set_kp(i)));
     REQUIRE(bench.sender.commit() > 0);
   }
-  bench.inbox.apply(1, 0, bench.safety);
+  bench.inbox.apply(1, bench.at(0), bench.safety);
   CHECK(bench.inbox.state().applied == 240);
   CHECK(bench.kp() == 1);
-  bench.inbox.apply(2, 0, bench.safety);
+  bench.inbox.apply(2, bench.at(0), bench.safety);
   CHECK(bench.inbox.state().applied == 360);
   CHECK(bench.kp() == 2);
 }
@@ -102,7 +117,7 @@ TEST_CASE("A queue that does not hold transactions is emptied and reported, noth
   Inbox bench;
   const std::array torn = {Command{.kind = CommandKind::transaction, .count = 7}, bench.set_kp(99)};
   REQUIRE(bench.exchange->commands.try_push(torn));
-  bench.inbox.apply(1, 0, bench.safety);
+  bench.inbox.apply(1, bench.at(0), bench.safety);
   CHECK(bench.kp() == 40);
   CHECK(bench.exchange->commands.size() == 0);
   CHECK(bench.inbox.state().refused == 2);

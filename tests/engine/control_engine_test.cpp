@@ -1,9 +1,9 @@
 #include "kadans/engine/control_engine.h"
 
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <doctest/doctest.h>
 
 #include "bench.h"
 

@@ -1,8 +1,8 @@
 #include "kadans/engine/transaction.h"
 
-#include <doctest/doctest.h>
-
 #include <memory>
+
+#include <doctest/doctest.h>
 
 using namespace kadans;
 

@@ -1,9 +1,9 @@
 #include "kadans/scenario/check.h"
 
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <vector>
+
+#include <doctest/doctest.h>
 
 using namespace kadans;
 

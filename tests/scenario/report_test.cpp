@@ -1,8 +1,8 @@
 #include "kadans/scenario/report.h"
 
-#include <doctest/doctest.h>
-
 #include <limits>
+
+#include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 using namespace kadans;
@@ -29,13 +29,15 @@ struct Subject {
     result.state_hash = 0x0123456789abcdefU;
     result.tick = {1200, 2000, 50000};
     result.commands_sent = 72;
-    result.faults = {{FaultCode::velocity_limit, 0, 1234, 13, 12}, {FaultCode::heartbeat_lost, no_joint, 2000, 0.2, 0.1}};
+    result.faults = {{FaultCode::velocity_limit, 0, 1234, 13, 12},
+                     {FaultCode::heartbeat_lost, no_joint, 2000, 0.2, 0.1}};
     checks = {{.name = "height", .signal = "a", .max = 0.01}, {.name = "tilt", .signal = "b", .max = 0.05}};
     log.transition({1'500'000'000, "squat", "stand", "down", "after 1 s"});
     log.message(0, BehaviorLog::Severity::error, "squat", "squat.lua:12: attempt to call a nil value");
   }
   std::string text(const ReportStyle& style) const {
-    return text_report({result, log, model, checks, traces, "squat", "squat.mcap", "kadans sim squat.json --seed 7"}, style);
+    return text_report({result, log, model, checks, traces, "squat", "squat.mcap", "kadans sim squat.json --seed 7"},
+                       style);
   }
 };
 

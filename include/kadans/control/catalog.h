@@ -35,7 +35,7 @@ struct ObjectInfo {
 
 struct ControlSetInfo {
   std::string name;
-  std::vector<std::uint32_t> objects;      // in the order of computing
+  std::vector<std::uint32_t> objects;       // in the order of computing
   std::vector<Composition> compositions{};  // one an object; empty: every object sets its joints
 };
 

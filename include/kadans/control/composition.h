@@ -19,6 +19,7 @@ namespace kadans {
 enum class Composition : std::uint8_t { set, sum, blend, priority };
 
 // True when the proposal has a share in what stands in `actuation` now. `weight` counts for blend alone.
-bool compose(Composition composition, double weight, const JointActuation& proposal, JointActuation& actuation) noexcept;
+bool compose(Composition composition, double weight, const JointActuation& proposal,
+             JointActuation& actuation) noexcept;
 
 }  // namespace kadans

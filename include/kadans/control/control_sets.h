@@ -27,11 +27,14 @@ class ControlSets {
 
   // Control thread. Computes the actuation of all joints.
   void step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept;
-  // Control thread. The set computes from the next step on; objects that were not active start from the present state.
-  void switch_to(std::uint32_t set) noexcept { active_ = set; }
+  // Control thread, before step. The set computes from the next step on; objects that were not active start from the
+  // present state: in that step, or earlier by start_newcomers, so that they can be given set-points before it.
+  void switch_to(std::uint32_t set) noexcept;
+  void start_newcomers(const ControlInput& input) noexcept;
   // Control thread, before step. `object` is an index in the catalog.
   ControlObject& object(std::uint32_t index) noexcept { return *objects_[index]; }
-  void fill(std::uint32_t& active_set, std::uint32_t& count, std::array<ObjectStatus, max_objects>& status) const noexcept;
+  void fill(std::uint32_t& active_set, std::uint32_t& count,
+            std::array<ObjectStatus, max_objects>& status) const noexcept;
 
   // Behavior thread: the high level of all objects of the set that the snapshot calls active.
   void update(std::uint64_t behavior_tick, const Snapshot& snapshot);
@@ -52,7 +55,6 @@ class ControlSets {
   };
   void make_plan(Catalog& catalog, const ControlSetInfo& set);
   void declare(Catalog& catalog);
-  void start_newcomers(const ControlInput& input) noexcept;
   void compose_joints(const Member& member, ActuationFrame& actuation) noexcept;
 
   const Catalog& catalog_;
@@ -63,7 +65,8 @@ class ControlSets {
   Switchover switchover_;
   std::uint32_t running_ = 0;  // a bit an object
   std::uint32_t active_;
-  std::uint32_t computing_;  // the set of the last step; the number of sets before the first
+  bool computed_ = false;  // at least one step
+  bool switched_ = false;  // since the last step
 };
 
 }  // namespace kadans

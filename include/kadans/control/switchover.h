@@ -33,7 +33,8 @@ class Switchover {
 
   // In the tick that computes the new set for the first time: `before` is what the plant was told in this tick, `after`
   // what was computed for the next one.
-  void begin(const JointStates& joints, double dt_s, const ActuationFrame& before, const ActuationFrame& after) noexcept;
+  void begin(const JointStates& joints, double dt_s, const ActuationFrame& before,
+             const ActuationFrame& after) noexcept;
   // Each tick, last: adds what is left of the offset.
   void apply(double dt_s, ActuationFrame& actuation) noexcept;
 

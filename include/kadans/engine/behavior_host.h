@@ -32,7 +32,8 @@ class BehaviorLog {
   virtual ~BehaviorLog() = default;
   enum class Severity : std::uint8_t { info, warning, error };
   virtual void transition(const Transition& transition) = 0;
-  virtual void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) = 0;
+  virtual void message(std::int64_t time_ns, Severity severity, const std::string& behavior,
+                       const std::string& text) = 0;
 };
 
 }  // namespace kadans

@@ -20,8 +20,9 @@ class CommandInbox {
                std::int64_t age_max_ns);
 
   // Control thread. Applies what arrived, oldest first; what exceeds the tick's share waits for the next. A fault of
-  // the safety layer says when something was refused.
-  void apply(std::uint64_t tick, std::int64_t now_ns, Safety& safety) noexcept;
+  // the safety layer says when something was refused. Objects of a set that is switched to start at once, so that
+  // set-points behind the switch in the same transaction count.
+  void apply(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept;
 
   struct State {
     std::uint32_t last_transaction = 0;  // number of the last one applied
@@ -34,7 +35,7 @@ class CommandInbox {
   bool acceptable(const Command& command) const noexcept;
   static bool held(const Command& command, const Catalog& catalog, const Safety& safety) noexcept;
   bool transaction_acceptable(std::uint32_t count, const Safety& safety) const noexcept;
-  void execute(const Command& command, Safety& safety) noexcept;
+  void execute(const Command& command, const ControlInput& input, Safety& safety) noexcept;
   void notify_owners() noexcept;
 
   CommandQueue& queue_;

@@ -23,13 +23,13 @@ namespace kadans {
 
 inline constexpr std::size_t snapshot_readers = 2;  // 0: behavior engine, 1: supervisor
 using SnapshotStorage = Latest<Snapshot, snapshot_readers>;
-using HeartbeatStorage = Latest<std::int64_t>;      // time of the behavior engine's last tick
+using HeartbeatStorage = Latest<std::int64_t>;  // time of the behavior engine's last tick
 
 // The storages between the threads. Position independent; may live in shared memory.
 struct EngineExchange {
-  SnapshotStorage snapshot;     // written by the control thread
-  CommandQueue commands;        // pushed by the behavior thread, popped by the control thread
-  HeartbeatStorage heartbeat;   // written by the behavior thread
+  SnapshotStorage snapshot;    // written by the control thread
+  CommandQueue commands;       // pushed by the behavior thread, popped by the control thread
+  HeartbeatStorage heartbeat;  // written by the behavior thread
 };
 
 class ControlEngine {
@@ -50,6 +50,7 @@ class ControlEngine {
   const ActuationFrame& actuation() const noexcept { return actuation_; }
   const CommandInbox& inbox() const noexcept { return inbox_; }
   Safety& safety() noexcept { return safety_; }
+  EngineExchange& exchange() noexcept { return exchange_; }
 
  private:
   void publish(std::int64_t time_ns) noexcept;

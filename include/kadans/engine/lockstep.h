@@ -14,7 +14,8 @@ namespace kadans {
 
 class Lockstep {
  public:
-  // Keeps references. Throws std::invalid_argument unless the behavior period is a whole multiple of the control period.
+  // Keeps references. Throws std::invalid_argument unless the behavior period is a whole multiple of the control
+  // period.
   Lockstep(const EngineSettings& settings, Plant& plant, ControlEngine& control, BehaviorEngine& behaviors);
 
   // Throws what the plant's step throws.

@@ -9,8 +9,8 @@ namespace kadans {
 class RecordSink {
  public:
   virtual ~RecordSink() = default;
-  // Control thread, once a tick, one value a signal in the order of the signal table. Never blocks; what does not fit is
-  // dropped and counted.
+  // Control thread, once a tick, one value a signal in the order of the signal table. Never blocks; what does not fit
+  // is dropped and counted.
   virtual void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept = 0;
 };
 

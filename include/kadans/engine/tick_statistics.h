@@ -1,5 +1,5 @@
-// How long ticks take: a histogram of fixed size with logarithmic buckets (32 an octave, so 2 % wide), and the extremes.
-// One owner; add() neither allocates nor locks.
+// How long ticks take: a histogram of fixed size with logarithmic buckets (32 an octave, so 2 % wide), and the
+// extremes. One owner; add() neither allocates nor locks.
 #pragma once
 
 #include <array>
