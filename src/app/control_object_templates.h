@@ -157,7 +157,7 @@ TEST_CASE("@Class@ takes over from itself without a step") {
   CHECK(record_switch(bench, "after") <= SwitchLimits{});
 }
 
-TEST_CASE("@Class@ passes on what is not finite, for the safety layer to stop") {
+TEST_CASE("@Class@ holds still where it begins") {
   JointBench bench(knee(), make_@type@);
   bench.run(0.01);
   CHECK(bench.not_finite_ticks() == 0);

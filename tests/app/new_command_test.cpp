@@ -1,0 +1,32 @@
+#include <doctest/doctest.h>
+
+#include "program.h"
+
+using namespace kadans::program;
+
+TEST_CASE("new control-object writes a project under the name given, and says what it wrote") {
+  const auto folder = fresh_folder("new_object");
+  const Outcome outcome = run("new control-object knee_damper2", folder);
+  CHECK(outcome.exit_code == 0);
+  for (const char* file :
+       {"knee_damper2.h", "knee_damper2.cpp", "knee_damper2_test.cpp", "main.cpp", "CMakeLists.txt"}) {
+    CHECK_MESSAGE(std::filesystem::exists(folder / "knee_damper2" / file), file);
+    CHECK_MESSAGE(has(outcome.out, file), file);
+    CHECK_MESSAGE(!has(read(folder / "knee_damper2" / file), "@"), file);
+  }
+  CHECK(has(read(folder / "knee_damper2/knee_damper2.h"), "class KneeDamper2 final : public kadans::ControlObject"));
+  CHECK(run("new control-object other --plugin --in sub", folder).exit_code == 0);
+  CHECK(has(read(folder / "sub/other/plugin.cpp"), "KADANS_PLUGIN(kadans::plugin_type<make_other>(\"other\"))"));
+}
+
+TEST_CASE("new control-object overwrites nothing and refuses names that are none") {
+  const auto folder = fresh_folder("new_object_refused");
+  write(folder / "taken", "mine");
+  const Outcome taken = run("new control-object taken", folder);
+  CHECK(taken.exit_code == 2);
+  CHECK(has(taken.err, "is there already; nothing is overwritten"));
+  CHECK(read(folder / "taken") == "mine");
+  for (const char* name : {"Knee", "knee-pd", "../knee", "2knee", "knee__pd", "knee_", "''"}) {
+    CHECK_MESSAGE(run(std::string("new control-object ") + name, folder).exit_code == 2, name);
+  }
+}
