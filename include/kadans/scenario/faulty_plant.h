@@ -1,0 +1,64 @@
+// A plant whose sensors fail on time: a plant around another one that spoils what is read from it. Everything else,
+// what is written included, passes through.
+//
+// The thread that owns the model adds faults; read neither allocates nor throws.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "kadans/plant/plant.h"
+#include "kadans/signal/random.h"
+
+namespace kadans {
+
+enum class SensorFaultKind : std::uint8_t {
+  silent,      // no new reading
+  stuck,       // new readings, with the value of the first
+  offset,      // `size` added
+  noise,       // `size` added at random: half to all of it, of either sign, a draw a reading
+  jump,        // `size` added to one reading
+  not_finite,  // NaN
+};
+enum class SensorPlace : std::uint8_t { joint, imu, foot };
+
+struct SensorFault {
+  SensorFaultKind kind = SensorFaultKind::silent;
+  SensorPlace place = SensorPlace::joint;
+  std::size_t index = 0;  // of the joint or foot
+  std::int64_t from_ns = 0;
+  std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
+  double size = 0;  // joint: rad of the joint's position; IMU: rad/s about x; foot: N on the first sensor
+};
+
+class FaultyPlant final : public ModelPlant {
+ public:
+  // Keeps a reference. The seed is the run's.
+  FaultyPlant(ModelPlant& plant, std::uint64_t seed) noexcept : plant_(plant), random_(seed, "sensor faults") {}
+
+  void add(const SensorFault& fault) { faults_.push_back({fault, {}, false}); }
+
+  void read(SensorFrame& sensors) noexcept override;
+  void write(const ActuationFrame& actuation) noexcept override { plant_.write(actuation); }
+  void step(std::int64_t dt_ns) override { plant_.step(dt_ns); }
+  const PlantTruth& truth() const noexcept override { return plant_.truth(); }
+  void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
+    plant_.push(link, force_N, point_in_link_m);
+  }
+  void hash(StateHash& hash) const noexcept override { plant_.hash(hash); }
+
+ private:
+  struct Planned {
+    SensorFault fault;
+    SensorFrame first;  // what was read when it began
+    bool begun;
+  };
+  void spoil(Planned& planned, SensorFrame& sensors) noexcept;
+
+  ModelPlant& plant_;
+  RandomStream random_;
+  std::vector<Planned> faults_;
+};
+
+}  // namespace kadans

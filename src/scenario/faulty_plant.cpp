@@ -1,0 +1,68 @@
+#include "kadans/scenario/faulty_plant.h"
+
+namespace kadans {
+namespace {
+
+// The one value of a sensor that an error of some size is added to.
+double& value_of(const SensorFault& fault, SensorFrame& frame) noexcept {
+  if (fault.place == SensorPlace::imu) return frame.imu.angular_velocity_rad_s[0];
+  return fault.place == SensorPlace::foot ? frame.feet[fault.index].force_N[0] : frame.joints[fault.index].position_rad;
+}
+
+// All that the sensor says is as it was in `from`, but for the sequence numbers.
+void repeat(const SensorFault& fault, const SensorFrame& from, SensorFrame& frame) noexcept {
+  if (fault.place == SensorPlace::joint) frame.joints[fault.index].position_rad = from.joints[fault.index].position_rad;
+  if (fault.place == SensorPlace::foot) frame.feet[fault.index].force_N = from.feet[fault.index].force_N;
+  if (fault.place != SensorPlace::imu) return;
+  frame.imu.angular_velocity_rad_s = from.imu.angular_velocity_rad_s;
+  frame.imu.acceleration_m_s2 = from.imu.acceleration_m_s2;
+}
+
+void silence(const SensorFault& fault, const SensorFrame& from, SensorFrame& frame) noexcept {
+  if (fault.place == SensorPlace::joint) frame.joints[fault.index] = from.joints[fault.index];
+  if (fault.place == SensorPlace::foot) frame.feet[fault.index] = from.feet[fault.index];
+  if (fault.place == SensorPlace::imu) frame.imu = from.imu;
+}
+
+}  // namespace
+
+void FaultyPlant::read(SensorFrame& sensors) noexcept {
+  const SensorFrame before = sensors;  // a silent sensor repeats what it said last, sequence number included
+  plant_.read(sensors);
+  for (Planned& planned : faults_) {
+    const SensorFault& fault = planned.fault;
+    if (sensors.time_ns < fault.from_ns || sensors.time_ns >= fault.until_ns) continue;
+    if (!planned.begun) planned.first = fault.kind == SensorFaultKind::silent ? before : sensors;
+    spoil(planned, sensors);
+    planned.begun = true;
+  }
+}
+
+void FaultyPlant::spoil(Planned& planned, SensorFrame& sensors) noexcept {
+  const SensorFault& fault = planned.fault;
+  double& value = value_of(fault, sensors);
+  switch (fault.kind) {
+    case SensorFaultKind::silent:
+      silence(fault, planned.first, sensors);
+      break;
+    case SensorFaultKind::stuck:
+      repeat(fault, planned.first, sensors);
+      break;
+    case SensorFaultKind::offset:
+      value += fault.size;
+      break;
+    case SensorFaultKind::noise: {
+      const double draw = random_.uniform(-1, 1);
+      value += fault.size * (draw < 0 ? 0.5 * draw - 0.5 : 0.5 * draw + 0.5);
+      break;
+    }
+    case SensorFaultKind::jump:
+      if (!planned.begun) value += fault.size;
+      break;
+    case SensorFaultKind::not_finite:
+      value = std::numeric_limits<double>::quiet_NaN();
+      break;
+  }
+}
+
+}  // namespace kadans
