@@ -136,7 +136,7 @@ bool Safety::passes(const SafetyInput& in, std::size_t index, double dt_s, const
 void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
   joint.cut = 0;
-  SafetyLevel level = joint_level(index);
+  const SafetyLevel level = joint_level(index);
   // The drive makes the torque in its own modes: it can be given back, or softened, as torque only.
   const bool by_drive = actuation.mode == ActuationMode::position || actuation.mode == ActuationMode::velocity;
   const bool reduced = joint.authority < 1 || fall_.share() < 1;
@@ -146,14 +146,13 @@ void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, 
   } else if (joint.authority < 1) {
     joint.authority = std::min(1.0, joint.authority + dt_s / settings_.recover_s);
   }
-  if (joint.limiter.passive() || level == SafetyLevel::off) {
+  const bool nothing_asked = !damps && actuation.mode == ActuationMode::off;
+  if (joint.limiter.passive() || level == SafetyLevel::off || nothing_asked) {
     actuation = {};
   } else if (damps) {
     actuation = joint.limiter.damp(in.joints.joints[index]);
-  } else if (actuation.mode != ActuationMode::off) {
-    cut_joint(in, index, dt_s, actuation);
   } else {
-    actuation = {};
+    cut_joint(in, index, dt_s, actuation);
   }
   joint.last_Nm = actuation.effort_Nm;
   joint.level_number = static_cast<std::uint32_t>(joint_level(index));
