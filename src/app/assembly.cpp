@@ -1,6 +1,7 @@
 #include "kadans/app/assembly.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 
@@ -76,13 +77,29 @@ std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
   return feet;
 }
 
-std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Catalog& catalog, std::uint64_t seed,
-                                      RunLog& log) {
+// The behaviors' names are known once they are loaded.
+void verify_reloads(const ScenarioConfig& scenario, const ScriptHost& host) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < host.size(); ++i) names.push_back(host.behavior(i).name());
+  for (const ScenarioReload& reload : scenario.reloads) {
+    if (std::ranges::find(names, reload.behavior.name) == names.end())
+      refuse_unknown(scenario.file, reload.behavior, "behavior", names);
+  }
+}
+
+std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const SafeConfig& safe, const Catalog& catalog,
+                                      std::uint64_t seed, RunLog& log) {
   ScriptHost::Settings settings;
   settings.root = project_root(scenario.file);
   settings.seed = seed;
   for (const PlacedName& behavior : scenario.behaviors) settings.play.push_back({.file = behavior.name});
-  return std::make_unique<ScriptHost>(settings, catalog, log);
+  for (const ScenarioReload& reload : scenario.reloads) {
+    settings.reloads.push_back({std::llround(reload.at_s * 1e9), reload.behavior.name, reload.file.name});
+  }
+  settings.safe = {.pose = safe.pose, .after_s = safe.after_s, .time_s = safe.time_s};
+  auto host = std::make_unique<ScriptHost>(settings, catalog, log);
+  verify_reloads(scenario, *host);
+  return host;
 }
 
 }  // namespace
@@ -154,14 +171,24 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   }
   exchange_ = std::make_unique<EngineExchange>();
   truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.config.plant), feet_settle_s);
+  host_ = make_host(scenario, robot_.config.safe, catalog, seed, log);
+  upkeep_first_ = catalog.signals.size();
+  host_->declare_signals(catalog.signals);
+  upkeep_count_ = catalog.signals.size() - upkeep_first_;
   control_ = std::make_unique<ControlEngine>(robot_.config.engine, *plant_, *estimator_, *safety_, *sets_, catalog,
                                              *exchange_);
-  host_ = make_host(scenario, catalog, seed, log);
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host_.get());
   lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);
 }
 
-RunParts Assembly::parts() noexcept { return {*plant_, *control_, *behaviors_, *lockstep_, *truth_, log_}; }
+void Assembly::filter(SnapshotFilter& filter) {
+  filtered_ = std::make_unique<FilteredHost>(*host_, filter);
+  lockstep_.reset();
+  behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, filtered_.get());
+  lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);
+}
+
+RunParts Assembly::parts() noexcept { return {*plant_, *control_, *behaviors_, *lockstep_, *truth_, log_, static_cast<SignalId>(upkeep_first_), upkeep_count_}; }
 
 std::vector<Check> Assembly::make_checks() const {
   std::vector<Check> checks;

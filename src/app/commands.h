@@ -15,6 +15,8 @@ struct SimOptions {
   bool json = false;
   bool verbose = false;
   bool no_record = false;
+  bool realtime = false;
+  bool watch = false;
   std::string record;  // "" = NAME.mcap in the working directory
 };
 int run_sim(const SimOptions& options);

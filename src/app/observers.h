@@ -1,6 +1,7 @@
 // Who looks on while a scenario runs: the progress bar, the drawn signals, the recorder.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,16 @@ class ProgressBar final : public RunObserver {
   double duration_s_;
   bool shown_;
   int drawn_percent_ = -1;
+};
+
+// Holds the run back to the pace of the wall clock, between two ticks. A run that is slower than that is not hurried.
+class Pace final : public RunObserver {
+ public:
+  void tick(double time_s, std::span<const double> row) override;
+
+ private:
+  std::chrono::steady_clock::time_point began_;
+  bool running_ = false;
 };
 
 // Keeps every n-th value of one signal for the report.

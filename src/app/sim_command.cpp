@@ -33,15 +33,19 @@ std::string read_all(const std::string& file) {
 class LateLog final : public BehaviorLog {
  public:
   void set(BehaviorLog* log) noexcept { log_ = log; }
+  void show() noexcept { shown_ = true; }  // messages at once on stderr, for somebody who edits while it runs
   void transition(const Transition& transition) override {
     if (log_ != nullptr) log_->transition(transition);
   }
   void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
     if (log_ != nullptr) log_->message(time_ns, severity, behavior, text);
+    if (shown_)
+      std::fprintf(stderr, "\r\033[K%8.2f s  %s: %s\n", 1e-9 * static_cast<double>(time_ns), behavior.c_str(), text.c_str());
   }
 
  private:
   BehaviorLog* log_ = nullptr;
+  bool shown_ = false;
 };
 
 class Sim {
@@ -62,6 +66,12 @@ class Sim {
     std::vector<RunObserver*> observers{&progress};
     TraceObserver height("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_);
     observers.push_back(&height);
+    Pace pace;
+    if (options_.realtime) observers.push_back(&pace);
+    if (options_.watch) {
+      assembly_.watch_behaviors();
+      late_log_.show();
+    }
     std::unique_ptr<RecordDrain> drain;
     if (recorder_) observers.push_back((drain = std::make_unique<RecordDrain>(*recorder_)).get());
     RunResult result = [&] {

@@ -1,5 +1,7 @@
 #include "kadans/config/robot_config.h"
 
+#include <algorithm>
+
 #include "kadans/config/name_pattern.h"
 #include "kadans/config/project_root.h"
 #include "kadans/model/urdf.h"
@@ -24,6 +26,17 @@ void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
   }
 }
 
+void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
+  f.string("pose", config.safe.pose, "the pose", Need::required);
+  f.number("after_s", config.safe.after_s, {0, 60, "s"}, "how long the last set-points are held before");
+  f.number("time_s", config.safe.time_s, {0.01, 60, "s"}, "time to go there");
+  if (!f.reading() || config.safe.pose.empty()) return;
+  std::vector<std::string> names;
+  for (const PoseInfo& pose : config.poses) names.push_back(pose.name);
+  if (std::find(names.begin(), names.end(), config.safe.pose) != names.end()) return;
+  problems.add_unknown(f.place("pose"), "pose", config.safe.pose, names);
+}
+
 }  // namespace
 
 void RobotReader::read(Fields& f) {
@@ -36,6 +49,8 @@ void RobotReader::read(Fields& f) {
   f.object("engine", "periods and bounds of the engines",
            [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
   f.map("poses", "positions in radians by joint pattern, for behaviors and the start", [&](Fields& e) { pose(e); });
+  f.object("safe", "the posture the robot goes to when a behavior failed",
+           [&](Fields& safe) { safe_fields(safe, config_, problems_); });
   f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });
   f.object("start", "where the robot starts", [&](Fields& e) { start(e); });
   f.object("estimate", "how the estimator is set up", [&](Fields& e) { estimate(e); });

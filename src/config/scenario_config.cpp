@@ -49,6 +49,18 @@ void verify(const Fields& f, const ScenarioCheck& check, const ScenarioConfig& s
   }
 }
 
+void reload_fields(Fields& f, ScenarioReload& reload, Problems& problems) {
+  f.number("at_s", reload.at_s, {0, duration_max_s, "s"}, "when", Need::required);
+  f.string("behavior", reload.behavior.name, "name of a behavior that plays", Need::required);
+  f.string("file", reload.file.name, "what it goes on with, from the project root", Need::required);
+  if (!f.reading()) return;
+  reload.behavior.place = f.place("behavior");
+  reload.file.place = f.place("file");
+  if (!reload.file.name.empty()) {
+    reload.file.name = resolve_file(reload.file.name, reload.file.place, "reload", problems).string();
+  }
+}
+
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   std::string schema;
   f.string("$schema", schema, "the schema of this file, for editors");
@@ -60,6 +72,11 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
             "where all random numbers of the run come from");
   f.strings("behaviors", scenario.behaviors, {0, 100}, "behavior files, played one after the other");
+  f.list("reload", {0, 10'000}, "behaviors that go on with another file", [&](Fields& e) {
+    ScenarioReload reload;
+    reload_fields(e, reload, problems);
+    if (e.reading()) scenario.reloads.push_back(std::move(reload));
+  });
   f.list("checks", {0, 1000}, "what must hold", [&](Fields& e) {
     ScenarioCheck check;
     check_fields(e, check);

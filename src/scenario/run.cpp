@@ -53,7 +53,8 @@ class Run {
     parts_.truth.update(time_s, parts_.control.row());
     parts_.lockstep.step();
     const std::span<const double> row = parts_.control.row();
-    hash_.add(row);
+    hash_.add(row.first(parts_.upkeep_first));
+    hash_.add(row.subspan(parts_.upkeep_first + parts_.upkeep_count));
     parts_.plant.hash(hash_);
     for (Check& check : checks_) check.update(time_s, row);
     for (RunObserver* observer : observers_) observer->tick(time_s, row);

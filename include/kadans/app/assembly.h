@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kadans/app/snapshot_filter.h"
 #include "kadans/config/robot_config.h"
 #include "kadans/config/scenario_config.h"
 #include "kadans/control/control_object_types.h"
@@ -43,8 +44,15 @@ class Assembly {
   const RobotConfig& robot() const noexcept { return robot_.config; }
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
   const ScriptHost& host() const noexcept { return *host_; }
+  ScriptHost& host() noexcept { return *host_; }
+  // Before the run: takes what somebody saves. Throws std::runtime_error when files cannot be watched.
+  void watch_behaviors() { host_->watch(); }
   RunParts parts() noexcept;
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
+
+  // Before the first step: from then on the behaviors see what the filter, which must outlive this, makes of the
+  // snapshot.
+  void filter(SnapshotFilter& filter);
 
   // Throws InputError for a signal that nobody declares.
   std::vector<Check> make_checks() const;
@@ -60,8 +68,10 @@ class Assembly {
   std::unique_ptr<Safety> safety_;
   std::unique_ptr<EngineExchange> exchange_;
   std::unique_ptr<TruthSignals> truth_;
-  std::unique_ptr<ControlEngine> control_;
   std::unique_ptr<ScriptHost> host_;
+  std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the behaviors' signals
+  std::unique_ptr<ControlEngine> control_;
+  std::unique_ptr<FilteredHost> filtered_;
   std::unique_ptr<BehaviorEngine> behaviors_;
   std::unique_ptr<Lockstep> lockstep_;
 };

@@ -39,6 +39,13 @@ struct ObjectConfig {
   std::vector<PresetConfig> presets;
 };
 
+// Where the robot goes when a behavior failed.
+struct SafeConfig {
+  std::string pose;  // "": it holds its last set-points
+  double after_s = 0.5;
+  double time_s = 1.5;
+};
+
 struct RobotConfig {
   std::string file;
   std::string name;
@@ -53,6 +60,7 @@ struct RobotConfig {
   std::uint32_t initial_set = 0;
   std::vector<PoseInfo> poses;
   std::string start_pose;
+  SafeConfig safe;
 };
 
 // Throws InputError with everything that is wrong, the URDF's mistakes included. `object_types`: the types of control

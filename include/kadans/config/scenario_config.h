@@ -31,6 +31,13 @@ struct ScenarioCheck {
   TextPlace signal_place;
 };
 
+// A behavior goes on with the text of another file, as if somebody had saved it at this time.
+struct ScenarioReload {
+  double at_s = 0;
+  PlacedName behavior;  // its name
+  PlacedName file;      // resolved
+};
+
 struct ScenarioConfig {
   std::string file;
   std::string name;
@@ -40,6 +47,7 @@ struct ScenarioConfig {
   double duration_s = 0;
   std::uint64_t seed = 1;
   std::vector<PlacedName> behaviors;  // paths, resolved; played one after the other
+  std::vector<ScenarioReload> reloads;
   std::vector<ScenarioCheck> checks;
 };
 

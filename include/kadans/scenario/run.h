@@ -20,6 +20,10 @@ struct RunParts {
   Lockstep& lockstep;
   TruthSignals& truth;
   RunLog& log;
+  // Signals that tell of the behaviors' own upkeep: they stay out of the state hash, since memory depends on the
+  // machine.
+  SignalId upkeep_first = 0;
+  std::size_t upkeep_count = 0;
 };
 
 // Looks on while a run goes. The row holds all signals of the tick.

@@ -1,0 +1,128 @@
+// Reloads and failures of scripts under the whole robot: TULip in Bullet.
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include <doctest/doctest.h>
+
+#include "kadans/app/assembly.h"
+#include "program.h"
+
+using namespace kadans;
+
+namespace {
+
+const std::filesystem::path squat = KADANS_SOURCE_DIR "/behaviors/tulip/squat.lua";
+
+ScenarioConfig squat_scenario() { return read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json"); }
+
+struct Played {
+  RunResult result;
+  RunLog log;
+  double height_m = 0, tilt_rad = 0;
+  std::string state;
+  bool safe = false;
+};
+
+void play(const ScenarioConfig& scenario, double duration_s, Played& played) {
+  Assembly robot(scenario, 3, played.log);
+  std::vector<Check> checks;
+  const RunParts parts = robot.parts();
+  played.result = run_scenario(parts, duration_s, checks, {});
+  const auto row = parts.control.row();
+  played.height_m = row[robot.catalog().signals.find("plant.base.height_m").value()];
+  played.tilt_rad = row[robot.catalog().signals.find("plant.base.tilt_rad").value()];
+  played.state = robot.host().behavior(0).state();
+  played.safe = robot.host().in_safe_posture();
+}
+
+std::string text_of(const std::filesystem::path& file) { return program::read(file); }
+
+}  // namespace
+
+TEST_CASE("A squat whose file is reloaded again and again with the same text is the same squat, bit for bit") {
+  const int reloads = std::getenv("KADANS_SOAK") != nullptr ? 1000 : 50;
+  ScenarioConfig scenario = squat_scenario();
+  Played alone;
+  play(scenario, 5, alone);
+  for (int i = 0; i < reloads; ++i)
+    scenario.reloads.push_back({4.9 * i / reloads, {"squat", {}}, {squat.string(), {}}});
+  Played reloaded;
+  play(scenario, 5, reloaded);
+  CHECK(reloaded.result.state_hash == alone.result.state_hash);
+  CHECK(reloaded.result.commands_refused == 0);
+  CHECK(reloaded.log.lines().empty());
+}
+
+TEST_CASE("A squat that gets another depth while it is down goes on squatting, and the run repeats") {
+  const auto folder = program::fresh_folder("reload_depth");
+  std::string text = text_of(squat);
+  text.replace(text.find("0.10, min"), 4, "0.05");
+  program::write(folder / "squat.lua", text);
+  ScenarioConfig scenario = squat_scenario();
+  scenario.reloads.push_back({4, {"squat", {}}, {(folder / "squat.lua").string(), {}}});
+  Played first, second;
+  play(scenario, 12, first);
+  play(scenario, 12, second);
+  REQUIRE(first.log.lines().size() == 1);
+  CHECK(first.log.lines()[0].text.find("reloaded") == 0);
+  CHECK(first.result.state_hash == second.result.state_hash);
+  CHECK(first.result.commands_refused == 0);
+  CHECK(first.height_m > 0.8);
+  CHECK(first.tilt_rad < 0.05);
+}
+
+TEST_CASE("A reload of a file that is wrong leaves the squat as it was, bit for bit, and says the line") {
+  const auto folder = program::fresh_folder("reload_wrong");
+  std::string text = text_of(squat);
+  program::write(folder / "squat.lua", text.substr(0, text.size() - 40));
+  ScenarioConfig scenario = squat_scenario();
+  Played alone;
+  play(scenario, 5, alone);
+  scenario.reloads.push_back({3, {"squat", {}}, {(folder / "squat.lua").string(), {}}});
+  Played reloaded;
+  play(scenario, 5, reloaded);
+  CHECK(reloaded.result.state_hash == alone.result.state_hash);
+  REQUIRE(reloaded.log.lines().size() == 1);
+  CHECK(reloaded.log.lines()[0].text.find("squat.lua:") != std::string::npos);
+  CHECK_FALSE(reloaded.log.has_errors());
+}
+
+TEST_CASE("while true do end, wherever it stands, is reported with its line and ends with the robot standing") {
+  const auto folder = program::fresh_folder("endless");
+  const std::string head =
+      "local k = require 'kadans'\nlocal function endless() while true do end end\n"
+      "return k.behavior 'endless' { controls = 'posture', initial = 'down',\n"
+      "k.state 'down' { enter = function(m) m.posture:move('squat', { time_s = 1.5 }) end, { after = 1.0, to = 'bad' } "
+      "},\n";
+  for (const std::string& bad :
+       {std::string("k.state 'bad' { enter = endless }"), std::string("k.state 'bad' { during = endless }"),
+        std::string("k.state 'bad' { run = endless }"),
+        std::string("k.state 'bad' { { when = function() while pcall(endless) do end end, to = 'down' } }")}) {
+    CAPTURE(bad);
+    program::write(folder / "endless.lua", head + bad + " }\n");
+    ScenarioConfig scenario = squat_scenario();
+    scenario.behaviors = {{(folder / "endless.lua").string(), {}}};
+    Played played;
+    play(scenario, 4, played);
+    REQUIRE(played.log.has_errors());
+    CHECK(played.log.lines().back().text.find("endless.lua:2: instruction budget exceeded") != std::string::npos);
+    CHECK(played.safe);
+    CHECK(played.height_m > 0.85);
+    CHECK(played.tilt_rad < 0.05);
+    CHECK(played.result.faults.empty());
+  }
+}
+
+TEST_CASE("A reload of a behavior that does not play is refused where the scenario names it") {
+  ScenarioConfig scenario = squat_scenario();
+  scenario.reloads.push_back({3, {"sqat", {7, 3}}, {squat.string(), {}}});
+  RunLog log;
+  try {
+    const Assembly robot(scenario, 1, log);
+    FAIL("accepted");
+  } catch (const InputError& error) {
+    CHECK(error.problems().front().line == 7);
+    CHECK(error.problems().front().message.find("did you mean 'squat'?") != std::string::npos);
+  }
+}
