@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "behavior_command.h"
 #include "commands.h"
 #include "kadans/signal/nearest_name.h"
 #include "terminal.h"
@@ -36,6 +37,8 @@ void add_sim(CLI::App& app, SimOptions& options) {
   CLI::Option* record =
       sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
   sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
+  CLI::Option* realtime = sim->add_flag("--realtime", options.realtime, "Run at the pace of the wall clock");
+  sim->add_flag("--watch", options.watch, "Reload behaviors when their files are saved")->needs(realtime);
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");
   sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
 }
@@ -79,6 +82,8 @@ int run(int argc, char** argv) {
   CheckOptions check;
   add_sim(app, sim);
   add_check(app, check);
+  BehaviorOptions behavior;
+  add_behavior(app, behavior);
   NewControlObjectOptions new_object;
   add_new(app, new_object);
   try {
@@ -91,6 +96,7 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
+  if (app.got_subcommand("behavior")) return run_behavior(app, behavior);
   return app.got_subcommand("sim") ? run_sim(sim) : run_check(check);
 }
 
