@@ -1,9 +1,10 @@
 #include "behavior_command.h"
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+
+#include <CLI/CLI.hpp>
 
 #include "behavior_stage.h"
 #include "kadans/app/assembly.h"

@@ -12,7 +12,7 @@ namespace kadans {
 
 struct BehaviorOptions {
   std::vector<std::string> files;
-  std::string robot;            // configuration; "" = by the behavior's folder
+  std::string robot;               // configuration; "" = by the behavior's folder
   std::string format = "mermaid";  // of the graph
 };
 

@@ -108,8 +108,8 @@ class IdealStage final : public TestStage {
     return all;
   }
   std::string went() const override {
-    std::string all;
-    for (const Transition& transition : log_.transitions()) all += (all.empty() ? "" : " ") + transition.to;
+    std::string all = log_.transitions().empty() ? state() : log_.transitions().front().from;
+    for (const Transition& transition : log_.transitions()) all += " " + transition.to;
     return all;
   }
   bool emit(const std::string& event) override { return assembly_.host().behavior(0).post(event); }
@@ -146,16 +146,17 @@ fs::path robot_of_behavior(const fs::path& behavior) {
     }
   }
   if (robots.size() == 1) return robots.front();
-  throw InputError({.file = behavior.string(), .message = "no robot to go with it: there is no " + own.string() +
-                                                              "; name one with --robot FILE"});
+  throw InputError({.file = behavior.string(),
+                    .message = "no robot to go with it: there is no " + own.string() + "; name one with --robot FILE"});
 }
 
 std::unique_ptr<TestStage> IdealStages::make(const fs::path& behavior, const std::string& robot) {
   ScenarioConfig scenario;
   scenario.file = behavior.string();
   scenario.name = behavior.stem().string();
-  scenario.robot = (robot.empty() ? (robot_.empty() ? robot_of_behavior(behavior) : robot_)
-                                  : project_root(behavior) / robot).string();
+  scenario.robot =
+      (robot.empty() ? (robot_.empty() ? robot_of_behavior(behavior) : robot_) : project_root(behavior) / robot)
+          .string();
   scenario.plant = PlantKind::ideal;
   scenario.behaviors.push_back({.name = behavior.string(), .place = {}});
   return std::make_unique<IdealStage>(std::move(scenario));

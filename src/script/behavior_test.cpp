@@ -34,9 +34,7 @@ struct Testing {
   std::string text;                  // given to Lua; a member, since Lua may raise
 };
 
-Testing& testing_of(lua_State* state) {
-  return *static_cast<Testing*>(lua_touserdata(state, lua_upvalueindex(1)));
-}
+Testing& testing_of(lua_State* state) { return *static_cast<Testing*>(lua_touserdata(state, lua_upvalueindex(1))); }
 
 int raise(lua_State* state, const Testing& testing) {
   luaL_where(state, 2);

@@ -96,9 +96,11 @@ Problems ArgumentCheck::pose_table(const ObjectInfo& object, const Tokens& token
                                     [&](const Range& known) { return known.name == name + ".position_rad"; });
     double value = 0;
     if (range == ranges.end()) {
-      problems.push_back({tokens[at].line, "'" + object.name + "' moves no joint '" + name + "'" + hint_text(name, joints)});
+      problems.push_back(
+          {tokens[at].line, "'" + object.name + "' moves no joint '" + name + "'" + hint_text(name, joints)});
     } else if (number_at(tokens, at + 2, value) && !(value >= range->min && value <= range->max)) {
-      problems.push_back({tokens[at].line, outside(object.name + "." + range->name, value, range->min, range->max, "rad")});
+      problems.push_back(
+          {tokens[at].line, outside(object.name + "." + range->name, value, range->min, range->max, "rad")});
     }
   }
   return problems;

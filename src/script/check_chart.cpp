@@ -58,8 +58,7 @@ class ChartCheck {
       if (state.initial != no_state && at_entry(at, index)) waiting.push_back(state.initial);
       for (StateIndex i = at + 1; i < state.end; ++i) {
         const bool region = state.kind == Chart::Kind::parallel && chart_.states[i].parent == at;
-        const bool called = chart_.states[i].machine_root && chart_.states[i].parent == at &&
-                            state.initial == no_state;
+        const bool called = chart_.states[i].machine_root && chart_.states[i].parent == at && state.initial == no_state;
         if (region || called) waiting.push_back(i);
       }
     }
@@ -81,16 +80,13 @@ class ChartCheck {
     for (StateIndex around = index; around != no_state; around = chart_.states[around].parent) {
       const Chart::State& at = chart_.states[around];
       if (at.endless || at.transition_count > 0) return;
-      const auto leads_away = [&](std::uint16_t number) {
-        return chart_.transitions[number].target != index;
-      };
+      const auto leads_away = [&](std::uint16_t number) { return chart_.transitions[number].target != index; };
       for (std::uint16_t i = 0; i < at.always_count; ++i) {
         if (leads_away(static_cast<std::uint16_t>(at.first_always + i))) return;
       }
     }
     const std::string shown = state.name.empty() ? chart_.name : state.name;
-    problem(state, state.line,
-            "state '" + shown + "' has no way out: give it a transition, or say endless = true");
+    problem(state, state.line, "state '" + shown + "' has no way out: give it a transition, or say endless = true");
   }
 
   void shadowed(StateIndex index, std::uint16_t first, std::uint16_t count) {

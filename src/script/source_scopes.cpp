@@ -216,7 +216,8 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
   if (use.arguments != 0 || !use.method.empty() || use.written > 4) return {};
   const SourceToken& after = tokens_[next];
   const bool whole = after.kind == Kind::name || after.is(",") || after.is(")") || after.is("}") || after.is(";") ||
-                     after.kind == Kind::end || (after.kind == Kind::keyword && after.text != "and" && after.text != "or");
+                     after.kind == Kind::end ||
+                     (after.kind == Kind::keyword && after.text != "and" && after.text != "or");
   return whole && (use.meaning.path.empty() || use.meaning.path.back() != "*") ? use.meaning : SourceMeaning{};
 }
 

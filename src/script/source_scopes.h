@@ -23,17 +23,17 @@ struct SourceMeaning {
 
 // One use of a name: `m.posture:move(` or `x.y = `.
 struct SourceUse {
-  SourceMeaning meaning;       // of the name and the fields after it
-  std::string name;            // as written
-  std::vector<int> lines;      // of the fields in meaning.path
-  std::size_t written = 0;     // how many of them stand here, the last ones
-  bool known = false;          // a local or parameter
-  bool outer = false;          // a local of a function around this one, or of the file
-  bool assigned = false;       // stands left of a '='
-  bool guard = false;          // in a guard or in what a guard calls
-  std::string method;          // after ':', or ""
-  int line = 0;                // of the name
-  std::size_t arguments = 0;   // token after the '(' of a call; 0: no call
+  SourceMeaning meaning;      // of the name and the fields after it
+  std::string name;           // as written
+  std::vector<int> lines;     // of the fields in meaning.path
+  std::size_t written = 0;    // how many of them stand here, the last ones
+  bool known = false;         // a local or parameter
+  bool outer = false;         // a local of a function around this one, or of the file
+  bool assigned = false;      // stands left of a '='
+  bool guard = false;         // in a guard or in what a guard calls
+  std::string method;         // after ':', or ""
+  int line = 0;               // of the name
+  std::size_t arguments = 0;  // token after the '(' of a call; 0: no call
 };
 
 class SourceListener {

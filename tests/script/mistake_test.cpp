@@ -158,6 +158,6 @@ TEST_CASE("check_behavior tells what is wrong without running anything, and noth
   const Scripts scripts;
   scripts.write(
       "a.lua",
-      "local k = require 'kadans' return k.behavior 'a' { enter = function() while true do end end, k.state 'x' {} }");
+      "local k = require 'kadans' return k.behavior 'a' { enter = function() while true do end end,\nk.state 'x' { endless = true } }");
   CHECK(check_behavior(scripts.root, "a.lua", robot.catalog).empty());
 }
