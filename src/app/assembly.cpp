@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 
 #include "kadans/config/project_root.h"
@@ -102,6 +103,12 @@ std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Safe
   return host;
 }
 
+// Of the second-order Butterworth filter at low frequencies, and half a period of the difference quotient.
+double velocity_delay_s(const RobotConfig& config) {
+  return std::numbers::sqrt2 / (2 * std::numbers::pi * config.estimate.velocity_cutoff_Hz) +
+         0.5 * config.engine.control_period_s;
+}
+
 }  // namespace
 
 Robot read_robot(const std::filesystem::path& file) {
@@ -132,6 +139,7 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
     catalog.drives.push_back(
         {config.safety.joints[i].effort_max_Nm, drive.position_gain_Nm_per_rad, drive.velocity_gain_Nms_per_rad});
   }
+  catalog.velocity_delay_s = velocity_delay_s(config);
   for (const ObjectConfig& object : config.objects) {
     const auto index = static_cast<std::uint32_t>(system->objects.size());
     system->objects.push_back(make_object(robot, object));
@@ -188,7 +196,10 @@ void Assembly::filter(SnapshotFilter& filter) {
   lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);
 }
 
-RunParts Assembly::parts() noexcept { return {*plant_, *control_, *behaviors_, *lockstep_, *truth_, log_, static_cast<SignalId>(upkeep_first_), upkeep_count_}; }
+RunParts Assembly::parts() noexcept {
+  return {*plant_,      *control_, *behaviors_, *lockstep_, *truth_, log_, static_cast<SignalId>(upkeep_first_),
+          upkeep_count_};
+}
 
 std::vector<Check> Assembly::make_checks() const {
   std::vector<Check> checks;

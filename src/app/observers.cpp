@@ -33,7 +33,8 @@ void ProgressBar::tick(double time_s, std::span<const double>) {
 bool ProgressBar::stop_asked() const { return interrupted(); }
 
 void Pace::tick(double time_s, std::span<const double>) {
-  const auto since = std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(time_s));
+  const auto since =
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(time_s));
   const auto now = std::chrono::steady_clock::now();
   if (!running_ || now > began_ + since + std::chrono::milliseconds(100)) began_ = now - since;  // late: from here on
   running_ = true;

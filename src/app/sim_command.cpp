@@ -4,8 +4,8 @@
 #include <iterator>
 #include <memory>
 
-#include "kadans/app/assembly.h"
 #include "commands.h"
+#include "kadans/app/assembly.h"
 #include "kadans/scenario/report.h"
 #include "kadans/telemetry/recorder.h"
 #include "observers.h"
@@ -40,7 +40,8 @@ class LateLog final : public BehaviorLog {
   void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
     if (log_ != nullptr) log_->message(time_ns, severity, behavior, text);
     if (shown_)
-      std::fprintf(stderr, "\r\033[K%8.2f s  %s: %s\n", 1e-9 * static_cast<double>(time_ns), behavior.c_str(), text.c_str());
+      std::fprintf(stderr, "\r\033[K%8.2f s  %s: %s\n", 1e-9 * static_cast<double>(time_ns), behavior.c_str(),
+                   text.c_str());
   }
 
  private:
@@ -91,7 +92,8 @@ class Sim {
   void leave_out_unreached_checks() {
     std::erase_if(checks_, [&](const Check& check) {
       const ScenarioCheck& c = check.config();
-      const bool about_later = c.kind == CheckKind::at_end || (c.kind == CheckKind::eventually && c.until_s > duration_s_);
+      const bool about_later =
+          c.kind == CheckKind::at_end || (c.kind == CheckKind::eventually && c.until_s > duration_s_);
       return c.from_s > duration_s_ || about_later;
     });
   }
@@ -109,8 +111,7 @@ class Sim {
       return {};
     }
     const RobotModel& model = assembly_.robot().model;
-    (void)recorder_->describe_run(
-        {{"scenario", scenario_.file}, {"seed", std::to_string(seed_)}, {"kadans", version}});
+    (void)recorder_->describe_run({{"scenario", scenario_.file}, {"seed", std::to_string(seed_)}, {"kadans", version}});
     (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
     late_log_.set(&recorder_->events());
     assembly_.record_to(recorder_.get());

@@ -43,7 +43,8 @@ std::vector<std::filesystem::path> Behavior::files() const {
 Behavior::Reload Behavior::refuse(std::int64_t time_ns, const std::string& why) noexcept {
   if (why == past_->complaint) return Reload::refused;
   past_->complaint = why;
-  parts_->log.message(time_ns, BehaviorLog::Severity::warning, name(), "reload refused, the old version goes on: " + why);
+  parts_->log.message(time_ns, BehaviorLog::Severity::warning, name(),
+                      "reload refused, the old version goes on: " + why);
   return Reload::refused;
 }
 

@@ -8,7 +8,8 @@
 
 namespace kadans {
 
-SafePosture::SafePosture(Settings settings, const Catalog& catalog) : settings_(std::move(settings)), catalog_(catalog) {
+SafePosture::SafePosture(Settings settings, const Catalog& catalog)
+    : settings_(std::move(settings)), catalog_(catalog) {
   std::vector<std::string> names;
   for (const PoseInfo& pose : catalog.poses) {
     names.push_back(pose.name);
@@ -20,7 +21,8 @@ SafePosture::SafePosture(Settings settings, const Catalog& catalog) : settings_(
 
 void SafePosture::failed(std::int64_t now_ns, const ControlSetInfo* set) noexcept {
   if (pose_ == nullptr) return;
-  for (std::uint32_t object = 0; set == nullptr && object < catalog_.objects.size(); ++object) concerned_[object] = true;
+  for (std::uint32_t object = 0; set == nullptr && object < catalog_.objects.size(); ++object)
+    concerned_[object] = true;
   if (set != nullptr) {
     for (const std::uint32_t object : set->objects) concerned_[object] = true;
   }
@@ -35,11 +37,10 @@ void SafePosture::add(std::uint32_t object, CommandSender& commands) noexcept {
     for (const auto& [joint, position_rad] : pose_->position_rad) {
       if (joint != setpoint.joint || !(position_rad >= setpoint.min && position_rad <= setpoint.max)) continue;
       any_ = true;
-      full_ = !commands.add({.kind = CommandKind::set_point,
-                             .index = id,
-                             .value = position_rad,
-                             .duration_s = settings_.time_s}) ||
-              full_;
+      full_ =
+          !commands.add(
+              {.kind = CommandKind::set_point, .index = id, .value = position_rad, .duration_s = settings_.time_s}) ||
+          full_;
     }
   }
 }

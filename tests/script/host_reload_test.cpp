@@ -10,8 +10,8 @@ using namespace kadans::script_test;
 namespace {
 
 std::string says(const std::string& name, const std::string& word) {
-  return "local k = require 'kadans'\nreturn k.behavior '" + name + "' { k.state 'a' { during = function() print '" + word +
-         "' end } }\n";
+  return "local k = require 'kadans'\nreturn k.behavior '" + name + "' { k.state 'a' { during = function() print '" +
+         word + "' end } }\n";
 }
 
 struct Theatre {
@@ -57,15 +57,15 @@ TEST_CASE("what an editor saves or renames over the file is taken while the beha
   const auto other = theatre.scripts.write("behaviors/.one.swp", says("one", "newer"));
   std::filesystem::rename(other, theatre.scripts.root / "behaviors/one.lua");
   theatre.tick(2);
-  CHECK(theatre.log.joined() ==
-        "old\nold\nreloaded behaviors/one.lua\nnew\nnew\nreloaded behaviors/one.lua\nnewer\n");
+  CHECK(theatre.log.joined() == "old\nold\nreloaded behaviors/one.lua\nnew\nnew\nreloaded behaviors/one.lua\nnewer\n");
 }
 
 TEST_CASE("after a script error the robot holds, then goes to the safe posture, in one transaction") {
   Theatre theatre;
-  theatre.scripts.write("behaviors/bad.lua",
-                        "local k = require 'kadans'\nreturn k.behavior 'bad' { controls = 'posture', k.state 'a' { enter = "
-                        "function() error 'x' end } }");
+  theatre.scripts.write(
+      "behaviors/bad.lua",
+      "local k = require 'kadans'\nreturn k.behavior 'bad' { controls = 'posture', k.state 'a' { enter = "
+      "function() error 'x' end } }");
   theatre.open({.play = {{"behaviors/bad.lua", 0}}, .safe = {.pose = "stand", .after_s = 0.5, .time_s = 1.5}});
   theatre.tick(50);
   CHECK(theatre.sender.sent() == 0);
@@ -80,11 +80,13 @@ TEST_CASE("after a script error the robot holds, then goes to the safe posture, 
 
 TEST_CASE("what another behavior still moves is left to it") {
   Theatre theatre;
-  theatre.scripts.write("behaviors/bad.lua",
-                        "local k = require 'kadans'\nreturn k.behavior 'bad' { controls = 'posture', k.state 'a' { enter = "
-                        "function() error 'x' end } }");
-  theatre.scripts.write("behaviors/good.lua",
-                        "local k = require 'kadans'\nreturn k.behavior 'good' { controls = 'posture', k.state 'a' {} }");
+  theatre.scripts.write(
+      "behaviors/bad.lua",
+      "local k = require 'kadans'\nreturn k.behavior 'bad' { controls = 'posture', k.state 'a' { enter = "
+      "function() error 'x' end } }");
+  theatre.scripts.write(
+      "behaviors/good.lua",
+      "local k = require 'kadans'\nreturn k.behavior 'good' { controls = 'posture', k.state 'a' {} }");
   theatre.open({.play = {{"behaviors/bad.lua", 0}, {"behaviors/good.lua", 1}},
                 .safe = {.pose = "stand", .after_s = 0.1, .time_s = 1}});
   theatre.tick(50);
@@ -93,9 +95,10 @@ TEST_CASE("what another behavior still moves is left to it") {
 
 TEST_CASE("memory, instructions and state of each behavior are signals, a name that plays twice gets a number") {
   Theatre theatre;
-  theatre.scripts.write("behaviors/one.lua",
-                        "local k = require 'kadans'\nreturn k.behavior 'one' { initial = 'a', k.state 'a' { { after = 0, to "
-                        "= 'b' } }, k.state 'b' { during = function() for i = 1, 5000 do end end } }");
+  theatre.scripts.write(
+      "behaviors/one.lua",
+      "local k = require 'kadans'\nreturn k.behavior 'one' { initial = 'a', k.state 'a' { { after = 0, to "
+      "= 'b' } }, k.state 'b' { during = function() for i = 1, 5000 do end end } }");
   theatre.open({.play = {{"behaviors/one.lua", 0}, {"behaviors/one.lua", 1}}});
   SignalTable signals;
   theatre.host->declare_signals(signals);

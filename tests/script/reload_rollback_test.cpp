@@ -64,7 +64,8 @@ TEST_CASE("a version that errors after its first second stops the behavior") {
 }
 
 TEST_CASE("what the new version entered it leaves, what the old one had left it enters again") {
-  Stage stage(chart("initial = 'a', k.state 'a' { enter = function() print 'in a' end, exit = function() print 'out a' end }"));
+  Stage stage(
+      chart("initial = 'a', k.state 'a' { enter = function() print 'in a' end, exit = function() print 'out a' end }"));
   stage.tick(2);
   CHECK(reload(stage, chart("initial = 'b', k.state 'b' { enter = function() print 'in b' end,\n"
                             "exit = function() print 'out b' end, { after = 0.02, to = 'c' } },\n"

@@ -60,7 +60,8 @@ TEST_CASE("a file whose text is the same changes nothing, not even a coroutine")
 TEST_CASE("run begins anew in a state that stays, but not when it was over, and motions under way go on") {
   const std::string text = chart(
       "k.parallel 'p' { k.region 'x' { k.state 'a' { run = function(m) print 'short' end } },\n"
-      "k.region 'y' { k.state 'b' { run = function(m) print 'long' m.posture:move('lean', { time_s = 1 }):wait() end } } }");
+      "k.region 'y' { k.state 'b' { run = function(m) print 'long' m.posture:move('lean', { time_s = 1 }):wait() end } "
+      "} }");
   Stage stage(text);
   stage.tick(3);
   CHECK(reload(stage, text + "--") == Behavior::Reload::taken);
@@ -70,9 +71,10 @@ TEST_CASE("run begins anew in a state that stays, but not when it was over, and 
 }
 
 TEST_CASE("a state that is gone is left by its own exit, and the initial state around it is entered") {
-  Stage stage(chart("initial = 'o', k.state 'o' { exit = function() print 'out o' end, initial = 'a',\n"
-                    "k.state 'a' { { after = 0, to = 'b' } }, k.state 'b' { initial = 'c',\n"
-                    "exit = function() print 'out b' end, k.state 'c' { exit = function() print 'out c' end } } }"));
+  Stage stage(
+      chart("initial = 'o', k.state 'o' { exit = function() print 'out o' end, initial = 'a',\n"
+            "k.state 'a' { { after = 0, to = 'b' } }, k.state 'b' { initial = 'c',\n"
+            "exit = function() print 'out b' end, k.state 'c' { exit = function() print 'out c' end } } }"));
   stage.tick(3);
   REQUIRE(stage.behavior->state() == "o.b.c");
   CHECK(reload(stage, chart("initial = 'o', k.state 'o' { enter = function() print 'in o' end, initial = 'd',\n"
@@ -84,11 +86,13 @@ TEST_CASE("a state that is gone is left by its own exit, and the initial state a
 }
 
 TEST_CASE("a region that is new is entered, the others stay") {
-  Stage stage(chart("k.parallel 'p' { k.region 'x' { initial = 'a', k.state 'a' { { after = 0, to = 'b' } }, k.state 'b' {} } }"));
+  Stage stage(chart(
+      "k.parallel 'p' { k.region 'x' { initial = 'a', k.state 'a' { { after = 0, to = 'b' } }, k.state 'b' {} } }"));
   stage.tick(3);
-  CHECK(reload(stage, chart("k.parallel 'p' { k.region 'x' { initial = 'a', k.state 'a' { enter = function() print 'a' end "
-                            "}, k.state 'b' { enter = function() print 'b' end } },\n"
-                            "k.region 'y' { k.state 'c' { enter = function() print 'c' end } } }")) ==
+  CHECK(reload(stage,
+               chart("k.parallel 'p' { k.region 'x' { initial = 'a', k.state 'a' { enter = function() print 'a' end "
+                     "}, k.state 'b' { enter = function() print 'b' end } },\n"
+                     "k.region 'y' { k.state 'c' { enter = function() print 'c' end } } }")) ==
         Behavior::Reload::taken);
   stage.tick(2);
   CHECK(stage.said() == "reloaded behaviors/test.lua\nc\n");
@@ -184,7 +188,8 @@ TEST_CASE("a version that is not good is refused with its line, and the old one 
   refused(chart("k.state 'a' { { after = 1, to = 'b' } }"), "behaviors/test.lua:3: unknown state 'b'");
   refused(chart("controls = 'postur', k.state 'a' {}"), "behaviors/test.lua:3: unknown control set 'postur'");
   refused(chart("k.state 'a' {}", "while true do end\n"), "behaviors/test.lua:2: instruction budget exceeded");
-  refused(chart("initial = 'a', k.state 'a' { { when = function(s)\nreturn s.base.pitch > 0 end, to = 'b' } }, k.state 'b' {}"),
+  refused(chart("initial = 'a', k.state 'a' { { when = function(s)\nreturn s.base.pitch > 0 end, to = 'b' } }, k.state "
+                "'b' {}"),
           "behaviors/test.lua:4: s.base has no 'pitch', did you mean 'pitch_rad'?");
   refused(chart("version = 2, migrate = function(old)\nreturn old.x.y end, k.state 'a' {}"), "behaviors/test.lua:4:");
   refused("return 5", "behaviors/test.lua:1: the file must return k.behavior");
@@ -213,8 +218,8 @@ TEST_CASE("a module that a behavior requires counts as part of it") {
   CommandSender sender(queue);
   Snapshot snapshot;
   scripts.write("behaviors/lib/words.lua", "return { word = 'old' }");
-  const auto file = scripts.write(
-      "behaviors/test.lua", chart("k.state 'a' { during = function() print(w.word) end }", "local w = require 'words'\n"));
+  const auto file = scripts.write("behaviors/test.lua", chart("k.state 'a' { during = function() print(w.word) end }",
+                                                              "local w = require 'words'\n"));
   Behavior behavior({.root = scripts.root, .file = file}, robot.catalog, log);
   behavior.tick(snapshot, sender);
   scripts.write("behaviors/lib/words.lua", "return { word = = }");

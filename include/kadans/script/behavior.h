@@ -8,9 +8,9 @@
 // A reload replaces the Lua state by a new one between two ticks; the control engine does not notice. What stays: the
 // active states with their time, waiting events, histories, `vars` (plain data and motions; another `version` goes
 // through `migrate`, or starts with the declared ones), parameters that somebody changed and that are still in range,
-// random numbers. Motions under way go on. A coroutine cannot be carried into another Lua state, so the `run` of a state
-// that stays begins anew, unless it was over. Files whose text is the same change nothing at all. Any failure, up to
-// the guards tried against the present snapshot, leaves the old version as it was; so does an error in the first
+// random numbers. Motions under way go on. A coroutine cannot be carried into another Lua state, so the `run` of a
+// state that stays begins anew, unless it was over. Files whose text is the same change nothing at all. Any failure, up
+// to the guards tried against the present snapshot, leaves the old version as it was; so does an error in the first
 // second of the new one, then with the vars of the swap.
 #pragma once
 
@@ -49,8 +49,8 @@ class Behavior {
   bool tick(const Snapshot& snapshot, CommandSender& commands) noexcept;
   // Behavior thread: leaves all states, in a transaction of its own.
   void stop(const Snapshot& snapshot, CommandSender& commands) noexcept;
-  // Behavior thread, between ticks. Reads the files again, the behavior's from `file` when one is given; says in the log
-  // what came of it. chart() and name() are of the new version then.
+  // Behavior thread, between ticks. Reads the files again, the behavior's from `file` when one is given; says in the
+  // log what came of it. chart() and name() are of the new version then.
   enum class Reload : std::uint8_t { unchanged, taken, refused };
   Reload reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file = {}) noexcept;
   std::vector<std::filesystem::path> files() const;

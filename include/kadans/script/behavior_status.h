@@ -1,5 +1,5 @@
-// What the behavior thread tells of a behavior to the record: numbers that each stand alone, so that relaxed atomics do;
-// the behavior thread stores them after each tick, the control thread reads them when it gathers the signals. In
+// What the behavior thread tells of a behavior to the record: numbers that each stand alone, so that relaxed atomics
+// do; the behavior thread stores them after each tick, the control thread reads them when it gathers the signals. In
 // lockstep both are one thread and a run repeats: the pause of the collector is wall time and stays 0 there.
 #pragma once
 

@@ -24,8 +24,8 @@ class SafePosture {
   // Behavior thread. A behavior on this control set failed; nullptr: it may have moved everything.
   void failed(std::int64_t now_ns, const ControlSetInfo* set) noexcept;
   bool due(std::int64_t now_ns) const noexcept { return waiting_ && now_ns >= due_ns_; }
-  // Sends the motion for the objects of the failed sets that are in the active one and not kept. Tries again in the next
-  // tick when the queue is full. `kept`: one an object.
+  // Sends the motion for the objects of the failed sets that are in the active one and not kept. Tries again in the
+  // next tick when the queue is full. `kept`: one an object.
   template <typename Kept>
   void move(const Snapshot& snapshot, CommandSender& commands, Kept kept) noexcept {
     commands.begin(snapshot.time_ns);
