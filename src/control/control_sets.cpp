@@ -33,7 +33,7 @@ void check_set(const Catalog& catalog, const ControlSetInfo& set) {
 ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects)
     : catalog_(catalog),
       objects_(std::move(objects)),
-      switchover_(catalog.drives, catalog.switch_fade_s),
+      switchover_(catalog.drives, catalog.switch_fade_s, catalog.velocity_delay_s),
       active_(catalog.initial_set) {
   if (objects_.size() > max_objects) {
     throw std::invalid_argument(std::to_string(objects_.size()) + " control objects, at most " +
@@ -102,6 +102,7 @@ void ControlSets::compose_joints(const Member& member, ActuationFrame& actuation
 void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept {
   const bool first = !std::exchange(computed_, true);
   const bool changed = std::exchange(switched_, false) || first;
+  switchover_.observe(input.joints, input.dt_s);
   if (changed) start_newcomers(input);
   for (std::uint32_t joint = 0; joint < actuation.joint_count; ++joint) {
     actuation.joints[joint] = {};

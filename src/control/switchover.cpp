@@ -42,7 +42,18 @@ double drive_torque_Nm(const DriveLaw& drive, const JointActuation& actuation, d
   return 0;
 }
 
-Switchover::Switchover(std::vector<DriveLaw> drives, double fade_s) : drives_(std::move(drives)), fade_s_(fade_s) {}
+Switchover::Switchover(std::vector<DriveLaw> drives, double fade_s, double velocity_delay_s)
+    : drives_(std::move(drives)), fade_s_(fade_s), velocity_delay_s_(velocity_delay_s) {}
+
+void Switchover::observe(const JointStates& joints, double dt_s) noexcept {
+  constexpr double share = 0.4;  // of the newest difference
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const double change_rad_s2 = (joints.joints[i].velocity_rad_s - velocity_rad_s_[i]) / dt_s;
+    velocity_rad_s_[i] = joints.joints[i].velocity_rad_s;
+    acceleration_rad_s2_[i] += share * (change_rad_s2 - acceleration_rad_s2_[i]);
+    if (!std::isfinite(acceleration_rad_s2_[i])) acceleration_rad_s2_[i] = 0;
+  }
+}
 
 void Switchover::begin(const JointStates& joints, double dt_s, const ActuationFrame& before,
                        const ActuationFrame& after) noexcept {
@@ -53,10 +64,13 @@ void Switchover::begin(const JointStates& joints, double dt_s, const ActuationFr
     // A drive's servo is implicit in time: it sees the joint at the end of its tick. The old actuation is at work until
     // the next tick, the new one for a tick from there.
     const JointState& joint = joints.joints[i];
-    const double soon_rad = joint.position_rad + dt_s * joint.velocity_rad_s;
-    const double later_rad = soon_rad + dt_s * joint.velocity_rad_s;
-    const double was_Nm = limited(drive, drive_torque_Nm(drive, before.joints[i], soon_rad, joint.velocity_rad_s));
-    const double will_be_Nm = torque_of(drive, after.joints[i], later_rad, joint.velocity_rad_s);
+    const double gain_rad_s = dt_s * acceleration_rad_s2_[i];
+    const double soon_rad_s = joint.velocity_rad_s + velocity_delay_s_ * acceleration_rad_s2_[i] + gain_rad_s;
+    const double later_rad_s = soon_rad_s + gain_rad_s;
+    const double soon_rad = joint.position_rad + dt_s * soon_rad_s;
+    const double later_rad = soon_rad + dt_s * later_rad_s;
+    const double was_Nm = limited(drive, drive_torque_Nm(drive, before.joints[i], soon_rad, soon_rad_s));
+    const double will_be_Nm = torque_of(drive, after.joints[i], later_rad, later_rad_s);
     const double difference_Nm = was_Nm - will_be_Nm;
     offset_Nm_[i] = std::isfinite(difference_Nm) ? difference_Nm : 0;  // what is not finite is for the safety layer
     absorbed_share_ = std::max(absorbed_share_, std::abs(offset_Nm_[i]) / drive.effort_max_Nm);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "kadans/app/assembly.h"
 #include "report.h"
@@ -11,7 +12,8 @@ namespace {
 
 constexpr const char* robot_file = KADANS_SOURCE_DIR "/tests/bench/switching_robot.json";
 constexpr int settle_ticks = 120, disturbed_ticks = 150, saturated_ticks = 15;
-constexpr double load_N = 40;
+constexpr int loaded_ticks = 40;
+constexpr double load_N = 25;
 
 ScenarioConfig scenario() {
   ScenarioConfig scenario;
@@ -70,24 +72,25 @@ class Hanging {
     }
     send(commands);
   }
-  SwitchStep step_after(const SwitchStep& pair) {
-    SwitchStep worst = pair;
-    switch_to(pair.to);
-    run(1);  // the tick that applies the command and computes the new set; what acts is still the old one's
+  // Sends the robot on by two ticks; the largest change of a drive's torque from the first to the second. The first
+  // applies a command that was sent and computes the new set; in the second it acts.
+  void watch(SwitchStep& step) {
     const PlantTruth& truth = parts_.plant.truth();
+    run(1);
     const auto before = truth.drive_torque_Nm;
     run(1);
     const RobotModel& model = robot_.robot().model;
     for (std::size_t i = 0; i < model.joints.size(); ++i) {
       if (model.joints[i].passive()) continue;
       const double share = std::abs(truth.drive_torque_Nm[i] - before[i]) / model.joints[i].effort_max_Nm;
-      if (share <= worst.share) continue;
-      worst.share = share;
-      worst.joint = model.joints[i].name;
+      if (share <= step.share) continue;
+      step.share = share;
+      step.joint = model.joints[i].name;
     }
-    const auto absorbed = robot_.catalog().signals.find("composition.switch_share");
-    worst.without_share = parts_.control.row()[absorbed.value()];
-    return worst;
+    step.without_share = absorbed_share();
+  }
+  double absorbed_share() const {
+    return parts_.control.row()[robot_.catalog().signals.find("composition.switch_share").value()];
   }
 
  private:
@@ -124,28 +127,40 @@ std::vector<std::string> switch_sets() {
   return names;
 }
 
-SwitchStep measure_switch(const std::string& from, const std::string& to, Situation situation) {
-  Hanging robot;
-  robot.run(settle_ticks);
-  robot.switch_to(from);
-  robot.run(settle_ticks);
+namespace {
+
+std::unique_ptr<Hanging> robot_in(const std::string& set, Situation situation) {
+  auto robot = std::make_unique<Hanging>();
+  robot->run(settle_ticks);
+  robot->switch_to(set);
+  robot->run(settle_ticks);
   switch (situation) {
     case Situation::rest:
       break;
     case Situation::moving:
-      robot.move(from, 0.5, 0.5);
-      robot.run(disturbed_ticks);
+      robot->move(set, 0.5, 0.5);
+      robot->run(disturbed_ticks);
       break;
     case Situation::load:
-      robot.load();
-      robot.run(disturbed_ticks);
+      robot->load();
+      robot->run(loaded_ticks);
       break;
     case Situation::saturated:
-      robot.move(from, 1.5, 0);
-      robot.run(saturated_ticks);
+      robot->move(set, 1.5, 0);
+      robot->run(saturated_ticks);
       break;
   }
-  return robot.step_after({.from = from, .to = to, .situation = situation});
+  return robot;
+}
+
+}  // namespace
+
+SwitchStep measure_switch(const std::string& from, const std::string& to, Situation situation) {
+  SwitchStep step{.from = from, .to = to, .situation = situation};
+  const auto robot = robot_in(from, situation);
+  robot->switch_to(to);
+  robot->watch(step);
+  return step;
 }
 
 double switch_cost_ns(const std::string& from, const std::string& to) {

@@ -1,5 +1,6 @@
 // Every control set switched to every other while a hanging TULip rests, moves, bears a load or is saturated: how large
 // is the step in the drives' torque, from the last step of the plant under the old set to the first under the new one?
+// The drives are rigid, so that nothing between motor and joint smooths it.
 #pragma once
 
 #include <string>

@@ -6,8 +6,9 @@
 // minimum-jerk curve within fade_s: bumpless transfer by an output offset (Astrom and Hagglund, Advanced PID Control,
 // ISA 2006, sec. 13.5), applied to the drive's torque so that it holds across modes.
 //
-// The torque of a drive in position or velocity mode follows from its own gains. There the offset moves the set-point,
-// which costs nothing of the torque's range.
+// The torque of a drive in position or velocity mode follows from its own gains and from where the joint will be by
+// then: measured velocity lags behind by the filter's delay, so acceleration carries it on. In these modes the offset
+// moves the set-point, which costs nothing of the torque's range.
 //
 // One owner, the control thread; nothing here allocates, locks or throws.
 #pragma once
@@ -29,7 +30,10 @@ struct DriveLaw {
 class Switchover {
  public:
   // One law a joint. Without laws (tests of single objects) nothing is smoothed.
-  explicit Switchover(std::vector<DriveLaw> drives, double fade_s = default_fade_s);
+  explicit Switchover(std::vector<DriveLaw> drives, double fade_s = default_fade_s, double velocity_delay_s = 0);
+
+  // Each tick, first: keeps track of how fast the joints gain speed.
+  void observe(const JointStates& joints, double dt_s) noexcept;
 
   // In the tick that computes the new set for the first time: `before` is what the plant was told in this tick, `after`
   // what was computed for the next one.
@@ -49,8 +53,10 @@ class Switchover {
 
   std::vector<DriveLaw> drives_;
   double fade_s_;
+  double velocity_delay_s_;
   double remaining_s_ = 0;
   double absorbed_share_ = 0;
+  std::array<double, max_joints> velocity_rad_s_{}, acceleration_rad_s2_{};  // measured; its change, smoothed
   std::array<double, max_joints> offset_Nm_{};
 };
 
