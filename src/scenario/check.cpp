@@ -16,10 +16,15 @@ void Check::update(double time_s, std::span<const double> row) noexcept {
   const double value = row[signal_];
   double badness = excess(value);
   switch (check_.kind) {
-    case CheckKind::always: break;
+    case CheckKind::always:
+      break;
     case CheckKind::never:
-    case CheckKind::eventually: badness = -badness; break;  // the value deepest inside is remembered
-    case CheckKind::at_end: badness = std::numeric_limits<double>::max(); break;  // the last counts
+    case CheckKind::eventually:
+      badness = -badness;
+      break;  // the value deepest inside is remembered
+    case CheckKind::at_end:
+      badness = std::numeric_limits<double>::max();
+      break;  // the last counts
   }
   if (!seen_ || badness > worst_excess_ || check_.kind == CheckKind::at_end) {
     worst_excess_ = badness;

@@ -1,4 +1,5 @@
 #include <cstdio>
+
 #include <nlohmann/json.hpp>
 
 #include "kadans/scenario/report.h"
@@ -24,7 +25,8 @@ Json fault_json(const Fault& fault, const RobotModel& model) {
 
 }  // namespace
 
-std::string json_report(const RunResult& result, const RunLog& log, const RobotModel& model, const std::string& record) {
+std::string json_report(const RunResult& result, const RunLog& log, const RobotModel& model,
+                        const std::string& record) {
   Json json{{"scenario", result.scenario}, {"seed", result.seed}, {"passed", result.passed}};
   json["checks"] = Json::array();
   for (const CheckResult& check : result.checks) {

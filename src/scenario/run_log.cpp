@@ -15,7 +15,8 @@ void RunLog::message(std::int64_t time_ns, Severity severity, const std::string&
 }
 
 bool RunLog::has_errors() const noexcept {
-  return std::any_of(lines_.begin(), lines_.end(), [](const LogLine& line) { return line.severity == Severity::error; });
+  return std::any_of(lines_.begin(), lines_.end(),
+                     [](const LogLine& line) { return line.severity == Severity::error; });
 }
 
 }  // namespace kadans

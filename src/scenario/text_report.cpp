@@ -49,7 +49,8 @@ class TextReport {
     }
     for (const LogLine& line : subject_.log.lines()) {
       if (line.severity == BehaviorLog::Severity::error || !style_.verbose) continue;
-      text_ += dim(format("  %7.2f s  ", 1e-9 * static_cast<double>(line.time_ns))) + line.behavior + ": " + line.text + '\n';
+      text_ += dim(format("  %7.2f s  ", 1e-9 * static_cast<double>(line.time_ns))) + line.behavior + ": " + line.text +
+               '\n';
     }
     if (!text_.empty()) text_ += '\n';
   }
@@ -64,7 +65,8 @@ class TextReport {
       text_ += edge ? format("  %9.3f ", value) : std::string(12, ' ');
       text_ += dim(style_.unicode ? "│" : "|") + plot.lines[i] + '\n';
     }
-    text_ += std::string(12, ' ') + dim(format("0 s%*.0f s", static_cast<int>(plot_columns) - 4, trace.duration_s)) + "\n\n";
+    text_ +=
+        std::string(12, ' ') + dim(format("0 s%*.0f s", static_cast<int>(plot_columns) - 4, trace.duration_s)) + "\n\n";
   }
 
   static std::string bounds(const ScenarioCheck& check) {
@@ -79,7 +81,8 @@ class TextReport {
       const CheckResult& check = subject_.result.checks[i];
       const std::string mark = check.passed ? green(style_.unicode ? "✓" : "ok") : red(style_.unicode ? "✗" : "FAILED");
       text_ += "  " + mark + " " + check.name + std::string(widest - check.name.size(), ' ');
-      text_ += format("  %11.5g at %6.2f s", check.value, check.at_s) + dim("   wanted " + bounds(subject_.checks[i]) + '\n');
+      text_ += format("  %11.5g at %6.2f s", check.value, check.at_s) +
+               dim("   wanted " + bounds(subject_.checks[i]) + '\n');
     }
   }
 
@@ -94,19 +97,22 @@ class TextReport {
       const Fault& fault = result.faults[i];
       const std::string joint = fault.joint == no_joint ? "" : " of " + subject_.model.joints.at(fault.joint).name;
       text_ += red("  fault: ") + name(fault.code) + joint +
-               format(" in tick %llu: %g, limit %g\n", static_cast<unsigned long long>(fault.tick), fault.value, fault.limit);
+               format(" in tick %llu: %g, limit %g\n", static_cast<unsigned long long>(fault.tick), fault.value,
+                      fault.limit);
     }
     if (result.faults.size() > shown) text_ += format("  ... and %zu more faults\n", result.faults.size() - shown);
   }
 
   void figures() {
     const RunResult& r = subject_.result;
-    text_ += format("\n  %.2f s simulated in %.2f s: %.1f times real time\n", r.duration_s, r.wall_s, r.realtime_factor);
+    text_ +=
+        format("\n  %.2f s simulated in %.2f s: %.1f times real time\n", r.duration_s, r.wall_s, r.realtime_factor);
     text_ += format("  %llu control ticks (median %.2f us, p99 %.2f us), %llu behavior ticks\n",
                     static_cast<unsigned long long>(r.control_ticks), 1e-3 * r.tick.median_ns, 1e-3 * r.tick.p99_ns,
                     static_cast<unsigned long long>(r.behavior_ticks));
-    text_ += format("  %llu commands sent, %llu refused; state %016llx\n", static_cast<unsigned long long>(r.commands_sent),
-                    static_cast<unsigned long long>(r.commands_refused), static_cast<unsigned long long>(r.state_hash));
+    text_ +=
+        format("  %llu commands sent, %llu refused; state %016llx\n", static_cast<unsigned long long>(r.commands_sent),
+               static_cast<unsigned long long>(r.commands_refused), static_cast<unsigned long long>(r.state_hash));
     if (!subject_.record.empty()) text_ += "  record: " + subject_.record + '\n';
     text_ += dim("  again:  " + subject_.repeat) + "\n\n";
   }

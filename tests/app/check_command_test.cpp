@@ -20,7 +20,8 @@ TEST_CASE("check reports each broken file with its place, goes on with the other
   REQUIRE(edit(project / "models/tulip/tulip.urdf", "mass value=\"6.0\"", "mass value=\"-6.0\""));
   REQUIRE(edit(project / "config/scenarios/squat.json", "plant.base.tilt_rad", "plant.base.titl_rad"));
   REQUIRE(edit(project / "behaviors/tulip/squat.lua", "controls", "contrlos"));
-  const Outcome outcome = run("check models/tulip/tulip.urdf config/scenarios/squat.json behaviors/tulip/squat.lua", project);
+  const Outcome outcome =
+      run("check models/tulip/tulip.urdf config/scenarios/squat.json behaviors/tulip/squat.lua", project);
   CHECK(outcome.exit_code == 2);
   CHECK(has(outcome.err, "models/tulip/tulip.urdf:"));
   CHECK(has(outcome.err, "mass"));

@@ -1,10 +1,10 @@
 #include "program.h"
 
-#include <sys/wait.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+
+#include <sys/wait.h>
 
 namespace kadans::program {
 

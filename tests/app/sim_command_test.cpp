@@ -1,5 +1,4 @@
 #include <doctest/doctest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "program.h"
@@ -49,8 +48,8 @@ TEST_CASE("sim --json prints one object and nothing else") {
 TEST_CASE("sim works from any folder, with paths meant from the file's project") {
   const auto project = project_copy("sim_elsewhere");
   const auto elsewhere = fresh_folder("sim_elsewhere_cwd");
-  const Outcome outcome =
-      run("sim '" + (project / "config/scenarios/squat.json").string() + "' --duration 1 --no-record --json", elsewhere);
+  const Outcome outcome = run(
+      "sim '" + (project / "config/scenarios/squat.json").string() + "' --duration 1 --no-record --json", elsewhere);
   CHECK(outcome.exit_code == 0);
   CHECK(parsed(outcome)["record"] == "");
 }
@@ -66,7 +65,8 @@ TEST_CASE("A deeper squat in the Lua file is a deeper squat of the robot") {
 
 TEST_CASE("A script that does not parse is refused with its line before anything runs") {
   const auto project = project_copy("sim_syntax");
-  write(project / "behaviors/tulip/squat.lua", "local k = require \"kadans\"\n\nreturn k.behavior \"squat\" {\n  initial = = 1\n}\n");
+  write(project / "behaviors/tulip/squat.lua",
+        "local k = require \"kadans\"\n\nreturn k.behavior \"squat\" {\n  initial = = 1\n}\n");
   const Outcome outcome = run(squat, project);
   CHECK(outcome.exit_code == 2);
   CHECK(has(outcome.err, "behaviors/tulip/squat.lua:4:"));
@@ -114,8 +114,9 @@ TEST_CASE("A record that was asked for and cannot be written is an error, the us
 TEST_CASE("Wrong usage exits 2 and says what was meant") {
   const auto folder = fresh_folder("usage");
   CHECK(has(run("smi x.json", folder).err, "unknown command 'smi', did you mean 'sim'?"));
-  for (const char* wrong : {"", "smi", "sim", "sim x.json --seed one", "sim x.json --duration -1", "sim x.json --duration nan",
-                            "sim x.json --sed 1", "sim nowhere.json", "check", "check nowhere.json"}) {
+  for (const char* wrong :
+       {"", "smi", "sim", "sim x.json --seed one", "sim x.json --duration -1", "sim x.json --duration nan",
+        "sim x.json --sed 1", "sim nowhere.json", "check", "check nowhere.json"}) {
     CAPTURE(wrong);
     const Outcome outcome = run(wrong, folder);
     CHECK(outcome.exit_code == 2);

@@ -22,8 +22,8 @@ namespace kadans {
 
 class TruthSignals {
  public:
-  // Declares the signals in the catalog. `feet` are the links named in the plant's settings, with the points of each sole
-  // that touch the ground. Keeps references to model, plant and catalog. Slip counts from settle_s on.
+  // Declares the signals in the catalog. `feet` are the links named in the plant's settings, with the points of each
+  // sole that touch the ground. Keeps references to model, plant and catalog. Slip counts from settle_s on.
   struct Foot {
     std::string link;
     std::vector<Vec3> sole_m;  // in the link's frame
