@@ -7,6 +7,7 @@
 #include "behavior_command.h"
 #include "commands.h"
 #include "kadans/signal/nearest_name.h"
+#include "stubs_command.h"
 #include "terminal.h"
 #include "version.h"
 
@@ -84,6 +85,10 @@ int run(int argc, char** argv) {
   add_check(app, check);
   BehaviorOptions behavior;
   add_behavior(app, behavior);
+  StubsOptions stubs;
+  add_stubs(app, stubs);
+  ParamsOptions params;
+  add_params(app, params);
   NewControlObjectOptions new_object;
   add_new(app, new_object);
   try {
@@ -96,6 +101,8 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
+  if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);
+  if (app.got_subcommand("params")) return run_params(params);
   if (app.got_subcommand("behavior")) return run_behavior(app, behavior);
   return app.got_subcommand("sim") ? run_sim(sim) : run_check(check);
 }

@@ -156,8 +156,8 @@ TEST_CASE("check_behavior tells what is wrong without running anything, and noth
   REQUIRE(missing.size() == 1);
   CHECK(missing[0].text() == "behaviors/tulip/none.lua:1: cannot be read, or is empty");
   const Scripts scripts;
-  scripts.write(
-      "a.lua",
-      "local k = require 'kadans' return k.behavior 'a' { enter = function() while true do end end,\nk.state 'x' { endless = true } }");
+  scripts.write("a.lua",
+                "local k = require 'kadans' return k.behavior 'a' { enter = function() while true do end end,\nk.state "
+                "'x' { endless = true } }");
   CHECK(check_behavior(scripts.root, "a.lua", robot.catalog).empty());
 }

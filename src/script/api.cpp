@@ -1,0 +1,177 @@
+#include "kadans/script/api.h"
+
+#include <cstdio>
+#include <string_view>
+
+namespace kadans {
+namespace {
+
+constexpr ApiEntry table[] = {
+    {"kadans", "behavior(name)", "fun(body: table): kadans.Behavior", "A behavior: k.behavior \"name\" { ... }"},
+    {"kadans", "state(name)", "fun(body: table): kadans.Node", "A state, with transitions and states inside"},
+    {"kadans", "parallel(name)", "fun(body: table): kadans.Node", "A state whose regions are all active together"},
+    {"kadans", "region(name)", "fun(body: table): kadans.Node", "One region of a k.parallel"},
+    {"kadans", "final(name)", "fun(body: table): kadans.Node", "An end, with its outcome"},
+    {"kadans", "history(name)", "fun(body: table): kadans.Node", "Leads back to where its parent was left"},
+    {"kadans", "call(name)", "fun(arguments: table): kadans.Node", "Plays another behavior inside this state"},
+    {"kadans", "params(table)", "table", "Declares parameters: { name = { default, min =, max =, unit =, doc = } }"},
+    {"kadans", "pose(name)", "table<string, number>", "A copy of a pose of the robot, joint = position in rad"},
+    {"kadans", "budget()", "{ instructions: number, memory_bytes: number }", "What is left of this tick's budget"},
+
+    {"m", "name", "string", "The behavior's name"},
+    {"m", "time_s", "number", "Seconds in the state whose function runs"},
+    {"m", "vars", "table", "The behavior's own plain data; kept over a reload"},
+    {"m", "args", "table", "What the caller gave"},
+    {"m", "wait(seconds)", "nil", "Goes on so many seconds later; in `run` only"},
+    {"m", "emit(event)", "boolean?, string?", "Posts an event; seen from the next tick on; nil, \"queue_full\""},
+
+    {"object", "move(pose, options)", "kadans.Motion?, string?",
+     "Moves to a pose, by name or as joint = rad, in { time_s = }; nil, \"queue_full\""},
+    {"object", "set(setpoint, value, options)", "kadans.Motion?, string?",
+     "Sets one set-point, at once or in { time_s = }; nil, \"queue_full\""},
+    {"object", "set_gains(preset)", "boolean?, string?", "Sets the parameters of a preset; nil, \"queue_full\""},
+    {"object", "set_parameter(name, value)", "boolean?, string?", "Sets one parameter; nil, \"queue_full\""},
+
+    {"motion", "done", "boolean", "Whether it arrived, was cancelled or refused"},
+    {"motion", "wait()", "boolean?, string?", "Goes on when it is over; in `run` only; nil and why it did not arrive"},
+    {"motion", "cancel()", "boolean?, string?", "Comes to rest where it is; nil, \"queue_full\""},
+
+    {"s", "time_s", "number", "Time on the engine's clock, in s"},
+    {"s", "tick", "number", "Ticks of the control engine"},
+    {"s", "joints", "kadans.Joints", "By name"},
+    {"s", "base", "kadans.Base", "The trunk"},
+    {"s", "feet", "kadans.Feet", "left and right"},
+    {"s", "safety", "kadans.Safety", "What the safety layer allows"},
+    {"joint", "position_rad", "number", "Position in rad"},
+    {"joint", "velocity_rad_s", "number", "Velocity in rad/s"},
+    {"joint", "effort_Nm", "number", "Torque at the joint in Nm"},
+    {"base", "roll_rad", "number", "Roll in rad"},
+    {"base", "pitch_rad", "number", "Pitch in rad; positive leans forward"},
+    {"base", "yaw_rad", "number", "Yaw in rad"},
+    {"base", "tilt_rad", "number", "Angle from upright in rad, >= 0"},
+    {"base", "height_m", "number", "Over the lowest sole in m; holds when no foot bears"},
+    {"base", "angular_velocity_rad_s", "kadans.Rate", "In the base frame"},
+    {"rate", "x", "number", "About x in rad/s"},
+    {"rate", "y", "number", "About y in rad/s"},
+    {"rate", "z", "number", "About z in rad/s"},
+    {"foot", "contact", "boolean", "Whether it bears"},
+    {"foot", "force_N", "number", "Sum of its sensors in N"},
+    {"foot", "cop_x_m", "number", "Centre of pressure in the foot's frame in m; holds without contact"},
+    {"foot", "cop_y_m", "number", "Centre of pressure in the foot's frame in m; holds without contact"},
+    {"safety", "level", "'normal'|'limited'|'hold'|'damp'|'off'", "Rung of the degradation ladder"},
+    {"safety", "faults", "number", "Faults since the last clearing"},
+    {"safety", "first_fault", "number", "Code of the first fault; 0: none"},
+};
+
+struct Owner {
+  const char* name;
+  const char* type;  // of the stubs
+  const char* title;
+};
+constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require \"kadans\"`"},
+                            {"m", "kadans.Machine", "`m`: what a behavior acts through"},
+                            {"object", "kadans.Object", "A control object: `m.posture`"},
+                            {"motion", "kadans.Motion", "A motion: what `move` and `set` return"},
+                            {"s", "kadans.Snapshot", "`s`: the snapshot, read-only"},
+                            {"joint", "kadans.Joint", "A joint: `s.joints.l_knee`"},
+                            {"base", "kadans.Base", "The trunk: `s.base`"},
+                            {"rate", "kadans.Rate", "A turning rate: `s.base.angular_velocity_rad_s`"},
+                            {"foot", "kadans.Foot", "A foot: `s.feet.left`"},
+                            {"safety", "kadans.Safety", "The safety layer: `s.safety`"}};
+
+std::string bare(std::string_view name) { return std::string(name.substr(0, name.find('('))); }
+
+// "---@field move fun(self, pose, options): kadans.Motion?, string?"
+std::string stub_line(const ApiEntry& entry) {
+  const std::string_view name = entry.name;
+  const std::size_t bracket = name.find('(');
+  std::string type = entry.type;
+  if (bracket != std::string_view::npos) {
+    const std::string given(name.substr(bracket + 1, name.size() - bracket - 2));
+    const bool method = std::string_view(entry.owner) != "kadans";
+    type = "fun(" + std::string(method ? "self" : "") + (method && !given.empty() ? ", " : "") + given + "): " + type;
+  }
+  return "---@field " + bare(name) + " " + type + " " + entry.doc + "\n";
+}
+
+std::string alternatives(const std::string& alias, const std::vector<std::string>& values) {
+  std::string text = "---@alias " + alias + "\n";
+  for (const std::string& value : values) text += "---| " + value + "\n";
+  return text + "\n";
+}
+
+std::string range_note(const std::string& name, const std::string& unit, double min, double max) {
+  char text[160];
+  std::snprintf(text, sizeof text, "'\"%s\"' # %g..%g %s", name.c_str(), min, max, unit.c_str());
+  return text;
+}
+
+void add_object(std::string& text, const Catalog& catalog, const ObjectInfo& object) {
+  const std::string type = "kadans." + object.name;
+  const auto short_name = [&](const std::string& name) { return name.substr(object.name.size() + 1); };
+  std::vector<std::string> setpoints, parameters, presets;
+  for (const SetpointId id : object.setpoints) {
+    const Setpoint& setpoint = catalog.setpoints[id];
+    setpoints.push_back(range_note(short_name(setpoint.name), setpoint.unit, setpoint.min, setpoint.max));
+  }
+  for (const ParameterId id : object.parameters) {
+    const Parameter& parameter = catalog.parameters.info(id);
+    parameters.push_back(range_note(short_name(parameter.name), parameter.unit, parameter.min, parameter.max));
+  }
+  for (const Preset& preset : object.presets) presets.push_back("'\"" + preset.name + "\"'");
+  text += alternatives(type + ".setpoint", setpoints) + alternatives(type + ".parameter", parameters) +
+          alternatives(type + ".preset", presets);
+  text += "---@class " + type + ": kadans.Object\n";
+  text += "---@field set fun(self, setpoint: " + type +
+          ".setpoint, value: number, options: { time_s: number }?): " + "kadans.Motion?, string?\n";
+  text += "---@field set_gains fun(self, preset: " + type + ".preset): boolean?, string?\n";
+  text += "---@field set_parameter fun(self, name: " + type + ".parameter, value: number): boolean?, string?\n\n";
+}
+
+}  // namespace
+
+std::span<const ApiEntry> script_api() noexcept { return table; }
+
+std::string lua_stubs(const Catalog& catalog) {
+  std::string text =
+      "---@meta kadans\n-- Generated by `kadans lua-stubs`; do not edit.\n\n---@class kadans.Node\n---@class "
+      "kadans.Behavior\n\n";
+  std::vector<std::string> poses;
+  for (const PoseInfo& pose : catalog.poses) poses.push_back("'\"" + pose.name + "\"'");
+  text += alternatives("kadans.pose", poses);
+  for (const ObjectInfo& object : catalog.objects) add_object(text, catalog, object);
+  text += "---@class kadans.Joints\n";
+  for (const Joint& joint : catalog.model->joints) text += "---@field " + joint.name + " kadans.Joint\n";
+  text += "\n---@class kadans.Feet\n---@field left kadans.Foot\n---@field right kadans.Foot\n\n";
+  for (const Owner& owner : owners) {
+    text += "---@class " + std::string(owner.type) + "\n";
+    for (const ApiEntry& entry : table) {
+      if (std::string_view(entry.owner) == owner.name) text += stub_line(entry);
+    }
+    if (std::string_view(owner.name) == "m") {
+      for (const ObjectInfo& object : catalog.objects) {
+        text += "---@field " + object.name + " kadans." + object.name + " " + object.type + "\n";
+      }
+    }
+    text += "\n";
+  }
+  return text + "---@type kadans\nlocal kadans\nreturn kadans\n";
+}
+
+std::string api_reference() {
+  std::string text =
+      "# Reference of behaviors\n\nGenerated by `kadans lua-stubs --markdown`; do not edit. The guide is "
+      "[behaviors.md](behaviors.md).\n";
+  for (const Owner& owner : owners) {
+    text += "\n## " + std::string(owner.title) + "\n\n| name | type or result | |\n|---|---|---|\n";
+    for (const ApiEntry& entry : table) {
+      if (std::string_view(entry.owner) != owner.name) continue;
+      std::string type = entry.type;
+      for (std::size_t at = 0; (at = type.find('|', at)) != std::string::npos; at += 2) type.insert(at, "\\");
+      text += "| `" + std::string(entry.name) + "` | " + type + " | " + entry.doc + " |\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace kadans
