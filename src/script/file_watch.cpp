@@ -24,7 +24,7 @@ bool FileWatch::add(const std::filesystem::path& folder) {
   return true;
 }
 
-bool FileWatch::drain() noexcept {
+bool FileWatch::drain() const noexcept {
   bool any = false;
   alignas(inotify_event) char buffer[4096];
   for (ssize_t got = read(fd_, buffer, sizeof buffer); got > 0; got = read(fd_, buffer, sizeof buffer)) {

@@ -11,7 +11,10 @@ constexpr int depth_max = 16;
 
 void push_motion_across(lua_State* from, int index, lua_State* to) {
   Motion* motion = to_motion(from, index);
-  if (motion == nullptr) luaL_error(to, "vars hold a userdata: a reload carries plain data and motions");
+  if (motion == nullptr) {
+    luaL_error(to, "vars hold a userdata: a reload carries plain data and motions");
+    return;  // it has raised
+  }
   Motion* copy = push_motion(to, motion->count);
   std::memcpy(static_cast<void*>(copy), motion, sizeof(Motion) + motion->count * sizeof(SetpointId));
 }

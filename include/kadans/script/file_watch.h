@@ -22,7 +22,7 @@ class FileWatch {
   bool poll() noexcept;
 
  private:
-  bool drain() noexcept;  // whether anything came
+  bool drain() const noexcept;  // whether anything came
 
   int fd_;
   std::set<std::filesystem::path> folders_;
