@@ -22,7 +22,7 @@ Behavior::Reload reload(Stage& stage, const std::string& text, const std::string
 }
 
 const char counting[] =
-    "vars = { n = 0 }, initial = 'a',\n"
+    "vars = { n = 0 }, initial = 'z', k.state 'z' { { after = 0.05, to = 'a' } },\n"
     "k.state 'a' { enter = function() print 'in a' end, exit = function() print 'out a' end,\n"
     "  during = function(m) m.vars.n = m.vars.n + 1 end, { after = 0.2, to = 'b' } },\n"
     "k.state 'b' { enter = function(m) print('b', m.vars.n) end }";
@@ -34,7 +34,7 @@ TEST_CASE("a reload keeps the active state, its time and vars, and runs neither 
   stage.tick(11);
   REQUIRE(reload(stage, chart(counting) + "-- another text\n") == Behavior::Reload::taken);
   CHECK(stage.behavior->state() == "a");
-  stage.tick(12);
+  stage.tick(16);
   CHECK(stage.said() == "in a\nreloaded behaviors/test.lua\nout a\nb 20\n");
   CHECK(stage.behavior->status().reloads == 1);
 }
