@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "kadans/app/assembly.h"
 #include "commands.h"
+#include "kadans/app/assembly.h"
 #include "kadans/config/json_value.h"
 #include "kadans/config/project_root.h"
 #include "kadans/model/urdf.h"
@@ -28,9 +28,8 @@ std::string check_robot(const std::string& file) {
   const Robot robot = read_robot(file);
   const auto system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));
-  return "robot: " + std::to_string(sets.size()) + " control objects, " +
-         std::to_string(system->catalog.sets.size()) + " control sets, " +
-         std::to_string(system->catalog.parameters.size()) + " parameters";
+  return "robot: " + std::to_string(sets.size()) + " control objects, " + std::to_string(system->catalog.sets.size()) +
+         " control sets, " + std::to_string(system->catalog.parameters.size()) + " parameters";
 }
 
 std::string check_scenario(const std::string& file) {
@@ -48,8 +47,9 @@ std::string check_lua(const std::string& file, const std::string& robot) {
   if (config.empty()) {
     config = project_root(file) / "config" / fs::absolute(file).parent_path().filename() / "robot.json";
     if (!fs::exists(config)) {
-      throw InputError({.file = file, .message = "no robot to check it against: there is no " + config.string() +
-                                                 "; name one with --robot FILE"});
+      throw InputError(
+          {.file = file,
+           .message = "no robot to check it against: there is no " + config.string() + "; name one with --robot FILE"});
     }
   }
   const Robot made_for = read_robot(config);

@@ -1,10 +1,10 @@
 #include "terminal.h"
 
-#include <unistd.h>
-
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+
+#include <unistd.h>
 
 namespace kadans {
 namespace {

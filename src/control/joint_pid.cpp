@@ -54,7 +54,8 @@ void JointPid::declare(Declaration& declaration) {
                           .channel = static_cast<std::uint32_t>(i),
                           .joint = static_cast<std::uint32_t>(axis.joint)});
     declaration.signal({axis.name + ".reference_rad", "rad", "Set-point of the position."}, &s.reference_rad);
-    declaration.signal({axis.name + ".reference_velocity_rad_s", "rad/s", "Its velocity."}, &s.reference_velocity_rad_s);
+    declaration.signal({axis.name + ".reference_velocity_rad_s", "rad/s", "Its velocity."},
+                       &s.reference_velocity_rad_s);
     declaration.signal({axis.name + ".error_rad", "rad", "Set-point minus position."}, &s.error_rad);
     declaration.signal({axis.name + ".integral_Nm", "Nm", "Torque of the integral."}, &s.integral_Nm);
     declaration.signal({axis.name + ".effort_Nm", "Nm", "Torque computed."}, &s.effort_Nm);
@@ -75,8 +76,8 @@ void JointPid::step(const ControlInput& input, ActuationFrame& actuation) noexce
   for (Axis& axis : axes_) {
     const JointState& joint = input.joints.joints[axis.joint];
     const MinimumJerk::State& reference = axis.reference.step(input.dt_s);
-    const double effort_Nm = axis.pid.step(reference.position, reference.velocity, joint.position_rad,
-                                           joint.velocity_rad_s, input.dt_s);
+    const double effort_Nm =
+        axis.pid.step(reference.position, reference.velocity, joint.position_rad, joint.velocity_rad_s, input.dt_s);
     actuation.joints[axis.joint] = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};
   }
 }

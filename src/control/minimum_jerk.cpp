@@ -33,7 +33,7 @@ const MinimumJerk::State& MinimumJerk::step(double dt_s) noexcept {
   }
   const double T = remaining_s_;
   const double way = target_ - state_.position;
-  const double v = state_.velocity * T;                 // scaled to time 0..1
+  const double v = state_.velocity * T;  // scaled to time 0..1
   const double half_a = 0.5 * state_.acceleration * T * T;
   const double c3 = 10 * way - 6 * v - 3 * half_a;
   const double c4 = -15 * way + 8 * v + 3 * half_a;

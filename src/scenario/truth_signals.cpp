@@ -5,24 +5,17 @@
 #include <limits>
 
 namespace kadans {
-namespace {
-
-constexpr SignalId no_reference = std::numeric_limits<SignalId>::max();
-
-// The set-point of a joint's position, whichever control object has it; the first one declared counts.
-SignalId find_reference(const Catalog& catalog, const std::string& joint) {
-  for (const ObjectInfo& object : catalog.objects) {
-    const auto found = catalog.signals.find("control." + object.name + "." + joint + ".reference_rad");
-    if (found) return *found;
-  }
-  return no_reference;
-}
-
-}  // namespace
-
 TruthSignals::TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s)
     : plant_(plant), model_(*catalog.model), settle_s_(settle_s), kinematics_(*catalog.model) {
-  for (std::size_t i = 0; i < model_.joints.size(); ++i) reference_[i] = find_reference(catalog, model_.joints[i].name);
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const std::string& joint = model_.joints[i].name;
+    writers_[i] = catalog.signals.find("composition." + joint + ".writers").value();
+    for (std::uint32_t object = 0; object < catalog.objects.size(); ++object) {
+      const auto signal =
+          catalog.signals.find("control." + catalog.objects[object].name + "." + joint + ".reference_rad");
+      if (signal) references_[i].push_back({object, *signal});
+    }
+  }
   for (const Foot& foot : feet) {
     FootState state;
     state.link = model_.find_link(foot.link).value();
@@ -85,13 +78,20 @@ void TruthSignals::update_feet(double time_s) noexcept {
   }
 }
 
-// Joints without a set-point (passive ankles) count as they are; the lowest point of the soles is the ground.
+// The set-point of the object that drives the joint; joints without one (passive ankles) count as they are.
+double TruthSignals::reference_rad(std::size_t joint, std::span<const double> row) const noexcept {
+  const auto writers = static_cast<std::uint32_t>(row[writers_[joint]]);
+  for (const Reference& reference : references_[joint]) {
+    if ((writers >> reference.object & 1U) != 0) return row[reference.signal];
+  }
+  return plant_.truth().position_rad[joint];
+}
+
+// The lowest point of the soles is the ground.
 double TruthSignals::reference_height_m(std::span<const double> row) noexcept {
   const PlantTruth& truth = plant_.truth();
   const std::size_t joints = model_.joints.size();
-  for (std::size_t i = 0; i < joints; ++i) {
-    position_rad_[i] = reference_[i] == no_reference ? truth.position_rad[i] : row[reference_[i]];
-  }
+  for (std::size_t i = 0; i < joints; ++i) position_rad_[i] = reference_rad(i, row);
   kinematics_.update({position_rad_.data(), joints}, {{0, 0, 0}, truth.base.orientation});
   double lowest_m = 0;
   for (const FootState& foot : feet_) {

@@ -9,8 +9,8 @@ namespace {
 
 const char node_key = 0;
 
-constexpr const char* behavior_keys[] = {"version", "controls", "vars", "args",   "migrate", "initial",
-                                         "always",  "enter",    "exit", "during", "run",     "endless", nullptr};
+constexpr const char* behavior_keys[] = {"version", "controls", "vars",   "args", "migrate", "initial", "always",
+                                         "enter",   "exit",     "during", "run",  "endless", nullptr};
 constexpr const char* state_keys[] = {"initial", "enter", "exit", "during", "run", "always", "endless", nullptr};
 constexpr const char* parallel_keys[] = {"enter", "exit", "during", "run", "always", nullptr};
 constexpr const char* final_keys[] = {"outcome", "enter", nullptr};

@@ -39,12 +39,14 @@ TEST_CASE("JointPid declares its parameters, set-points and signals by joint") {
   CHECK(bench.catalog.setpoints[id].min == -1);
   CHECK(bench.catalog.setpoints[id].max == 2);
   CHECK(bench.catalog.setpoints[id].channel == 1);
-  CHECK(bench.catalog.parameters.info(bench.catalog.parameters.find("posture.hip.effort_max_Nm").value()).initial == 20);
+  CHECK(bench.catalog.parameters.info(bench.catalog.parameters.find("posture.hip.effort_max_Nm").value()).initial ==
+        20);
 }
 
 TEST_CASE("JointPid refuses a passive joint") {
   const RobotModel model = two_joint_robot();
-  CHECK_THROWS_WITH_AS(JointPid({model, {2}}), "joint toe is passive: it has no motor to control", std::invalid_argument);
+  CHECK_THROWS_WITH_AS(JointPid({model, {2}}), "joint toe is passive: it has no motor to control",
+                       std::invalid_argument);
 }
 
 TEST_CASE("JointPid drives each joint to its own set-point in effort mode") {

@@ -1,9 +1,9 @@
 #include "kadans/control/minimum_jerk.h"
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <doctest/doctest.h>
 
 using kadans::MinimumJerk;
 

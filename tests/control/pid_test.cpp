@@ -1,9 +1,9 @@
 #include "kadans/control/pid.h"
 
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <doctest/doctest.h>
 
 #include "kadans/testing/allocation_count.h"
 

@@ -94,8 +94,14 @@ TEST_CASE("no test has a name that CTest would tear apart") {
   for (const fs::path& file : files_below(root / "tests")) {
     if (file.extension() == ".cpp") report(check_test_names(fs::relative(file, root).generic_string(), read(file)));
   }
-  CHECK(check_test_names("a.cpp", "TEST_CASE" "(\"one; two\")").size() == 1);
-  CHECK(check_test_names("a.cpp", "TEST_CASE" "(\"one, two\")").empty());
+  CHECK(check_test_names("a.cpp",
+                         "TEST_CASE"
+                         "(\"one; two\")")
+            .size() == 1);
+  CHECK(check_test_names("a.cpp",
+                         "TEST_CASE"
+                         "(\"one, two\")")
+            .empty());
 }
 
 TEST_CASE("docs/architecture.md lists the layers in the order in which they are built") {

@@ -74,8 +74,8 @@ struct PluginFile {
   std::filesystem::path file;
   TextPlace place;
 };
-// The plug-ins alone: they must be loaded before the types of control objects are known. Throws InputError when the file
-// is no JSON or names a plug-in that is not there; other mistakes are read_robot_config's to tell.
+// The plug-ins alone: they must be loaded before the types of control objects are known. Throws InputError when the
+// file is no JSON or names a plug-in that is not there; other mistakes are read_robot_config's to tell.
 std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot);
 
 // Sets the configured parameters in the tables of `catalog`, whose objects were made from config.objects in their

@@ -1,6 +1,6 @@
-// A motion from where a set-point is now, with the velocity and acceleration it has, to rest at a target in a given time:
-// the quintic polynomial, which from rest to rest is the minimum-jerk motion (Flash and Hogan 1985, J. Neurosci. 5(7),
-// eq. 4). Taking over a motion under way never steps position, velocity or acceleration.
+// A motion from where a set-point is now, with the velocity and acceleration it has, to rest at a target in a given
+// time: the quintic polynomial, which from rest to rest is the minimum-jerk motion (Flash and Hogan 1985, J. Neurosci.
+// 5(7), eq. 4). Taking over a motion under way never steps position, velocity or acceleration.
 #pragma once
 
 namespace kadans {

@@ -15,14 +15,14 @@ namespace kadans {
 class Pid {
  public:
   struct Config {
-    double kp_Nm_per_rad = 0;            // 0..5000
-    double ki_Nm_per_rads = 0;           // 0..50000
-    double kd_Nms_per_rad = 0;           // 0..500
-    double kd_cutoff_Hz = 0;             // 0..1000; 0: no filter of its own
-    double velocity_weight = 1;          // b, 0..1
-    double integral_max_Nm = 0;          // >= 0
-    double feedforward_Nm = 0;           // within +-effort_max
-    double effort_max_Nm = 0;            // >= 0
+    double kp_Nm_per_rad = 0;    // 0..5000
+    double ki_Nm_per_rads = 0;   // 0..50000
+    double kd_Nms_per_rad = 0;   // 0..500
+    double kd_cutoff_Hz = 0;     // 0..1000; 0: no filter of its own
+    double velocity_weight = 1;  // b, 0..1
+    double integral_max_Nm = 0;  // >= 0
+    double feedforward_Nm = 0;   // within +-effort_max
+    double effort_max_Nm = 0;    // >= 0
   };
   struct State {
     double reference_rad = 0, reference_velocity_rad_s = 0;
@@ -35,7 +35,8 @@ class Pid {
 
   // Takes over at the measured state so that the next output is effort_Nm, as far as the integral's limit allows, when
   // the reference is there and moves with reference_velocity.
-  void start(double position_rad, double velocity_rad_s, double effort_Nm, double reference_velocity_rad_s = 0) noexcept;
+  void start(double position_rad, double velocity_rad_s, double effort_Nm,
+             double reference_velocity_rad_s = 0) noexcept;
   // Returns the effort. Values that are not finite give a result that is not finite; the safety layer stops it.
   double step(double reference_rad, double reference_velocity_rad_s, double position_rad, double velocity_rad_s,
               double dt_s) noexcept;

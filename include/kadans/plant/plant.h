@@ -43,7 +43,7 @@ struct PlantTruth {
   std::array<double, max_joints> drive_torque_Nm{};  // what each drive put on its joint in the last step
   std::uint32_t foot_count = 0;
   std::array<Pose, max_feet> feet{};
-  std::array<Vec3, max_feet> foot_force_N{};         // from the ground, world axes
+  std::array<Vec3, max_feet> foot_force_N{};  // from the ground, world axes
 };
 
 class ModelPlant : public Plant {

@@ -10,16 +10,16 @@
 
 namespace kadans {
 
-// A motor with its gear, seen from the joint. With a spring it is a series elastic actuator: the rotor is a state of its
-// own and only the spring's torque reaches the joint. Without one the rotor's inertia moves with the joint.
+// A motor with its gear, seen from the joint. With a spring it is a series elastic actuator: the rotor is a state of
+// its own and only the spring's torque reaches the joint. Without one the rotor's inertia moves with the joint.
 struct DriveSettings {
-  double torque_max_Nm = 0;              // 0: passive, no motor
-  double velocity_max_rad_s = 0;         // no-load speed: available torque falls linearly ...
-  double knee_velocity_rad_s = 0;        // ... from torque_max at this speed to 0 at velocity_max
-  double rotor_inertia_kg_m2 = 0;        // reflected to the joint
-  double viscous_Nms_per_rad = 0;        // motor-side friction
-  double coulomb_Nm = 0;                 // motor-side friction
-  double spring_Nm_per_rad = 0;          // 0: rigid
+  double torque_max_Nm = 0;        // 0: passive, no motor
+  double velocity_max_rad_s = 0;   // no-load speed: available torque falls linearly ...
+  double knee_velocity_rad_s = 0;  // ... from torque_max at this speed to 0 at velocity_max
+  double rotor_inertia_kg_m2 = 0;  // reflected to the joint
+  double viscous_Nms_per_rad = 0;  // motor-side friction
+  double coulomb_Nm = 0;           // motor-side friction
+  double spring_Nm_per_rad = 0;    // 0: rigid
   double spring_damping_Nms_per_rad = 0;
   double position_gain_Nm_per_rad = 0;   // of the drive's own position mode, an implicit row
   double velocity_gain_Nms_per_rad = 0;  // of its position and velocity modes
@@ -35,8 +35,8 @@ struct EncoderSettings {
 };
 
 struct ImuSettings {
-  Pose pose;  // in the base frame
-  double gyro_noise_rad_s = 0, gyro_bias_rad_s = 0;          // standard deviations; the bias is drawn once a run
+  Pose pose;                                         // in the base frame
+  double gyro_noise_rad_s = 0, gyro_bias_rad_s = 0;  // standard deviations; the bias is drawn once a run
   double accelerometer_noise_m_s2 = 0, accelerometer_bias_m_s2 = 0;
 };
 
@@ -63,8 +63,8 @@ struct PlantSettings {
   int solver_iterations = 10;
   bool fixed_base = false;  // the base link is bolted to the world
   bool self_collision = true;
-  // Where the robot starts. With stand_on_ground the base's z is chosen so that the lowest collision point touches z = 0
-  // (a fixed base stays where it is put).
+  // Where the robot starts. With stand_on_ground the base's z is chosen so that the lowest collision point touches z =
+  // 0 (a fixed base stays where it is put).
   Pose base;
   bool stand_on_ground = true;
   std::vector<double> position_rad;  // one a joint

@@ -49,6 +49,7 @@ class TruthSignals {
   void declare(SignalTable& table, const std::vector<Foot>& feet);
   void update_limits() noexcept;
   void update_feet(double time_s) noexcept;
+  double reference_rad(std::size_t joint, std::span<const double> row) const noexcept;
   double reference_height_m(std::span<const double> row) noexcept;
 
   const ModelPlant& plant_;
@@ -57,7 +58,12 @@ class TruthSignals {
   Kinematics kinematics_;
   State state_;
   std::vector<FootState> feet_;
-  std::array<SignalId, max_joints> reference_{};  // of each joint, or no_reference
+  struct Reference {  // a control object's set-point of a joint
+    std::uint32_t object;
+    SignalId signal;
+  };
+  std::array<std::vector<Reference>, max_joints> references_;
+  std::array<SignalId, max_joints> writers_{};  // which objects have a share in the joint
   std::array<double, max_joints> position_rad_{};
 };
 

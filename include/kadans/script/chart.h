@@ -31,10 +31,10 @@ struct Chart {
     std::string chunk;
     int line = 0;
     Kind kind = Kind::state;
-    bool deep = false;          // history
-    bool endless = false;       // means to stay: no way out is no mistake
-    bool outcome_given = false; // final states: the author wrote it
-    bool machine_root = false;  // a behavior, the played one or a called one
+    bool deep = false;           // history
+    bool endless = false;        // means to stay: no way out is no mistake
+    bool outcome_given = false;  // final states: the author wrote it
+    bool machine_root = false;   // a behavior, the played one or a called one
     StateIndex parent = no_state;
     StateIndex end = 0;             // one past the last state inside
     StateIndex initial = no_state;  // child entered by default; history: where it leads when there is none yet
