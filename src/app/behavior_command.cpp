@@ -2,13 +2,19 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include "behavior_stage.h"
 #include "kadans/app/assembly.h"
 #include "kadans/config/project_root.h"
+#include "kadans/scenario/run_log.h"
+#include "kadans/script/behavior.h"
+#include "kadans/script/chart_graph.h"
 #include "kadans/script/check_behavior.h"
 #include "terminal.h"
 
@@ -77,6 +83,33 @@ int run_tests(const BehaviorOptions& options) {
   return failed == 0 ? exit_passed : exit_failed;
 }
 
+// Graphviz lays the graph out; the text goes to it through a file, its picture to our stdout.
+int draw_svg(const std::string& dot) {
+  const fs::path file = fs::temp_directory_path() / ("kadans-graph-" + std::to_string(::getpid()) + ".dot");
+  std::ofstream(file) << dot;
+  const int status = std::system(("dot -Tsvg '" + file.string() + "'").c_str());  // NOLINT: a program of its own
+  fs::remove(file);
+  if (status == 0) return exit_passed;
+  print_error("svg is drawn by Graphviz: install the package graphviz, or take --format dot or mermaid");
+  return exit_usage;
+}
+
+int run_graph(const BehaviorOptions& options) {
+  const std::string& file = options.files.front();
+  const Robot robot = read_robot(robot_for(file, options));
+  const auto system = make_control_system(robot);
+  RunLog log;
+  const Behavior behavior({.root = project_root(file), .file = fs::absolute(file)}, system->catalog, log);
+  if (options.format == "mermaid") {
+    std::fputs(mermaid_graph(behavior.chart(), behavior.parameters()).c_str(), stdout);
+    return exit_passed;
+  }
+  const std::string dot = dot_graph(behavior.chart(), behavior.parameters());
+  if (options.format == "svg") return draw_svg(dot);
+  std::fputs(dot.c_str(), stdout);
+  return exit_passed;
+}
+
 void add_files(CLI::App* command, BehaviorOptions& options, const char* what) {
   command->add_option("files", options.files, what)->required()->type_name("FILE...");
   command->add_option("--robot", options.robot, "Robot that they are for (default: by their folder)")
@@ -92,10 +125,16 @@ void add_behavior(CLI::App& app, BehaviorOptions& options) {
             "Behaviors (Lua)");
   add_files(behavior->add_subcommand("test", "Run tests of behaviors on a robot without physics, in virtual time"),
             options, "Tests (*_test.lua), or folders of them");
+  CLI::App* graph = behavior->add_subcommand("graph", "Draw a behavior's states and transitions");
+  add_files(graph, options, "Behavior (Lua)");
+  graph->get_option("files")->expected(1);
+  graph->add_option("--format", options.format, "mermaid (default), dot, or svg (needs Graphviz)")
+      ->check(CLI::IsMember({"mermaid", "dot", "svg"}));
 }
 
 int run_behavior(const CLI::App& app, const BehaviorOptions& options) {
   const CLI::App* behavior = app.get_subcommand("behavior");
+  if (behavior->got_subcommand("graph")) return run_graph(options);
   return behavior->got_subcommand("check") ? run_checks(options) : run_tests(options);
 }
 

@@ -13,7 +13,7 @@ namespace kadans {
 struct BehaviorOptions {
   std::vector<std::string> files;
   std::string robot;               // configuration; "" = by the behavior's folder
-  std::string format = "mermaid";  // of the graph
+  std::string format = "mermaid";  // of the graph: mermaid, dot or svg
 };
 
 void add_behavior(CLI::App& app, BehaviorOptions& options);
