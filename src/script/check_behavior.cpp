@@ -36,8 +36,8 @@ std::vector<InputProblem> check_behavior(const std::filesystem::path& root, cons
   // A behavior that is called twice is told once.
   const auto key = [](const InputProblem& problem) { return std::tie(problem.file, problem.line, problem.message); };
   std::ranges::stable_sort(problems, {}, key);
-  const auto again = std::ranges::unique(problems, {}, key);
-  problems.erase(again.begin(), again.end());
+  const auto same = [&](const InputProblem& a, const InputProblem& b) { return key(a) == key(b); };
+  problems.erase(std::unique(problems.begin(), problems.end(), same), problems.end());
   return problems;
 }
 
