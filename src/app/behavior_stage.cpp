@@ -137,7 +137,7 @@ class IdealStage final : public TestStage {
 
 fs::path robot_of_behavior(const fs::path& behavior) {
   const fs::path configs = project_root(behavior) / "config";
-  const fs::path own = configs / fs::absolute(behavior).parent_path().filename() / "robot.json";
+  fs::path own = configs / fs::absolute(behavior).parent_path().filename() / "robot.json";
   if (fs::exists(own)) return own;
   std::vector<fs::path> robots;
   if (fs::is_directory(configs)) {

@@ -1,5 +1,6 @@
 #include "kadans/app/control_object_project.h"
 
+#include <algorithm>
 #include <cctype>
 #include <stdexcept>
 #include <string_view>
@@ -32,10 +33,7 @@ bool good(const std::string& type) {
   if (type.empty() || type.size() > name_max || type.back() == '_' || type.find("__") != std::string::npos)
     return false;
   if (!(type[0] >= 'a' && type[0] <= 'z')) return false;
-  for (const char c : type) {
-    if (!((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_')) return false;
-  }
-  return true;
+  return std::ranges::all_of(type, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 }  // namespace

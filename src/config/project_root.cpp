@@ -50,7 +50,7 @@ std::string nearest_file(const fs::path& wanted) {
 }  // namespace
 
 fs::path project_root(const fs::path& file) {
-  const fs::path own = folder_of(file);
+  fs::path own = folder_of(file);
   if (const auto root = root_above(own)) return *root;
   std::error_code error;
   const fs::path working = fs::current_path(error);

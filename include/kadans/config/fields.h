@@ -31,13 +31,13 @@ enum class Need : std::uint8_t { optional, required };
 struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  std::string_view unit = "";
+  std::string_view unit;
 };
 
 struct IntegerRange {
   std::uint64_t min = 0;
   std::uint64_t max = std::numeric_limits<std::uint32_t>::max();
-  std::string_view unit = "";
+  std::string_view unit;
 };
 
 struct CountRange {
