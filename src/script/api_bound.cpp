@@ -24,7 +24,7 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   KnownNames known = read_known_names(parts);
   std::vector<std::string> all;
   const auto add = [&](const std::string& owner, const std::vector<std::string>& names) {
-    for (const std::string& name : names) all.push_back(owner + "." + name);
+    for (const std::string& name : names) all.push_back(std::string(owner).append(".").append(name));
   };
   for (const ObjectInfo& object : catalog.objects) known.machine.fields.erase(object.name);
   auto& s = known.snapshot.fields;

@@ -91,13 +91,12 @@ std::size_t SourceScopes::local_at(std::size_t at) {
     return function_at(at + 1);
   }
   std::vector<std::string> names;
-  for (++at; tokens_[at].kind == Kind::name; ++at) {
+  ++at;
+  while (tokens_[at].kind == Kind::name) {
     names.push_back(tokens_[at].text);
-    if (!tokens_[at + 1].is(",")) {
-      ++at;
-      break;
-    }
-    ++at;
+    const bool more = tokens_[at + 1].is(",");
+    at += more ? 2 : 1;
+    if (!more) break;
   }
   const SourceMeaning meaning = names.size() == 1 && tokens_[at].is("=") ? value_at(at + 1) : SourceMeaning{};
   // The names hold from here on: what stands right of '=' is read with them, which matters to no check.
