@@ -94,7 +94,7 @@ class Sim {
       const ScenarioCheck& c = check.config();
       const bool about_later =
           c.kind == CheckKind::at_end || (c.kind == CheckKind::eventually && c.until_s > duration_s_);
-      return c.from_s > duration_s_ || about_later;
+      return c.from_s >= duration_s_ || about_later;
     });
   }
 
