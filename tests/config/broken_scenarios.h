@@ -30,8 +30,8 @@ inline constexpr Broken broken_scenarios[] = {
     {"\"seed\": 7", "\"seed\": 0.5",
      "6:11: seed is 0.5, must be 0..18446744073709551615, a whole number: where all random numbers of the run come "
      "from"},
-    {"\"models/tulip/tulip.urdf\"", "\"behaviors/tulip/none.lua\"",
-     "7:17: behavior: there is no file 'behaviors/tulip/none.lua' in ROOT"},
+    {"\"models/tulip/tulip.urdf\"", "\"behaviors/tulip/no_such_behavior.lua\"",
+     "7:17: behavior: there is no file 'behaviors/tulip/no_such_behavior.lua' in ROOT"},
     {"\"models/tulip/tulip.urdf\"", "true",
      "7:17: behaviors[0] must be a string, not true: behavior files, played one after the other"},
     {"\"kind\": \"always\"", "\"kind\": \"allways\"",
