@@ -136,7 +136,7 @@ TEST_CASE("behavior check finds states that nothing leads to or out of, and guar
     compare(checked.problems("local k = require 'kadans'\n" + mistake.code), mistake);
 }
 
-TEST_CASE("behavior check tells everything that is wrong at once and exits 2; the shipped behaviors are clean") {
+TEST_CASE("behavior check tells everything that is wrong at once and exits 2, the shipped behaviors are clean") {
   const auto project = program::project_copy("behavior_check");
   CHECK(program::run("behavior check behaviors/tulip/squat.lua", project).exit_code == 0);
   REQUIRE(program::edit(project / "behaviors/tulip/squat.lua", "m.posture:set_gains(\"stiff\")",

@@ -66,7 +66,7 @@ TEST_CASE("ProfilePosition takes a new set-point on the way without a step in ve
   CHECK(bench.computed.joints[0].position_rad == -0.5);
 }
 
-TEST_CASE("ProfilePosition cancelled stops soon; a joint too fast to stop before its limit is led back to it") {
+TEST_CASE("ProfilePosition cancelled stops soon, a joint too fast to stop before its limit is led back to it") {
   ObjectBench bench = tuned();
   bench.set_point("hip.position_rad", 1.0, 0);
   bench.run(300);

@@ -81,7 +81,7 @@ TEST_CASE("TrajectoryList's reference stays between its points") {
   }
 }
 
-TEST_CASE("TrajectoryList without append replaces what is left of the list; no duration is at once") {
+TEST_CASE("TrajectoryList without append replaces what is left of the list, no duration is at once") {
   ObjectBench bench = tuned();
   bench.set_point("hip.position_rad", 0.3, 0.2);
   bench.set_point("hip.position_rad", 0.5, 0.2);

@@ -71,7 +71,7 @@ constexpr double squat_knee_rad = 1.2636, stand_knee_rad = 0.3;
 
 TEST_SUITE_BEGIN("contract");
 
-TEST_CASE("that behavior stops with file:line and a traceback; the set holds its set-points, then the safe posture" *
+TEST_CASE("that behavior stops with file:line and a traceback, the set holds its set-points, then the safe posture" *
           description("a script errors")) {
   Play play("contract_error", behavior("      local nothing = nil\n      nothing.field = 1"));
   play.run(0.7);
@@ -84,7 +84,7 @@ TEST_CASE("that behavior stops with file:line and a traceback; the set holds its
   CHECK(later.result.faults.empty());
 }
 
-TEST_CASE("stopped within its budget; the control loop shows no effect" *
+TEST_CASE("stopped within its budget, the control loop shows no effect" *
           description("a script loops or eats memory")) {
   for (const char* code : {"      while true do end", "      local t = {} while true do t[#t + 1] = {} end",
                            "      while true do pcall(function() while true do end end) end"}) {

@@ -67,7 +67,7 @@ TEST_CASE("while it is held set-points stay: commands are refused and counted, b
   CHECK(robot.plant.truth().position_rad[0] == doctest::Approx(0.9).epsilon(0.01));
 }
 
-TEST_CASE("the transaction is refused whole, counted and reported; nothing moves, nothing is clamped" *
+TEST_CASE("the transaction is refused whole, counted and reported, nothing moves, nothing is clamped" *
           description("a command or set-point is not finite or out of range")) {
   for (const double wrong : {not_a_number, 1.51, -1e9}) {
     LightRobot robot(2);
@@ -94,7 +94,7 @@ TEST_CASE("the transaction has expired: refused, counted, reported" * descriptio
   CHECK(std::abs(robot.plant.truth().position_rad[0] - 0.1) < 1e-3);
 }
 
-TEST_CASE("the queue refuses what does not fit, visibly; what fitted is applied, none is lost" *
+TEST_CASE("the queue refuses what does not fit, visibly, what fitted is applied, none is lost" *
           description("the command queue is flooded")) {
   LightRobot robot(4);
   robot.run(100);
@@ -105,7 +105,7 @@ TEST_CASE("the queue refuses what does not fit, visibly; what fitted is applied,
   CHECK(robot.faults.empty());
 }
 
-TEST_CASE("found within the ticks of safety/detection.h; the joint alone is off, latched" *
+TEST_CASE("found within the ticks of safety/detection.h, the joint alone is off, latched" *
           description("a joint's sensor is silent, jumps or is not finite")) {
   struct Row {
     SensorFaultKind kind;
@@ -127,7 +127,7 @@ TEST_CASE("found within the ticks of safety/detection.h; the joint alone is off,
   }
 }
 
-TEST_CASE("found once the motor moves or pulls against the reading; the joint alone is off, latched" *
+TEST_CASE("found once the motor moves or pulls against the reading, the joint alone is off, latched" *
           description("a joint's sensor is stuck")) {
   LightRobot robot(5);
   robot.run(100);
@@ -139,7 +139,7 @@ TEST_CASE("found once the motor moves or pulls against the reading; the joint al
   CHECK(robot.safety.joint_level(1) == SafetyLevel::normal);
 }
 
-TEST_CASE("found in time; the robot holds until it is back (stuck: until cleared)" *
+TEST_CASE("found in time, the robot holds until it is back (stuck: until cleared)" *
           description("the IMU is silent, stuck or not finite")) {
   struct Row {
     SensorFaultKind kind;
@@ -160,7 +160,7 @@ TEST_CASE("found in time; the robot holds until it is back (stuck: until cleared
   }
 }
 
-TEST_CASE("found in time; the robot goes on, limited and flagged" *
+TEST_CASE("found in time, the robot goes on, limited and flagged" *
           description("a foot's sensor is silent, stuck, out of its range or not finite")) {
   for (const SensorFaultKind kind :
        {SensorFaultKind::silent, SensorFaultKind::stuck, SensorFaultKind::offset, SensorFaultKind::not_finite}) {
@@ -173,7 +173,7 @@ TEST_CASE("found in time; the robot goes on, limited and flagged" *
   }
 }
 
-TEST_CASE("never written; the joint damps, latched until cleared" * description("the actuation is not finite")) {
+TEST_CASE("never written, the joint damps, latched until cleared" * description("the actuation is not finite")) {
   for (const double wrong : {not_a_number, std::numeric_limits<double>::infinity()}) {
     LightRobot robot(8);
     robot.run(100);
@@ -213,7 +213,7 @@ TEST_CASE("the joint damps, latched until cleared" * description("a joint passes
   CHECK(robot.safety.joint_level(0) == SafetyLevel::damp);
 }
 
-TEST_CASE("true dt is handed on, missed ticks are counted; N late ones in a row make the robot damp" *
+TEST_CASE("true dt is handed on, missed ticks are counted, N late ones in a row make the robot damp" *
           description("a tick overruns")) {
   LightRobot robot(11);
   robot.run(100);

@@ -45,7 +45,7 @@ TEST_CASE("The worst fault decides the rung, and each rung is left by its own ex
   CHECK(f.ladder.idle());
 }
 
-TEST_CASE("A fault that flickers is one fault; one that returns after its exit time is another") {
+TEST_CASE("A fault that flickers is one fault, one that returns after its exit time is another") {
   Fixture f;
   CHECK(f.update(bit(FaultCode::soft_stop)) == bit(FaultCode::soft_stop));
   for (int i = 0; i < 10; ++i) {

@@ -23,7 +23,7 @@ TEST_CASE("A passive joint is never actuated") {
   CHECK(bench.written.joints[1].effort_Nm == 0);
 }
 
-TEST_CASE("A lost heartbeat holds, then damps, then takes all torque; only holding is undone by its return") {
+TEST_CASE("A lost heartbeat holds, then damps, then takes all torque, only holding is undone by its return") {
   Bench bench;
   bench.heartbeat_age_s = 0.2;
   bench.check();
@@ -53,7 +53,7 @@ TEST_CASE("A heartbeat of no age that makes sense counts as lost") {
   CHECK(bench.status.level == SafetyLevel::hold);
 }
 
-TEST_CASE("Overruns are counted; too many in a row make the robot damp until cleared") {
+TEST_CASE("Overruns are counted, too many in a row make the robot damp until cleared") {
   Bench bench;
   bench.missed_ticks = 1;
   for (int i = 0; i < 4; ++i) bench.check();
@@ -72,7 +72,7 @@ TEST_CASE("Overruns are counted; too many in a row make the robot damp until cle
   CHECK(bench.safety->robot_level() == SafetyLevel::normal);
 }
 
-TEST_CASE("The first fault is kept, with joint, tick, value and limit; later ones are counted") {
+TEST_CASE("The first fault is kept, with joint, tick, value and limit, later ones are counted") {
   Bench bench;
   bench.check();
   bench.ask(40);

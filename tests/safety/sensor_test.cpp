@@ -35,7 +35,7 @@ TEST_CASE("A joint that is sampled slower may be silent for its period") {
   CHECK(bench.check().mode == ActuationMode::off);
 }
 
-TEST_CASE("A reading that steps further than the joint can move is a jump; what it can move is none") {
+TEST_CASE("A reading that steps further than the joint can move is a jump, what it can move is none") {
   Bench bench;
   bench.check();
   bench.place(1 + 0.001 * 16 + 0.009);
@@ -61,7 +61,7 @@ TEST_CASE("After missing readings a joint may be as far as it can have gone sinc
   CHECK(bench.codes().empty());
 }
 
-TEST_CASE("A reading that stays the same while the motor moves is stuck; one at rest is not") {
+TEST_CASE("A reading that stays the same while the motor moves is stuck, one at rest is not") {
   Bench bench;
   bench.knee_noise = false;
   bench.check_for(1);
@@ -128,7 +128,7 @@ TEST_CASE("Without an IMU the robot holds until it is back") {
   CHECK(bench.codes().empty());
 }
 
-TEST_CASE("An IMU whose noise ends is stuck; one that never had noise is not") {
+TEST_CASE("An IMU whose noise ends is stuck, one that never had noise is not") {
   Bench bench;
   bench.check_for(0.2);
   bench.imu_noise = false;

@@ -114,7 +114,7 @@ TEST_CASE("the shallow and the deep history and waiting events survive") {
   CHECK(stage.behavior->state() == "o.b.c");
 }
 
-TEST_CASE("vars of another version go through migrate; without it they start as declared") {
+TEST_CASE("vars of another version go through migrate, without it they start as declared") {
   const auto version = [](const std::string& head) {
     return chart(head + " k.state 'a' { during = function(m) print(m.vars.n, m.vars.more) end }");
   };
@@ -135,7 +135,7 @@ TEST_CASE("vars of another version go through migrate; without it they start as 
   CHECK(said == "8 x;8 x;80 1;1 nil;");
 }
 
-TEST_CASE("a motion kept in vars can still be asked after a reload; a function cannot be kept") {
+TEST_CASE("a motion kept in vars can still be asked after a reload, a function cannot be kept") {
   const auto keeps = [](const char* what) {
     return chart(std::string("k.state 'a' { enter = function(m) m.vars.kept = ") + what +
                  " end, during = function(m) if m.vars.kept.done then print 'arrived' m.vars.kept = { } end end }");

@@ -58,7 +58,7 @@ TEST_CASE("What is computed in a tick acts in the next") {
   CHECK(bench.torque_Nm() == doctest::Approx(2));
 }
 
-TEST_CASE("Names may be short; unknown and unclear ones and values out of range are refused") {
+TEST_CASE("Names may be short, unknown and unclear ones and values out of range are refused") {
   JointBench bench(joint(), {{"soft", make_joint_pid}, {"stiff", make_joint_pid}});
   bench.set("soft.joint.kp_Nm_per_rad", 5);
   CHECK(bench.get("soft.joint.kp_Nm_per_rad") == 5);

@@ -98,7 +98,7 @@ TEST_CASE("An actuation acts as many steps later as the delay says, and holds") 
   }
 }
 
-TEST_CASE("The drive saturates and says so; its own modes reach what they are asked for") {
+TEST_CASE("The drive saturates and says so, its own modes reach what they are asked for") {
   OneJointPlant plant(
       {.inertia_kg_m2 = 0.1, .torque_max_Nm = 3, .position_gain_Nm_per_rad = 50, .velocity_gain_Nms_per_rad = 4});
   plant.write(effort(10));

@@ -12,7 +12,7 @@ using namespace kadans;
 KADANS_REGISTER_CONTROL_OBJECT("registered_pid", make_joint_pid);
 KADANS_REGISTER_CONTROL_OBJECT("another_pid", make_joint_pid);
 
-TEST_CASE("Types are found by name and made; a name that is taken is refused with who has it") {
+TEST_CASE("Types are found by name and made, a name that is taken is refused with who has it") {
   ControlObjectTypes types;
   types.add("joint_pid", make_joint_pid);
   REQUIRE(types.find("joint_pid") != nullptr);
