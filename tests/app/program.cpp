@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace kadans::program {
 
@@ -19,8 +20,25 @@ Outcome run(const std::string& arguments, const fs::path& where) {
   return {code, read(out), read(err)};
 }
 
+namespace {
+
+// The folders of this process: ctest runs several cases of one program at once, each in a process of its own.
+struct OwnFolders {
+  fs::path root = fs::path(KADANS_BINARY_DIR) / "tests" / "folders" / std::to_string(getpid());
+  OwnFolders() = default;
+  ~OwnFolders() {
+    std::error_code ignored;
+    fs::remove_all(root, ignored);
+  }
+  OwnFolders(const OwnFolders&) = delete;
+  OwnFolders& operator=(const OwnFolders&) = delete;
+};
+
+}  // namespace
+
 fs::path fresh_folder(const std::string& name) {
-  const fs::path folder = fs::path(KADANS_BINARY_DIR) / "tests" / "folders" / name;
+  static const OwnFolders own;
+  const fs::path folder = own.root / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

@@ -14,7 +14,7 @@ struct Outcome {
 // `arguments` as typed in a shell, in folder `where`.
 Outcome run(const std::string& arguments, const std::filesystem::path& where);
 
-// A fresh folder below the build folder, emptied first.
+// A fresh folder below the build folder, emptied first, this process's own; gone when the process ends.
 std::filesystem::path fresh_folder(const std::string& name);
 // The same with copies of the project's config, models and behaviors in it.
 std::filesystem::path project_copy(const std::string& name);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 using kadans::testing::GoldenRecord;
 
@@ -16,9 +17,14 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Folder {
-  fs::path file = fs::path(KADANS_BINARY_DIR) / "tests" / "folders" / "golden" / "record.csv";
-  Folder() { fs::remove_all(file.parent_path()); }
-  ~Folder() { unsetenv("KADANS_UPDATE_GOLDEN"); }  // NOLINT(concurrency-mt-unsafe): one thread
+  fs::path root = fs::path(KADANS_BINARY_DIR) / "tests" / "folders" / std::to_string(getpid());
+  fs::path file = root / "golden" / "record.csv";
+  Folder() { fs::remove_all(root); }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(root, ignored);
+    unsetenv("KADANS_UPDATE_GOLDEN");  // NOLINT(concurrency-mt-unsafe): one thread
+  }
   void update(bool wanted) const {
     setenv("KADANS_UPDATE_GOLDEN", wanted ? "1" : "0", 1);  // NOLINT(concurrency-mt-unsafe): one thread
   }
