@@ -201,19 +201,4 @@ RunParts Assembly::parts() noexcept {
           upkeep_count_};
 }
 
-std::vector<Check> Assembly::make_checks() const {
-  std::vector<Check> checks;
-  Problems problems(scenario_.file);
-  for (const ScenarioCheck& check : scenario_.checks) {
-    const auto signal = catalog().signals.find(check.signal);
-    if (!signal) {
-      problems.add_unknown(check.signal_place, "signal", check.signal, catalog().signals.names());
-    } else {
-      checks.emplace_back(check, *signal);
-    }
-  }
-  problems.throw_if_any();
-  return checks;
-}
-
 }  // namespace kadans

@@ -36,7 +36,7 @@ std::string check_scenario(const std::string& file) {
   const ScenarioConfig scenario = read_scenario_config(file);
   RunLog log;
   const Assembly assembly(scenario, scenario.seed, log);
-  const auto checks = assembly.make_checks();
+  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
   return "scenario: " + std::to_string(scenario.behaviors.size()) + " behaviors, " + std::to_string(checks.size()) +
          " checks, " + std::to_string(assembly.catalog().signals.size()) + " signals";
 }

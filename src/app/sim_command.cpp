@@ -49,6 +49,18 @@ class LateLog final : public BehaviorLog {
   bool shown_ = false;
 };
 
+// A run that was asked to be short says nothing about what was to come later: such checks are not judged.
+std::vector<ScenarioCheck> reached_checks(const ScenarioConfig& scenario, double duration_s) {
+  std::vector<ScenarioCheck> checks = scenario.checks;
+  if (duration_s >= scenario.duration_s) return checks;
+  std::erase_if(checks, [&](const ScenarioCheck& c) {
+    const bool about_later = c.kind == CheckKind::at_end || c.kind == CheckKind::settles ||
+                             (c.kind == CheckKind::eventually && c.until_s > duration_s);
+    return c.from_s >= duration_s || about_later;
+  });
+  return checks;
+}
+
 class Sim {
  public:
   explicit Sim(const SimOptions& options)
@@ -57,9 +69,7 @@ class Sim {
         seed_(options.seed.value_or(scenario_.seed)),
         duration_s_(options.duration_s.value_or(scenario_.duration_s)),
         assembly_(scenario_, seed_, log_),
-        checks_(assembly_.make_checks()) {
-    if (duration_s_ < scenario_.duration_s) leave_out_unreached_checks();
-  }
+        checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file) {}
 
   int run() {
     const std::string record = start_record();
@@ -88,16 +98,6 @@ class Sim {
   }
 
  private:
-  // A run that was asked to be short says nothing about what was to come later: such checks are not judged.
-  void leave_out_unreached_checks() {
-    std::erase_if(checks_, [&](const Check& check) {
-      const ScenarioCheck& c = check.config();
-      const bool about_later =
-          c.kind == CheckKind::at_end || (c.kind == CheckKind::eventually && c.until_s > duration_s_);
-      return c.from_s >= duration_s_ || about_later;
-    });
-  }
-
   // The file that is written, or "". A file that was asked for and cannot be written is an error; the usual one is not.
   std::string start_record() {
     if (options_.no_record) return {};
@@ -130,7 +130,7 @@ class Sim {
       return;
     }
     std::vector<ScenarioCheck> wanted;
-    for (const Check& check : checks_) wanted.push_back(check.config());
+    for (std::size_t i = 0; i < checks_.size(); ++i) wanted.push_back(checks_.config(i));
     const std::vector<ReportTrace> traces{height};
     const ReportSubject subject{.result = result,
                                 .log = log_,
@@ -152,7 +152,7 @@ class Sim {
   LateLog late_log_;
   RunLog log_{&late_log_};
   Assembly assembly_;
-  std::vector<Check> checks_;
+  Checks checks_;
   std::unique_ptr<Recorder> recorder_;
 };
 

@@ -9,45 +9,7 @@ namespace kadans {
 namespace {
 
 const std::array<std::string, 2> plant_names{"bullet", "ideal"};
-const std::array<std::string, 4> check_names{"always", "never", "eventually", "at_end"};
 constexpr double duration_max_s = 1e6;
-
-void check_fields(Fields& f, ScenarioCheck& check) {
-  constexpr NumberRange time{0, duration_max_s, "s"};
-  f.string("name", check.name, "what is shown to hold", Need::required);
-  f.choice("kind", check.kind, check_names, "when the signal must (never: must not) be in min..max", Need::required);
-  f.string("signal", check.signal, "name of the signal", Need::required);
-  f.number("min", check.min, {}, "least value, in the signal's unit");
-  f.number("max", check.max, {}, "greatest value, in the signal's unit");
-  f.number("from_s", check.from_s, time, "looked at from this time on");
-  f.number("until_s", check.until_s, time, "looked at up to this time, else to the end");
-  check.signal_place = f.place("signal");
-}
-
-// What the fields alone cannot say.
-void verify(const Fields& f, const ScenarioCheck& check, const ScenarioConfig& scenario, Problems& problems) {
-  if (!f.has("min") && !f.has("max")) problems.add(f.place(), f.path() + " needs min, max or both");
-  if (!(check.min <= check.max)) {
-    problems.add(f.place("max"),
-                 f.path("max") + " is " + number_text(check.max) + ", must be at least min, " + number_text(check.min));
-  }
-  if (!(check.from_s <= check.until_s)) {
-    problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(check.until_s) +
-                                         ", must be at least from_s, " + number_text(check.from_s) + " s");
-  }
-  if (scenario.duration_s > 0 && !(check.from_s <= scenario.duration_s)) {
-    problems.add(f.place("from_s"), f.path("from_s") + " is " + number_text(check.from_s) + ", the scenario ends at " +
-                                        number_text(scenario.duration_s) + " s");
-  }
-  if (check.kind == CheckKind::at_end && (f.has("from_s") || f.has("until_s"))) {
-    problems.add(f.place(f.has("from_s") ? "from_s" : "until_s"),
-                 f.path() + " is judged at the end, from_s and until_s mean nothing here");
-  }
-  const auto same = [&](const ScenarioCheck& other) { return other.name == check.name; };
-  if (std::any_of(scenario.checks.begin(), scenario.checks.end(), same)) {
-    problems.add(f.place("name"), f.path("name") + ": another check is named " + in_quotes(check.name));
-  }
-}
 
 void reload_fields(Fields& f, ScenarioReload& reload, Problems& problems) {
   f.number("at_s", reload.at_s, {0, duration_max_s, "s"}, "when", Need::required);
@@ -79,10 +41,8 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   });
   f.list("checks", {0, 1000}, "what must hold", [&](Fields& e) {
     ScenarioCheck check;
-    check_fields(e, check);
-    if (!e.reading()) return;
-    verify(e, check, scenario, problems);
-    scenario.checks.push_back(std::move(check));
+    check_fields(e, check, scenario.duration_s, scenario.checks, problems);
+    if (e.reading()) scenario.checks.push_back(std::move(check));
   });
   if (!f.reading()) return;
   if (!scenario.robot.empty()) {

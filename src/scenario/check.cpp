@@ -1,44 +1,87 @@
 #include "kadans/scenario/check.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace kadans {
 
-// How far the value is outside the bounds; at or below 0 inside. NaN is infinitely far outside.
-double Check::excess(double value) const noexcept {
-  if (std::isnan(value)) return std::numeric_limits<double>::infinity();
-  return std::max(check_.min - value, value - check_.max);
-}
-
-void Check::update(double time_s, std::span<const double> row) noexcept {
+void Check::update(double time_s, const Observation& seen) noexcept {
   if (!(time_s >= check_.from_s && time_s <= check_.until_s)) return;
-  const double value = row[signal_];
-  double badness = excess(value);
+  last_s_ = time_s;
   switch (check_.kind) {
     case CheckKind::always:
-      break;
+      return keep_worst(time_s, seen, seen.excess);
     case CheckKind::never:
     case CheckKind::eventually:
-      badness = -badness;
-      break;  // the value deepest inside is remembered
+      return keep_worst(time_s, seen, -seen.excess);  // what is deepest inside
     case CheckKind::at_end:
-      badness = std::numeric_limits<double>::max();
-      break;  // the last counts
+      return keep_worst(time_s, seen, std::numeric_limits<double>::infinity());  // the last
+    case CheckKind::within:
+      return update_within(time_s, seen);
+    case CheckKind::settles:
+      return update_settling(time_s, seen);
   }
-  if (!seen_ || badness > worst_excess_ || check_.kind == CheckKind::at_end) {
-    worst_excess_ = badness;
-    value_ = value;
+}
+
+void Check::keep_worst(double time_s, const Observation& seen, double badness) noexcept {
+  if (!seen_ || badness > worst_ || check_.kind == CheckKind::at_end) {
+    worst_ = badness;
+    value_ = seen.value;
+    excess_ = seen.excess;
     at_s_ = time_s;
   }
   seen_ = true;
 }
 
+void Check::update_within(double time_s, const Observation& seen) noexcept {
+  if (seen.when && !when_ && !waiting_) {
+    started_ = waiting_ = true;
+    began_s_ = time_s;
+  }
+  when_ = seen.when;
+  if (failed_ || !waiting_) return;
+  value_ = seen.value;
+  at_s_ = time_s;
+  failed_ = time_s - began_s_ > check_.within_s;
+  if (seen.excess <= 0) waiting_ = false;
+}
+
+void Check::update_settling(double time_s, const Observation& seen) noexcept {
+  if (!started_ && seen.when) {
+    started_ = true;
+    began_s_ = time_s;
+  }
+  if (!started_ || seen.excess <= 0) return;
+  outside_s_ = time_s;
+  at_s_ = time_s;
+}
+
+CheckResult Check::settled() const {
+  CheckResult result{.name = check_.name, .value = std::max(0.0, outside_s_ - began_s_), .at_s = at_s_};
+  if (last_s_ - began_s_ < check_.within_s) {
+    result.note = "the run ended before within_s had passed";
+  } else {
+    result.passed = result.value <= check_.within_s;
+  }
+  return result;
+}
+
 CheckResult Check::result() const {
-  CheckResult result{.name = check_.name, .passed = false, .value = value_, .at_s = at_s_};
-  if (!seen_) return result;  // never looked at: nothing was shown
-  const bool inside = excess(value_) <= 0;
-  result.passed = check_.kind == CheckKind::never ? !inside : inside;
+  CheckResult result{.name = check_.name, .value = value_, .at_s = at_s_};
+  if (check_.kind == CheckKind::within || check_.kind == CheckKind::settles) {
+    if (!started_) {
+      result.note = "its `when` never became true";
+      return result;
+    }
+    if (check_.kind == CheckKind::settles) return settled();
+    result.passed = !failed_;
+    return result;
+  }
+  if (!seen_) {
+    result.note = "never looked at";
+    return result;
+  }
+  const bool holds = excess_ <= 0;
+  result.passed = check_.kind == CheckKind::never ? !holds : holds;
   return result;
 }
 

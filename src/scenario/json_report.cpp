@@ -32,6 +32,7 @@ std::string json_report(const RunResult& result, const RunLog& log, const RobotM
   for (const CheckResult& check : result.checks) {
     json["checks"].push_back(
         {{"name", check.name}, {"passed", check.passed}, {"value", check.value}, {"at_s", check.at_s}});
+    if (!check.note.empty()) json["checks"].back()["note"] = check.note;
   }
   json["duration_s"] = result.duration_s;
   json["realtime_factor"] = result.realtime_factor;

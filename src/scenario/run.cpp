@@ -9,7 +9,7 @@ namespace {
 
 class Run {
  public:
-  Run(const RunParts& parts, std::vector<Check>& checks, const std::vector<RunObserver*>& observers)
+  Run(const RunParts& parts, Checks& checks, const std::vector<RunObserver*>& observers)
       : parts_(parts), checks_(checks), observers_(observers) {}
 
   void go(double duration_s) {
@@ -36,7 +36,7 @@ class Run {
     result_.tick = {cost.percentile_ns(0.5), cost.percentile_ns(0.99), static_cast<double>(cost.max_ns())};
     result_.commands_sent = parts_.behaviors.commands().sent();
     result_.commands_refused = parts_.behaviors.commands().refused() + parts_.control.inbox().state().refused;
-    for (const Check& check : checks_) result_.checks.push_back(check.result());
+    result_.checks = checks_.results();
     const bool all_passed =
         std::all_of(result_.checks.begin(), result_.checks.end(), [](const CheckResult& c) { return c.passed; });
     result_.passed = all_passed && result_.error.empty() && !result_.interrupted && !parts_.log.has_errors();
@@ -56,14 +56,14 @@ class Run {
     hash_.add(row.first(parts_.upkeep_first));
     hash_.add(row.subspan(parts_.upkeep_first + parts_.upkeep_count));
     parts_.plant.hash(hash_);
-    for (Check& check : checks_) check.update(time_s, row);
+    checks_.update(time_s, row);
     for (RunObserver* observer : observers_) observer->tick(time_s, row);
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) result_.faults.push_back(fault);
   }
 
   const RunParts& parts_;
-  std::vector<Check>& checks_;
+  Checks& checks_;
   const std::vector<RunObserver*>& observers_;
   StateHash hash_;
   RunResult result_;
@@ -71,7 +71,7 @@ class Run {
 
 }  // namespace
 
-RunResult run_scenario(const RunParts& parts, double duration_s, std::vector<Check>& checks,
+RunResult run_scenario(const RunParts& parts, double duration_s, Checks& checks,
                        const std::vector<RunObserver*>& observers) {
   Run run(parts, checks, observers);
   run.go(duration_s);

@@ -70,6 +70,7 @@ class TextReport {
   }
 
   static std::string bounds(const ScenarioCheck& check) {
+    if (!check.that.empty()) return check.that;
     if (std::isfinite(check.min) && std::isfinite(check.max)) return format("%g .. %g", check.min, check.max);
     return std::isfinite(check.min) ? format(">= %g", check.min) : format("<= %g", check.max);
   }
@@ -82,7 +83,7 @@ class TextReport {
       const std::string mark = check.passed ? green(style_.unicode ? "✓" : "ok") : red(style_.unicode ? "✗" : "FAILED");
       text_ += "  " + mark + " " + check.name + std::string(widest - check.name.size(), ' ');
       text_ += format("  %11.5g at %6.2f s", check.value, check.at_s) +
-               dim("   wanted " + bounds(subject_.checks[i]) + '\n');
+               dim("   wanted " + bounds(subject_.checks[i]) + (check.note.empty() ? "" : "; " + check.note) + '\n');
     }
   }
 

@@ -26,7 +26,7 @@ struct Played {
 
 void play(const ScenarioConfig& scenario, double duration_s, Played& played) {
   Assembly robot(scenario, 3, played.log);
-  std::vector<Check> checks;
+  Checks checks(robot.catalog().signals);
   const RunParts parts = robot.parts();
   played.result = run_scenario(parts, duration_s, checks, {});
   const auto row = parts.control.row();

@@ -45,7 +45,7 @@ TEST_CASE("The estimated joint torques of a squatting TULip are those that its d
   Assembly robot(scenario, 3, log);
   const RunParts parts = robot.parts();
   TorqueComparison comparison(parts);
-  std::vector<Check> checks;
+  Checks checks(robot.catalog().signals);
   const RunResult result = run_scenario(parts, 4.0, checks, {&comparison});
   CHECK(result.error.empty());
   CHECK(comparison.largest_Nm > 5);

@@ -12,7 +12,7 @@ std::uint64_t hash_in_this_process(std::uint64_t seed) {
   const ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json");
   RunLog log;
   Assembly robot(scenario, seed, log);
-  std::vector<Check> checks;
+  Checks checks(robot.catalog().signals);
   const RunParts parts = robot.parts();
   return run_scenario(parts, 2.5, checks, {}).state_hash;
 }

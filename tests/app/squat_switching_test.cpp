@@ -100,7 +100,7 @@ TEST_CASE("While squatting, switching PID, computed torque, impedance every seco
   scenario.behaviors.clear();
   RunLog log;
   Assembly robot(scenario, 1, log);
-  std::vector<Check> checks;
+  Checks checks(robot.catalog().signals);
   const RunParts parts = robot.parts();
   Switcher switcher(robot.catalog(), parts.control.exchange());
   const RunResult result = run_scenario(parts, 20.0, checks, {&switcher});

@@ -10,7 +10,7 @@ TEST_CASE("TULip squats three times within every bound of its scenario, for seve
     CAPTURE(seed);
     RunLog log;
     Assembly robot(scenario, seed, log);
-    std::vector<Check> checks = robot.make_checks();
+    Checks checks(robot.catalog().signals, scenario.checks);
     const RunParts parts = robot.parts();
     const RunResult result = run_scenario(parts, scenario.duration_s, checks, {});
     for (const CheckResult& check : result.checks) {

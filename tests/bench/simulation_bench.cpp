@@ -11,7 +11,7 @@ void bench_simulation(Report& report) {
     RunLog log;
     Assembly robot(scenario, 1, log);
     const RunParts parts = robot.parts();
-    std::vector<Check> checks;
+    Checks checks(robot.catalog().signals);
     factors.push_back(run_scenario(parts, 4.0, checks, {}).realtime_factor);
     steps_us.push_back(1e-3 * time_ns([&] { parts.plant.step(1'000'000); }, 10, 50));
   }

@@ -36,8 +36,7 @@ inline constexpr Broken broken_scenarios[] = {
      "7:17: behaviors[0] must be a string, not true: behavior files, played one after the other"},
     {"\"kind\": \"always\"", "\"kind\": \"allways\"",
      "9:34: checks[0].kind: unknown value 'allways', did you mean 'always'?"},
-    {"\"kind\": \"always\", ", "",
-     "9:5: key 'kind' is missing in checks[0]: when the signal must (never: must not) be in min..max"},
+    {"\"kind\": \"always\", ", "", "9:5: key 'kind' is missing in checks[0]: when it must (never: must not) hold"},
     {"\"max\": 0.05", "\"max\": \"0.05\"",
      "9:78: checks[0].max must be a number, not the string '0.05': greatest value, in the signal's unit"},
     {", \"max\": 0.05", "", "9:5: checks[0] needs min, max or both"},
@@ -50,6 +49,13 @@ inline constexpr Broken broken_scenarios[] = {
     {"\"name\": \"tall\"", "\"name\": \"upright\"", "10:15: checks[1].name: another check is named 'upright'"},
     {"\"min\": 1,", "\"mni\": 1,",
      "11:5: checks[2] needs min, max or both\n11:72: unknown key 'mni' in checks[2], did you mean 'min'?"},
+    {"\"min\": 1,", "\"min\": 1, \"that\": \"x > 1\",",
+     "11:5: checks[2] has both signal and that, must have one of them"},
+    {"\"kind\": \"never\"", "\"kind\": \"within\"",
+     "11:5: checks[2] is of kind 'within' and needs when\n11:5: checks[2] is of kind 'within' and needs within_s"},
+    {"\"kind\": \"always\"", "\"kind\": \"settles\"", "9:5: checks[0] is of kind 'settles' and needs within_s"},
+    {"\"max\": 0.05", "\"max\": 0.05, \"when\": \"x > 1\"",
+     "9:92: checks[0].when means nothing to a check of kind 'always'"},
     {"\"checks\": [", "\"checks\": [ 5,", "8:15: checks[0] must be an object, not the number 5: what must hold"},
 };
 

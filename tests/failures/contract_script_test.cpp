@@ -52,7 +52,7 @@ struct Play {
   }
   void run(double duration_s) {
     Assembly robot(scenario, 1, log);
-    std::vector<Check> checks;
+    Checks checks(robot.catalog().signals);
     const RunParts parts = robot.parts();
     result = run_scenario(parts, duration_s, checks, {});
     knee_rad = parts.plant.truth().position_rad[robot.robot().model.find_joint("l_knee").value()];

@@ -1,23 +1,28 @@
-#include "kadans/scenario/check.h"
-
+// What each kind of check demands, on a signal within bounds and on a condition in Lua.
 #include <cmath>
-#include <vector>
 
 #include <doctest/doctest.h>
+
+#include "kadans/scenario/checks.h"
 
 using namespace kadans;
 
 namespace {
 
+// Signals x and y; one value of x a second, y counts the ticks.
 CheckResult judged(const ScenarioCheck& check, const std::vector<double>& values) {
-  Check judge(check, 1);
+  const double unused = 0;
+  SignalTable signals;
+  signals.add({"plant.x", "", ""}, &unused);
+  signals.add({"x", "", ""}, &unused);
+  signals.add({"plant.y", "", ""}, &unused);
+  Checks checks(signals, {check});
   double time_s = 0;
   for (const double value : values) {
-    const std::vector<double> row{99, value};  // the check looks at signal 1
-    judge.update(time_s, row);
+    checks.update(time_s, std::vector<double>{99, value, time_s});
     time_s += 1;
   }
-  return judge.result();
+  return checks.results().front();
 }
 
 }  // namespace
@@ -68,4 +73,68 @@ TEST_CASE("A window leaves out what is before and after it, one that is never re
   CHECK_FALSE(judged(check, {0, 0, 9, 0}).passed);
   check.from_s = check.until_s = 100;
   CHECK_FALSE(judged(check, {0, 0}).passed);
+}
+
+TEST_CASE("A condition holds or not, over several signals and the time") {
+  const ScenarioCheck check{.name = "n", .kind = CheckKind::always, .that = "x < 2 and abs(y - time_s) < 1e-9"};
+  CHECK(judged(check, {0, 1.5, 1}).passed);
+  const CheckResult result = judged(check, {0, 2.5, 7, 0});
+  CHECK_FALSE(result.passed);
+  CHECK(result.value == 2.5);  // the first signal, when it first did not hold
+  CHECK(result.at_s == 1);
+}
+
+TEST_CASE("within wants the condition soon after each time that `when` becomes true") {
+  const ScenarioCheck check{
+      .name = "n", .kind = CheckKind::within, .that = "x > 5", .when = "x < 1 and x > -1", .within_s = 2};
+  CHECK(judged(check, {2, 0, 2, 9, 2, 0, 2, 6}).passed);
+  const CheckResult late = judged(check, {2, 0, 2, 9, 2, 0, 2, 2, 9});
+  CHECK_FALSE(late.passed);
+  CHECK(late.at_s == 8);
+  const CheckResult idle = judged(check, {2, 2, 9});
+  CHECK_FALSE(idle.passed);
+  CHECK(idle.note == "its `when` never became true");
+  CHECK(judged(check, {2, 0, 2}).passed);  // ended before it was due
+}
+
+TEST_CASE("settles wants the value in its band for good") {
+  const ScenarioCheck check{.name = "n", .kind = CheckKind::settles, .signal = "x", .min = -1, .max = 1, .within_s = 2};
+  const CheckResult soon = judged(check, {5, 2, 0.5, 0});
+  CHECK(soon.passed);
+  CHECK(soon.value == 1);
+  CHECK_FALSE(judged(check, {5, 0, 0, 2, 0, 0}).passed);  // out once more, too late
+  const CheckResult cut = judged(check, {5, 0});
+  CHECK_FALSE(cut.passed);
+  CHECK(cut.note == "the run ended before within_s had passed");
+}
+
+TEST_CASE("A condition that is wrong is refused with its place, all at once") {
+  const double unused = 0;
+  SignalTable signals;
+  signals.add({"base.height_m", "m", ""}, &unused);
+  const std::vector<ScenarioCheck> checks{{.name = "a", .that = "base.heigth_m > 0.6", .that_place = {3, 20}},
+                                          {.name = "b", .that = "base.height_m > > 2", .that_place = {4, 20}},
+                                          {.name = "c", .signal = "base.hight_m", .signal_place = {5, 20}}};
+  try {
+    const Checks refused(signals, checks, "s.json");
+    FAIL("nothing was refused");
+  } catch (const InputError& error) {
+    REQUIRE(error.problems().size() == 3);
+    CHECK(error.problems()[0].text() == "s.json:3:21: unknown signal 'base.heigth_m', did you mean 'base.height_m'?");
+    CHECK(error.problems()[1].text() == "s.json:4:21: is not a condition: unexpected symbol near '>'");
+    CHECK(error.problems()[2].text() == "s.json:5:20: unknown signal 'base.hight_m', did you mean 'base.height_m'?");
+  }
+}
+
+TEST_CASE("A condition that goes wrong in the run fails every check, with the reason") {
+  CHECK_FALSE(judged({.name = "n", .kind = CheckKind::never, .that = "x"}, {0, 1}).passed);
+  const CheckResult number = judged({.name = "n", .kind = CheckKind::never, .that = "x + 1"}, {0, 1});
+  CHECK(number.note == "not judged: 'x + 1' gives a number, wanted true or false");
+}
+
+TEST_CASE("A condition cannot loop or reach for anything but signals and mathematics") {
+  for (const char* text : {"(function() while true do end end)()", "string.rep('x', 1e9) == ''", "values[1] > 0"}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(judged({.name = "n", .kind = CheckKind::always, .that = text}, {0}), InputError);
+  }
 }

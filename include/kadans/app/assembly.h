@@ -13,7 +13,6 @@
 #include "kadans/control/control_object_types.h"
 #include "kadans/engine/lockstep.h"
 #include "kadans/plant/plant.h"
-#include "kadans/scenario/check.h"
 #include "kadans/scenario/run.h"
 #include "kadans/script/script_host.h"
 
@@ -53,9 +52,6 @@ class Assembly {
   // Before the first step: from then on the behaviors see what the filter, which must outlive this, makes of the
   // snapshot.
   void filter(SnapshotFilter& filter);
-
-  // Throws InputError for a signal that nobody declares.
-  std::vector<Check> make_checks() const;
 
  private:
   const ScenarioConfig& scenario_;

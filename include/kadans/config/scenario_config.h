@@ -3,33 +3,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "kadans/config/fields.h"
+#include "kadans/config/scenario_check.h"
 
 namespace kadans {
 
 enum class PlantKind : std::uint8_t { bullet, ideal };
-
-enum class CheckKind : std::uint8_t {
-  always,      // the signal stays in [min, max]
-  never,       // the signal never comes into [min, max]
-  eventually,  // the signal comes into [min, max] at least once
-  at_end,      // the last value is in [min, max]
-};
-
-struct ScenarioCheck {
-  std::string name;
-  CheckKind kind = CheckKind::always;
-  std::string signal;
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  double from_s = 0;                                         // looked at from here ...
-  double until_s = std::numeric_limits<double>::infinity();  // ... to here, both included
-  TextPlace signal_place;
-};
 
 // A behavior goes on with the text of another file, as if somebody had saved it at this time.
 struct ScenarioReload {

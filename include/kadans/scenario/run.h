@@ -7,7 +7,7 @@
 
 #include "kadans/engine/lockstep.h"
 #include "kadans/plant/plant.h"
-#include "kadans/scenario/check.h"
+#include "kadans/scenario/checks.h"
 #include "kadans/scenario/run_log.h"
 #include "kadans/scenario/truth_signals.h"
 
@@ -56,7 +56,7 @@ struct RunResult {
 };
 
 // Runs for duration_s. `observers` may be empty. A plant that fails ends the run with an error in the result.
-RunResult run_scenario(const RunParts& parts, double duration_s, std::vector<Check>& checks,
+RunResult run_scenario(const RunParts& parts, double duration_s, Checks& checks,
                        const std::vector<RunObserver*>& observers);
 
 }  // namespace kadans

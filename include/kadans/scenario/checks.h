@@ -1,0 +1,47 @@
+// All that a scenario demands of a run: looks at every row of signals and gives the verdict at the end.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kadans/scenario/check.h"
+#include "kadans/script/signal_expressions.h"
+#include "kadans/signal/signal.h"
+
+namespace kadans {
+
+class Checks {
+ public:
+  // Looks the signals up and compiles the conditions; throws InputError with everything that is wrong. `file` is where
+  // the checks were read, for messages; the table must outlive this.
+  explicit Checks(const SignalTable& signals, const std::vector<ScenarioCheck>& checks = {},
+                  const std::string& file = {});
+
+  // After each control tick.
+  void update(double time_s, std::span<const double> row) noexcept;
+  std::vector<CheckResult> results() const;
+  const std::string& error() const noexcept { return conditions_.error(); }  // of a condition that went wrong
+
+  std::size_t size() const noexcept { return judged_.size(); }
+  const ScenarioCheck& config(std::size_t index) const { return judged_.at(index).check.config(); }
+  // What the check looks at: for pictures of a failure.
+  std::vector<SignalId> signals_of(std::size_t index) const;
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  struct Judged {
+    Check check;
+    SignalId signal = 0;
+    std::size_t that = none, when = none;  // conditions
+  };
+  std::size_t compile(const std::string& text, TextPlace place, Problems& problems);
+  Check::Observation observe(const Judged& judged, std::span<const double> row) const;
+
+  SignalExpressions conditions_;
+  std::vector<Judged> judged_;
+  bool broken_ = false;
+};
+
+}  // namespace kadans

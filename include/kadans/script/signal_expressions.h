@@ -1,0 +1,62 @@
+// Conditions on signals, written in Lua: "plant.base.height_m > 0.6 and abs(base.pitch_rad) < 0.2".
+//
+// A dotted name is a signal; "plant." may be left out where no other signal bears the shorter name. time_s is the time,
+// the functions of `math` are known without their table. All conditions of a run live in one closed-in Lua state, are
+// compiled once and evaluated together, each tick under one budget. One thread at a time.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kadans/signal/signal.h"
+
+namespace kadans {
+
+// Why a condition's text is refused.
+struct ExpressionError {
+  int column = 0;  // 1-based, in the text
+  std::string message;
+};
+
+class SignalExpressions {
+ public:
+  // The table must outlive this.
+  explicit SignalExpressions(const SignalTable& signals);
+  ~SignalExpressions();
+  SignalExpressions(const SignalExpressions&) = delete;
+  SignalExpressions& operator=(const SignalExpressions&) = delete;
+
+  // Before the run. Compiles a condition and gives its index, or says what is wrong with it.
+  [[nodiscard]] bool add(std::string_view text, std::size_t& index, ExpressionError& error);
+  // In the order in which they stand in the text, each once.
+  std::span<const SignalId> signals_of(std::size_t index) const { return conditions_.at(index).signals; }
+  std::size_t size() const noexcept { return conditions_.size(); }
+
+  // Evaluates all conditions on a row of the table. False: one of them went wrong, see error().
+  [[nodiscard]] bool evaluate(double time_s, std::span<const double> row) noexcept;
+  // Of the last evaluation.
+  bool holds(std::size_t index) const { return conditions_.at(index).holds != 0; }
+  const std::string& error() const noexcept { return error_; }
+
+ private:
+  struct Condition {
+    std::string text;
+    std::vector<SignalId> signals;
+    int function = 0;  // in the registry
+    char holds = 0;
+  };
+  struct State;
+  bool translate(std::string_view text, Condition& condition, std::string& lua, ExpressionError& error) const;
+  bool compile(const std::string& lua, Condition& condition, ExpressionError& error);
+
+  const SignalTable& signals_;
+  std::unique_ptr<State> state_;
+  std::vector<Condition> conditions_;
+  std::vector<SignalId> used_;  // by any condition
+  std::string error_;
+};
+
+}  // namespace kadans
