@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # rebuild.sh PRESET TARGET...: builds targets in the preset's way below the build folder, then runs those that are test
-# programs. Address randomisation is off throughout: ThreadSanitizer of gcc 12 does not start on kernels with more of it.
+# programs. With KADANS_SOAK set it builds and runs all there are, with the tests' usual counts. Address randomisation is
+# off throughout: ThreadSanitizer of gcc 12 does not start on kernels with more of it.
 set -euo pipefail
 preset=$1
 shift
@@ -10,10 +11,13 @@ build="$KADANS_BINARY_DIR/$preset"
 cd "$KADANS_SOURCE_DIR"
 cmake --preset "$preset" -B "$build" -DKADANS_REBUILD_TESTS=OFF >"$KADANS_BINARY_DIR/$preset.configure.log" 2>&1 ||
   { cat "$KADANS_BINARY_DIR/$preset.configure.log"; exit 1; }
+[ -z "${KADANS_SOAK:-}" ] || set -- all
 setarch -R cmake --build "$build" --target "$@"
 
-for target in "$@"; do
-  [[ $target == *_test ]] || continue
+unset KADANS_SOAK
+for program in "$build"/tests/*_test; do
+  target=$(basename "$program")
+  [[ " $* " == *" $target "* || ($* == all && $preset != clang) ]] || continue
   echo "$target"
-  setarch -R "$build/tests/$target" --minimal
+  setarch -R "$program" --minimal
 done
