@@ -98,14 +98,19 @@ void Behavior::publish_status() noexcept {
 void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept {
   Parts& parts = *parts_;
   if (!parts.runner->started() || parts.error.breach != ScriptBreach::none) return;
-  parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-  if (parts.run(stop_chart)) {
-    (void)parts.bindings.commit();
-    return;
+  // An exit that raises ends its transaction; the states around it are left in the next one.
+  for (std::uint64_t left = parts.settings.limits.tick_instructions; left > 0;) {
+    parts.bindings.begin(commands, snapshot, snapshot.time_ns);
+    if (parts.lua->call(stop_chart, &parts, left, parts.settings.limits.tick_wall_ns)) {
+      (void)parts.bindings.commit();
+      return;
+    }
+    commands.discard();
+    if (!parts.failed) parts.error = parts.lua->error();
+    parts.failed = true;
+    if (parts.lua->error().breach != ScriptBreach::none) return;
+    left -= std::min(left, parts.lua->core().budget.spent());
   }
-  commands.discard();
-  if (!parts.failed) parts.error = parts.lua->error();
-  parts.failed = true;
 }
 
 bool Behavior::post(const std::string& event) noexcept {

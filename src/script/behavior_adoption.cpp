@@ -114,7 +114,7 @@ bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vec
   if (!old.runner->started()) return true;
   Adoption adoption{fresh, old, map};
   fresh.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const bool adopted = fresh.lua->call(adopt, &adoption, fresh.settings.limits.load_instructions, 0);
+  const bool adopted = fresh.lua->call(adopt, &adoption, fresh.settings.limits.reload_instructions, 0);
   lua_settop(old.lua->get(), 0);
   commands.discard();  // a guard that commands
   return adopted;

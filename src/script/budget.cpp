@@ -48,6 +48,7 @@ void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wa
   wall_ns_ = wall_ns;
   wall_end_ns_ = wall_ns > 0 ? wall_now_ns() + wall_ns : 0;
   error_.set = false;
+  error_.line = 0;
   error_.breach = ScriptBreach::none;
   heap_.forgive();
   lua_sethook(state, hook, LUA_MASKCOUNT, interval);
@@ -97,7 +98,7 @@ void Budget::breach(lua_State* state, ScriptBreach what) noexcept {
   error_.set = true;
   auto& text = error_.message;
   if (what == ScriptBreach::memory) {
-    std::snprintf(text.data(), text.size(), "out of memory: more than %.1f MB in use, or one value larger than a block",
+    std::snprintf(text.data(), text.size(), "out of memory: more than %.1f MB in use, or one string or table too large",
                   static_cast<double>(heap_.limit_bytes()) / (1 << 20));
   } else if (what == ScriptBreach::instructions) {
     std::snprintf(text.data(), text.size(), "instruction budget exceeded: more than %llu in one tick",

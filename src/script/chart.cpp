@@ -46,13 +46,15 @@ StateIndex find_target(const Chart& chart, StateIndex from, const std::string& n
   return found;
 }
 
-// The innermost state around source and target that is left by neither: never a parallel.
+// The innermost state around source and target that is left by neither: never a parallel, nor the target itself, which
+// is left and entered again when it is around the source (SCXML).
 StateIndex domain_of(const Chart& chart, StateIndex source, StateIndex target) {
   StateIndex domain = source;
   if (source == 0 || chart.states[source].machine_root) return source;
   do {
     domain = chart.states[domain].parent;
-  } while (domain != 0 && (!chart.inside(target, domain) || chart.states[domain].kind == Chart::Kind::parallel));
+  } while (domain != 0 &&
+           (domain == target || !chart.inside(target, domain) || chart.states[domain].kind == Chart::Kind::parallel));
   return domain;
 }
 
@@ -142,6 +144,11 @@ struct Resolver {
       problem(state, state.line, "k.region '" + state.name + "' belongs into a k.parallel");
     if (state.kind != Chart::Kind::region && parent == Chart::Kind::parallel)
       problem(state, state.line, "a k.parallel holds k.region, and transitions; '" + state.name + "' is neither");
+    if (state.kind == Chart::Kind::history && chart.states[state.parent].machine_root)
+      problem(state, state.line,
+              "k.history '" + state.name +
+                  "' remembers a state that is left; a behavior is not: put "
+                  "it into the state whose states it shall remember");
     if (state.kind == Chart::Kind::parallel && state.end == index + 1)
       problem(state, state.line, "k.parallel '" + state.name + "' has no k.region");
   }

@@ -38,7 +38,7 @@ void ChartRunner::take_over(lua_State* state, const ChartRunner& old, const std:
   refused_ = old.refused_;
   for (StateIndex i = 0; i < old.chart_.size(); ++i) {
     if (map[i] != no_state) take_over_state(old, i, map[i]);
-    if (map[i] != no_state && old.run_[i].entering) run_[map[i]].entering = true;
+    if (map[i] != no_state && old.run_[i].entering) entering_ = run_[map[i]].entering = true;
   }
   take_over_history(old, map);
   for (std::uint32_t i = 0; i < old.event_count_; ++i) {
@@ -111,8 +111,8 @@ void ChartRunner::leave_marked(lua_State* state, const std::vector<bool>& marks,
 
 StateIndex ChartRunner::innermost() const noexcept {
   StateIndex at = 0;
-  for (StateIndex i = 1; i < chart_.size(); ++i) {
-    if (run_[i].active && chart_.states[i].parent == at) at = i;
+  for (const StateIndex index : active_) {
+    if (index != 0 && chart_.states[index].parent == at) at = index;
   }
   return at;
 }
@@ -120,7 +120,7 @@ StateIndex ChartRunner::innermost() const noexcept {
 void ChartRunner::enter_again(const std::vector<bool>& marks) noexcept {
   for (StateIndex i = 0; i < chart_.size(); ++i) {
     if (!marks[i]) continue;
-    run_[i].entering = true;
+    entering_ = run_[i].entering = true;
     filling_ = true;
   }
 }

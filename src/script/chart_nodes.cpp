@@ -8,6 +8,7 @@ namespace kadans {
 namespace {
 
 const char node_key = 0;
+constexpr std::size_t name_max = 64, text_max = 256;  // characters: charts keep them outside the script's memory
 
 constexpr const char* behavior_keys[] = {"version", "controls", "vars",   "args", "migrate", "initial", "always",
                                          "enter",   "exit",     "during", "run",  "endless", nullptr};
@@ -53,6 +54,9 @@ void check_types(lua_State* state, int table, const Place& place, const char* co
     const char* wanted = wanted_type(*names);
     if (!lua_isnil(state, -1) && wanted != nullptr && std::strcmp(luaL_typename(state, -1), wanted) != 0) {
       raise_at(state, place, *names, "'%s' must be a %s, not a %s", *names, wanted, luaL_typename(state, -1));
+    }
+    if (lua_type(state, -1) == LUA_TSTRING && lua_objlen(state, -1) > text_max) {
+      raise_at(state, place, *names, "'%s' is longer than %d characters", *names, static_cast<int>(text_max));
     }
     lua_pop(state, 1);
   }
@@ -154,6 +158,10 @@ int begin_node(lua_State* state) {
   const Place place = calling_place(state);
   if (lua_type(state, 1) != LUA_TSTRING) return raise_at(state, place, nullptr, "%s needs a name", node_word(kind));
   const char* name = lua_tostring(state, 1);
+  if (lua_objlen(state, 1) > name_max) {
+    return raise_at(state, place, nullptr, "%s: a name has at most %d characters", node_word(kind),
+                    static_cast<int>(name_max));
+  }
   if (!good_name(name)) {
     return raise_at(state, place, name, "%s: a name is letters, digits and '_', not \"%s\"", node_word(kind), name);
   }

@@ -8,7 +8,8 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t states_max = 4000;
+constexpr std::size_t states_max = 4000, transitions_max = 16000;  // what a chart takes is not the script's memory
+constexpr std::size_t text_max = 256;
 constexpr int call_depth_max = 16;
 
 // Nothing here may hold what needs a destructor while it calls Lua: strings go straight into the chart.
@@ -24,11 +25,14 @@ struct Reader {
   const char* text(int table, const char* key) const {  // anchored by the table
     lua_getfield(state, table, key);
     const char* value = lua_tostring(state, -1);
+    if (value != nullptr && lua_objlen(state, -1) > text_max) luaL_error(state, "'%s' is too long", key);
     lua_pop(state, 1);
     return value != nullptr ? value : "";
   }
 
   void read_transition(int table, StateIndex source, const Place& place) {
+    if (chart.transitions.size() >= transitions_max)
+      raise_at(state, place, nullptr, "more than %d transitions", static_cast<int>(transitions_max));
     Chart::Transition& made = chart.transitions.emplace_back();
     made.source = source;
     made.target_name = text(table, "to");

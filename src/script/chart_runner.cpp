@@ -40,17 +40,7 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
     filling_ = false;
   } else {
     std::fill(guards_.begin(), guards_.end(), Guard::unknown);
-    const auto oldest = [this] { return event_count_ > 0 ? events_[event_first_] : no_event; };
-    select(state, oldest(), false);
-    while (event_count_ > 0) {
-      const bool taken = took(oldest());
-      if (!taken && !selected_.empty()) break;
-      event_first_ = static_cast<std::uint32_t>((event_first_ + 1) % events_.size());
-      --event_count_;
-      if (taken) break;
-      ++unhandled_;
-      if (event_count_ > 0) select(state, oldest(), true);
-    }
+    look_for_transitions(state);
   }
   take_step(state);
   if (run_[0].outcome != no_event) return stop(state, now_ns);
@@ -59,6 +49,23 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   }
   for (const StateIndex index : active_) {
     if (run_[index].thread != nullptr) resume_run(state, index);
+  }
+}
+
+// Among the events that waited when the tick began: what a guard emits is for the next one.
+void ChartRunner::look_for_transitions(lua_State* state) {
+  std::uint32_t waiting = event_count_;
+  const auto oldest = [&] { return waiting > 0 ? events_[event_first_] : no_event; };
+  select(state, oldest(), false);
+  while (waiting > 0) {
+    const bool taken = took(oldest());
+    if (!taken && !selected_.empty()) return;
+    event_first_ = static_cast<std::uint32_t>((event_first_ + 1) % events_.size());
+    --event_count_;
+    --waiting;
+    if (taken) return;
+    ++unhandled_;
+    if (waiting > 0) select(state, oldest(), true);
   }
 }
 
@@ -74,7 +81,7 @@ void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
 }
 
 void ChartRunner::take_step(lua_State* state) {
-  bool step = !selected_.empty();
+  if (selected_.empty() && !entering_) return;
   for (const std::uint16_t number : selected_) report(number);
   for (const StateIndex index : active_) {
     for (const std::uint16_t number : selected_) {
@@ -83,9 +90,9 @@ void ChartRunner::take_step(lua_State* state) {
     }
   }
   for (const StateIndex index : active_) {
-    if (run_[index].leaving) remember(chart_.states[index].parent);
+    if (run_[index].leaving) remember(index);
   }
-  for (std::size_t i = active_.size(); step && i > 0; --i) {
+  for (std::size_t i = active_.size(); i > 0; --i) {
     if (run_[active_[i - 1]].leaving) leave(state, active_[i - 1]);
   }
   for (const std::uint16_t number : selected_) {
@@ -97,13 +104,13 @@ void ChartRunner::take_step(lua_State* state) {
     mark_entry(transition.target);
     mark_ancestors(transition.target, transition.domain);
   }
+  entering_ = false;
   for (StateIndex index = 0; index < chart_.size(); ++index) {
     if (!run_[index].entering) continue;
-    step = true;
     run_[index].entering = false;
     if (!run_[index].active) enter(state, index);
   }
-  if (step) list_active();
+  list_active();
 }
 
 void ChartRunner::leave(lua_State* state, StateIndex index) {
@@ -111,6 +118,7 @@ void ChartRunner::leave(lua_State* state, StateIndex index) {
   run.active = false;
   run.leaving = false;
   run.outcome = index == 0 ? run.outcome : no_event;
+  if (chart_.states[index].kind == Chart::Kind::final_state) go_on(chart_.states[index].parent);
   cancel_run(state, index);
   if (chart_.states[index].exit != Chart::no_function) call(state, chart_.states[index].exit, index);
 }
@@ -122,7 +130,10 @@ void ChartRunner::enter(lua_State* state, StateIndex index) {
   run.run_done = false;
   run.outcome = no_event;
   run.entered_ns = now_ns_;
-  if (entered.machine_root) renew_machine(state, chart_, tables_, entered.machine);
+  if (entered.machine_root) {  // a call begins anew: nothing is left of the one before
+    renew_machine(state, chart_, tables_, entered.machine);
+    for (StateIndex i = index; i < entered.end; ++i) remembered_[i] = false;
+  }
   if (entered.enter != Chart::no_function) call(state, entered.enter, index);
   if (entered.run != Chart::no_function) start_run(state, index);
   if (entered.kind == Chart::Kind::final_state) complete(entered.parent, entered.outcome);
@@ -145,6 +156,15 @@ void ChartRunner::complete(StateIndex index, EventId outcome) noexcept {
   run_[ended.parent].outcome = together;
 }
 
+// The opposite: a final state of `index` is left while what is around it stays.
+void ChartRunner::go_on(StateIndex index) noexcept {
+  if (index == 0) return;
+  run_[index].outcome = no_event;
+  const Chart::State& ended = chart_.states[index];
+  if (ended.machine_root) return go_on(ended.parent);
+  if (ended.kind == Chart::Kind::region) run_[ended.parent].outcome = no_event;
+}
+
 bool ChartRunner::marked_inside(StateIndex index) const noexcept {
   for (StateIndex i = static_cast<StateIndex>(index + 1); i < chart_.states[index].end; ++i) {
     if (run_[i].entering) return true;
@@ -155,7 +175,7 @@ bool ChartRunner::marked_inside(StateIndex index) const noexcept {
 void ChartRunner::mark_entry(StateIndex target) noexcept {
   const Chart::State& entered = chart_.states[target];
   if (entered.kind == Chart::Kind::history) return mark_history(target);
-  run_[target].entering = true;
+  entering_ = run_[target].entering = true;
   if (marked_inside(target) && entered.kind != Chart::Kind::parallel) return;
   if (entered.kind == Chart::Kind::parallel) {
     for (StateIndex region = static_cast<StateIndex>(target + 1); region < entered.end;
@@ -186,16 +206,15 @@ void ChartRunner::mark_history(StateIndex history) noexcept {
     return mark_ancestors(fallback, parent);
   }
   for (StateIndex i = static_cast<StateIndex>(parent + 1); i < chart_.states[parent].end; ++i) {
-    if (histories_[history][i] && chart_.states[history].deep) run_[i].entering = true;
+    if (histories_[history][i] && chart_.states[history].deep) entering_ = run_[i].entering = true;
   }
   for (StateIndex i = static_cast<StateIndex>(parent + 1); i < chart_.states[parent].end; ++i) {
     if (histories_[history][i] && !chart_.states[history].deep && chart_.states[i].parent == parent) mark_entry(i);
   }
 }
 
-// Before the children of `index` are left: its history states note what is active.
+// Before `index` is left: its history states note what is active in it.
 void ChartRunner::remember(StateIndex index) noexcept {
-  if (index == no_state) return;
   for (StateIndex history = static_cast<StateIndex>(index + 1); history < chart_.states[index].end; ++history) {
     if (chart_.states[history].parent != index || chart_.states[history].kind != Chart::Kind::history) continue;
     for (StateIndex i = static_cast<StateIndex>(index + 1); i < chart_.states[index].end; ++i) {

@@ -52,17 +52,21 @@ bool ChartRunner::enabled(lua_State* state, std::uint16_t number, EventId event,
   return guard(state, number);
 }
 
-std::uint16_t ChartRunner::select_for_leaf(lua_State* state, StateIndex leaf, EventId event, bool events_only) {
+std::uint16_t ChartRunner::select_always(lua_State* state, StateIndex leaf, EventId event, bool events_only) {
   for (const StateIndex around : active_) {  // from the outside in
     if (around > leaf) break;
-    if (!chart_.inside(leaf, around)) continue;
     const Chart::State& outer = chart_.states[around];
+    if (outer.always_count == 0 || !chart_.inside(leaf, around)) continue;
     for (std::uint16_t i = 0; i < outer.always_count; ++i) {
       const auto number = static_cast<std::uint16_t>(outer.first_always + i);
       if (run_[chart_.transitions[number].target].active) continue;  // it is there already
       if (enabled(state, number, event, events_only)) return number;
     }
   }
+  return none;
+}
+
+std::uint16_t ChartRunner::select_ordinary(lua_State* state, StateIndex leaf, EventId event, bool events_only) {
   for (StateIndex inner = leaf; inner != no_state; inner = chart_.states[inner].parent) {
     const Chart::State& at = chart_.states[inner];
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
@@ -91,12 +95,21 @@ void ChartRunner::add_selected(std::uint16_t added) noexcept {
   selected_.push_back(added);
 }
 
+bool ChartRunner::is_leaf(std::size_t position) const noexcept {
+  return position + 1 == active_.size() || !chart_.inside(active_[position + 1], active_[position]);
+}
+
 void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
   selected_.clear();
   for (std::size_t i = 0; i < active_.size(); ++i) {
-    const bool leaf = i + 1 == active_.size() || !chart_.inside(active_[i + 1], active_[i]);
-    if (!leaf) continue;
-    const std::uint16_t found = select_for_leaf(state, active_[i], event, events_only);
+    if (!is_leaf(i)) continue;
+    const std::uint16_t found = select_always(state, active_[i], event, events_only);
+    run_[active_[i]].decided = found != none;
+    if (found != none) add_selected(found);
+  }
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    if (!is_leaf(i) || run_[active_[i]].decided) continue;
+    const std::uint16_t found = select_ordinary(state, active_[i], event, events_only);
     if (found != none) add_selected(found);
   }
 }

@@ -7,6 +7,7 @@
 
 #include "hint.h"
 #include "kadans/script/lua_state.h"
+#include "library_function.h"
 #include "lua_core.h"
 
 namespace kadans {
@@ -51,6 +52,7 @@ int depth(lua_State* state) { return lua_pushinteger(state, core_of(state).depth
 // print(...): one line to the log.
 int print(lua_State* state) {
   const int count = lua_gettop(state);
+  begin_callback(state, "print");
   luaL_Buffer buffer;
   luaL_buffinit(state, &buffer);
   for (int i = 1; i <= count; ++i) {
@@ -67,6 +69,7 @@ int print(lua_State* state) {
     luaL_addvalue(&buffer);
   }
   luaL_pushresult(&buffer);
+  end_callback(state);
   LuaCore& core = core_of(state);
   core.budget.charge(state, 1000.0);
   ScriptVoice* voice = core.owner->settings().voice;
@@ -77,7 +80,10 @@ int print(lua_State* state) {
 // tostring(value): without addresses, which differ from run to run.
 int to_string(lua_State* state) {
   luaL_checkany(state, 1);
-  if (luaL_callmeta(state, 1, "__tostring") != 0) return 1;
+  begin_callback(state, "tostring");
+  const bool own = luaL_callmeta(state, 1, "__tostring") != 0;
+  end_callback(state);
+  if (own) return 1;
   switch (lua_type(state, 1)) {
     case LUA_TNUMBER:
     case LUA_TSTRING:
@@ -108,6 +114,19 @@ int load(lua_State* state) {
   push_environment(state);
   lua_setfenv(state, -2);
   return 1;
+}
+
+// tonumber(value [, base]): as in Lua.
+int to_number(lua_State* state) {
+  if (lua_type(state, 1) == LUA_TSTRING) charge_text(state, static_cast<double>(lua_objlen(state, 1)));
+  return forward(state);
+}
+
+// unpack(table [, i [, j]]): as in Lua.
+int unpack(lua_State* state) {
+  const int results = forward(state);
+  core_of(state).budget.charge(state, results / 8.0);
+  return results;
 }
 
 // rawset(table, key, value): not on what is read-only.
@@ -265,6 +284,8 @@ void open_sandbox(lua_State* state) {
        {"assert", "error", "getmetatable", "ipairs", "rawequal", "rawget", "rawlen", "select", "setmetatable",
         "tonumber", "type", "unpack"});
   lua_pop(state, 1);
+  wrap(state, "tonumber", to_number);
+  wrap(state, "unpack", unpack);
   set_function(state, globals, "print", print);
   set_function(state, globals, "tostring", to_string);
   set_function(state, globals, "load", load);

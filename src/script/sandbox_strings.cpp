@@ -3,9 +3,9 @@
 // Matching a pattern backtracks: each quantifier may be tried at every place of the subject, each '?' doubles the
 // ways. The bound computed here is crude, and far above what a sane pattern costs; short subjects never notice.
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
+#include "library_function.h"
 #include "lua_core.h"
 #include "sandbox.h"
 
@@ -15,7 +15,6 @@ namespace {
 constexpr double string_bytes_max = 64 * 1024;
 constexpr double pattern_steps_max = 2e6;
 constexpr double steps_per_instruction = 8;  // a step of the matcher is cheaper than an instruction of a script
-constexpr int callback_depth_max = 16;       // C frames of gsub are large
 
 double match_steps(const char* pattern, std::size_t length, double subject) {
   double steps = pattern[0] == '^' ? 1 : subject + 1;
@@ -38,14 +37,6 @@ double match_steps(const char* pattern, std::size_t length, double subject) {
   return steps + static_cast<double>(length);
 }
 
-// Calls the library's own function, upvalue 1, with the arguments on the stack.
-int forward(lua_State* state) {
-  lua_pushvalue(state, lua_upvalueindex(1));
-  lua_insert(state, 1);
-  lua_call(state, lua_gettop(state) - 1, LUA_MULTRET);
-  return lua_gettop(state);
-}
-
 void charge_match(lua_State* state, bool plain) {
   std::size_t subject = 0, length = 0;
   luaL_checklstring(state, 1, &subject);
@@ -66,12 +57,7 @@ int match(lua_State* state) { return charge_match(state, false), forward(state);
 // gsub(text, pattern, replacement [, n]): as in Lua; nested callbacks are bounded.
 int gsub(lua_State* state) {
   charge_match(state, false);
-  LuaCore& core = core_of(state);
-  if (core.depth >= callback_depth_max) return luaL_error(state, "string.gsub is nested too deeply");
-  ++core.depth;
-  const int results = forward(state);
-  --core.depth;
-  return results;
+  return forward_nested(state, "string.gsub");
 }
 
 // rep(text, n): up to 64 kB.
@@ -82,8 +68,15 @@ int rep(lua_State* state) {
   if (length == 0 || count < 1) return lua_pushliteral(state, ""), 1;
   const double bytes = static_cast<double>(length) * count;
   if (!(bytes <= string_bytes_max)) return luaL_error(state, "string.rep makes at most 64 kB at a time");
-  core_of(state).budget.charge(state, bytes / 16);
   lua_settop(state, 2);
+  return forward_text(state);
+}
+
+// lower, upper, reverse, sub, byte: as in Lua; each may touch the whole string.
+int whole(lua_State* state) {
+  std::size_t length = 0;
+  luaL_checklstring(state, 1, &length);
+  charge_text(state, static_cast<double>(length));
   return forward(state);
 }
 
@@ -92,9 +85,6 @@ int format(lua_State* state) {
   const char* text = luaL_checkstring(state, 1);
   if (std::strstr(text, "%p") != nullptr)
     return luaL_error(state, "string.format has no %%p: addresses differ from run to run");
-  LuaCore& core = core_of(state);
-  if (core.depth >= callback_depth_max) return luaL_error(state, "string.format is nested too deeply");
-  core.budget.charge(state, 10);
   for (int i = 2; i <= lua_gettop(state); ++i) {
     if (lua_type(state, i) > LUA_TSTRING && luaL_getmetafield(state, i, "__tostring") == 0) {
       lua_pushstring(state, luaL_typename(state, i));
@@ -103,16 +93,10 @@ int format(lua_State* state) {
       lua_pop(state, 1);
     }
   }
-  ++core.depth;
-  const int results = forward(state);
-  --core.depth;
+  begin_callback(state, "string.format");
+  const int results = forward_text(state);
+  end_callback(state);
   return results;
-}
-
-void wrap(lua_State* state, const char* name, lua_CFunction function) {
-  lua_getfield(state, -1, name);
-  lua_pushcclosure(state, function, 1);
-  lua_setfield(state, -2, name);
 }
 
 }  // namespace
@@ -123,6 +107,7 @@ void open_strings(lua_State* state) {
   wrap(state, "gmatch", match);
   wrap(state, "gsub", gsub);
   wrap(state, "rep", rep);
+  for (const char* name : {"byte", "lower", "reverse", "sub", "upper"}) wrap(state, name, whole);
   wrap(state, "format", format);
 }
 

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <cstring>
 
+#include "library_function.h"
 #include "lua_core.h"
 #include "sandbox.h"
 
 namespace kadans {
 namespace {
-
-constexpr int callback_depth_max = 16;
 
 struct Key {
   int rank;  // 0: number, 1: string, 2: boolean
@@ -87,47 +86,35 @@ void check_writable(lua_State* state) {
   if (push_content(state, 1)) luaL_error(state, "this table is read-only");
 }
 
-int forward(lua_State* state) {
-  lua_pushvalue(state, lua_upvalueindex(1));
-  lua_insert(state, 1);
-  lua_call(state, lua_gettop(state) - 1, LUA_MULTRET);
-  return lua_gettop(state);
+// [-0 +0] For every element of the table that is the first argument, so much.
+void charge_elements(lua_State* state, double each) {
+  core_of(state).budget.charge(state, static_cast<double>(lua_objlen(state, 1)) * each);
 }
 
-// insert, remove, concat, maxn: as in Lua; each may touch every element.
-int shifting(lua_State* state) {
+// insert(table [, position], value), remove(table [, position]): as in Lua; in the middle all elements behind move.
+int insert(lua_State* state) {
   check_writable(state);
-  core_of(state).budget.charge(state, lua_gettop(state) > 2 ? static_cast<double>(lua_objlen(state, 1)) / 4 : 1);
+  charge_elements(state, lua_gettop(state) > 2 ? 0.25 : 0);
   return forward(state);
 }
-int removing(lua_State* state) {
+int remove(lua_State* state) {
   check_writable(state);
-  core_of(state).budget.charge(state, lua_gettop(state) > 1 ? static_cast<double>(lua_objlen(state, 1)) / 4 : 1);
+  charge_elements(state, lua_gettop(state) > 1 ? 0.25 : 0);
   return forward(state);
 }
-int reading(lua_State* state) {
+
+// concat, maxn: as in Lua.
+int concat(lua_State* state) {
   luaL_checktype(state, 1, LUA_TTABLE);
-  core_of(state).budget.charge(state, static_cast<double>(lua_objlen(state, 1)));
-  return forward(state);
+  charge_elements(state, 1);
+  return forward_text(state);
 }
 
 // sort(table [, before]): as in Lua.
 int sort(lua_State* state) {
   check_writable(state);
-  LuaCore& core = core_of(state);
-  if (core.depth >= callback_depth_max) return luaL_error(state, "table.sort is nested too deeply");
-  const auto count = static_cast<double>(lua_objlen(state, 1));
-  core.budget.charge(state, count * std::log2(count + 1));
-  ++core.depth;
-  const int results = forward(state);
-  --core.depth;
-  return results;
-}
-
-void wrap(lua_State* state, const char* name, lua_CFunction function) {
-  lua_getfield(state, -1, name);
-  lua_pushcclosure(state, function, 1);
-  lua_setfield(state, -2, name);
+  charge_elements(state, std::log2(static_cast<double>(lua_objlen(state, 1)) + 1));
+  return forward_nested(state, "table.sort");
 }
 
 }  // namespace
@@ -143,10 +130,10 @@ int sandbox_pairs(lua_State* state) {
 }
 
 void open_tables(lua_State* state) {
-  wrap(state, "insert", shifting);
-  wrap(state, "remove", removing);
-  wrap(state, "concat", reading);
-  wrap(state, "maxn", reading);
+  wrap(state, "insert", insert);
+  wrap(state, "remove", remove);
+  wrap(state, "concat", concat);
+  wrap(state, "maxn", concat);
   wrap(state, "sort", sort);
 }
 

@@ -42,7 +42,7 @@ const Attack attacks[] = {
     {"a hash that grows", "local t = {} local i = 0 while true do i = i + 1 t['k' .. i] = i end", memory},
     {"closures without end", "local f = print while true do local g = f f = function() return g end end", memory},
     {"table.concat of what is large",
-     "local t = {} for i = 1, 5000 do t[i] = ('x'):rep(60) end\n"
+     "local t = {} for i = 1, 1000 do t[i] = ('x'):rep(60) end\n"
      "local u = {} while true do u[#u + 1] = table.concat(t) end",
      time_out},
     {"a pattern that backtracks, again and again", "local x = ('a'):rep(100) while true do x:find('(.-)(.-)b') end",
@@ -71,6 +71,46 @@ const Attack attacks[] = {
      "local mt = { __lt = function() while true do end end }\n"
      "table.sort({ setmetatable({}, mt), setmetatable({}, mt) })",
      time_out},
+    {"a chain of __index without end", "local t = {} while true do t = setmetatable({}, { __index = t }) end", memory},
+    {"a __newindex that calls itself",
+     "local t t = setmetatable({}, { __newindex = function(_, key) t[key] = 1 end })\n"
+     "while true do pcall(function() t.x = 1 end) end",
+     time_out},
+    {"a __concat, an __eq and a __call that loop",
+     "local mt = {} mt.__concat = function() while true do end end mt.__eq = mt.__concat mt.__call = mt.__concat\n"
+     "local a, b = setmetatable({}, mt), setmetatable({}, mt)\n"
+     "while true do pcall(function() return a == b end) pcall(a) pcall(function() return a .. b end) end",
+     time_out},
+    {"errors that are tables, again and again", "while true do pcall(error, { {} }) end", time_out},
+    {"an error whose tostring loops",
+     "local _, e = pcall(error, setmetatable({}, { __tostring = function() while true do end end })) print(e)",
+     time_out},
+    {"garbage whose __gc would loop", "while true do setmetatable({}, { __gc = function() while true do end end }) end",
+     memory},
+    {"a coroutine that catches its own end",
+     "local f = coroutine.wrap(function() while true do pcall(function() while true do end end) end end) f()",
+     time_out},
+    {"a coroutine that is resumed within a pcall, within a coroutine",
+     "local function f() while true do coroutine.resume(coroutine.create(function() pcall(error, 1) end)) end end\n"
+     "pcall(coroutine.wrap(f))",
+     time_out},
+    {"a format of what is long, always the same",
+     "local x = ('x'):rep(9000) while true do local y = ('%s%s%s%s%s%s'):format(x, x, x, x, x, x) end", time_out},
+    {"a long string turned round, cut, spelt and read as a number, always the same",
+     "local x = ('1'):rep(60000) while true do x:reverse() x:upper() x:lower() x:sub(2) x:byte(1, 5000) tonumber(x) "
+     "end",
+     time_out},
+    {"a long string joined to itself, always the same", "local x = ('x'):rep(30000) while true do local y = x .. x end",
+     time_out},
+    {"digits as numbers", "local x = ('1'):rep(4000) while true do local y = x + 0 end", time_out},
+    {"a table unpacked without end", "local t = {} for i = 1, 5000 do t[i] = i end while true do unpack(t) end",
+     time_out},
+    {"arguments that grow", "local function f(...) return f(1, ...) end while true do pcall(f) end", time_out},
+    {"a random pose a thousand times", "while true do pcall(m.posture.move, m.posture, 'stand', { time_s = 1 }) end",
+     time_out},
+    {"the queue flooded", "while true do m.posture:set_gains('stiff') end", time_out},
+    {"the event queue flooded", "while true do pcall(m.emit, m, 'x') end", time_out},
+    {"vars that grow", "while true do m.vars[#m.vars + 1] = { {}, {}, {}, {} } end", memory},
     {"printing without end", "while true do print('x') end", time_out},
     {"a random number without end", "while true do math.random() end", time_out},
 };
@@ -91,6 +131,62 @@ TEST_CASE("every attack is stopped by its budget, with the script's line") {
     CHECK(error.line >= 3);
     CHECK(stage.behavior->heap_bytes() < 5u << 20);
     CHECK(stage.applied.empty());
+  }
+}
+
+namespace {
+
+// Moves, tells, takes transitions and random numbers: whatever disturbs it would show.
+const char neighbour[] = R"(local k = require 'kadans'
+return k.behavior 'neighbour' { controls = 'posture', vars = { n = 0 }, initial = 'a',
+  k.state 'a' { during = function(m, s) m.vars.n = m.vars.n + 1 print(s.time_s, m.vars.n, math.random(1000)) end,
+    run = function(m) print(m.posture:move({ l_knee = math.random() }, { time_s = 0.02 }):wait()) end,
+    { on = 'run.done', to = 'b' } },
+  k.state 'b' { { after = 0.01, to = 'a' } } })";
+
+struct Heard {
+  std::vector<std::string> messages, transitions;
+  std::vector<double> commands;
+  bool operator==(const Heard&) const = default;
+};
+
+// What is heard of the neighbour when it plays alone, or behind or before a behavior that attacks after three ticks.
+Heard beside(const std::string& attack, bool first) {
+  Stage stage(neighbour);
+  std::unique_ptr<Behavior> attacker;
+  Log silent;
+  if (!attack.empty()) {
+    const auto file = stage.scripts.write(
+        "behaviors/attacker.lua",
+        "local k = require 'kadans'\nreturn k.behavior 'attacker' { initial = 'w', k.state 'w' { { after = 0.03, to = "
+        "'a' } }, k.state 'a' { enter = function(m, s)\n" +
+            attack + "\nend } }\n");
+    attacker = std::make_unique<Behavior>(Behavior::Settings{.root = stage.scripts.root, .file = file},
+                                          stage.robot.catalog, silent);
+  }
+  for (int i = 0; i < 12; ++i) {
+    if (attacker && first) (void)attacker->tick(stage.snapshot, stage.sender);
+    const Snapshot seen = stage.snapshot;
+    CHECK(stage.tick());
+    if (attacker && !first) (void)attacker->tick(seen, stage.sender);
+  }
+  if (attacker) CHECK(attacker->failed());
+  Heard heard{stage.log.messages, stage.log.transitions, {}};
+  for (const Command& command : stage.applied)
+    heard.commands.insert(heard.commands.end(), {command.value, double(command.index), double(command.sequence)});
+  return heard;
+}
+
+}  // namespace
+
+TEST_CASE("no attack changes what a behavior beside it says, does and commands") {
+  const Heard alone = beside("", false);
+  REQUIRE(alone.transitions.size() >= 4);
+  REQUIRE(alone.commands.size() >= 12);
+  for (const Attack& attack : attacks) {
+    CAPTURE(attack.name);
+    CHECK(beside(attack.code, true) == alone);
+    CHECK(beside(attack.code, false) == alone);
   }
 }
 
@@ -140,6 +236,20 @@ TEST_CASE("what no budget can hold is refused at the line") {
   refused(
       "local t = setmetatable({}, { __tostring = function(t) return ('%s'):format(t) end }) local x = ('%s'):format(t)",
       "nested too deeply");
+  refused("print(setmetatable({}, { __tostring = function(t) print(t) return '' end }))", "nested too deeply");
+  refused("print(tostring(setmetatable({}, { __tostring = function(t) return tostring(t) .. '' end })))",
+          "nested too deeply");
+  refused("local x = (('('):rep(100) .. ('a'):rep(100)):find(('('):rep(100))", "too many captures");
+  refused("local t = {} for i = 1, 9000 do t[i] = i end print(unpack(t))", "too many results");
+}
+
+TEST_CASE("a string has at most 64 kB, however it is made") {
+  for (const char* code :
+       {"local x = ('x'):rep(60000) x = x .. x", "local x = ('x'):rep(60000) x = ('%s%s'):format(x, x)",
+        "local x = ('x'):rep(60000) x = table.concat { x, x }", "local x = ('x'):rep(60000) x = x:gsub('x', 'yy')"}) {
+    CAPTURE(code);
+    CHECK(output_of(code).find("behaviors/test.lua:3: out of memory") == 0);
+  }
 }
 
 TEST_CASE("an error in a tail call, which leaves no trace, is reported where its function begins") {

@@ -64,6 +64,26 @@ TEST_CASE("the string metatable is closed and its methods are the sandbox's") {
   CHECK(contains(output_of("setmetatable(getmetatable(''), nil)"), "test.lua"));
 }
 
+TEST_CASE(
+    "no function of the host is reached through an error, a coroutine, a metatable or an argument that is ignored") {
+  CHECK(output_of("print(load('return 1', 'x', 'b', { })(), load('return _G', 'x', 't', { })() == _G)") == "1 true\n");
+  CHECK(contains(output_of("load(function() return 'x' end)"), "string expected, got function"));
+  CHECK(output_of(
+            "print(getmetatable(print), getmetatable(coroutine.create(print)), getmetatable(1), getmetatable(nil))") ==
+        "nil nil nil nil\n");
+  CHECK(output_of("print(getmetatable(m.posture), getmetatable(_G), getmetatable(s))") == "false false false\n");
+  CHECK(contains(output_of("rawset(getmetatable('').__index, 'x', 1)"), "attempt to index"));
+  CHECK(contains(output_of("setmetatable(string, nil)"), "protected metatable"));
+  CHECK(contains(output_of("coroutine.wrap(function() print(os) end)()"), "unknown name 'os'"));
+  CHECK(output_of("print(pcall(require, 'ffi'))").find("false") == 0);
+  CHECK(output_of("local _, e = pcall(error, print) print(type(e), rawequal(e, print))") == "function true\n");
+  CHECK(contains(output_of("print(rawget(s, 'joints'), rawget(_G, 'print'), #_G)"), "nil nil 0"));
+  CHECK(contains(output_of("coroutine.close(1)"), "coroutine has no 'close'"));
+  CHECK(contains(output_of("print(select(-1, 1, 2), select('#'))"), "2 0"));
+  CHECK(contains(output_of("string.buffer = 1"), "read-only"));
+  CHECK(contains(load_error("setfenv(1, {})"), "unknown name 'setfenv'"));
+}
+
 TEST_CASE("library tables, the globals, s and m are read-only, by any means") {
   for (const char* table : {"string", "table", "math", "coroutine", "bit", "_G", "s", "s.joints.l_knee", "s.base", "m",
                             "require 'kadans'"}) {

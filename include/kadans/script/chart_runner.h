@@ -1,8 +1,9 @@
 // Runs a chart, one tick at a time.
 //
-// A tick, against one snapshot: each innermost active state looks for a transition, first among the `always` of the
-// states around it from the outside in, then among their transitions from the inside out, in the order written. Of
-// transitions that would leave the same state the first stays, unless a later one starts further inside (SCXML). All
+// A tick, against one snapshot: each innermost active state looks for a transition among the `always` of the states
+// around it, from the outside in; then each that found none among their transitions, from the inside out, in the order
+// written. Of transitions that would leave the same state the first stays, unless a later one starts further inside
+// (SCXML, section D, removeConflictingTransitions); so an `always` of any region goes before what is no `always`. All
 // exits run, innermost and last first, then the actions, then all entries, outermost and first first. Then `during`,
 // then the coroutines of `run`. So a tick takes one step: what it causes is seen in the next.
 //
@@ -72,7 +73,7 @@ class ChartRunner {
   bool finished() const noexcept { return finished_; }
   EventId outcome() const noexcept { return run_[0].outcome; }
   bool active(StateIndex state) const noexcept { return run_[state].active; }
-  StateIndex innermost() const noexcept;  // active, the first of several; 0 when none is
+  StateIndex innermost() const noexcept;  // active, the first of several; 0 before the first tick
   double state_time_s(StateIndex state) const noexcept;
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }
   std::uint64_t events_refused() const noexcept { return refused_; }
@@ -85,6 +86,7 @@ class ChartRunner {
   struct StateRun {
     bool active = false, run_done = false;
     bool entering = false, leaving = false;
+    bool decided = false;  // an `always` was found for it in this tick
     EventId outcome = no_event;
     std::int64_t entered_ns = 0;
     lua_State* thread = nullptr;
@@ -96,17 +98,21 @@ class ChartRunner {
 
   // chart_selection.cpp
   void select(lua_State* state, EventId event, bool events_only);
-  std::uint16_t select_for_leaf(lua_State* state, StateIndex leaf, EventId event, bool events_only);
+  std::uint16_t select_always(lua_State* state, StateIndex leaf, EventId event, bool events_only);
+  std::uint16_t select_ordinary(lua_State* state, StateIndex leaf, EventId event, bool events_only);
+  bool is_leaf(std::size_t position) const noexcept;
   bool enabled(lua_State* state, std::uint16_t transition, EventId event, bool events_only);
   bool guard(lua_State* state, std::uint16_t transition);
   void add_selected(std::uint16_t transition) noexcept;
   bool took(EventId event) const noexcept;
 
   // chart_runner.cpp
+  void look_for_transitions(lua_State* state);
   void take_step(lua_State* state);
   void leave(lua_State* state, StateIndex index);
   void enter(lua_State* state, StateIndex index);
   void complete(StateIndex index, EventId outcome) noexcept;
+  void go_on(StateIndex index) noexcept;
   void mark_entry(StateIndex target) noexcept;
   void mark_ancestors(StateIndex target, StateIndex domain) noexcept;
   bool marked_inside(StateIndex index) const noexcept;
@@ -144,7 +150,8 @@ class ChartRunner {
   std::uint64_t unhandled_ = 0, refused_ = 0;
   std::int64_t now_ns_ = 0;
   bool started_ = false, finished_ = false;
-  bool filling_ = false;  // the next tick enters what a reload left empty, and takes no transition
+  bool entering_ = false;  // some state is marked to be entered
+  bool filling_ = false;   // the next tick enters what a reload left empty, and takes no transition
   Motion* wait_motion_ = nullptr;
   std::int64_t wait_ns_ = 0;
 };

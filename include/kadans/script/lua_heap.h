@@ -1,5 +1,9 @@
 // The memory of one Lua state, counted and limited. Over the limit a reserve of an eighth still serves, so that the
 // script can be stopped at its next instruction, with its line, rather than somewhere inside the interpreter.
+//
+// Strings have a bound of their own, since one instruction (.., <, + on digits) may go through a whole string. Lua
+// builds them in a buffer that doubles: a block that grows to a power of two is that buffer, no stack or table (these
+// hold a few slots more).
 #pragma once
 
 #include <cstddef>

@@ -1,0 +1,51 @@
+#include "library_function.h"
+
+#include "lua_core.h"
+
+namespace kadans {
+namespace {
+
+constexpr int callback_depth_max = 16;  // C frames of gsub and print are large
+constexpr double text_bytes_per_instruction = 16;
+
+}  // namespace
+
+void wrap(lua_State* state, const char* name, lua_CFunction function) {
+  lua_getfield(state, -1, name);
+  lua_pushcclosure(state, function, 1);
+  lua_setfield(state, -2, name);
+}
+
+int forward(lua_State* state) {
+  lua_pushvalue(state, lua_upvalueindex(1));
+  lua_insert(state, 1);
+  lua_call(state, lua_gettop(state) - 1, LUA_MULTRET);
+  return lua_gettop(state);
+}
+
+int forward_text(lua_State* state) {
+  const int results = forward(state);
+  if (results > 0 && lua_type(state, 1) == LUA_TSTRING) charge_text(state, static_cast<double>(lua_objlen(state, 1)));
+  return results;
+}
+
+int forward_nested(lua_State* state, const char* name) {
+  begin_callback(state, name);
+  const int results = forward(state);
+  end_callback(state);
+  return results;
+}
+
+void begin_callback(lua_State* state, const char* name) {
+  LuaCore& core = core_of(state);
+  if (core.depth >= callback_depth_max) luaL_error(state, "%s is nested too deeply", name);
+  ++core.depth;
+}
+
+void end_callback(lua_State* state) noexcept { --core_of(state).depth; }
+
+void charge_text(lua_State* state, double bytes) {
+  core_of(state).budget.charge(state, bytes / text_bytes_per_instruction);
+}
+
+}  // namespace kadans
