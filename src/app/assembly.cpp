@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <stdexcept>
 
 #include "kadans/config/project_root.h"
@@ -103,10 +102,21 @@ std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Safe
   return host;
 }
 
-// Of the second-order Butterworth filter at low frequencies, and half a period of the difference quotient.
-double velocity_delay_s(const RobotConfig& config) {
-  return std::numbers::sqrt2 / (2 * std::numbers::pi * config.estimate.velocity_cutoff_Hz) +
-         0.5 * config.engine.control_period_s;
+std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
+  const EstimateSettings& estimate = config.estimate;
+  std::vector<DriveLaw> laws;
+  for (std::size_t i = 0; i < config.model.joints.size(); ++i) {
+    const DriveSettings& drive = config.plant.drives[i];
+    const double own_Hz = i < estimate.joint_velocity_cutoff_Hz.size() ? estimate.joint_velocity_cutoff_Hz[i] : 0;
+    const std::uint32_t divisor = i < estimate.sample_divisor.size() ? estimate.sample_divisor[i] : 1;
+    laws.push_back(
+        {.effort_max_Nm = config.safety.joints[i].effort_max_Nm,
+         .position_gain_Nm_per_rad = drive.position_gain_Nm_per_rad,
+         .velocity_gain_Nms_per_rad = drive.velocity_gain_Nms_per_rad,
+         .velocity_delay_s = VelocityFilter::delay_s({.cutoff_Hz = own_Hz > 0 ? own_Hz : estimate.velocity_cutoff_Hz,
+                                                      .dt_s = divisor * config.engine.control_period_s})});
+  }
+  return laws;
 }
 
 }  // namespace
@@ -134,12 +144,8 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
   catalog.sets = config.sets;
   catalog.poses = config.poses;
   catalog.initial_set = config.initial_set;
-  for (std::size_t i = 0; i < config.model.joints.size(); ++i) {
-    const DriveSettings& drive = config.plant.drives[i];
-    catalog.drives.push_back(
-        {config.safety.joints[i].effort_max_Nm, drive.position_gain_Nm_per_rad, drive.velocity_gain_Nms_per_rad});
-  }
-  catalog.velocity_delay_s = velocity_delay_s(config);
+  catalog.drives = drive_laws(config);
+  catalog.switching = config.switching;
   for (const ObjectConfig& object : config.objects) {
     const auto index = static_cast<std::uint32_t>(system->objects.size());
     system->objects.push_back(make_object(robot, object));

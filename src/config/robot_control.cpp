@@ -27,6 +27,10 @@ void RobotReader::control(Fields& f) {
   f.map(
       "sets", "control sets: the control objects that are active together", [&](Fields& e) { control_set(e); },
       Need::required);
+  f.number("switch_step_max", config_.switching.step_max, {1e-3, 1},
+           "largest change of a drive's torque from tick to tick by a switch of sets, as a share of the joint's limit");
+  f.number("switch_fade_s", config_.switching.fade_s, {1e-3, 10, "s"},
+           "in which what is left of the old set's torque fades, or longer where switch_step_max wants it");
   std::string initial;
   if (!f.string("initial_set", initial, "the control set that is active first; else the first one")) return;
   const std::vector<std::string> names = names_of(config_.sets);

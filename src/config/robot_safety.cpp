@@ -7,6 +7,21 @@
 namespace kadans {
 namespace {
 
+std::vector<std::string> level_names() {
+  std::vector<std::string> names;
+  for (const SafetyLevel level :
+       {SafetyLevel::normal, SafetyLevel::limited, SafetyLevel::hold, SafetyLevel::damp, SafetyLevel::off}) {
+    names.emplace_back(name(level));
+  }
+  return names;
+}
+
+std::vector<std::string> fault_names() {
+  std::vector<std::string> names;
+  for (std::size_t code = 1; code < fault_codes; ++code) names.emplace_back(name(static_cast<FaultCode>(code)));
+  return names;
+}
+
 void soft_stop_fields(Fields& f, SoftStopSettings& s) {
   f.number("zone_rad", s.zone_rad, {0, 1, "rad"}, "before a position limit: torque towards it fades to none");
   f.number("stiffness_Nm_per_rad", s.stiffness_Nm_per_rad, {0, 1e4, "Nm/rad"},
@@ -45,21 +60,6 @@ void fall_fields(Fields& f, FallSettings& s) {
   f.number("rest_rate_rad_s", s.rest_rate_rad_s, {1e-3, 100, "rad/s"}, "a fallen robot turns slower ...");
   f.number("rest_s", s.rest_s, {0, 60, "s"}, "... for so long; then torque is back");
   f.number("impact_max_m_s2", s.impact_max_m_s2, {0, 1e5, "m/s2"}, "specific force of an impact that is recorded");
-}
-
-std::vector<std::string> level_names() {
-  std::vector<std::string> names;
-  for (const SafetyLevel level :
-       {SafetyLevel::normal, SafetyLevel::limited, SafetyLevel::hold, SafetyLevel::damp, SafetyLevel::off}) {
-    names.emplace_back(name(level));
-  }
-  return names;
-}
-
-std::vector<std::string> fault_names() {
-  std::vector<std::string> names;
-  for (std::size_t code = 1; code < fault_codes; ++code) names.emplace_back(name(static_cast<FaultCode>(code)));
-  return names;
 }
 
 }  // namespace

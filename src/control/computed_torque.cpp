@@ -8,7 +8,6 @@
 namespace kadans {
 namespace {
 
-constexpr double cancel_time_s = 0.1;
 constexpr double period_max_s = 0.05;  // of the high level, for looking ahead
 
 }  // namespace

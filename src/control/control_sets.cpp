@@ -33,7 +33,7 @@ void check_set(const Catalog& catalog, const ControlSetInfo& set) {
 ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects)
     : catalog_(catalog),
       objects_(std::move(objects)),
-      switchover_(catalog.drives, catalog.switch_fade_s, catalog.velocity_delay_s),
+      switchover_(catalog.drives, catalog.switching),
       active_(catalog.initial_set) {
   if (objects_.size() > max_objects) {
     throw std::invalid_argument(std::to_string(objects_.size()) + " control objects, at most " +
@@ -116,7 +116,7 @@ void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationF
     compose_joints(member, actuation);
   }
   if (changed && !first) switchover_.begin(input.joints, input.dt_s, input.last, actuation);
-  switchover_.apply(input.dt_s, actuation);
+  switchover_.apply(input.joints, input.dt_s, actuation);
 }
 
 void ControlSets::fill(std::uint32_t& active_set, std::uint32_t& count,

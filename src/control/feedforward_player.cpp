@@ -41,8 +41,6 @@ double HarmonicSeries::rate(const PlayerPhase& phase) const noexcept {
 
 namespace {
 
-constexpr double cancel_time_s = 0.1;
-
 void declare_series(AxisTables& tables, const char* what, const char* unit, double most, HarmonicSeries& series) {
   const auto coefficient = [&](const char* function, const char* doc, std::size_t order, double* value) {
     const std::string number = std::to_string(order);
@@ -61,61 +59,36 @@ void declare_series(AxisTables& tables, const char* what, const char* unit, doub
 }  // namespace
 
 void PlayerLaw::declare(AxisTables& tables) {
-  Config& c = config_;
-  const State& s = state_;
-  const double most = axis_.effort_max_Nm;
-  tables.tunable("kp_Nm_per_rad", "Nm/rad", 0, 5000, 0, &c.kp_Nm_per_rad, "Torque per position error.");
-  tables.tunable("kd_Nms_per_rad", "Nm s/rad", 0, 500, 0, &c.kd_Nms_per_rad, "Torque per velocity error.");
-  tables.tunable("effort_max_Nm", "Nm", 0, most, most, &c.effort_max_Nm, "Bound of the torque.");
-  declare_series(tables, "position", "rad", 3.2, c.position_rad);
-  declare_series(tables, "effort", "Nm", most, c.effort_Nm);
+  law_.declare(tables, {"kp_Nm_per_rad", "kd_Nms_per_rad", "error_rad"});
+  declare_series(tables, "position", "rad", 3.2, config_.position_rad);
+  declare_series(tables, "effort", "Nm", axis_.effort_max_Nm, config_.effort_Nm);
   tables.setpoint("amplitude", "", 0, 1, "Share of the series that is played.", 0);
-  tables.signal("amplitude", "", "Share of the series that is played.", &s.amplitude);
-  tables.signal("reference_rad", "rad", "Where the joint shall be.", &s.reference_rad);
-  tables.signal("reference_velocity_rad_s", "rad/s", "Its velocity.", &s.reference_velocity_rad_s);
-  tables.signal("feedforward_Nm", "Nm", "Torque played, and that taken over.", &s.feedforward_Nm);
-  tables.signal("error_rad", "rad", "Reference minus position.", &s.error_rad);
-  tables.signal("effort_Nm", "Nm", "Torque computed.", &s.effort_Nm);
-  tables.signal("saturated", "", "Whether the torque was limited.", &s.saturated);
+  tables.signal("amplitude", "", "Share of the series that is played.", &state_.amplitude);
+  tables.signal("feedforward_Nm", "Nm", "Torque played, and that taken over.", &state_.feedforward_Nm);
 }
 
 void PlayerLaw::start(const Handover& handover) noexcept {
   state_ = {};
-  effort_before_Nm_ = state_.effort_Nm = effort_before_Nm(handover);
+  effort_before_Nm_ = effort_before_Nm(handover);
+  law_.start(effort_before_Nm_);
   amplitude_.reset(0);
   continue_motion(posture_, handover.state.position_rad, handover.state.velocity_rad_s, axis_);
 }
 
 JointActuation PlayerLaw::step(const JointState& joint, double dt_s) noexcept {
   const Config& c = config_;
-  State& s = state_;
   const MinimumJerk::State& posture = posture_.step(dt_s);
   const MinimumJerk::State& amplitude = amplitude_.step(dt_s);
   const double series_rad = c.position_rad.value(*phase_);
-  s.amplitude = amplitude.position;
-  s.reference_rad = posture.position + amplitude.position * series_rad;
-  s.reference_velocity_rad_s =
+  const double wanted_rad = posture.position + amplitude.position * series_rad;
+  const double within_rad =
+      std::clamp(wanted_rad, std::min(axis_.lower_rad, posture.position), std::max(axis_.upper_rad, posture.position));
+  const double velocity_rad_s =
       posture.velocity + amplitude.velocity * series_rad + amplitude.position * c.position_rad.rate(*phase_);
-  const double within_rad = std::clamp(s.reference_rad, std::min(axis_.lower_rad, posture.position),
-                                       std::max(axis_.upper_rad, posture.position));
-  if (within_rad != s.reference_rad) {
-    s.reference_rad = within_rad;
-    s.reference_velocity_rad_s = 0;
-  }
-  s.feedforward_Nm = effort_before_Nm_ + amplitude.position * c.effort_Nm.value(*phase_);
-  s.error_rad = s.reference_rad - joint.position_rad;
-  const double unlimited_Nm = s.feedforward_Nm + c.kp_Nm_per_rad * s.error_rad +
-                              c.kd_Nms_per_rad * (s.reference_velocity_rad_s - joint.velocity_rad_s);
-  s.effort_Nm = std::clamp(unlimited_Nm, -c.effort_max_Nm, c.effort_max_Nm);
-  s.saturated = s.effort_Nm != unlimited_Nm;
-  return {.effort_Nm = s.effort_Nm, .mode = ActuationMode::effort};
+  state_.amplitude = amplitude.position;
+  state_.feedforward_Nm = effort_before_Nm_ + amplitude.position * c.effort_Nm.value(*phase_);
+  return law_.step(within_rad, within_rad == wanted_rad ? velocity_rad_s : 0, state_.feedforward_Nm, joint);
 }
-
-void PlayerLaw::set_point(std::uint32_t, double value, double duration_s) noexcept {
-  amplitude_.move(value, duration_s);
-}
-
-void PlayerLaw::cancel(std::uint32_t) noexcept { amplitude_.move(0, cancel_time_s); }
 
 FeedforwardPlayer::FeedforwardPlayer(const ObjectSetup& setup) : Jointwise(setup) {
   for (std::size_t i = 0; i < size(); ++i) law(i).follow(phase_);

@@ -5,11 +5,6 @@
 #include "kadans/control/jointwise.h"
 
 namespace kadans {
-namespace {
-
-constexpr double cancel_time_s = 0.1;
-
-}  // namespace
 
 void CascadeLaw::declare(AxisTables& tables) {
   Config& c = config_;
@@ -50,7 +45,7 @@ double CascadeLaw::velocity_command(const MinimumJerk::State& reference, double 
 void CascadeLaw::start(const Handover& handover) noexcept {
   const JointState& joint = handover.state;
   state_ = {};
-  continue_motion(reference_, joint.position_rad, joint.velocity_rad_s, axis_);
+  take_over(handover);
   state_.effort_Nm = effort_before_Nm(handover);
   const double velocity_error_rad_s = velocity_command(reference_.state(), joint.position_rad) - joint.velocity_rad_s;
   const double wanted_Nm = state_.effort_Nm - config_.feedforward_Nm - config_.kv_Nms_per_rad * velocity_error_rad_s;
@@ -73,12 +68,6 @@ JointActuation CascadeLaw::step(const JointState& joint, double dt_s) noexcept {
   if (!winds_up) s.integral_Nm = std::clamp(s.integral_Nm + growth_Nm, -c.integral_max_Nm, c.integral_max_Nm);
   return {.effort_Nm = s.effort_Nm, .mode = ActuationMode::effort};
 }
-
-void CascadeLaw::set_point(std::uint32_t, double value, double duration_s) noexcept {
-  reference_.move(value, duration_s);
-}
-
-void CascadeLaw::cancel(std::uint32_t) noexcept { reference_.stop(cancel_time_s); }
 
 std::unique_ptr<ControlObject> make_joint_cascade(const ObjectSetup& setup) {
   return std::make_unique<Jointwise<CascadeLaw>>(setup);

@@ -26,10 +26,12 @@ double Pid::step(double reference_rad, double reference_velocity_rad_s, double p
   s.reference_velocity_rad_s = reference_velocity_rad_s;
   s.error_rad = reference_rad - position_rad;
 
-  // First-order low pass by backward differences: stable for every cut-off.
-  const double rate = 2 * std::numbers::pi * c.kd_cutoff_Hz * dt_s;
-  const double share = c.kd_cutoff_Hz > 0 ? rate / (1 + rate) : 1.0;
-  s.velocity_rad_s += share * (velocity_rad_s - s.velocity_rad_s);
+  if (c.kd_cutoff_Hz > 0) {  // first-order low pass by backward differences: stable for every cut-off
+    const double rate = 2 * std::numbers::pi * c.kd_cutoff_Hz * dt_s;
+    s.velocity_rad_s += rate / (1 + rate) * (velocity_rad_s - s.velocity_rad_s);
+  } else {
+    s.velocity_rad_s = velocity_rad_s;
+  }
 
   const double unlimited_Nm = c.feedforward_Nm + c.kp_Nm_per_rad * s.error_rad + s.integral_Nm +
                               c.kd_Nms_per_rad * (c.velocity_weight * reference_velocity_rad_s - s.velocity_rad_s);

@@ -11,17 +11,11 @@ double limited(const DriveLaw& drive, double torque_Nm) noexcept {
   return std::clamp(torque_Nm, -drive.effort_max_Nm, drive.effort_max_Nm);
 }
 
-// In effort mode the torque is limited before the offset is added; a drive limits its own modes by itself.
-double torque_of(const DriveLaw& drive, const JointActuation& actuation, double position_rad,
-                 double velocity_rad_s) noexcept {
-  const double torque_Nm = drive_torque_Nm(drive, actuation, position_rad, velocity_rad_s);
-  return actuation.mode == ActuationMode::effort ? limited(drive, torque_Nm) : torque_Nm;
-}
-
 double fade(double share) noexcept {  // 1 at the beginning, 0 at the end
   const double t = 1 - share;
   return 1 - t * t * t * (10 + t * (-15 + 6 * t));
 }
+constexpr double fade_slope_max = 1.875;  // in its middle
 
 }  // namespace
 
@@ -42,17 +36,48 @@ double drive_torque_Nm(const DriveLaw& drive, const JointActuation& actuation, d
   return 0;
 }
 
-Switchover::Switchover(std::vector<DriveLaw> drives, double fade_s, double velocity_delay_s)
-    : drives_(std::move(drives)), fade_s_(fade_s), velocity_delay_s_(velocity_delay_s) {}
+namespace {
+
+// Adds to the torque that the drive will give within its limit, by what the mode has for it.
+void shift(const DriveLaw& drive, double offset_Nm, double position_rad, double velocity_rad_s,
+           JointActuation& actuation) noexcept {
+  const double asked_Nm = drive_torque_Nm(drive, actuation, position_rad, velocity_rad_s);
+  const double added_Nm = limited(drive, limited(drive, asked_Nm) + offset_Nm) - asked_Nm;
+  if (actuation.mode == ActuationMode::position && drive.position_gain_Nm_per_rad > 0) {
+    actuation.position_rad += added_Nm / drive.position_gain_Nm_per_rad;
+  } else if (actuation.mode == ActuationMode::velocity && drive.velocity_gain_Nms_per_rad > 0) {
+    actuation.velocity_rad_s += added_Nm / drive.velocity_gain_Nms_per_rad;
+  } else {
+    actuation.effort_Nm += added_Nm;
+    if (actuation.mode == ActuationMode::off) actuation.mode = ActuationMode::effort;
+  }
+}
+
+}  // namespace
+
+Switchover::Switchover(std::vector<DriveLaw> drives, const SwitchSettings& settings)
+    : drives_(std::move(drives)), settings_(settings) {}
 
 void Switchover::observe(const JointStates& joints, double dt_s) noexcept {
   constexpr double share = 0.4;  // of the newest difference
+  const double rate_per_s = 1 / dt_s;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const double change_rad_s2 = (joints.joints[i].velocity_rad_s - velocity_rad_s_[i]) / dt_s;
+    const double change_rad_s2 = (joints.joints[i].velocity_rad_s - velocity_rad_s_[i]) * rate_per_s;
     velocity_rad_s_[i] = joints.joints[i].velocity_rad_s;
     acceleration_rad_s2_[i] += share * (change_rad_s2 - acceleration_rad_s2_[i]);
     if (!std::isfinite(acceleration_rad_s2_[i])) acceleration_rad_s2_[i] = 0;
   }
+}
+
+// A drive's servo is implicit in time: it sees the joint at the end of its tick. What was written in this tick is at
+// work until the next, what is computed in this one for a tick from there.
+Switchover::Foresight Switchover::foresee(std::size_t joint, const JointState& state, double dt_s) const noexcept {
+  const double gain_rad_s = dt_s * acceleration_rad_s2_[joint];
+  const double soon_rad_s =
+      state.velocity_rad_s + drives_[joint].velocity_delay_s * acceleration_rad_s2_[joint] + gain_rad_s;
+  const double later_rad_s = soon_rad_s + gain_rad_s;
+  const double soon_rad = state.position_rad + dt_s * soon_rad_s;
+  return {soon_rad, soon_rad_s, soon_rad + dt_s * later_rad_s, later_rad_s};
 }
 
 void Switchover::begin(const JointStates& joints, double dt_s, const ActuationFrame& before,
@@ -61,41 +86,24 @@ void Switchover::begin(const JointStates& joints, double dt_s, const ActuationFr
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveLaw& drive = drives_[i];
     if (drive.effort_max_Nm <= 0) continue;
-    // A drive's servo is implicit in time: it sees the joint at the end of its tick. The old actuation is at work until
-    // the next tick, the new one for a tick from there.
-    const JointState& joint = joints.joints[i];
-    const double gain_rad_s = dt_s * acceleration_rad_s2_[i];
-    const double soon_rad_s = joint.velocity_rad_s + velocity_delay_s_ * acceleration_rad_s2_[i] + gain_rad_s;
-    const double later_rad_s = soon_rad_s + gain_rad_s;
-    const double soon_rad = joint.position_rad + dt_s * soon_rad_s;
-    const double later_rad = soon_rad + dt_s * later_rad_s;
-    const double was_Nm = limited(drive, drive_torque_Nm(drive, before.joints[i], soon_rad, soon_rad_s));
-    const double will_be_Nm = torque_of(drive, after.joints[i], later_rad, later_rad_s);
-    const double difference_Nm = was_Nm - will_be_Nm;
+    const Foresight at = foresee(i, joints.joints[i], dt_s);
+    const double was_Nm = drive_torque_Nm(drive, before.joints[i], at.soon_rad, at.soon_rad_s);
+    const double will_be_Nm = drive_torque_Nm(drive, after.joints[i], at.later_rad, at.later_rad_s);
+    const double difference_Nm = limited(drive, was_Nm) - limited(drive, will_be_Nm);
     offset_Nm_[i] = std::isfinite(difference_Nm) ? difference_Nm : 0;  // what is not finite is for the safety layer
     absorbed_share_ = std::max(absorbed_share_, std::abs(offset_Nm_[i]) / drive.effort_max_Nm);
   }
-  remaining_s_ = fade_s_;
+  duration_s_ = std::max(settings_.fade_s, fade_slope_max * absorbed_share_ / settings_.step_max * dt_s);
+  remaining_s_ = duration_s_;
 }
 
-void Switchover::shift(const DriveLaw& drive, double offset_Nm, JointActuation& actuation) const noexcept {
-  if (actuation.mode == ActuationMode::position && drive.position_gain_Nm_per_rad > 0) {
-    actuation.position_rad += offset_Nm / drive.position_gain_Nm_per_rad;
-  } else if (actuation.mode == ActuationMode::velocity && drive.velocity_gain_Nms_per_rad > 0) {
-    actuation.velocity_rad_s += offset_Nm / drive.velocity_gain_Nms_per_rad;
-  } else if (actuation.mode == ActuationMode::effort) {
-    actuation.effort_Nm = limited(drive, limited(drive, actuation.effort_Nm) + offset_Nm);
-  } else {
-    actuation.effort_Nm += offset_Nm;
-    if (actuation.mode == ActuationMode::off) actuation.mode = ActuationMode::effort;
-  }
-}
-
-void Switchover::apply(double dt_s, ActuationFrame& actuation) noexcept {
+void Switchover::apply(const JointStates& joints, double dt_s, ActuationFrame& actuation) noexcept {
   if (!fading()) return;
-  const double left = fade(remaining_s_ / fade_s_);
+  const double left = fade(remaining_s_ / duration_s_);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    if (drives_[i].effort_max_Nm > 0) shift(drives_[i], left * offset_Nm_[i], actuation.joints[i]);
+    if (drives_[i].effort_max_Nm <= 0) continue;
+    const Foresight at = foresee(i, joints.joints[i], dt_s);
+    shift(drives_[i], left * offset_Nm_[i], at.later_rad, at.later_rad_s, actuation.joints[i]);
   }
   remaining_s_ = remaining_s_ <= 1.5 * dt_s ? 0 : remaining_s_ - dt_s;
 }

@@ -10,7 +10,6 @@
 namespace kadans {
 namespace {
 
-constexpr double cancel_time_s = 0.1;
 constexpr double point_max_m = 1;
 constexpr const char* direction_names[] = {"x", "y", "z"};
 

@@ -28,6 +28,10 @@ VelocityFilter::VelocityFilter(const Config& config) : config_(config) {
   prewarp();
 }
 
+double VelocityFilter::delay_s(const Config& config) noexcept {
+  return std::numbers::sqrt2 / (2 * std::numbers::pi * config.cutoff_Hz) + 0.5 * config.dt_s;
+}
+
 bool VelocityFilter::set_cutoff(double cutoff_Hz) noexcept {
   if (!is_cutoff(cutoff_Hz, config_.dt_s)) return false;
   config_.cutoff_Hz = cutoff_Hz;

@@ -44,6 +44,12 @@ RobotModel model_of(const JointBenchConfig& config) {
   return model;
 }
 
+double velocity_delay_s(const JointBenchConfig& config) {
+  return config.velocity_cutoff_Hz > 0
+             ? VelocityFilter::delay_s({.cutoff_Hz = config.velocity_cutoff_Hz, .dt_s = config.dt_s})
+             : 0;
+}
+
 bool finite(const JointActuation& asked) noexcept {
   return std::isfinite(asked.effort_Nm) && std::isfinite(asked.position_rad) && std::isfinite(asked.velocity_rad_s);
 }
@@ -67,7 +73,8 @@ void JointBench::add_objects(const std::vector<BenchObject>& objects) {
   catalog_.model = &model_;
   catalog_.drives = {{.effort_max_Nm = effort_max_Nm(),
                       .position_gain_Nm_per_rad = config_.plant.position_gain_Nm_per_rad,
-                      .velocity_gain_Nms_per_rad = config_.plant.velocity_gain_Nms_per_rad}};
+                      .velocity_gain_Nms_per_rad = config_.plant.velocity_gain_Nms_per_rad,
+                      .velocity_delay_s = velocity_delay_s(config_)}};
   std::vector<std::unique_ptr<ControlObject>> made;
   for (const BenchObject& object : objects) {
     const auto index = static_cast<std::uint32_t>(made.size());

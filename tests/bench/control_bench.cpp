@@ -1,6 +1,7 @@
 #include <memory>
 
-#include "kadans/app/assembly.h"
+#include "chain_robot.h"
+#include "kadans/plant/ideal_plant.h"
 #include "kadans/telemetry/recorder.h"
 #include "kadans/testing/allocation_count.h"
 #include "report.h"
@@ -8,45 +9,81 @@
 namespace kadans::bench {
 namespace {
 
-ScenarioConfig tulip_on_ideal_plant() {
-  ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json");
-  scenario.plant = PlantKind::ideal;
-  scenario.behaviors.clear();
-  return scenario;
-}
+constexpr int batch = 100, batches = 500;
 
-}  // namespace
+struct TickCost {
+  double median_ns = 0;
+  double allocations = 0;  // in all ticks
+};
 
-// One control tick with everything but the plant: estimate, safety, 12 PID laws, snapshot, record.
-void bench_control(Report& report) {
-  const ScenarioConfig scenario = tulip_on_ideal_plant();
-  RunLog log;
-  Assembly robot(scenario, 1, log);
-  Recorder recorder(robot.catalog().signals);
-  robot.record_to(&recorder);
-  const RunParts parts = robot.parts();
+// The behavior engine ticks between the batches, so that its heartbeat does not grow old.
+TickCost tick_cost(ControlEngine& control, BehaviorEngine& behaviors, Recorder& recorder) {
+  control.record_to(&recorder);
   std::int64_t time_ns = 0;
   std::vector<double> ticks;
-  std::uint64_t allocations = 0;
-  constexpr int batch = 100, batches = 500;
+  TickCost cost;
   for (int i = 0; i < batches; ++i) {
     double began = 0, ended = 0;
     {
       const kadans::testing::AllocationCount heap;
       began = now_ns();
       for (int j = 0; j < batch; ++j) {
-        parts.control.tick(time_ns, 0.001);
+        control.tick(time_ns, 0.001);
         time_ns += 1'000'000;
       }
       ended = now_ns();
-      allocations += static_cast<std::uint64_t>(heap.count());
+      cost.allocations += static_cast<double>(heap.count());
     }
     ticks.push_back((ended - began) / batch);
-    parts.behaviors.tick(time_ns);
+    behaviors.tick(time_ns);
     (void)recorder.drain();
   }
-  report.add("control_tick_ns.14", "control tick of TULip: estimate, safety, 12 PID, record", median(ticks), "ns");
-  report.add("control_tick_allocations", "heap allocations in these ticks", static_cast<double>(allocations), "");
+  cost.median_ns = median(std::move(ticks));
+  return cost;
+}
+
+TickCost tulip_tick() {
+  ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json");
+  scenario.plant = PlantKind::ideal;
+  scenario.behaviors.clear();
+  RunLog log;
+  Assembly robot(scenario, 1, log);
+  Recorder recorder(robot.catalog().signals);
+  return tick_cost(robot.parts().control, robot.parts().behaviors, recorder);
+}
+
+TickCost chain_tick(std::size_t joints, const ControlObjectTypes& types) {
+  const Robot robot = chain_robot(joints, types, "joint_pid");
+  const RobotConfig& config = robot.config;
+  const auto system = make_control_system(robot);
+  Catalog& catalog = system->catalog;
+  IdealPlant plant(config.model, config.plant);
+  ControlSets sets(catalog, std::move(system->objects));
+  Estimator estimator(config.model, config.estimate, config.engine.control_period_s);
+  Safety safety(config.safety, config.model);
+  const auto exchange = std::make_unique<EngineExchange>();
+  ControlEngine control(config.engine, plant, estimator, safety, sets, catalog, *exchange);
+  BehaviorEngine behaviors(sets, *exchange, nullptr);
+  Recorder recorder(catalog.signals);
+  return tick_cost(control, behaviors, recorder);
+}
+
+}  // namespace
+
+// One control tick with everything but the plant's physics: estimate, safety, PID laws, snapshot, record.
+void bench_control(Report& report) {
+  const Robot tulip = read_robot(KADANS_SOURCE_DIR "/config/tulip/robot.json");
+  double allocations = 0;
+  for (const std::size_t joints : {1, 14, 64}) {
+    const TickCost cost = chain_tick(joints, tulip.types);
+    const std::string count = std::to_string(joints);
+    report.add("control_tick_ns." + count, "control tick with " + count + " PID: estimate, safety, record",
+               cost.median_ns, "ns");
+    allocations += cost.allocations;
+  }
+  const TickCost cost = tulip_tick();
+  report.add("control_tick_ns.tulip", "the same of TULip: 12 PID, IMU, feet, truth for checks", cost.median_ns, "ns");
+  report.add("control_tick_allocations", "heap allocations in these ticks", allocations + cost.allocations, "");
 }
 
 }  // namespace kadans::bench

@@ -62,6 +62,7 @@ void keep(T& value) {
 void bench_behavior(Report& report);
 void bench_control(Report& report);
 void bench_exchange(Report& report);
+void bench_objects(Report& report);
 void bench_record(Report& report);
 void bench_simulation(Report& report);
 void bench_switch(Report& report);

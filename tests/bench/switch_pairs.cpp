@@ -127,6 +127,8 @@ std::vector<std::string> switch_sets() {
   return names;
 }
 
+double switch_step_max() { return read_robot(robot_file).config.switching.step_max; }
+
 namespace {
 
 std::unique_ptr<Hanging> robot_in(const std::string& set, Situation situation) {

@@ -20,8 +20,9 @@ struct SwitchStep {
   std::string joint;         // where it was largest
 };
 
-// The sets of tests/bench/switching_robot.json.
+// The sets of tests/bench/switching_robot.json, and its bound of the step.
 std::vector<std::string> switch_sets();
+double switch_step_max();
 SwitchStep measure_switch(const std::string& from, const std::string& to, Situation situation);
 
 // What switching adds to the tick: median over many switches, in ns.

@@ -127,6 +127,12 @@ inline constexpr Broken broken_robots[] = {
      "together\n54:20: unknown control set 'posture' (known: wave)"},
     {"\"initial_set\": \"posture\"", "\"initial_set\": \"postures\"",
      "54:20: unknown control set 'postures', did you mean 'posture'?"},
+    {"\"initial_set\": \"posture\"", "\"initial_set\": \"posture\", \"switch_step_max\": 2",
+     "54:50: control.switch_step_max is 2, must be 0.001..1: largest change of a drive's torque from tick to "
+     "tick "
+     "by a switch of sets, as a share of the joint's limit"},
+    {"\"initial_set\": \"posture\"", "\"initial_set\": \"posture\", \"switch_fad_s\": 1",
+     "54:31: unknown key 'switch_fad_s' in control, did you mean 'switch_fade_s'?"},
     {"  \"control\": {", "  \"contrl\": {",
      "1:1: key 'control' is missing: control objects and control sets\n42:3: unknown key 'contrl', did you mean "
      "'control'?"},

@@ -51,6 +51,17 @@ TEST_CASE("A key that is left out keeps its default, torque and speed the URDF's
   CHECK(config.engine.commands_per_tick_max == 300);
 }
 
+TEST_CASE("The bound of a switch and its fade are the configuration's, else 2 percent of the limit and 0.2 s") {
+  const RobotConfig config = read(right_robot);
+  CHECK(config.switching.step_max == 0.02);
+  CHECK(config.switching.fade_s == 0.2);
+  const RobotConfig changed =
+      read_with("\"initial_set\": \"posture\"",
+                "\"initial_set\": \"posture\", \"switch_step_max\": 0.01, \"switch_fade_s\": 0.5");
+  CHECK(changed.switching.step_max == 0.01);
+  CHECK(changed.switching.fade_s == 0.5);
+}
+
 TEST_CASE("A pattern speaks for all joints that it fits, and later entries override earlier ones field by field") {
   const RobotConfig config = read_with("\"*_ankle_roll\": { \"rotor_inertia_kg_m2\": 0,", "\"*_ankle_roll\": {");
   const DriveSettings& ankle = config.plant.drives[joint(config, "r_ankle_roll")];

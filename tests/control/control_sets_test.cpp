@@ -102,6 +102,34 @@ TEST_CASE("A joint that no object of the new set drives goes off") {
   CHECK(bench.computed.joints[1].effort_Nm == 0);
 }
 
+TEST_CASE("Objects compose in the order of the set, and who has a share in a joint is a signal") {
+  RobotModel model = two_joint_robot();
+  Catalog catalog;
+  catalog.model = &model;
+  catalog.objects = {
+      {.name = "first", .joints = {1}}, {.name = "added", .joints = {1}}, {.name = "mixed", .joints = {1}}};
+  const auto torque_and_writers = [&](std::vector<std::uint32_t> order, std::vector<Composition> compositions) {
+    Catalog mine = catalog;
+    mine.sets = {{"all", std::move(order), std::move(compositions)}};
+    std::vector<std::unique_ptr<ControlObject>> objects;
+    for (const double effort_Nm : {4.0, 1.0, 10.0}) objects.push_back(std::make_unique<Constant>(1, effort_Nm));
+    ControlSets sets(mine, std::move(objects));
+    if (const auto weight = mine.parameters.find("all.mixed.weight")) REQUIRE(mine.parameters.set(*weight, 0.25));
+    ActuationFrame written, computed;
+    written.joint_count = computed.joint_count = 3;
+    sets.step(0, {{}, {}, written, 0, 0.001}, computed);
+    std::vector<double> row(mine.signals.size());
+    mine.signals.gather(row);
+    CHECK(row[mine.signals.find("composition.hip.writers").value()] == 0);
+    return std::pair{computed.joints[1].effort_Nm, row[mine.signals.find("composition.knee.writers").value()]};
+  };
+  using enum Composition;
+  CHECK(torque_and_writers({0, 1, 2}, {set, sum, blend}) == std::pair{0.75 * 5 + 0.25 * 10, 7.0});
+  CHECK(torque_and_writers({0, 2, 1}, {set, blend, sum}) == std::pair{0.75 * 4 + 0.25 * 10 + 1, 7.0});
+  CHECK(torque_and_writers({0, 1, 2}, {set, sum, priority}) == std::pair{10.0, 4.0});
+  CHECK(torque_and_writers({1, 0}, {set, sum}) == std::pair{5.0, 3.0});
+}
+
 TEST_CASE("A slower object computes every n-th tick with its own dt, and its actuation stands meanwhile") {
   Bench bench(4);
   for (int i = 0; i < 8; ++i) bench.step();

@@ -9,6 +9,7 @@
 #include "kadans/control/joint_cascade.h"
 #include "kadans/control/joint_impedance.h"
 #include "kadans/control/joint_integrator.h"
+#include "kadans/control/joint_pid.h"
 #include "kadans/control/joint_velocity.h"
 #include "kadans/control/profile_position.h"
 #include "kadans/control/trajectory_list.h"
@@ -26,7 +27,8 @@ struct Type {
   std::unique_ptr<ControlObject> (*make)(const ObjectSetup&);
   const char* setpoint;
 };
-constexpr Type types[] = {{"joint_cascade", make_joint_cascade, "position_rad"},
+constexpr Type types[] = {{"joint_pid", make_joint_pid, "position_rad"},
+                          {"joint_cascade", make_joint_cascade, "position_rad"},
                           {"joint_impedance", make_joint_impedance, "position_rad"},
                           {"joint_integrator", make_joint_integrator, "velocity_rad_s"},
                           {"joint_velocity", make_joint_velocity, "velocity_rad_s"},
@@ -140,6 +142,25 @@ TEST_CASE(
     CHECK(finite(bench.computed.joints[0]));
     CHECK(std::isfinite(bench.hip().position_rad));
   }
+}
+
+TEST_CASE("Every object in effort mode keeps its torque within its bound, and says so") {
+  int limited = 0;
+  for (const Type& type : types) {
+    ObjectBench bench = tuned(type);
+    bench.set_if_there("hip.effort_max_Nm", 2);
+    bench.start();
+    bench.compute();
+    if (bench.computed.joints[0].mode != ActuationMode::effort) continue;
+    bench.joints.joints[0].position_rad = -0.9;
+    bench.compute();
+    CAPTURE(type.name);
+    CHECK(bench.computed.joints[0].effort_Nm == 2);
+    CHECK(bench.signal("hip.saturated") == 1);
+    CHECK(bench.signal("knee.saturated") == 0);
+    ++limited;
+  }
+  CHECK(limited == 5);
 }
 
 TEST_CASE("Every object moves towards its set-point and says for how long") {

@@ -58,6 +58,7 @@ struct RobotConfig {
   std::vector<ObjectConfig> objects;
   std::vector<ControlSetInfo> sets;
   std::uint32_t initial_set = 0;
+  SwitchSettings switching;
   std::vector<PoseInfo> poses;
   std::string start_pose;
   SafeConfig safe;

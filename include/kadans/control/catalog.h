@@ -55,8 +55,7 @@ struct Catalog {
   std::vector<PoseInfo> poses;
   std::uint32_t initial_set = 0;
   std::vector<DriveLaw> drives;  // one a joint; empty: switching is not smoothed
-  double switch_fade_s = Switchover::default_fade_s;
-  double velocity_delay_s = 0;  // of the measured joint velocities, behind the true ones
+  SwitchSettings switching;
 };
 
 }  // namespace kadans

@@ -12,16 +12,16 @@
 // torque that was there.
 //
 // Set-points  <joint>.amplitude, 0..1, reached along a minimum-jerk curve in the time given.
-// Parameters  rate_Hz of the object; gains and series of each joint. A coefficient that changes counts at once: change
-// it
-//             while the amplitude is 0.
+// Parameters  rate_Hz of the object; gains and series of each joint. A coefficient that changes counts at once:
+//             change it while the amplitude is 0.
 #pragma once
 
 #include <array>
 #include <memory>
 
 #include "kadans/control/jointwise.h"
-#include "kadans/control/minimum_jerk.h"
+#include "kadans/control/position_reference.h"
+#include "kadans/control/spring_damper.h"
 
 namespace kadans {
 
@@ -48,18 +48,11 @@ struct HarmonicSeries {
 class PlayerLaw {
  public:
   struct Config {
-    double kp_Nm_per_rad = 0;   // 0..5000
-    double kd_Nms_per_rad = 0;  // 0..500
-    double effort_max_Nm = 0;
     HarmonicSeries position_rad, effort_Nm;
   };
   struct State {
     double amplitude = 0;
-    double reference_rad = 0, reference_velocity_rad_s = 0;
     double feedforward_Nm = 0;  // u_0 and the series
-    double error_rad = 0;
-    double effort_Nm = 0;
-    bool saturated = false;
   };
   static constexpr std::uint32_t channels = 1;
 
@@ -68,14 +61,15 @@ class PlayerLaw {
   void declare(AxisTables& tables);
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
-  void set_point(std::uint32_t which, double value, double duration_s) noexcept;
-  void cancel(std::uint32_t which) noexcept;
+  void set_point(std::uint32_t, double value, double duration_s) noexcept { amplitude_.move(value, duration_s); }
+  void cancel(std::uint32_t) noexcept { amplitude_.move(0, cancel_time_s); }
   double remaining_s() const noexcept { return amplitude_.remaining_s(); }
 
  private:
   JointAxis axis_;
   Config config_;
   State state_;
+  SpringDamper law_;
   MinimumJerk posture_, amplitude_;
   double effort_before_Nm_ = 0;
   const PlayerPhase* phase_ = nullptr;

@@ -10,11 +10,9 @@
 //
 // Parameters  gain (0..1; a new one is reached within 0.2 s) and <joint>.effort_max_Nm.
 // Signals     <joint>.effort_Nm, <joint>.saturated, gain, and model_age_s: since G was measured, or since the start
-// while
-//             that is older.
-// Start       the torque that was there continues; what gravity does not explain of it fades within 0.2 s of the first
-// G
-//             of this activation.
+//             while that is older.
+// Start       the torque that was there continues; what gravity does not explain of it fades within 0.2 s of the
+//             first G of this activation.
 // Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops; the others
 //             take it to be where it last was. A snapshot that is not finite gives no G: the last one stands.
 #pragma once

@@ -38,6 +38,8 @@ VelocityStart velocity_before(const Handover& handover) noexcept;
 
 // How long a reference takes that is taken over in motion to come to rest.
 inline constexpr double handover_stop_s = 0.2;
+// And one whose motion is cancelled.
+inline constexpr double cancel_time_s = 0.1;
 
 // A reference that goes on where and as fast as the joint moves and comes to rest soon, before the joint's limit if
 // that is possible. A joint beyond its limit is led back to it.

@@ -15,13 +15,11 @@
 
 #include <memory>
 
-#include "kadans/control/handover.h"
-#include "kadans/control/joint_axis.h"
-#include "kadans/control/minimum_jerk.h"
+#include "kadans/control/position_reference.h"
 
 namespace kadans {
 
-class CascadeLaw {
+class CascadeLaw : public PositionReference {
  public:
   struct Config {
     double kp_per_s = 0;         // 0..200
@@ -43,23 +41,17 @@ class CascadeLaw {
     bool velocity_limited = false;
     bool saturated = false;
   };
-  static constexpr std::uint32_t channels = 1;
 
-  explicit CascadeLaw(const JointAxis& axis) : axis_(axis) {}
+  explicit CascadeLaw(const JointAxis& axis) : PositionReference(axis) {}
   void declare(AxisTables& tables);
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
-  void set_point(std::uint32_t which, double value, double duration_s) noexcept;
-  void cancel(std::uint32_t which) noexcept;
-  double remaining_s() const noexcept { return reference_.remaining_s(); }
 
  private:
   double velocity_command(const MinimumJerk::State& reference, double position_rad) noexcept;
 
-  JointAxis axis_;
   Config config_;
   State state_;
-  MinimumJerk reference_;
 };
 
 std::unique_ptr<ControlObject> make_joint_cascade(const ObjectSetup& setup);

@@ -7,36 +7,22 @@
 // No integral: what pushes the joint meets the spring, however long it pushes. The load is carried by effort_ref.
 //
 // Set-points  <joint>.position_rad and <joint>.effort_Nm, each reached along a minimum-jerk curve in the time given.
-// Start       the reference goes on with the joint's velocity and comes to rest; effort_ref is the torque that was
-// there,
-//             and stays until it is set.
+// Start       the reference goes on with the joint's velocity and comes to rest; effort_ref is the torque that there
+//             was, and stays until it is set.
 #pragma once
 
 #include <memory>
 
-#include "kadans/control/handover.h"
-#include "kadans/control/joint_axis.h"
-#include "kadans/control/minimum_jerk.h"
+#include "kadans/control/position_reference.h"
+#include "kadans/control/spring_damper.h"
 
 namespace kadans {
 
-class ImpedanceLaw {
+class ImpedanceLaw : public PositionReference {
  public:
-  struct Config {
-    double stiffness_Nm_per_rad = 0;  // 0..5000
-    double damping_Nms_per_rad = 0;   // 0..500
-    double effort_max_Nm = 0;
-  };
-  struct State {
-    double reference_rad = 0, reference_velocity_rad_s = 0;
-    double reference_effort_Nm = 0;
-    double deflection_rad = 0;  // reference minus position
-    double effort_Nm = 0;
-    bool saturated = false;
-  };
-  static constexpr std::uint32_t channels = 2;
+  static constexpr std::uint32_t channels = 2;  // the reference's position; the torque
 
-  explicit ImpedanceLaw(const JointAxis& axis) : axis_(axis) {}
+  explicit ImpedanceLaw(const JointAxis& axis) : PositionReference(axis) {}
   void declare(AxisTables& tables);
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
@@ -45,10 +31,8 @@ class ImpedanceLaw {
   double remaining_s() const noexcept;
 
  private:
-  JointAxis axis_;
-  Config config_;
-  State state_;
-  MinimumJerk reference_, effort_;  // channels 0 and 1
+  SpringDamper law_;
+  MinimumJerk effort_;
 };
 
 std::unique_ptr<ControlObject> make_joint_impedance(const ObjectSetup& setup);

@@ -3,12 +3,15 @@
 // Each control object that comes in starts from the measured state and the last actuation. What is left is a difference
 // between the torque that the drive gave in the last tick and the torque that it will give for the new actuation. The
 // switchover adds this difference to the new actuation, so that the first step is none, and lets it fade away along a
-// minimum-jerk curve within fade_s: bumpless transfer by an output offset (Astrom and Hagglund, Advanced PID Control,
-// ISA 2006, sec. 13.5), applied to the drive's torque so that it holds across modes.
+// minimum-jerk curve: bumpless transfer by an output offset (Astrom and Hagglund, Advanced PID Control, ISA 2006, sec.
+// 13.5), applied to the drive's torque so that it holds across modes. The fade takes fade_s, or as long as it must so
+// that it changes no drive's torque by more than step_max from tick to tick; at the default values, with which a torque
+// limit may be crossed from end to end in 0.19 s, that is never longer.
 //
-// The torque of a drive in position or velocity mode follows from its own gains and from where the joint will be by
-// then: measured velocity lags behind by the filter's delay, so acceleration carries it on. In these modes the offset
-// moves the set-point, which costs nothing of the torque's range.
+// The torque of a drive in position or velocity mode follows from its own gains and limit, and from where the joint
+// will be by then: measured velocity lags behind by the filter's delay, so acceleration carries it on. In these modes
+// the offset moves the set-point, which costs nothing of the torque's range. How well this is foreseen is what is left
+// of a step.
 //
 // One owner, the control thread; nothing here allocates, locks or throws.
 #pragma once
@@ -25,12 +28,18 @@ struct DriveLaw {
   double effort_max_Nm = 0;
   double position_gain_Nm_per_rad = 0;   // of its position mode
   double velocity_gain_Nms_per_rad = 0;  // of its position and velocity modes
+  double velocity_delay_s = 0;           // of the joint's measured velocity, behind the true one
+};
+
+struct SwitchSettings {
+  double step_max = 0.02;  // of a joint's torque limit; > 0
+  double fade_s = 0.2;     // > 0
 };
 
 class Switchover {
  public:
   // One law a joint. Without laws (tests of single objects) nothing is smoothed.
-  explicit Switchover(std::vector<DriveLaw> drives, double fade_s = default_fade_s, double velocity_delay_s = 0);
+  explicit Switchover(std::vector<DriveLaw> drives, const SwitchSettings& settings = {});
 
   // Each tick, first: keeps track of how fast the joints gain speed.
   void observe(const JointStates& joints, double dt_s) noexcept;
@@ -40,21 +49,21 @@ class Switchover {
   void begin(const JointStates& joints, double dt_s, const ActuationFrame& before,
              const ActuationFrame& after) noexcept;
   // Each tick, last: adds what is left of the offset.
-  void apply(double dt_s, ActuationFrame& actuation) noexcept;
+  void apply(const JointStates& joints, double dt_s, ActuationFrame& actuation) noexcept;
 
   bool fading() const noexcept { return remaining_s_ > 0; }
   // The largest step that the last switch would have made on a joint without the offset, as a share of its limit.
   const double& absorbed_share() const noexcept { return absorbed_share_; }
 
-  static constexpr double default_fade_s = 0.2;
-
  private:
-  void shift(const DriveLaw& drive, double offset_Nm, JointActuation& actuation) const noexcept;
+  struct Foresight {  // where a joint is at the end of this tick and of the next
+    double soon_rad, soon_rad_s, later_rad, later_rad_s;
+  };
+  Foresight foresee(std::size_t joint, const JointState& state, double dt_s) const noexcept;
 
   std::vector<DriveLaw> drives_;
-  double fade_s_;
-  double velocity_delay_s_;
-  double remaining_s_ = 0;
+  SwitchSettings settings_;
+  double duration_s_ = 0, remaining_s_ = 0;  // of the fade under way
   double absorbed_share_ = 0;
   std::array<double, max_joints> velocity_rad_s_{}, acceleration_rad_s2_{};  // measured; its change, smoothed
   std::array<double, max_joints> offset_Nm_{};

@@ -25,6 +25,9 @@ class VelocityFilter {
 
   explicit VelocityFilter(const Config& config);  // throws std::invalid_argument naming field, value and range
 
+  // How far the velocity of an evenly accelerated joint lags behind.
+  static double delay_s(const Config& config) noexcept;
+
   // False, and nothing changes, outside (0, 0.45 / dt_s).
   [[nodiscard]] bool set_cutoff(double cutoff_Hz) noexcept;
 

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "kadans/control/switchover.h"
+
 namespace kadans::testing {
 
 class JointBench;
@@ -22,8 +24,8 @@ struct SwitchRecord {
 };
 
 struct SwitchLimits {
-  double first_step_share = 0.02;
-  double converged_s = 0.2;
+  double first_step_share = SwitchSettings{}.step_max;
+  double converged_s = SwitchSettings{}.fade_s;
 };
 
 // Switches to the object of this name and records for duration_s. Torques are compared where one tick meets the next:

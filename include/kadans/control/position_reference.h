@@ -1,0 +1,30 @@
+// What the laws have in common that lead a joint to one set-point along a minimum-jerk motion: the joint, the motion
+// and the channel by which it is commanded.
+#pragma once
+
+#include "kadans/control/handover.h"
+#include "kadans/control/joint_axis.h"
+#include "kadans/control/minimum_jerk.h"
+
+namespace kadans {
+
+class PositionReference {
+ public:
+  static constexpr std::uint32_t channels = 1;
+
+  void set_point(std::uint32_t, double value, double duration_s) noexcept { reference_.move(value, duration_s); }
+  void cancel(std::uint32_t) noexcept { reference_.stop(cancel_time_s); }
+  double remaining_s() const noexcept { return reference_.remaining_s(); }
+
+ protected:
+  explicit PositionReference(const JointAxis& axis) : axis_(axis) {}
+  // Goes on with the joint's velocity and comes to rest.
+  void take_over(const Handover& handover) noexcept {
+    continue_motion(reference_, handover.state.position_rad, handover.state.velocity_rad_s, axis_);
+  }
+
+  JointAxis axis_;
+  MinimumJerk reference_;
+};
+
+}  // namespace kadans

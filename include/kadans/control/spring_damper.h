@@ -1,0 +1,43 @@
+// A spring and a damper between a joint and its reference, beside a torque that is given, all within a bound:
+//
+//   u = limit(effort + K (q_ref - q) + D (v_ref - v), +-effort_max)
+//
+// One owner, the control thread; step() neither allocates, locks nor throws.
+#pragma once
+
+#include "kadans/control/joint_axis.h"
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+class SpringDamper {
+ public:
+  struct Config {
+    double stiffness_Nm_per_rad = 0;  // 0..5000
+    double damping_Nms_per_rad = 0;   // 0..500
+    double effort_max_Nm = 0;
+  };
+  struct State {
+    double reference_rad = 0, reference_velocity_rad_s = 0;
+    double error_rad = 0;  // reference minus position
+    double effort_Nm = 0;
+    bool saturated = false;
+  };
+  // What a law calls them.
+  struct Names {
+    const char* stiffness;
+    const char* damping;
+    const char* error;
+  };
+
+  void declare(AxisTables& tables, const Names& names);
+  void start(double effort_Nm) noexcept;
+  JointActuation step(double reference_rad, double reference_velocity_rad_s, double effort_Nm,
+                      const JointState& joint) noexcept;
+
+ private:
+  Config config_;
+  State state_;
+};
+
+}  // namespace kadans
