@@ -149,6 +149,15 @@ void ComputedTorque::set_point(std::uint32_t channel, double value, double durat
 
 void ComputedTorque::cancel_motion(std::uint32_t channel) noexcept { parts_[channel].reference.stop(cancel_time_s); }
 
+bool ComputedTorque::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+  const MinimumJerk::State& now = parts_[channel].reference.state();
+  return state = {now.position, now.velocity, now.acceleration}, true;
+}
+
+void ComputedTorque::follow(std::uint32_t channel, const SetpointState& state) noexcept {
+  parts_[channel].reference.follow({state.value, state.velocity, state.acceleration});
+}
+
 double ComputedTorque::motion_remaining_s() const noexcept {
   double remaining_s = 0;
   for (const Part& part : parts_) remaining_s = std::max(remaining_s, part.reference.remaining_s());

@@ -19,8 +19,14 @@ void MinimumJerk::move(double target, double duration_s) noexcept {
   remaining_s_ = duration_s;
 }
 
+void MinimumJerk::follow(const State& state) noexcept {
+  state_ = state;
+  target_ = state.position;
+  remaining_s_ = 0;
+}
+
 void MinimumJerk::stop(double duration_s) noexcept {
-  if (remaining_s_ > 0) move(state_.position + 0.5 * duration_s * state_.velocity, duration_s);
+  if (remaining_s_ > 0 || state_.velocity != 0) move(state_.position + 0.5 * duration_s * state_.velocity, duration_s);
 }
 
 // The quintic that leads from the present state to rest at the target in the time that is left, taken dt further. The

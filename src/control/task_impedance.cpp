@@ -173,6 +173,15 @@ void TaskImpedance::cancel_motion(std::uint32_t channel) noexcept {
   directions_[channel].reference.stop(cancel_time_s);
 }
 
+bool TaskImpedance::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+  const MinimumJerk::State& now = directions_[channel].reference.state();
+  return state = {now.position, now.velocity, now.acceleration}, true;
+}
+
+void TaskImpedance::follow(std::uint32_t channel, const SetpointState& state) noexcept {
+  directions_[channel].reference.follow({state.value, state.velocity, state.acceleration});
+}
+
 double TaskImpedance::motion_remaining_s() const noexcept {
   double remaining_s = 0;
   for (const Direction& direction : directions_) remaining_s = std::max(remaining_s, direction.reference.remaining_s());

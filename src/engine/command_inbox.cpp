@@ -12,7 +12,8 @@ CommandInbox::CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& s
       catalog_(catalog),
       sets_(sets),
       commands_per_tick_max_(commands_per_tick_max),
-      age_max_ns_(age_max_ns) {
+      age_max_ns_(age_max_ns),
+      motions_(catalog, sets) {
   if (commands_per_tick_max_ + 1 < max_transaction) {
     throw std::invalid_argument("commands_per_tick_max " + std::to_string(commands_per_tick_max_) +
                                 " would never let the largest transaction pass: at least " +
@@ -35,6 +36,9 @@ bool CommandInbox::acceptable(const Command& command) const noexcept {
       return command.index < catalog_.sets.size();
     case CommandKind::clear_faults:
       return true;
+    case CommandKind::trapezoid:
+    case CommandKind::via_point:
+      return SetpointMotions::acceptable(command, catalog_.setpoints);
   }
   return false;
 }
@@ -42,7 +46,9 @@ bool CommandInbox::acceptable(const Command& command) const noexcept {
 bool CommandInbox::held(const Command& command, const Catalog& catalog, const Safety& safety) noexcept {
   if (command.kind == CommandKind::clear_faults || command.kind == CommandKind::cancel_motion) return false;
   if (safety.robot_level() >= SafetyLevel::hold) return true;
-  if (command.kind != CommandKind::set_point) return false;
+  const bool moves = command.kind == CommandKind::set_point || command.kind == CommandKind::trapezoid ||
+                     command.kind == CommandKind::via_point;
+  if (!moves) return false;
   const std::uint32_t joint = catalog.setpoints[command.index].joint;
   return joint < catalog.model->joints.size() && safety.joint_level(joint) >= SafetyLevel::hold;
 }
@@ -68,11 +74,13 @@ void CommandInbox::execute(const Command& command, const ControlInput& input, Sa
       break;
     case CommandKind::set_point: {
       const Setpoint& setpoint = catalog_.setpoints[command.index];
+      motions_.drop(command.index);
       sets_.object(setpoint.owner).set_point(setpoint.channel, command.value, command.duration_s);
       break;
     }
     case CommandKind::cancel_motion: {
       const Setpoint& setpoint = catalog_.setpoints[command.index];
+      motions_.drop(command.index);
       sets_.object(setpoint.owner).cancel_motion(setpoint.channel);
       break;
     }
@@ -83,6 +91,10 @@ void CommandInbox::execute(const Command& command, const ControlInput& input, Sa
       break;
     case CommandKind::clear_faults:
       safety.clear();
+      break;
+    case CommandKind::trapezoid:
+    case CommandKind::via_point:
+      motions_.begin(command);
       break;
   }
 }

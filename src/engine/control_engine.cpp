@@ -32,6 +32,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
   written_ = actuation_;
   const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
   inbox_.apply(tick_, input, safety_);
+  inbox_.motions().step(dt_s);
   sets_.step(tick_, input, actuation_);
   publish(time_ns);
   ++tick_;
@@ -43,6 +44,7 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   snapshot_.transactions_applied = inbox_.state().last_transaction;
   snapshot_.commands_refused = inbox_.state().refused;
   sets_.fill(snapshot_.control_set, snapshot_.object_count, snapshot_.objects);
+  inbox_.motions().fill(snapshot_);
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);
   if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);

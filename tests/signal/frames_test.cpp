@@ -27,7 +27,7 @@ TEST_CASE("the frames have the same layout on every machine") {
   CHECK(sizeof(JointStates) == 1544);
   CHECK(sizeof(ActuationFrame) == 2056);
   CHECK(offsetof(JointActuation, mode) == 24);
-  CHECK(sizeof(Command) == 40);
+  CHECK(sizeof(Command) == 56);
   CHECK(offsetof(Command, value) == 24);
   CHECK(offsetof(Snapshot, status) == 1576);
   CHECK(sizeof(CommandQueue) == 128 + sizeof(Command) * command_capacity);

@@ -83,6 +83,14 @@ class ControlObject {
   virtual void set_point(std::uint32_t channel, double value, double duration_s) noexcept = 0;
   // Control thread: comes to rest where its motion is now.
   virtual void cancel_motion(std::uint32_t channel) noexcept = 0;
+  // Control thread: where the set-point is on its way. False: this object cannot be led along a motion that others plan.
+  virtual bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+    (void)channel, (void)state;
+    return false;
+  }
+  // Control thread, before each step of such a motion: where the set-point is in this tick. It takes the place of the
+  // object's own motion; after the last one, or a cancel_motion, the object goes on by itself.
+  virtual void follow(std::uint32_t channel, const SetpointState& state) noexcept { (void)channel, (void)state; }
   // Control thread: until the last motion under way has arrived; 0 when all is at rest.
   virtual double motion_remaining_s() const noexcept = 0;
   // Control thread: one or more of its parameters have new values.

@@ -40,6 +40,7 @@ class ControlSets {
   void update(std::uint64_t behavior_tick, const Snapshot& snapshot);
 
   std::uint32_t active() const noexcept { return active_; }
+  bool runs(std::uint32_t object) const noexcept { return (running_ >> object & 1U) != 0; }
   std::size_t size() const noexcept { return objects_.size(); }
 
  private:

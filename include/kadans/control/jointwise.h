@@ -10,6 +10,11 @@
 //   void cancel(std::uint32_t which) noexcept;
 //   double remaining_s() const noexcept;
 //
+// and, where a set-point can be led along a motion that others plan:
+//
+//   bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept;
+//   void follow(std::uint32_t which, const SetpointState& state) noexcept;
+//
 // The step in the tick of the start passes no time (dt_s = 0), so that a reference which starts where the joint is does
 // not run ahead of the measurement.
 //
@@ -71,6 +76,16 @@ class Jointwise : public ControlObject {
   void cancel_motion(std::uint32_t channel) noexcept override {
     parts_[channel / Law::channels].law.cancel(channel % Law::channels);
   }
+  bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept override {
+    if constexpr (led) {
+      return parts_[channel / Law::channels].law.setpoint_state(channel % Law::channels, state);
+    } else {
+      return ControlObject::setpoint_state(channel, state);
+    }
+  }
+  void follow(std::uint32_t channel, const SetpointState& state) noexcept override {
+    if constexpr (led) parts_[channel / Law::channels].law.follow(channel % Law::channels, state);
+  }
   double motion_remaining_s() const noexcept override {
     double remaining_s = 0;
     for (const Part& part : parts_) remaining_s = std::max(remaining_s, part.law.remaining_s());
@@ -83,6 +98,7 @@ class Jointwise : public ControlObject {
   const JointAxis& axis(std::size_t i) const noexcept { return parts_[i].axis; }
 
  private:
+  static constexpr bool led = requires(const Law& law, SetpointState& state) { law.setpoint_state(0U, state); };
   struct Part {
     JointAxis axis;
     Law law;

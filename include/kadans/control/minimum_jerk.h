@@ -17,6 +17,8 @@ class MinimumJerk {
   void start(double position, double velocity, double target, double duration_s) noexcept;
   // Reaches `target` at rest after duration_s > 0; at once for 0.
   void move(double target, double duration_s) noexcept;
+  // Is led along the motion of somebody else: here, and moving so. Stays at this state until told more.
+  void follow(const State& state) noexcept;
   // Comes to rest in duration_s, half the way that its velocity would have brought it.
   void stop(double duration_s) noexcept;
 

@@ -20,7 +20,7 @@
 
 namespace kadans {
 
-inline constexpr std::uint32_t plugin_abi_version = 1;
+inline constexpr std::uint32_t plugin_abi_version = 2;
 
 struct PluginLink {
   const char* name;

@@ -15,6 +15,14 @@ class PositionReference {
   void set_point(std::uint32_t, double value, double duration_s) noexcept { reference_.move(value, duration_s); }
   void cancel(std::uint32_t) noexcept { reference_.stop(cancel_time_s); }
   double remaining_s() const noexcept { return reference_.remaining_s(); }
+  bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept {
+    const MinimumJerk::State& now = reference_.state();
+    if (which != 0) return false;
+    return state = {now.position, now.velocity, now.acceleration}, true;
+  }
+  void follow(std::uint32_t, const SetpointState& state) noexcept {
+    reference_.follow({state.value, state.velocity, state.acceleration});
+  }
 
  protected:
   explicit PositionReference(const JointAxis& axis) : axis_(axis) {}

@@ -2,10 +2,10 @@
 // in position mode, the velocity as feed-forward: type "profile_position". The law is motion_profile.h; the target may
 // change while the joint moves.
 //
-// Set-points  <joint>.position_rad. A duration that the limits cannot keep is flagged as late; 0 is as fast as
-// possible. Parameters  the limits; they count from the next set-point on. Start       from the drive's last set-point,
-// or from the measured state with a fading torque; comes to rest within the
-//             limits.
+// Set-points  <joint>.position_rad. A duration that the limits cannot keep is flagged as late; 0 is the fastest.
+// Parameters  the limits; they count from the next set-point on.
+// Start       from the drive's last set-point, or from the measured state with a fading torque; comes to rest within
+//             the limits.
 #pragma once
 
 #include <memory>
@@ -38,6 +38,13 @@ class ProfileLaw {
   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
   void cancel(std::uint32_t which) noexcept;
   double remaining_s() const noexcept { return profile_.remaining_s(); }
+  bool setpoint_state(std::uint32_t, SetpointState& state) const noexcept {
+    const MotionProfile::State& now = profile_.state();
+    return state = {now.position, now.velocity, now.acceleration}, true;
+  }
+  void follow(std::uint32_t, const SetpointState& state) noexcept {
+    profile_.set_state({state.value, state.velocity, state.acceleration});
+  }
 
  private:
   MotionProfile::Limits limits() const noexcept;

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "kadans/control/control_sets.h"
+#include "kadans/engine/setpoint_motions.h"
 #include "kadans/safety/safety.h"
 #include "kadans/signal/command.h"
 
@@ -30,6 +31,7 @@ class CommandInbox {
     std::uint32_t refused = 0;           // commands of refused transactions
   };
   const State& state() const noexcept { return state_; }
+  SetpointMotions& motions() noexcept { return motions_; }
 
  private:
   bool acceptable(const Command& command) const noexcept;
@@ -43,6 +45,7 @@ class CommandInbox {
   ControlSets& sets_;
   std::uint32_t commands_per_tick_max_;
   std::int64_t age_max_ns_;
+  SetpointMotions motions_;
   State state_;
   std::array<bool, max_objects + 1> retuned_{};  // by owner; the last one: parameters of control sets
 };

@@ -18,6 +18,9 @@ enum class CommandKind : std::uint8_t {
   cancel_motion,  // index = SetpointId: stays where its motion is now, coming to rest
   switch_set,     // index = control set
   clear_faults,
+  trapezoid,  // index = SetpointId, value to be reached in duration_s (0 = as soon as may be), velocity, acceleration:
+              // limits
+  via_point,  // index = SetpointId, value to be passed duration_s after the point before; count = its number, 0 begins
 };
 
 struct Command {
@@ -28,9 +31,10 @@ struct Command {
   alignas(8) std::int64_t time_ns = 0;
   double value = 0;
   double duration_s = 0;
+  double velocity = 0, acceleration = 0;  // in the set-point's unit, per s and per s2
 };
 static_assert(std::is_trivially_copyable_v<Command>);
-static_assert(sizeof(Command) == 40 && alignof(Command) == 8 && offsetof(Command, time_ns) == 16,
+static_assert(sizeof(Command) == 56 && alignof(Command) == 8 && offsetof(Command, time_ns) == 16,
               "the same on 32-bit machines");
 
 inline constexpr double motion_duration_max_s = 3600;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "kadans/signal/fault.h"
@@ -57,6 +58,12 @@ struct alignas(8) ObjectStatus {
   alignas(8) double motion_remaining_s = 0;  // until the last of its set-points is reached; 0 at rest
 };
 
+// Where a set-point is on its way; NaN where its control object is not active, or cannot be led along a motion.
+struct SetpointStatus {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double velocity = std::numeric_limits<double>::quiet_NaN();
+};
+
 // One tick of the control engine as the other threads see it.
 struct alignas(8) Snapshot {
   std::uint64_t tick = 0;
@@ -68,6 +75,7 @@ struct alignas(8) Snapshot {
   RobotStatus status;
   std::uint32_t object_count = 0;
   std::array<ObjectStatus, max_objects> objects{};
+  std::array<SetpointStatus, max_setpoints_shown> setpoints{};  // by SetpointId
 };
 
 static_assert(std::is_trivially_copyable_v<Snapshot>);

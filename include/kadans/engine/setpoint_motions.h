@@ -1,0 +1,68 @@
+// Motions of set-points that are planned here, above the control objects, so that every object has them: each tick the
+// object is told where its set-point is. (The minimum-jerk motion of a plain set-point is the object's own.)
+//
+//   trapezoid  speeds up, cruises and slows down within limits of velocity and acceleration (motion_profile.h; the
+//              corners are rounded over corner_s, so that no torque steps). The target may change while it runs.
+//   spline     a curve through points at given times (cubic_spline.h)
+//
+// A motion begins with the position and velocity that the set-point has, so taking over another one makes no jump. A
+// plain set-point or a cancellation takes its place: the object goes on from where it was led. A motion is dropped when
+// its object leaves the control set or has started anew, so that its set-point is not where it was led.
+//
+// One owner, the control thread; nothing here allocates after construction, locks or throws.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kadans/control/catalog.h"
+#include "kadans/control/control_sets.h"
+#include "kadans/control/motion_profile.h"
+#include "kadans/engine/cubic_spline.h"
+#include "kadans/signal/command.h"
+
+namespace kadans {
+
+class SetpointMotions {
+ public:
+  // Marks in the catalog which set-points can be led.
+  SetpointMotions(Catalog& catalog, ControlSets& sets);
+
+  // Commands that may come: a known set-point that can be led, limits and durations in their ranges.
+  static bool acceptable(const Command& command, const SetpointTable& setpoints) noexcept;
+  void begin(const Command& command) noexcept;  // trapezoid or via_point
+  void drop(SetpointId id) noexcept;            // the object goes on by itself
+  // Each tick, after the commands and before the objects.
+  void step(double dt_s) noexcept;
+  // Where all set-points are, and until when their objects move.
+  void fill(Snapshot& snapshot) const noexcept;
+
+  // How a trapezoid with these limits moves; a duration of 0 is as fast as they allow.
+  static MotionProfile profile(const SetpointState& from, double target, double velocity_max, double acceleration_max,
+                               double duration_s) noexcept;
+  static constexpr double corner_s = 0.01;  // at most a tenth of the duration
+
+ private:
+  struct Motion {
+    enum class Kind : std::uint8_t { none, trapezoid, spline };
+    Kind kind = Kind::none;
+    bool led = false;      // in an earlier tick,
+    SetpointState told;    // there
+    bool planned = false;  // of a spline: all its points are known
+    double time_s = 0;     // of a spline
+    MotionProfile trapezoid;
+    CubicSpline spline;
+  };
+  ControlObject& object(SetpointId id) const noexcept { return sets_.object(setpoints_[id].owner); }
+  SetpointState now(SetpointId id) const noexcept;
+  bool still_led(SetpointId id) const noexcept;
+  static SetpointState advance(Motion& motion, double dt_s) noexcept;
+  static double remaining_s(const Motion& motion) noexcept;
+
+  const SetpointTable& setpoints_;
+  ControlSets& sets_;
+  std::vector<Motion> motions_;     // by SetpointId
+  std::vector<SetpointId> active_;  // those under way
+};
+
+}  // namespace kadans
