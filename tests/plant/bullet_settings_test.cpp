@@ -16,6 +16,12 @@ struct Wrong {
   std::string message;
 };
 
+// The settings' world gets one object.
+template <typename Shape>
+void put(Robot& robot, const Shape& shape) {
+  robot.settings.world.objects.push_back({"thing", shape, {}, 1, {}});
+}
+
 std::string refusal(const Robot& robot) {
   try {
     BulletPlant plant(robot.model, robot.settings, 1);
@@ -23,6 +29,14 @@ std::string refusal(const Robot& robot) {
     return error.what();
   }
   return "accepted";
+}
+
+void check_all(const std::vector<Wrong>& table) {
+  for (const Wrong& wrong : table) {
+    Robot robot = pendulum(1, 0.1, 0.02);
+    wrong.spoil(robot);
+    CHECK(refusal(robot) == wrong.message);
+  }
 }
 
 }  // namespace
@@ -51,9 +65,75 @@ TEST_CASE("Settings that do not fit the model are refused by name and value") {
       {[](Robot& r) { r.settings.gravity_m_s2[2] = NAN; }, "gravity_m_s2 must be finite"},
       {[](Robot& r) { r.model.joints[0].mimic = Mimic{}; }, "joint 'swing': mimic joints cannot be simulated"},
   };
-  for (const Wrong& wrong : table) {
-    Robot robot = pendulum(1, 0.1, 0.02);
-    wrong.spoil(robot);
-    CHECK(refusal(robot) == wrong.message);
-  }
+  check_all(table);
+}
+
+TEST_CASE("A world that cannot be built is refused by name and value") {
+  const std::vector<Wrong> table = {
+      {[](Robot& r) {
+         put(r, WorldBox{{1, 0, 1}});
+       },
+       "object 'thing': size_m = 0 must be above 0"},
+      {[](Robot& r) {
+         put(r, WorldBox{{1, 1, 1}, -2});
+       },
+       "object 'thing': mass_kg = -2 must be at least 0"},
+      {[](Robot& r) {
+         put(r, WorldRamp{1, 1, 1.5});
+       },
+       "object 'thing': incline_rad = 1.5 must be at most 1.2 rad either way"},
+      {[](Robot& r) {
+         put(r, WorldStairs{0, 1, 1, 1});
+       },
+       "object 'thing': count = 0 must be 1..32"},
+      {[](Robot& r) {
+         put(r, WorldWall{1, NAN, 1});
+       },
+       "object 'thing': height_m = nan must be above 0"},
+      {[](Robot& r) {
+         put(r, WorldBall{0.1, 0});
+       },
+       "object 'thing': mass_kg = 0 must be above 0"},
+      {[](Robot& r) {
+         put(r, WorldBall{0.1, 1, 0, 1.1});
+       },
+       "object 'thing': restitution = 1.1 must be 0..1"},
+      {[](Robot& r) {
+         put(r, WorldPendulum{1, 0.1, 2, 1});
+       },
+       "object 'thing': distance_m = 1 must be at least 0 and less than length_m"},
+      {[](Robot& r) {
+         put(r, WorldBall{0.1, 1});
+         r.settings.world.objects[0].motion.knots = {{0, {1, 0, 0}}};
+       },
+       "object 'thing': what moves freely cannot be driven: it has a mass and a motion"},
+      {[](Robot& r) {
+         r.settings.world.ground_motion.knots = {{1, {}}, {1, {}}};
+       },
+       "ground: motion: time_s = 1 must be at least 0 and later than the one before"},
+      {[](Robot& r) {
+         put(r, WorldBall{0.1, 1});
+         put(r, WorldBall{0.1, 1});
+       },
+       "two objects are named 'thing'"},
+      {[](Robot& r) {
+         put(r, WorldBall{0.1, 1});
+         r.settings.world.objects[0].pose.orientation = {2, 0, 0, 0};
+       },
+       "object 'thing': orientation must be a unit quaternion"},
+      {[](Robot& r) { r.settings.world.slope_rad = NAN; }, "slope_rad = nan must be at most 1.2 rad either way"},
+      {[](Robot& r) {
+         r.settings.world.payloads.push_back({"bag", "hand", {}, 1});
+       },
+       "payload 'bag': the robot has no link 'hand'"},
+      {[](Robot& r) {
+         r.settings.world.payloads.push_back({"bag", "arm", {}, 0});
+       },
+       "payload 'bag': mass_kg = 0 must be above 0"},
+      {[](Robot& r) {
+         r.settings.world.payloads.push_back({"bag", "arm", {}, 1, 2, 1});
+       },
+       "payload 'bag': until_s = 1 must be later than from_s"},
+  };
+  check_all(table);
 }

@@ -147,6 +147,37 @@ TEST_CASE("TULip's two feet carry its weight") {
   CHECK(truth_N == doctest::Approx(14 * g).epsilon(1e-3));
 }
 
+TEST_CASE("TULip stands on a box and on a ramp of 5 degrees as on the ground") {
+  const double incline_rad = 5 * M_PI / 180;
+  for (const bool ramp : {false, true}) {
+    CAPTURE(ramp);
+    Robot robot = tulip(Drives::rigid);
+    WorldObject under{.name = "under", .shape = WorldBox{{1, 1, 0.3}}, .pose = {{0, 0, 0.15}, {1, 0, 0, 0}}};
+    if (ramp) {
+      under = {.name = "under", .shape = WorldRamp{2, 1, incline_rad}, .pose = {{-1, 0, 0}, {1, 0, 0, 0}}};
+      for (std::size_t i = 0; i < robot.model.joints.size(); ++i) {  // toes up, so that the soles lie on it
+        if (robot.model.joints[i].name.ends_with("ankle_pitch")) robot.settings.position_rad[i] -= incline_rad;
+      }
+    }
+    robot.settings.world.objects = {under};
+    BulletPlant plant(robot.model, robot.settings, 1);
+    JointPdHold hold(robot);
+    for (int i = 0; i < 2000; ++i) hold.tick(plant);
+    const Vec3 at = plant.truth().feet[0].position_m;
+    double weight_N = 0;
+    for (int i = 0; i < 4000; ++i) {
+      hold.tick(plant);
+      for (std::size_t foot = 0; foot < 2; ++foot) weight_N += plant.truth().foot_force_N[foot][2] / 4000;
+    }
+    const Vec3 now = plant.truth().feet[0].position_m;
+    CHECK(weight_N == doctest::Approx(14 * g).epsilon(1e-3));
+    CHECK(std::hypot(now[0] - at[0], now[1] - at[1], now[2] - at[2]) < 6e-5);
+    CHECK(plant.truth().touching_links.count() == 2);
+    CHECK(plant.truth().objects[0].links == plant.truth().touching_links);
+    CHECK(plant.truth().self_penetration_m == 0);
+  }
+}
+
 TEST_CASE(
     "TULip's hips turn about one point without colliding, and its joints stay within their limits when it falls") {
   const Robot robot = tulip(Drives::elastic);

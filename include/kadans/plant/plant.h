@@ -5,9 +5,11 @@
 // on its own and leaves step empty.
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 
 #include "kadans/model/robot_model.h"
+#include "kadans/plant/world.h"
 #include "kadans/signal/frames.h"
 #include "kadans/signal/signal.h"
 #include "kadans/signal/state_hash.h"
@@ -30,6 +32,16 @@ class Plant {
   virtual void step(std::int64_t dt_ns) = 0;
 };
 
+using LinkSet = std::bitset<max_joints + 1>;  // by number, 0 is the base
+
+// An object of the world, in the order of the settings.
+struct ObjectTruth {
+  Pose pose;
+  Vec3 velocity_m_s{}, angular_velocity_rad_s{};  // world axes; of a conveyor its surface's
+  Vec3 force_N{};                                 // from the robot, world axes
+  LinkSet links;                                  // that press on it
+};
+
 // What a model knows and hardware does not: the truth, for checks and pictures, and hands to push the robot with.
 struct PlantTruth {
   Pose base;
@@ -43,7 +55,12 @@ struct PlantTruth {
   std::array<double, max_joints> drive_torque_Nm{};  // what each drive put on its joint in the last step
   std::uint32_t foot_count = 0;
   std::array<Pose, max_feet> feet{};
-  std::array<Vec3, max_feet> foot_force_N{};  // from the ground, world axes
+  std::array<Vec3, max_feet> foot_force_N{};  // from whatever the foot stands on, world axes
+  std::uint32_t object_count = 0;
+  std::array<ObjectTruth, max_world_objects> objects{};
+  LinkSet ground_links;           // that press on the ground
+  LinkSet touching_links;         // that press on the ground or an object
+  double self_penetration_m = 0;  // largest overlap of two links that may collide
 };
 
 class ModelPlant : public Plant {

@@ -1,4 +1,4 @@
-// What a modelled plant is made of beside the robot's links: drives, sensors, feet, ground, solver.
+// What a modelled plant is made of beside the robot's links: drives, sensors, feet, ground, world, solver.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kadans/model/robot_model.h"
+#include "kadans/plant/world.h"
 
 namespace kadans {
 
@@ -63,8 +64,9 @@ struct PlantSettings {
   int solver_iterations = 10;
   bool fixed_base = false;  // the base link is bolted to the world
   bool self_collision = true;
-  // Where the robot starts. With stand_on_ground the base's z is chosen so that the lowest collision point touches z =
-  // 0 (a fixed base stays where it is put).
+  WorldSettings world;
+  // Where the robot starts. With stand_on_ground the base's z is chosen so that the lowest collision point touches the
+  // ground or the fixed object of the world under it (a fixed base stays where it is put).
   Pose base;
   bool stand_on_ground = true;
   std::vector<double> position_rad;  // one a joint

@@ -26,7 +26,7 @@ bool overlaps(const btPersistentManifold& manifold) {
 }  // namespace
 
 Body::Body(const RobotModel& model, const PlantSettings& settings)
-    : frames_(link_frames(model)), multibody_(make_multibody(model, frames_, settings.fixed_base)) {
+    : frames_(link_frames(model)), multibody_(make_multibody(model, frames_, settings)) {
   multibody_->setHasSelfCollision(settings.self_collision);
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     shapes_.push_back(std::make_unique<LinkShapes>(model.links[i], frames_[i].com_in_link));
@@ -55,16 +55,40 @@ void Body::place(const PlantSettings& settings) {
   for (std::size_t i = 0; i < settings.position_rad.size(); ++i) {
     multibody_->setJointPos(static_cast<int>(i), settings.position_rad[i]);
   }
-  btTransform base = to_bullet(settings.base);
-  multibody_->setBaseWorldTransform(base * frames_[0].com_in_link);
-  multibody_->forwardKinematics(scratch_rotations_, scratch_origins_);
+  const btTransform base = to_bullet(settings.base);
+  set_base(base);
   if (!settings.stand_on_ground || settings.fixed_base) return;
-  double lowest_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < link_count(); ++i) lowest_m = std::min(lowest_m, shapes_[i]->lowest_m(com_frame(i)));
-  if (lowest_m == std::numeric_limits<double>::infinity()) return;  // nothing that could stand
-  base.getOrigin().setZ(base.getOrigin().z() - lowest_m);
+  const double over_m = over_surface_m(settings.world);
+  if (over_m == std::numeric_limits<double>::infinity()) return;  // nothing that could stand
+  set_base(btTransform(base.getBasis(), base.getOrigin() - btVector3(0, 0, over_m)));
+}
+
+void Body::set_base(const btTransform& base) {
   multibody_->setBaseWorldTransform(base * frames_[0].com_in_link);
   multibody_->forwardKinematics(scratch_rotations_, scratch_origins_);
+}
+
+// How far the robot can be let down; negative when it must be lifted.
+double Body::over_surface_m(const WorldSettings& world) const {
+  const bool flat = world.objects.empty() && world.slope_rad == 0;
+  double over_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < link_count(); ++i) {
+    if (flat) {
+      over_m = std::min(over_m, shapes_[i]->lowest_m(com_frame(i)));
+      continue;
+    }
+    for (const btVector3& corner : shapes_[i]->corners(com_frame(i))) {
+      over_m = std::min(over_m, corner.z() - surface_height_m(world, corner.x(), corner.y()));
+    }
+  }
+  return over_m;
+}
+
+void Body::load(const std::vector<PayloadSettings>& payloads, double time_s) {
+  for (std::size_t i = 0; i < payloads.size(); ++i) {
+    const bool carried = time_s >= payloads[i].from_s && time_s < payloads[i].until_s;
+    multibody_->getLink(static_cast<int>(link_count() - 1 + i)).m_mass = carried ? payloads[i].mass_kg : 0;
+  }
 }
 
 double Body::mass_kg(std::size_t link) const {
@@ -96,7 +120,7 @@ PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings) 
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) mask.forbid(model.joints[i].parent, i + 1);
   Body body(model, settings);
-  ContactWorld world({btVector3(0, 0, 0)}, mask);
+  ContactWorld world({.gravity_m_s2 = btVector3(0, 0, 0)}, mask);
   PlantSettings zero_pose;
   zero_pose.stand_on_ground = false;
   zero_pose.base.position_m = {0, 0, 100};  // clear of the ground

@@ -19,15 +19,19 @@ class Body {
   Body(const RobotModel& model, const PlantSettings& settings);
 
   void add_to(ContactWorld& world);
-  // Puts every joint and the base where the settings say; with stand_on_ground the lowest point to z = 0.
+  // Puts every joint and the base where the settings say; with stand_on_ground the lowest point on what is under it.
   void place(const PlantSettings& settings);
 
   btMultiBody& multibody() { return *multibody_; }
   const btMultiBody& multibody() const { return *multibody_; }
   std::size_t link_count() const { return frames_.size(); }
+  // Links and, after them, payloads: what has mass.
+  std::size_t mass_count() const { return static_cast<std::size_t>(multibody_->getNumLinks()) + 1; }
   double mass_kg(std::size_t link) const;
+  // Gives the payloads the mass that they have at this time.
+  void load(const std::vector<PayloadSettings>& payloads, double time_s);
 
-  // As of the last step. Link 0 is the base.
+  // As of the last step. Link 0 is the base; com_frame knows payloads too.
   btTransform com_frame(std::size_t link) const;
   btTransform link_frame(std::size_t link) const { return com_frame(link) * frames_[link].link_in_com; }
   btVector3 com_offset(std::size_t link) const { return frames_[link].com_in_link.getOrigin(); }
@@ -35,6 +39,9 @@ class Body {
   void push(std::size_t link, const btVector3& force_N, const btVector3& point_in_link_m);
 
  private:
+  void set_base(const btTransform& base);
+  double over_surface_m(const WorldSettings& world) const;
+
   std::vector<LinkFrame> frames_;
   std::unique_ptr<btMultiBody> multibody_;
   std::vector<std::unique_ptr<LinkShapes>> shapes_;

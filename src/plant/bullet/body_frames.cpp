@@ -27,6 +27,13 @@ void set_up_joint(btMultiBody& body, const RobotModel& model, const std::vector<
   }
 }
 
+void set_up_payload(btMultiBody& body, const RobotModel& model, const std::vector<LinkFrame>& frames,
+                    const PayloadSettings& payload, int link) {
+  const std::size_t carrier = model.find_link(payload.link).value();
+  body.setupFixed(link, 0, {0, 0, 0}, static_cast<int>(carrier) - 1, btQuaternion::getIdentity(),
+                  frames[carrier].link_in_com * to_bullet(payload.point_m), {0, 0, 0}, false);
+}
+
 }  // namespace
 
 std::vector<LinkFrame> link_frames(const RobotModel& model) {
@@ -41,11 +48,15 @@ std::vector<LinkFrame> link_frames(const RobotModel& model) {
 }
 
 std::unique_ptr<btMultiBody> make_multibody(const RobotModel& model, const std::vector<LinkFrame>& frames,
-                                            bool fixed_base) {
+                                            const PlantSettings& settings) {
   const bool can_sleep = false;
-  auto body = std::make_unique<btMultiBody>(static_cast<int>(model.joints.size()), model.links[0].inertia.mass_kg,
-                                            frames[0].moments_kg_m2, fixed_base, can_sleep);
+  const int joints = static_cast<int>(model.joints.size()), payloads = static_cast<int>(settings.world.payloads.size());
+  auto body = std::make_unique<btMultiBody>(joints + payloads, model.links[0].inertia.mass_kg, frames[0].moments_kg_m2,
+                                            settings.fixed_base, can_sleep);
   for (std::size_t i = 0; i < model.joints.size(); ++i) set_up_joint(*body, model, frames, i);
+  for (int i = 0; i < payloads; ++i) {
+    set_up_payload(*body, model, frames, settings.world.payloads[static_cast<std::size_t>(i)], joints + i);
+  }
   body->finalizeMultiDof();
   body->setLinearDamping(0);  // 0.04 by default: not physics
   body->setAngularDamping(0);

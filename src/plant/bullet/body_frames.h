@@ -8,6 +8,7 @@
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 
 #include "kadans/model/robot_model.h"
+#include "kadans/plant/settings.h"
 
 namespace kadans::bullet {
 
@@ -19,8 +20,9 @@ struct LinkFrame {
 
 std::vector<LinkFrame> link_frames(const RobotModel& model);
 
-// A multibody with the model's links and joints, all joints at 0, its base at the world's origin.
+// A multibody with the model's links and joints, all joints at 0, its base at the world's origin. The payloads follow
+// as links on fixed joints, without mass as yet.
 std::unique_ptr<btMultiBody> make_multibody(const RobotModel& model, const std::vector<LinkFrame>& frames,
-                                            bool fixed_base);
+                                            const PlantSettings& settings);
 
 }  // namespace kadans::bullet

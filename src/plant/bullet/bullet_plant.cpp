@@ -21,7 +21,8 @@ PlantSettings checked(const RobotModel& model, const PlantSettings& settings) {
 }
 
 ContactWorld::Options world_options(const PlantSettings& settings) {
-  return {to_bullet(settings.gravity_m_s2), settings.solver_iterations, settings.ground_friction};
+  return {to_bullet(settings.gravity_m_s2), settings.solver_iterations, settings.ground_friction,
+          to_bullet(ground_pose(settings.world))};
 }
 
 bool finite(const JointActuation& actuation) noexcept {
@@ -42,9 +43,11 @@ class BulletPlant::World {
         body_(model, settings),
         sensors_(model, settings, seed),
         truth_(body_, model.joints.size()),
+        objects_(settings.world),
         world_(world_options(settings), mask_) {
     body_.place(settings_);
     body_.add_to(world_);
+    objects_.add_to(world_);
     add_drives(model);
     for (const FootSettings& foot : settings_.feet) {
       feet_.emplace_back();
@@ -69,6 +72,8 @@ class BulletPlant::World {
       multibody.addJointTorque(joint,
                                drives_[i].begin_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s));
     }
+    body_.load(settings_.world.payloads, time_s());
+    objects_.begin_step(world_, time_s());
     world_.step(dt_s);
     check_finite();
     for (std::size_t i = 0; i < drives_.size(); ++i) {
@@ -76,6 +81,7 @@ class BulletPlant::World {
       drives_[i].end_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s);
     }
     time_ns_ += dt_ns;
+    objects_.end_step(world_, time_s());
     read_feet(world_, body_, settings_.feet, dt_s, feet_);
     sample(dt_s);
   }
@@ -94,8 +100,9 @@ class BulletPlant::World {
     for (int i = 0; i < 3; ++i) hash.add(base.getOrigin()[i]);
     for (int i = 0; i < 4; ++i) hash.add(multibody.getWorldToBaseRot()[i]);
     for (int i = 0; i < 6 + multibody.getNumDofs(); ++i) hash.add(multibody.getVelocityVector()[i]);
-    for (int i = 0; i < multibody.getNumLinks(); ++i) hash.add(multibody.getJointPos(i));
+    for (std::size_t i = 0; i < drives_.size(); ++i) hash.add(multibody.getJointPos(static_cast<int>(i)));
     for (const Drive& drive : drives_) drive.hash(hash);
+    objects_.hash(hash);
     hash_contacts(hash);
     hash_sensors(hash);
   }
@@ -118,8 +125,11 @@ class BulletPlant::World {
     }
   }
 
+  double time_s() const { return static_cast<double>(time_ns_) * 1e-9; }
+
   void sample(double dt_s) {
     truth_.read(drives_, feet_);
+    truth_.read_world(world_, objects_, dt_s);
     const Sensors::ImuInput imu{body_.multibody().getBaseOmega(),
                                 truth_.base_point_velocity_m_s(to_bullet(settings_.imu.pose.position_m)),
                                 body_.link_frame(0).getBasis()};
@@ -131,10 +141,14 @@ class BulletPlant::World {
     if (!finite(multibody.getBasePos()) || !finite(multibody.getBaseVel()) || !finite(multibody.getBaseOmega())) {
       throw std::runtime_error("the model's state is not finite: base");
     }
-    for (int i = 0; i < multibody.getNumLinks(); ++i) {
-      if (std::isfinite(multibody.getJointPos(i)) && std::isfinite(multibody.getJointVel(i))) continue;
-      throw std::runtime_error("the model's state is not finite: joint '" + joint_names_[static_cast<std::size_t>(i)] +
-                               "'");
+    for (std::size_t i = 0; i < joint_names_.size(); ++i) {
+      const int joint = static_cast<int>(i);
+      if (std::isfinite(multibody.getJointPos(joint)) && std::isfinite(multibody.getJointVel(joint))) continue;
+      throw std::runtime_error("the model's state is not finite: joint '" + joint_names_[i] + "'");
+    }
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      if (objects_.finite(i)) continue;
+      throw std::runtime_error("the model's state is not finite: '" + settings_.world.objects[i].name + "'");
     }
   }
 
@@ -171,6 +185,7 @@ class BulletPlant::World {
   std::vector<FootLoad> feet_;
   Sensors sensors_;
   TruthReader truth_;
+  WorldObjects objects_;
   ContactWorld world_;  // last: it lets go of the parts above before they end
   std::int64_t time_ns_ = 0;
 };

@@ -8,6 +8,7 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
 
   void internalSingleStepSimulation(btScalar dt_s) override {
+    for (const Driven& driven : driven_) driven.body->setLinearVelocity(driven.velocity_m_s);
     // Rigid bodies alone: the multibody world's own versions would move the robot too, a second time.
     // NOLINTNEXTLINE(bugprone-parent-virtual-call)
     if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
@@ -20,6 +21,11 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     // NOLINTNEXTLINE(bugprone-parent-virtual-call)
     if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
     move(dt_s);
+    move_driven(dt_s);
+  }
+
+  void drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays) {
+    driven_.push_back({&body, velocity_m_s, stays});
   }
 
   void set_iterations(int iterations) { iterations_ = iterations; }
@@ -63,6 +69,14 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     }
   }
 
+  void move_driven(double dt_s) {
+    for (const Driven& driven : driven_) {
+      btTransform& pose = driven.body->getWorldTransform();
+      if (!driven.stays) pose.setOrigin(pose.getOrigin() + dt_s * driven.velocity_m_s);
+    }
+    driven_.clear();
+  }
+
   void update_frames(btMultiBody& body) {
     body.forwardKinematics(m_scratch_world_to_local, m_scratch_local_origin);
     if (body.getBaseCollider() != nullptr) body.getBaseCollider()->setWorldTransform(body.getBaseWorldTransform());
@@ -72,12 +86,23 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     }
   }
 
+  struct Driven {
+    btRigidBody* body;
+    btVector3 velocity_m_s;
+    bool stays;
+  };
+
   int iterations_ = 10;
+  std::vector<Driven> driven_;  // in the next step
   std::vector<JointRows*> rows_;
 };
 
-ContactWorld::ContactWorld(const Options& options, PairMask& mask) : dispatcher_(&configuration_) {
+ContactWorld::ContactWorld(const Options& options, PairMask& mask)
+    : object_contact_(
+          *configuration_.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE)),
+      dispatcher_(&configuration_) {
   ground_contact_.register_with(dispatcher_);
+  object_contact_.register_with(dispatcher_);
   world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver_, &configuration_);
   world_->setGravity(options.gravity_m_s2);
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
@@ -89,7 +114,7 @@ ContactWorld::ContactWorld(const Options& options, PairMask& mask) : dispatcher_
   world_->set_iterations(options.solver_iterations);
   info.m_minimumSolverBatchSize = 0;
   info.m_leastSquaresResidualThreshold = 0;
-  ground_.setCollisionShape(&ground_shape_);
+  ground_.setWorldTransform(options.ground);
   ground_.setFriction(options.ground_friction);
   ground_.setRestitution(0);
   world_->addCollisionObject(&ground_, btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);
@@ -119,11 +144,33 @@ void ContactWorld::add(btCollisionObject& collider, bool fixed) {
 
 void ContactWorld::add(JointRows& rows) { world_->add_rows(rows); }
 
+void ContactWorld::add(btMultiBodyConstraint& rows) { world_->addMultiBodyConstraint(&rows); }
+
+void ContactWorld::drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays) {
+  world_->drive(body, velocity_m_s, stays);
+}
+
+// As far as it runs along itself the plane stays the same plane.
+void ContactWorld::drive_ground(const btVector3& velocity_m_s) {
+  ground_.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  world_->drive(ground_, velocity_m_s, false);
+}
+
 void ContactWorld::step(double dt_s) { world_->stepSimulation(dt_s, 0); }
 
 void ContactWorld::detect_collisions() {
   world_->update_frames();
   world_->performDiscreteCollisionDetection();
+}
+
+double ContactWorld::normal_impulse(const btCollisionObject& collider) const {
+  double sum = 0;
+  for (int i = 0; i < manifold_count(); ++i) {
+    const btPersistentManifold& contact = manifold(i);
+    if (contact.getBody0() != &collider && contact.getBody1() != &collider) continue;
+    for (int j = 0; j < contact.getNumContacts(); ++j) sum += contact.getContactPoint(j).m_appliedImpulse;
+  }
+  return sum;
 }
 
 int ContactWorld::manifold_count() const { return dispatcher_.getNumManifolds(); }

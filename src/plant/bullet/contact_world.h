@@ -1,4 +1,5 @@
-// Bullet's world with one robot on level ground, set up so that it is physics and repeats bit for bit.
+// Bullet's world with one robot on a plane and whatever else stands there, set up so that it is physics and repeats bit
+// for bit.
 //
 // What differs from Bullet's defaults, and why:
 // - no split impulse: the multibody solver never applies the split part, so joint limits would vanish;
@@ -24,6 +25,7 @@
 
 #include "ground_contact.h"
 #include "joint_rows.h"
+#include "object_contact.h"
 #include "pair_mask.h"
 
 namespace kadans::bullet {
@@ -38,6 +40,7 @@ class ContactWorld {
     btVector3 gravity_m_s2;
     int solver_iterations = 10;
     double ground_friction = 1;
+    btTransform ground = btTransform::getIdentity();  // of the plane: z is its normal
   };
 
   ContactWorld(const Options& options, PairMask& mask);  // keeps a reference to the mask
@@ -48,23 +51,31 @@ class ContactWorld {
   void add(btMultiBody& body);
   void add(btCollisionObject& collider, bool fixed);
   void add(JointRows& rows);
+  void add(btMultiBodyConstraint& rows);
+
+  // For the next step: the velocity with which a body that nothing stops meets others. Unless `stays`, the step moves
+  // it.
+  void drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays);
+  void drive_ground(const btVector3& velocity_m_s);
 
   void step(double dt_s);
   void detect_collisions();  // without a step
 
   const btCollisionObject& ground() const { return ground_; }
+  double normal_impulse(const btCollisionObject& collider) const;  // of all its contacts in the last step
   int manifold_count() const;
   const btPersistentManifold& manifold(int index) const;
 
  private:
   GroundContactMaker ground_contact_;
   btDefaultCollisionConfiguration configuration_;
+  ObjectContactMaker object_contact_;
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
   btMultiBodyConstraintSolver solver_;
   std::unique_ptr<SteppedWorld> world_;
   btStaticPlaneShape ground_shape_{btVector3(0, 0, 1), 0};
-  btCollisionObject ground_;
+  btRigidBody ground_{0, nullptr, &ground_shape_};
 };
 
 }  // namespace kadans::bullet

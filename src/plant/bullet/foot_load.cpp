@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "convert.h"
+#include "link_contact.h"
 #include "sensors.h"
 
 namespace kadans::bullet {
@@ -11,23 +11,9 @@ double between(double value, double first, double second) {
   return first == second ? 0.5 : std::clamp((value - first) / (second - first), 0.0, 1.0);
 }
 
-struct GroundContact {
-  const btMultiBodyLinkCollider* link = nullptr;
-  bool link_is_first = false;
-};
-
-GroundContact ground_contact(const ContactWorld& world, const btPersistentManifold& manifold) {
-  if (manifold.getBody1() == &world.ground()) return {btMultiBodyLinkCollider::upcast(manifold.getBody0()), true};
-  if (manifold.getBody0() == &world.ground()) return {btMultiBodyLinkCollider::upcast(manifold.getBody1()), false};
-  return {};
-}
-
 void add_contact(const btManifoldPoint& point, bool link_is_first, const btTransform& link_frame,
                  const FootSettings& settings, double dt_s, FootLoad& load) {
-  const btVector3 impulse = point.m_normalWorldOnB * point.m_appliedImpulse +
-                            point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
-                            point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2;
-  load.force_N += (link_is_first ? 1 : -1) * impulse / dt_s;
+  load.force_N += (link_is_first ? 1 : -1) * contact_impulse(point) / dt_s;
   const btVector3 at = link_is_first ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
   const auto share = foot_pressure(settings, link_frame.inverse() * at, point.m_appliedImpulse / dt_s);
   for (std::size_t i = 0; i < share.size(); ++i) load.pressure_N[i] += share[i];
@@ -54,12 +40,11 @@ void read_feet(const ContactWorld& world, const Body& body, const std::vector<Fo
   }
   for (int i = 0; i < world.manifold_count(); ++i) {
     const btPersistentManifold& manifold = world.manifold(i);
-    const GroundContact contact = ground_contact(world, manifold);
-    if (contact.link == nullptr) continue;
-    const std::size_t link = model_link(contact.link->m_link);
+    const LinkContact contact = link_contact(body, manifold);
+    if (contact.other == nullptr) continue;
     for (std::size_t foot = 0; foot < feet.size(); ++foot) {
-      if (feet[foot].link != link) continue;
-      const btTransform frame = body.link_frame(link);
+      if (feet[foot].link != contact.link) continue;
+      const btTransform frame = body.link_frame(contact.link);
       for (int j = 0; j < manifold.getNumContacts(); ++j) {
         add_contact(manifold.getContactPoint(j), contact.link_is_first, frame, settings[foot], dt_s, feet[foot]);
       }

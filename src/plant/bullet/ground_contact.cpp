@@ -6,11 +6,13 @@
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
+
+#include "contact_surface.h"
+#include "touch_points.h"
 
 namespace kadans::bullet {
 namespace {
@@ -37,8 +39,7 @@ Impulses impulses_of(const btPersistentManifold& manifold) {
   return impulses;
 }
 
-// The lowest few of the points offered, lowest first; of equals the one offered first.
-
+// The lowest few of the points offered, in the ground's frame, lowest first; of equals the one offered first.
 class LowestPoints {
  public:
   void offer(const btVector3& point, int number) {
@@ -103,11 +104,10 @@ class GroundContact final : public btCollisionAlgorithm {
  public:
   GroundContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject& link,
                 const btCollisionObject& ground)
-      : btCollisionAlgorithm(info), link_(&link) {
+      : btCollisionAlgorithm(info), link_(&link), ground_(&ground), surface_(link, ground) {
     const int parts = compound().getNumChildShapes();
     manifolds_.reserve(parts);
     for (int i = 0; i < parts; ++i) manifolds_.push_back(info.m_dispatcher1->getNewManifold(&link, &ground));
-    friction_ = btManifoldResult::calculateCombinedFriction(&link, &ground);
   }
   ~GroundContact() override {
     for (int i = 0; i < manifolds_.size(); ++i) m_dispatcher->releaseManifold(manifolds_[i]);
@@ -115,11 +115,11 @@ class GroundContact final : public btCollisionAlgorithm {
 
   void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
                         btManifoldResult*) override {
-    const btTransform& link = link_->getWorldTransform();
+    const btTransform link_in_ground = ground_->getWorldTransform().inverse() * link_->getWorldTransform();
     for (int i = 0; i < manifolds_.size(); ++i) {
       const Impulses last = impulses_of(*manifolds_[i]);
       manifolds_[i]->clearManifold();
-      const btTransform part = link * compound().getChildTransform(i);
+      const btTransform part = link_in_ground * compound().getChildTransform(i);
       for (const Corner& corner : lowest_points(*compound().getChildShape(i), part)) {
         add(*manifolds_[i], corner, last[static_cast<std::size_t>(corner.number)]);
       }
@@ -139,13 +139,16 @@ class GroundContact final : public btCollisionAlgorithm {
   const btCompoundShape& compound() const { return static_cast<const btCompoundShape&>(*link_->getCollisionShape()); }
 
   void add(btPersistentManifold& manifold, const Corner& corner, const Impulse& last) const {
-    const btVector3& point = corner.point;
-    const btVector3 on_ground(point.x(), point.y(), 0);
-    btManifoldPoint contact(link_->getWorldTransform().invXform(point), on_ground, btVector3(0, 0, 1), point.z());
+    const double distance_m = corner.point.z();
+    if (!surface_.counts(distance_m)) return;
+    const btTransform& ground = ground_->getWorldTransform();
+    const btVector3 point = ground * corner.point;
+    const btVector3 on_ground(corner.point.x(), corner.point.y(), 0);
+    btManifoldPoint contact(link_->getWorldTransform().invXform(point), on_ground, ground.getBasis().getColumn(2),
+                            distance_m);
     contact.m_positionWorldOnA = point;
-    contact.m_positionWorldOnB = on_ground;
-    contact.m_combinedFriction = friction_;
-    contact.m_combinedRestitution = 0;
+    contact.m_positionWorldOnB = ground * on_ground;
+    surface_.give(contact);
     contact.m_index0 = corner.number;
     contact.m_appliedImpulse = last.normal;
     contact.m_prevRHS = last.rhs;
@@ -153,8 +156,9 @@ class GroundContact final : public btCollisionAlgorithm {
   }
 
   const btCollisionObject* link_;
+  const btCollisionObject* ground_;
+  ContactSurface surface_;
   btManifoldArray manifolds_;  // one a part
-  double friction_ = 0;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Contact of a link's shapes with level ground, exact: each step the corners of every shape that lie
+// Contact of a body's shapes with the ground's plane, exact: each step the corners of every shape that lie
 // nearest to the plane become its contact points (at most four a shape), normal to the ground and at their true
 // distance. Points still above the ground are contacts too, within contact_distance_m: the solver lets them come down
 // as far as the ground and no further. A corner remembers its impulse from one step to the next, which is where the
@@ -11,9 +11,7 @@
 
 namespace kadans::bullet {
 
-inline constexpr double contact_distance_m = 0.01;
-
-// Makes the dispatcher use this for every compound shape on a static plane with normal z.
+// Makes the dispatcher use this for every compound shape on a static plane with normal z in the ground's own frame.
 class GroundContactMaker final : public btCollisionAlgorithmCreateFunc {
  public:
   void register_with(btCollisionDispatcher& dispatcher);

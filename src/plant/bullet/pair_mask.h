@@ -1,5 +1,6 @@
 // Which links may collide with which. Parent and child never do, nor do pairs that touch when all joints are at 0
 // (links around one point, such as a hip's). Bullet's own parent flag is unreliable: this table alone decides.
+// The table is the robot's; different bodies always may.
 #pragma once
 
 #include <vector>

@@ -4,6 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "world_settings_check.h"
+
 namespace kadans::bullet {
 namespace {
 
@@ -72,6 +74,7 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
     require_link(model, "surface", surface.link);
     require_at_least_zero("friction of '" + surface.link + "'", surface.friction);
   }
+  check_world(model, settings.world);
 }
 
 }  // namespace kadans::bullet

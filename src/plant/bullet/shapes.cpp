@@ -1,7 +1,9 @@
 #include "shapes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "convert.h"
@@ -27,6 +29,24 @@ struct ConvexMaker {
   }
 };
 
+void add_corners(const btConvexShape& shape, const btTransform& pose, std::vector<btVector3>& corners) {
+  if (shape.getShapeType() == SPHERE_SHAPE_PROXYTYPE) {
+    const double radius_m = static_cast<const btSphereShape&>(shape).getRadius();
+    corners.push_back(pose.getOrigin() - btVector3(0, 0, radius_m));
+    return;
+  }
+  const bool box = shape.getShapeType() == BOX_SHAPE_PROXYTYPE;
+  const btVector3 half_m = box ? static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin()
+                               : static_cast<const btCylinderShape&>(shape).getHalfExtentsWithMargin();
+  const int around = box ? 4 : 16;
+  const double reach = box ? std::sqrt(2.0) : 1;  // of a square's corners
+  for (int i = 0; i < around; ++i) {
+    const double angle_rad = (2 * i + 1) * std::numbers::pi / around;
+    const btVector3 out(reach * std::cos(angle_rad) * half_m.x(), reach * std::sin(angle_rad) * half_m.y(), 0);
+    for (const double end : {-1.0, 1.0}) corners.push_back(pose * (out + btVector3(0, 0, end * half_m.z())));
+  }
+}
+
 }  // namespace
 
 LinkShapes::LinkShapes(const Link& link, const btTransform& com_in_link) {
@@ -46,6 +66,14 @@ double LinkShapes::lowest_m(const btTransform& pose) const {
     lowest = std::min(lowest, (part * convex->localGetSupportingVertex(down)).z());
   }
   return lowest;
+}
+
+std::vector<btVector3> LinkShapes::corners(const btTransform& pose) const {
+  std::vector<btVector3> corners;
+  for (int i = 0; i < compound_.getNumChildShapes(); ++i) {
+    add_corners(*parts_[static_cast<std::size_t>(i)], pose * compound_.getChildTransform(i), corners);
+  }
+  return corners;
 }
 
 }  // namespace kadans::bullet

@@ -20,6 +20,8 @@ class LinkShapes {
   btCollisionShape* shape() { return &compound_; }
   // The height of the lowest point, the centre of mass frame being at `pose`.
   double lowest_m(const btTransform& pose) const;
+  // The points that would stand on a surface: corners, points of the rims, undersides of spheres.
+  std::vector<btVector3> corners(const btTransform& pose) const;
 
  private:
   std::vector<std::unique_ptr<btConvexShape>> parts_;

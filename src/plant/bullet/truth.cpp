@@ -1,11 +1,12 @@
 #include "truth.h"
 
 #include "convert.h"
+#include "link_contact.h"
 
 namespace kadans::bullet {
 
 TruthReader::TruthReader(const Body& body, std::size_t joints)
-    : body_(&body), omegas_(joints + 1), velocities_(joints + 1) {
+    : body_(&body), omegas_(body.mass_count()), velocities_(body.mass_count()) {
   truth_.joint_count = static_cast<std::uint32_t>(joints);
 }
 
@@ -20,7 +21,7 @@ void TruthReader::read_com() {
   body_->multibody().compTreeLinkVelocities(omegas_.data(), velocities_.data());  // in each link's own axes
   btVector3 moment(0, 0, 0), momentum(0, 0, 0);
   double mass_kg = 0;
-  for (std::size_t i = 0; i < body_->link_count(); ++i) {
+  for (std::size_t i = 0; i < body_->mass_count(); ++i) {
     const btTransform frame = body_->com_frame(i);
     moment += body_->mass_kg(i) * frame.getOrigin();
     momentum += body_->mass_kg(i) * (frame.getBasis() * velocities_[i]);
@@ -46,6 +47,12 @@ void TruthReader::read(const std::vector<Drive>& drives, const std::vector<FootL
     truth_.foot_force_N[i] = from_bullet(feet[i].force_N);
   }
   read_com();
+}
+
+void TruthReader::read_world(const ContactWorld& world, const WorldObjects& objects, double dt_s) {
+  truth_.object_count = static_cast<std::uint32_t>(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) objects.read(i, truth_.objects[i]);
+  if (dt_s > 0) read_contacts(world, *body_, dt_s, truth_);
 }
 
 }  // namespace kadans::bullet

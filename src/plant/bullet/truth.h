@@ -6,10 +6,11 @@
 #include "body.h"
 #include "drive.h"
 #include "kadans/plant/plant.h"
+#include "world_objects.h"
 
 namespace kadans::bullet {
 
-// What the ground does to one foot.
+// What a foot stands on does to it.
 struct FootLoad {
   std::size_t link = 0;
   btVector3 force_N{0, 0, 0};                         // world axes
@@ -21,6 +22,8 @@ class TruthReader {
   TruthReader(const Body& body, std::size_t joints);
 
   void read(const std::vector<Drive>& drives, const std::vector<FootLoad>& feet);
+  // After a step of dt_s, or before the first with 0.
+  void read_world(const ContactWorld& world, const WorldObjects& objects, double dt_s);
   const PlantTruth& truth() const noexcept { return truth_; }
 
   // Of the base frame's point `point_in_base_m`, world axes.

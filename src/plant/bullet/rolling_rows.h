@@ -1,0 +1,30 @@
+// Resistance against rolling and spinning of one free body: a torque against its angular velocity, at most
+// lever arm * normal force, within the solver so that what rests stays at rest. The normal force is the last step's.
+// A row about each world axis (like friction's two directions, a square and not a circle).
+#pragma once
+
+#include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>
+
+namespace kadans::bullet {
+
+class RollingRows final : public btMultiBodyConstraint {
+ public:
+  explicit RollingRows(btMultiBody& body);
+
+  // For the next step. 0: no rows.
+  void set_limit(double impulse_Nms) { limit_Nms_ = impulse_Nms; }
+
+  void createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
+                            const btContactSolverInfo& info) override;
+  void finalizeMultiDof() override {}
+  int getIslandIdA() const override { return 0; }
+  int getIslandIdB() const override { return 0; }
+  void debugDraw(btIDebugDraw*) override {}
+
+ private:
+  btMultiBodySolverConstraint row(btMultiBodyJacobianData& data, int axis) const;
+
+  double limit_Nms_ = 0;
+};
+
+}  // namespace kadans::bullet

@@ -1,0 +1,52 @@
+// Where two convex shapes touch or soon will: at most four points, nearer than contact_distance_m, exact for boxes and
+// spheres. Two boxes touch face to face wherever they can: the face is the one of least overlap, that of the second box
+// when there is little between them, so that a foot on a box finds the box's own normal, however it tilts. The points
+// are the corners of one face cut off at the outline of the other. A cylinder touches a box's face with its rims; with
+// edges and other cylinders it has one point, Bullet's.
+//
+// Sources: separating axes and clipping, Ericson, Real-Time Collision Detection, sections 4.4.1 and 5.5.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <btBulletCollisionCommon.h>
+
+namespace kadans::bullet {
+
+inline constexpr double contact_distance_m = 0.01;
+
+struct TouchPoint {
+  btVector3 on_a, on_b;
+  btVector3 normal;  // from b to a
+  double distance_m = 0;
+};
+
+class TouchPoints {
+ public:
+  static constexpr std::size_t capacity = 4;
+
+  void add(const TouchPoint& point) {
+    if (count_ < capacity) points_[count_++] = point;
+  }
+  std::size_t size() const { return count_; }
+  TouchPoint* begin() { return points_.data(); }
+  TouchPoint* end() { return points_.data() + count_; }
+  const TouchPoint* begin() const { return points_.data(); }
+  const TouchPoint* end() const { return points_.data() + count_; }
+
+ private:
+  std::array<TouchPoint, capacity> points_;
+  std::size_t count_ = 0;
+};
+
+TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
+                         const btTransform& pose_b);
+
+struct PlacedBox {
+  btTransform pose;
+  btVector3 half_m;
+};
+TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b);
+
+}  // namespace kadans::bullet

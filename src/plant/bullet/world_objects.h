@@ -1,0 +1,63 @@
+// The objects of the world inside Bullet. What is fixed or driven is a kinematic or static body a box; what moves
+// freely is a multibody of its own, so that it meets the robot in the same solver on the same terms: a ball or a box is
+// a base without joints, a pendulum one link on a fixed base. A driven body's velocity enters its contacts; a step ends
+// where that velocity leads.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+#include "contact_world.h"
+#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
+#include "rolling_rows.h"
+
+namespace kadans::bullet {
+
+class WorldObjects {
+ public:
+  explicit WorldObjects(const WorldSettings& settings);
+
+  void add_to(ContactWorld& world);
+  // Velocities of all that is driven, for the step from time_s on.
+  void begin_step(ContactWorld& world, double time_s);
+  void end_step(const ContactWorld& world, double time_s);
+
+  std::size_t size() const { return objects_.size(); }
+  bool finite(std::size_t object) const;
+  void read(std::size_t object, ObjectTruth& truth) const;
+  void hash(StateHash& hash) const;
+
+ private:
+  struct Part {
+    std::unique_ptr<btConvexShape> shape;
+    std::unique_ptr<btCompoundShape> compound;
+    std::unique_ptr<btCollisionObject> collider;
+  };
+  struct Object {
+    WorldObject settings;
+    std::vector<Part> parts;                 // the colliders
+    btVector3 start_m{0, 0, 0};              // of a fixed or driven one: where its first part was
+    btVector3 velocity_m_s{0, 0, 0};         // likewise; of a conveyor's surface
+    std::unique_ptr<btMultiBody> multibody;  // of a free one
+    std::unique_ptr<RollingRows> rolling;
+    double held_rad = 0, release_s = 0;  // of a pendulum
+  };
+
+  void build(const WorldObject& settings);
+  static void build_solid(Object& object, const SolidBox& box);
+  static void build_free_box(Object& object, const WorldBox& box);
+  static void build_ball(Object& object, const WorldBall& ball);
+  void build_pendulum(Object& object, const WorldPendulum& pendulum);
+  static void add_part(Object& object, std::unique_ptr<btConvexShape> shape);  // of a free one
+  void hold(Object& object);
+
+  WorldSettings settings_;
+  std::vector<Object> objects_;
+  btAlignedObjectArray<btQuaternion> scratch_rotations_;
+  btAlignedObjectArray<btVector3> scratch_origins_;
+};
+
+}  // namespace kadans::bullet

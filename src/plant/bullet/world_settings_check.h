@@ -1,0 +1,12 @@
+// Is the world one that can be built around this robot? Before anything is built.
+#pragma once
+
+#include "kadans/model/robot_model.h"
+#include "kadans/plant/world.h"
+
+namespace kadans::bullet {
+
+// Throws std::invalid_argument naming the object, the setting, its value and what it must be.
+void check_world(const RobotModel& model, const WorldSettings& world);
+
+}  // namespace kadans::bullet
