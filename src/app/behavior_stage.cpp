@@ -62,7 +62,10 @@ class Sensors final : public SnapshotFilter {
         {"feet.left.cop_y_m", &snapshot.status.feet[0].cop_y_m},
         {"feet.right.force_N", &snapshot.status.feet[1].force_N},
         {"feet.right.cop_x_m", &snapshot.status.feet[1].cop_x_m},
-        {"feet.right.cop_y_m", &snapshot.status.feet[1].cop_y_m}};
+        {"feet.right.cop_y_m", &snapshot.status.feet[1].cop_y_m},
+        {"support.force_N", &snapshot.status.support.force_N},
+        {"support.cop_x_m", &snapshot.status.support.cop_x_m},
+        {"support.cop_y_m", &snapshot.status.support.cop_y_m}};
     for (const auto& [known, number] : fields) {
       if (name == known) return number;
     }

@@ -49,8 +49,9 @@ class TextReport {
     }
     for (const LogLine& line : subject_.log.lines()) {
       if (line.severity == BehaviorLog::Severity::error || !style_.verbose) continue;
-      text_ += dim(format("  %7.2f s  ", 1e-9 * static_cast<double>(line.time_ns))) + line.behavior + ": " + line.text +
-               '\n';
+      const char* mark = line.severity == BehaviorLog::Severity::warning ? "warning: " : "";
+      text_ += dim(format("  %7.2f s  ", 1e-9 * static_cast<double>(line.time_ns))) + line.behavior + ": " + mark +
+               line.text + '\n';
     }
     if (!text_.empty()) text_ += '\n';
   }

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "api_options.h"
+
 namespace kadans {
 namespace {
 
@@ -17,6 +19,11 @@ constexpr ApiEntry table[] = {
     {"kadans", "params(table)", "table", "Declares parameters: { name = { default, min =, max =, unit =, doc = } }"},
     {"kadans", "pose(name)", "table<string, number>", "A copy of a pose of the robot, joint = position in rad"},
     {"kadans", "budget()", "{ instructions: number, memory_bytes: number }", "What is left of this tick's budget"},
+    {"kadans", "log", "kadans.Log", "Lines for people; at most 100 a second, the rest is dropped and counted"},
+
+    {"log", "info(format, ...)", "nil", "A line in the record, and on the console with --verbose; as string.format"},
+    {"log", "warning(format, ...)", "nil", "The same, as a warning"},
+    {"log", "error(format, ...)", "nil", "The same, as an error; the behavior goes on"},
 
     {"m", "name", "string", "The behavior's name"},
     {"m", "time_s", "number", "Seconds in the state whose function runs"},
@@ -27,8 +34,13 @@ constexpr ApiEntry table[] = {
 
     {"object", "move(pose, options)", "kadans.Motion?, string?",
      "Moves to a pose, by name or as joint = rad, in { time_s = }; nil, \"queue_full\""},
+    {"object", "move_through(points, options)", "kadans.Motion?, string?",
+     "Moves on a smooth curve through { { pose, time_s = }, ... } to rest at the last; nil, \"queue_full\""},
+    {"object", "follow(pose, limits)", "boolean?, string?",
+     "Moves towards a pose that may be another in every tick, within limits; nil, \"queue_full\""},
     {"object", "set(setpoint, value, options)", "kadans.Motion?, string?",
      "Sets one set-point, at once or in { time_s = }; nil, \"queue_full\""},
+    {"object", "setpoint(name)", "number", "Where a set-point is on its way, in its unit"},
     {"object", "set_gains(preset)", "boolean?, string?", "Sets the parameters of a preset; nil, \"queue_full\""},
     {"object", "set_parameter(name, value)", "boolean?, string?", "Sets one parameter; nil, \"queue_full\""},
 
@@ -41,6 +53,7 @@ constexpr ApiEntry table[] = {
     {"s", "joints", "kadans.Joints", "By name"},
     {"s", "base", "kadans.Base", "The trunk"},
     {"s", "feet", "kadans.Feet", "left and right"},
+    {"s", "support", "kadans.Support", "Where the ground bears the robot"},
     {"s", "safety", "kadans.Safety", "What the safety layer allows"},
     {"joint", "position_rad", "number", "Position in rad"},
     {"joint", "velocity_rad_s", "number", "Velocity in rad/s"},
@@ -58,6 +71,9 @@ constexpr ApiEntry table[] = {
     {"foot", "force_N", "number", "Sum of its sensors in N"},
     {"foot", "cop_x_m", "number", "Centre of pressure in the foot's frame in m; holds without contact"},
     {"foot", "cop_y_m", "number", "Centre of pressure in the foot's frame in m; holds without contact"},
+    {"support", "force_N", "number", "Sum over the feet in contact in N"},
+    {"support", "cop_x_m", "number", "Centre of pressure, forward of the trunk in m; holds without contact"},
+    {"support", "cop_y_m", "number", "Centre of pressure, left of the trunk in m; holds without contact"},
     {"safety", "level", "'normal'|'limited'|'hold'|'damp'|'off'", "Rung of the degradation ladder"},
     {"safety", "faults", "number", "Faults since the last clearing"},
     {"safety", "first_fault", "number", "Code of the first fault; 0: none"},
@@ -69,6 +85,7 @@ struct Owner {
   const char* title;
 };
 constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require \"kadans\"`"},
+                            {"log", "kadans.Log", "Lines for people: `k.log`"},
                             {"m", "kadans.Machine", "`m`: what a behavior acts through"},
                             {"object", "kadans.Object", "A control object: `m.posture`"},
                             {"motion", "kadans.Motion", "A motion: what `move` and `set` return"},
@@ -77,18 +94,32 @@ constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require
                             {"base", "kadans.Base", "The trunk: `s.base`"},
                             {"rate", "kadans.Rate", "A turning rate: `s.base.angular_velocity_rad_s`"},
                             {"foot", "kadans.Foot", "A foot: `s.feet.left`"},
+                            {"support", "kadans.Support", "The ground: `s.support`"},
                             {"safety", "kadans.Safety", "The safety layer: `s.safety`"}};
 
 std::string bare(std::string_view name) { return std::string(name.substr(0, name.find('('))); }
 
-// "---@field move fun(self, pose, options): kadans.Motion?, string?"
+// "pose, options" with the types that an editor checks.
+std::string typed(std::string_view function, std::string_view names) {
+  std::string text;
+  while (!names.empty()) {
+    const std::size_t comma = names.find(", ");
+    const std::string name(names.substr(0, comma));
+    names.remove_prefix(comma == std::string_view::npos ? names.size() : comma + 2);
+    text += (text.empty() ? "" : ", ") + name + argument_type(function, name);
+  }
+  return text;
+}
+
+// "---@field move fun(self, pose: ..., options: kadans.MoveOptions): kadans.Motion?, string?"
 std::string stub_line(const ApiEntry& entry) {
   const std::string_view name = entry.name;
   const std::size_t bracket = name.find('(');
   std::string type = entry.type;
   if (bracket != std::string_view::npos) {
-    const std::string given(name.substr(bracket + 1, name.size() - bracket - 2));
-    const bool method = std::string_view(entry.owner) != "kadans";
+    const std::string given = typed(bare(name), name.substr(bracket + 1, name.size() - bracket - 2));
+    const std::string_view owner = entry.owner;
+    const bool method = owner != "kadans" && owner != "log";
     type = "fun(" + std::string(method ? "self" : "") + (method && !given.empty() ? ", " : "") + given + "): " + type;
   }
   return "---@field " + bare(name) + " " + type + " " + entry.doc + "\n";
@@ -123,7 +154,8 @@ void add_object(std::string& text, const Catalog& catalog, const ObjectInfo& obj
           alternatives(type + ".preset", presets);
   text += "---@class " + type + ": kadans.Object\n";
   text += "---@field set fun(self, setpoint: " + type +
-          ".setpoint, value: number, options: { time_s: number }?): " + "kadans.Motion?, string?\n";
+          ".setpoint, value: number, options: kadans.SetOptions?): " + "kadans.Motion?, string?\n";
+  text += "---@field setpoint fun(self, name: " + type + ".setpoint): number\n";
   text += "---@field set_gains fun(self, preset: " + type + ".preset): boolean?, string?\n";
   text += "---@field set_parameter fun(self, name: " + type + ".parameter, value: number): boolean?, string?\n\n";
 }
@@ -140,6 +172,7 @@ std::string lua_stubs(const Catalog& catalog) {
   for (const PoseInfo& pose : catalog.poses) poses.push_back("'\"" + pose.name + "\"'");
   text += alternatives("kadans.pose", poses);
   for (const ObjectInfo& object : catalog.objects) add_object(text, catalog, object);
+  text += motion_option_stubs();
   text += "---@class kadans.Joints\n";
   for (const Joint& joint : catalog.model->joints) text += "---@field " + joint.name + " kadans.Joint\n";
   text += "\n---@class kadans.Feet\n---@field left kadans.Foot\n---@field right kadans.Foot\n\n";
@@ -171,7 +204,7 @@ std::string api_reference() {
       text += "| `" + std::string(entry.name) + "` | " + type + " | " + entry.doc + " |\n";
     }
   }
-  return text;
+  return text + motion_option_reference();
 }
 
 }  // namespace kadans

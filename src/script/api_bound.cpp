@@ -28,6 +28,7 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   };
   for (const ObjectInfo& object : catalog.objects) known.machine.fields.erase(object.name);
   auto& s = known.snapshot.fields;
+  add("log", known.module.fields["log"].names());
   add("kadans", known.module.names());
   add("m", known.machine.names());
   add("object", known.object_methods);
@@ -37,6 +38,7 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("base", s["base"].names());
   add("rate", s["base"].fields["angular_velocity_rad_s"].names());
   add("foot", s["feet"].fields["left"].names());
+  add("support", s["support"].names());
   add("safety", s["safety"].names());
   std::sort(all.begin(), all.end());
   return all;

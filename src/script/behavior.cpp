@@ -29,7 +29,25 @@ Behavior::Parts::Parts(const Settings& wanted, const Catalog& offered, BehaviorL
     : settings(wanted), catalog(offered), log(to) {}
 
 void Behavior::Parts::say(const char* text) noexcept {
-  log.message(bindings.now_ns, BehaviorLog::Severity::info, chart.name, text);
+  say_with(BehaviorLog::Severity::info, text);
+}
+
+void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text) noexcept {
+  const std::int64_t now_ns = bindings.now_ns;
+  tell_dropped(false);
+  const LogBound::Answer answer = bound.admit(now_ns);
+  if (answer == LogBound::Answer::say) return log.message(now_ns, severity, chart.name, text);
+  if (answer == LogBound::Answer::drop) return;
+  log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
+              "says more than " + std::to_string(LogBound::lines_max) + " lines in a second; the rest is dropped");
+}
+
+void Behavior::Parts::tell_dropped(bool at_once) noexcept {
+  const std::int64_t now_ns = bindings.now_ns;
+  const std::uint64_t dropped = bound.take_dropped(now_ns, at_once);
+  if (dropped == 0) return;
+  log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
+              std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
 }
 
 void Behavior::Parts::transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept {
@@ -69,6 +87,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
     if (take_back(snapshot, commands)) return true;
     parts.failed = true;
     parts.error = parts.lua->error();
+    parts.tell_dropped(true);
     if (parts.error.breach == ScriptBreach::none) stop(snapshot, commands);
     return false;
   }
@@ -77,6 +96,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
     parts.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "queue_full: the commands of this tick were refused, all of them");
   }
+  parts.tell_dropped(finished());
   publish_status();
   return !finished();
 }

@@ -4,6 +4,7 @@
 #include "hint.h"
 #include "lua_core.h"
 #include "sandbox.h"
+#include "transition_lines.h"
 
 namespace kadans {
 namespace {
@@ -62,6 +63,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   if (!parts.lua->call(read_file, &parts, instructions, 0)) {
     throw InputError(problem_of(parts.lua->error()));
   }
+  find_transition_lines(parts.lua->sources(), parts.chart);
   parts.chart.resolve(parts.problems);
   find_control_set(parts);
   if (!parts.problems.empty()) throw InputError(parts.problems);

@@ -9,6 +9,7 @@
 #include "kadans/script/behavior.h"
 #include "kadans/script/chart_runner.h"
 #include "kadans/script/lua_state.h"
+#include "log_bound.h"
 #include "snapshot_tables.h"
 
 namespace kadans {
@@ -20,6 +21,8 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   Parts& operator=(const Parts&) = delete;
 
   void say(const char* text) noexcept override;
+  void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
+  void tell_dropped(bool at_once) noexcept;  // how many lines were too many
   void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
@@ -27,6 +30,7 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   Settings settings;
   const Catalog& catalog;
   BehaviorLog& log;
+  LogBound bound;
   std::unique_ptr<LuaState> lua;
   Chart chart;
   Bindings bindings;

@@ -36,6 +36,8 @@ struct Bindings {
 
 inline Bindings& bindings_of(lua_State* state) noexcept { return *static_cast<Bindings*>(core_of(state).bindings); }
 
+void open_log(lua_State* state);  // [-1 +1] adds `log` to the module's table at the top
+
 // [-0 +1] The handle of a control object: m.posture.
 void push_object(lua_State* state, std::uint32_t object);
 void open_objects(lua_State* state);

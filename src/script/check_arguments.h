@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "behavior_parts.h"
+#include "motion_options.h"
 #include "source_lexer.h"
 
 namespace kadans {
@@ -31,9 +32,17 @@ class ArgumentCheck {
     std::string name, unit;
     double min = 0, max = 0;
   };
-  std::vector<ArgumentProblem> pose_table(const ObjectInfo& object, const Tokens& tokens, std::size_t at) const;
+  // `offsets`: numbers are relative to what nobody knows here.
+  std::vector<ArgumentProblem> pose(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const;
+  std::vector<ArgumentProblem> pose_table(const ObjectInfo& object, const Tokens& tokens, std::size_t at,
+                                          bool offsets) const;
   std::vector<ArgumentProblem> named_value(const ObjectInfo& object, const std::vector<Range>& ranges,
-                                           const std::string& kind, const Tokens& tokens, std::size_t at) const;
+                                           const std::string& kind, const Tokens& tokens, std::size_t at,
+                                           bool offset = false) const;
+  std::vector<ArgumentProblem> of_motion(const ObjectInfo& object, const MotionMethod& method, const Tokens& tokens,
+                                         std::size_t at) const;
+  std::vector<ArgumentProblem> points(const ObjectInfo& object, const Tokens& tokens, std::size_t at,
+                                      bool offsets) const;
   std::vector<ArgumentProblem> preset(const ObjectInfo& object, const Tokens& tokens, std::size_t at) const;
   std::vector<Range> setpoints(const ObjectInfo& object) const;
   std::vector<Range> parameters(const ObjectInfo& object) const;

@@ -49,6 +49,7 @@ void open_kadans_module(lua_State* state) {
   lua_setfield(state, -2, "budget");
   lua_pushcfunction(state, pose);
   lua_setfield(state, -2, "pose");
+  open_log(state);
   make_read_only(state, "kadans");
 }
 

@@ -125,6 +125,8 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
   }
   foot_tables_ = luaL_ref(state, LUA_REGISTRYINDEX);
   luaL_unref(state, LUA_REGISTRYINDEX, attach(state, "feet", "s.feet"));
+  push_fields(state, {force_N, cop_x_m, cop_y_m});
+  support_ = attach(state, "support", "s.support");
   push_fields(state, {level, faults, first_fault});
   safety_ = attach(state, "safety", "s.safety");
   lua_pushvalue(state, root);
@@ -177,6 +179,11 @@ void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int
     put(state, soles + 1, key(cop_y_m), foot.cop_y_m);
     lua_settop(state, soles);
   }
+  const SupportStatus& ground = snapshot.status.support;
+  const int support = into(support_);
+  put(state, support, key(force_N), ground.force_N);
+  put(state, support, key(cop_x_m), ground.cop_x_m);
+  put(state, support, key(cop_y_m), ground.cop_y_m);
   const SafetyStatus& status = snapshot.status.safety;
   const int safety = into(safety_);
   const int levels = into(levels_);

@@ -21,7 +21,8 @@ class SnapshotTables {
 
  private:
   std::size_t joints_ = 0, feet_ = 0;
-  int keys_ = 0, joint_tables_ = 0, foot_tables_ = 0, root_ = 0, base_ = 0, rate_ = 0, safety_ = 0, levels_ = 0;
+  int keys_ = 0, joint_tables_ = 0, foot_tables_ = 0, root_ = 0, base_ = 0, rate_ = 0, support_ = 0, safety_ = 0,
+      levels_ = 0;
 };
 
 }  // namespace kadans

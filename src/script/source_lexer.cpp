@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
 namespace kadans {
 namespace {
@@ -117,8 +118,32 @@ class Lexer {
   std::vector<SourceToken> tokens_;
 };
 
+// How much deeper the brackets are behind this token.
+int opens(const SourceToken& token) {
+  for (const char* word : {"(", "{", "[", "function", "if", "do", "repeat"}) {
+    if (token.is(word)) return 1;
+  }
+  for (const char* word : {")", "}", "]", "end", "until"}) {
+    if (token.is(word)) return -1;
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::vector<SourceToken> lex_source(std::string_view text) { return Lexer(text).run(); }
+
+std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::size_t at) {
+  std::vector<std::size_t> parts;
+  int depth = 0;
+  for (bool fresh = true; tokens[at].kind != SourceToken::Kind::end; ++at) {
+    const int change = opens(tokens[at]);
+    if (depth + change < 0) break;
+    if (std::exchange(fresh, false)) parts.push_back(at);
+    depth += change;
+    fresh = depth == 0 && (tokens[at].is(",") || tokens[at].is(";"));
+  }
+  return parts;
+}
 
 }  // namespace kadans

@@ -1,6 +1,7 @@
 // Lua source taken apart into tokens, for checks that look at a script without running it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -21,5 +22,8 @@ struct SourceToken {
 
 // Comments are left out; the last token is of kind `end`. The text has been compiled before, so it is well formed.
 std::vector<SourceToken> lex_source(std::string_view text);
+
+// The first tokens of what stands in a bracket, commas or semicolons between; `at` is the first one of all.
+std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::size_t at);
 
 }  // namespace kadans

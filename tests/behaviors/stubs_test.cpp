@@ -31,6 +31,12 @@ TEST_CASE("lua-stubs writes the robot's own names, and an editor's settings") {
   CHECK(program::has(stubs, "---@field l_knee kadans.Joint"));
   CHECK(program::has(stubs, "'\"l_knee.position_rad\"'"));
   CHECK(program::has(stubs, "'\"stiff\"'"));
+  CHECK(program::has(stubs,
+                     "---@field move fun(self, pose: kadans.pose|table<string, number>, options: "
+                     "kadans.MoveOptions): kadans.Motion?, string?"));
+  CHECK(program::has(stubs, "---@class kadans.MoveOptions\n---@field time_s? number"));
+  CHECK(program::has(stubs, "---@class kadans.FollowLimits\n---@field velocity_max_rad_s number"));
+  CHECK(program::has(stubs, "---@class kadans.Log\n---@field info fun(format: string, ...: any): nil"));
   CHECK(program::has(program::read(project / "editor/.luarc.json"), "\"runtime.version\": \"LuaJIT\""));
 }
 

@@ -12,7 +12,7 @@
 namespace kadans {
 
 struct ApiEntry {
-  const char* owner;  // "kadans", "m", "object", "motion", "s", "joint", "base", "rate", "foot", "safety"
+  const char* owner;  // "kadans", "m", "object", "motion", "s", "joint", "base", "rate", "foot", ...
   const char* name;   // a function's with its arguments: "move(pose, options)"
   const char* type;   // of a field, or what a function returns
   const char* doc;    // one sentence, with the unit

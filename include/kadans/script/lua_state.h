@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kadans/engine/behavior_host.h"
 #include "kadans/script/script_error.h"
 #include "kadans/script/script_limits.h"
 
@@ -26,6 +27,10 @@ class ScriptVoice {
  public:
   virtual ~ScriptVoice() = default;
   virtual void say(const char* text) noexcept = 0;
+  virtual void say_with(BehaviorLog::Severity severity, const char* text) noexcept {
+    (void)severity;
+    say(text);
+  }
 };
 
 class LuaState {
