@@ -118,7 +118,11 @@ const Kind kinds[] = {
     {"triangle", {trapezoid(1, 100, 4, 0)}, 1.01, 1.98, 4},
     {"spline", {via(0, 0.5, 0.5), via(1, 1, 0.5)}, 1, 1.5, 6},
     {"spline of one point", {via(0, 1, 1)}, 1, 1.5, 6},
-    {"spline of uneven points", {via(0, 0.2, 0.4), via(1, 0.6, 0.3), via(2, 0.9, 0.2), via(3, 1, 0.3)}, 1.2, 1.64, 7.46},
+    {"spline of uneven points",
+     {via(0, 0.2, 0.4), via(1, 0.6, 0.3), via(2, 0.9, 0.2), via(3, 1, 0.3)},
+     1.2,
+     1.64,
+     7.46},
 };
 
 struct Course {

@@ -83,7 +83,8 @@ class ControlObject {
   virtual void set_point(std::uint32_t channel, double value, double duration_s) noexcept = 0;
   // Control thread: comes to rest where its motion is now.
   virtual void cancel_motion(std::uint32_t channel) noexcept = 0;
-  // Control thread: where the set-point is on its way. False: this object cannot be led along a motion that others plan.
+  // Control thread: where the set-point is on its way. False: this object cannot be led along a motion that others
+  // plan.
   virtual bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
     (void)channel, (void)state;
     return false;
