@@ -89,6 +89,12 @@ void ControlSets::switch_to(std::uint32_t set) noexcept {
   active_ = set;
 }
 
+void ControlSets::restart(const ControlInput& input) noexcept {
+  running_ = 0;
+  switched_ = true;
+  start_newcomers(input);
+}
+
 void ControlSets::compose_joints(const Member& member, ActuationFrame& actuation) noexcept {
   const ActuationFrame& proposal = *proposals_[member.object];
   const std::uint32_t bit = 1U << member.object;

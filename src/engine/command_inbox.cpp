@@ -1,5 +1,6 @@
 #include "kadans/engine/command_inbox.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,11 +47,27 @@ bool CommandInbox::acceptable(const Command& command) const noexcept {
 bool CommandInbox::held(const Command& command, const Catalog& catalog, const Safety& safety) noexcept {
   if (command.kind == CommandKind::clear_faults || command.kind == CommandKind::cancel_motion) return false;
   if (safety.robot_level() >= SafetyLevel::hold) return true;
-  const bool moves = command.kind == CommandKind::set_point || command.kind == CommandKind::trapezoid ||
-                     command.kind == CommandKind::via_point;
-  if (!moves) return false;
-  const std::uint32_t joint = catalog.setpoints[command.index].joint;
-  return joint < catalog.model->joints.size() && safety.joint_level(joint) >= SafetyLevel::hold;
+  const auto joint_held = [&](std::size_t joint) { return safety.joint_level(joint) == SafetyLevel::hold; };
+  const auto object_held = [&](std::uint32_t object) {
+    return object < catalog.objects.size() && std::ranges::any_of(catalog.objects[object].joints, joint_held);
+  };
+  switch (command.kind) {
+    case CommandKind::set_point:
+    case CommandKind::trapezoid:
+    case CommandKind::via_point: {
+      const Setpoint& setpoint = catalog.setpoints[command.index];
+      return setpoint.joint < catalog.model->joints.size() ? joint_held(setpoint.joint) : object_held(setpoint.owner);
+    }
+    case CommandKind::set_parameter:
+      return object_held(catalog.parameters.owner(command.index));
+    case CommandKind::switch_set:
+      for (std::size_t joint = 0; joint < catalog.model->joints.size(); ++joint) {
+        if (joint_held(joint)) return true;
+      }
+      return false;
+    default:
+      return false;
+  }
 }
 
 bool CommandInbox::transaction_acceptable(std::uint32_t count, const Safety& safety) const noexcept {
@@ -91,6 +108,7 @@ void CommandInbox::execute(const Command& command, const ControlInput& input, Sa
       break;
     case CommandKind::clear_faults:
       safety.clear();
+      if (safety.came_back()) sets_.restart(input);
       break;
     case CommandKind::trapezoid:
     case CommandKind::via_point:

@@ -46,6 +46,11 @@ void FallWatch::advance(const BaseStatus& base, double rate_rad_s, double dt_s) 
 FaultMask FallWatch::look(const BaseStatus& base, const ImuSample& sample, double dt_s) noexcept {
   using enum FaultCode;
   advance(base, norm(base.angular_velocity_rad_s), dt_s);
+  if (phase_ == Phase::falling) {
+    share_ = settings_.soft_share;
+  } else if (share_ < 1) {
+    share_ = std::min(1.0, share_ + dt_s / recover_s_);
+  }
   if (phase_ == Phase::upright) return bit_if(!(base.tilt_rad <= tilt_max_rad_), tilt);
   if (phase_ == Phase::fallen) return 0;
   const double acceleration_m_s2 = norm(sample.acceleration_m_s2);

@@ -53,7 +53,8 @@ double JointLimiter::power_bound_Nm(double velocity_rad_s, double effort_Nm) con
 }
 
 FaultMask JointLimiter::cut(const Input& in, JointActuation& actuation) noexcept {
-  FaultMask found = actuation.mode == ActuationMode::effort ? 0 : limit_set_point(actuation);
+  of_set_point_ = 0;
+  FaultMask found = actuation.mode == ActuationMode::effort ? 0 : limit_set_point(in.state.position_rad, actuation);
   const double asked_Nm = actuation.effort_Nm;
   const double most_Nm = power_bound_Nm(in.state.velocity_rad_s, effort_max_Nm_ * in.derating * in.recovery);
   Interval bound = soft_speed(in.state.velocity_rad_s, {-most_Nm, most_Nm});
@@ -69,23 +70,28 @@ FaultMask JointLimiter::cut(const Input& in, JointActuation& actuation) noexcept
   return found;
 }
 
-FaultMask JointLimiter::limit_set_point(JointActuation& actuation) noexcept {
+// Between these the speed asked may be: into a soft stop it fades to none at the limit.
+JointLimiter::Interval JointLimiter::speeds(double position_rad) const noexcept {
+  const auto share = [&](double left_rad) { return left_rad < zone_rad_ ? std::max(0.0, left_rad / zone_rad_) : 1; };
+  return {-velocity_max_rad_s_ * share(position_rad - lower_rad_),
+          velocity_max_rad_s_ * share(upper_rad_ - position_rad)};
+}
+
+FaultMask JointLimiter::limit_set_point(double position_rad, JointActuation& actuation) noexcept {
   if (actuation.mode == ActuationMode::off) return 0;
-  FaultMask cut = 0;
-  const double velocity_rad_s = actuation.velocity_rad_s;
-  actuation.velocity_rad_s = std::clamp(velocity_rad_s, -velocity_max_rad_s_, velocity_max_rad_s_);
-  if (actuation.velocity_rad_s != velocity_rad_s) {
-    asked_set_point_ = velocity_rad_s;
-    cut |= bit(FaultCode::soft_speed);
+  const Interval bound = speeds(position_rad);
+  asked_rad_s_ = actuation.velocity_rad_s;
+  actuation.velocity_rad_s = given_rad_s_ = std::clamp(asked_rad_s_, bound.low, bound.high);
+  if (std::abs(asked_rad_s_) > velocity_max_rad_s_) of_set_point_ |= bit(FaultCode::soft_speed);
+  asked_rad_ = given_rad_ = position_rad;
+  if (actuation.mode == ActuationMode::position) {
+    asked_rad_ = actuation.position_rad;
+    actuation.position_rad = given_rad_ = std::clamp(asked_rad_, lower_rad_, upper_rad_);
+    if (given_rad_ != asked_rad_) of_set_point_ |= bit(FaultCode::soft_stop);
   }
-  if (actuation.mode != ActuationMode::position) return cut;
-  const double position_rad = actuation.position_rad;
-  actuation.position_rad = std::clamp(position_rad, lower_rad_, upper_rad_);
-  if (actuation.position_rad != position_rad) {
-    asked_set_point_ = position_rad;
-    cut |= bit(FaultCode::soft_stop);
-  }
-  return cut;
+  const bool by_stop = given_rad_s_ != std::clamp(asked_rad_s_, -velocity_max_rad_s_, velocity_max_rad_s_);
+  if (by_stop) of_set_point_ |= bit(FaultCode::soft_stop);
+  return of_set_point_;
 }
 
 // Each limit for itself, whether it would have cut.
@@ -128,11 +134,16 @@ void JointLimiter::describe(const Input& in, Fault& fault) const noexcept {
       break;
     case FaultCode::soft_stop:
       fault.value = in.state.position_rad;
+      if ((of_set_point_ & bit(fault.code)) != 0 && given_rad_ != asked_rad_) {
+        fault.value = asked_rad_;
+        fault.limit = given_rad_;
+        break;
+      }
       fault.limit =
           2 * in.state.position_rad > lower_rad_ + upper_rad_ ? upper_rad_ - zone_rad_ : lower_rad_ + zone_rad_;
       break;
     case FaultCode::soft_speed:
-      fault.value = in.state.velocity_rad_s;
+      fault.value = (of_set_point_ & bit(fault.code)) != 0 ? asked_rad_s_ : in.state.velocity_rad_s;
       fault.limit = velocity_max_rad_s_;
       break;
     default:

@@ -50,6 +50,7 @@ bool JointWatch::stuck(const Input& in) noexcept {
     motor_low_rad_ = motor_high_rad_ = motor_rad_;
     asked_low_ = asked_high_ = asked_;
   }
+  if (!in.follows) asked_low_ = asked_high_ = demand(in);
   motor_low_rad_ = std::min(motor_low_rad_, in.sample.motor_position_rad);
   motor_high_rad_ = std::max(motor_high_rad_, in.sample.motor_position_rad);
   asked_low_ = std::min(asked_low_, demand(in));

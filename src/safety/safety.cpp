@@ -1,6 +1,7 @@
 #include "kadans/safety/safety.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace kadans {
 namespace {
@@ -16,9 +17,11 @@ void Safety::raise(const Fault& fault) noexcept {
 }
 
 void Safety::clear() noexcept {
+  came_back_ = false;
   for (std::size_t i = 0; i < joint_count_; ++i) {
     joints_[i].ladder.clear();
     joints_[i].cut = 0;
+    came_back_ = std::exchange(joints_[i].gave_way, false) || came_back_;
   }
   for (Ladder& ladder : foot_ladders_) ladder.clear();
   robot_.clear();
@@ -57,8 +60,13 @@ FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actu
   lost_ = 0;
   for (std::size_t i = 0; i < joint_count_; ++i) {
     JointGuard& joint = joints_[i];
-    const JointWatch::Input look{in.joints.joints[i], in.sensors.joints[i], in.health.joints[i],
-                                 actuation.joints[i], joint.last_Nm,        dt_s};
+    const JointWatch::Input look{.state = in.joints.joints[i],
+                                 .sample = in.sensors.joints[i],
+                                 .health = in.health.joints[i],
+                                 .asked = actuation.joints[i],
+                                 .written_Nm = joint.last_Nm,
+                                 .follows = !joint.gave_way,
+                                 .dt_s = dt_s};
     const FaultMask found = joint.watch.look(look);
     joint.finite = (found & bit(FaultCode::actuation_not_finite)) == 0;
     if ((found | joint.cut) == 0 && joint.ladder.idle()) continue;
@@ -124,7 +132,7 @@ void Safety::cut_joint(const SafetyInput& in, std::size_t index, double dt_s, Jo
 bool Safety::passes(const SafetyInput& in, std::size_t index, double dt_s, const JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
   const bool calm = joint.ladder.idle() && robot_.level() == SafetyLevel::normal && joint.finite &&
-                    joint.authority == 1 && joint.cut == 0 && fall_.phase() != FallWatch::Phase::falling &&
+                    joint.authority == 1 && joint.cut == 0 && !joint.gave_way && fall_.share() == 1 &&
                     actuation.mode == ActuationMode::effort;
   const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, dt_s};
   if (!calm || joint.limiter.passive() || !joint.limiter.free(limits, actuation.effort_Nm)) return false;
@@ -133,21 +141,32 @@ bool Safety::passes(const SafetyInput& in, std::size_t index, double dt_s, const
   return true;
 }
 
-void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, JointActuation& actuation) noexcept {
+// Whether the joint damps or is off in this tick. One that comes back damps once more: what is asked of it was computed
+// before it could start from the measured state.
+bool Safety::gives_way(std::size_t index, double dt_s, const JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
-  joint.cut = 0;
   const SafetyLevel level = joint_level(index);
-  // The drive makes the torque in its own modes: it can be given back, or softened, as torque only.
+  // The drive makes the torque in its own modes: on the way down it cannot be softened.
   const bool by_drive = actuation.mode == ActuationMode::position || actuation.mode == ActuationMode::velocity;
-  const bool reduced = joint.authority < 1 || fall_.share() < 1;
-  const bool damps = level == SafetyLevel::damp || !joint.finite || (by_drive && reduced);
+  const bool must = level >= SafetyLevel::damp || !joint.finite || (by_drive && fall_.share() < 1);
   if (level >= SafetyLevel::damp) {
     joint.authority = 0;
   } else if (joint.authority < 1) {
     joint.authority = std::min(1.0, joint.authority + dt_s / settings_.recover_s);
   }
+  if (must == joint.gave_way) return must;
+  joint.gave_way = must;
+  came_back_ = came_back_ || !must;
+  return true;
+}
+
+void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, JointActuation& actuation) noexcept {
+  JointGuard& joint = joints_[index];
+  joint.cut = 0;
+  const bool passive = joint.limiter.passive();
+  const bool damps = !passive && gives_way(index, dt_s, actuation);
   const bool nothing_asked = !damps && actuation.mode == ActuationMode::off;
-  if (joint.limiter.passive() || level == SafetyLevel::off || nothing_asked) {
+  if (passive || joint_level(index) == SafetyLevel::off || nothing_asked) {
     actuation = {};
   } else if (damps) {
     actuation = joint.limiter.damp(in.joints.joints[index]);
@@ -162,6 +181,7 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   const double dt_s = in.dt_s > 0 && in.dt_s <= dt_max_s ? in.dt_s : 0;
   const FaultMask raised = pending_ | cut_;
   pending_ = cut_ = 0;
+  came_back_ = false;
   const FaultMask joints = watch_joints(in, actuation, dt_s);
   const FaultMask feet = watch_feet(in, dt_s);
   const FaultMask body = watch_body(in, dt_s) | bit_if(lost_ > settings_.joints_lost_max, FaultCode::joints_lost);

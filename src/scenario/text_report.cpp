@@ -99,8 +99,8 @@ class TextReport {
       const Fault& fault = result.faults[i];
       const std::string joint = fault.joint == no_joint ? "" : " of " + subject_.model.joints.at(fault.joint).name;
       text_ += red("  fault: ") + name(fault.code) + joint +
-               format(" in tick %llu: %g, limit %g\n", static_cast<unsigned long long>(fault.tick), fault.value,
-                      fault.limit);
+               format(" in tick %llu: %g, limit %g (%s)\n", static_cast<unsigned long long>(fault.tick), fault.value,
+                      fault.limit, configuration_key(fault.code));
     }
     if (result.faults.size() > shown) text_ += format("  ... and %zu more faults\n", result.faults.size() - shown);
   }

@@ -6,7 +6,7 @@
 
 namespace kadans::failures {
 
-enum class Category : std::uint8_t { sensor, command, actuation, timing };
+enum class Category : std::uint8_t { sensor, command, actuation, timing, script };
 
 struct Outcome {
   std::string injected;  // "stuck joint 2 at tick 143"

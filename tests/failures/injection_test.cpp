@@ -9,9 +9,9 @@ using namespace kadans::failures;
 
 namespace {
 
-constexpr int categories = 4;
+constexpr int categories = 5;
 
-int runs_of_each() { return std::getenv("KADANS_SOAK") != nullptr ? 10000 / categories : 300 / categories; }
+int runs_of_each() { return std::getenv("KADANS_SOAK") != nullptr ? 10000 / categories : 400 / categories; }
 
 void inject_all(Category category) {
   int broken = 0;
@@ -37,3 +37,4 @@ TEST_CASE("Random nonsense from a control object is never written and ends on it
 TEST_CASE("Random late ticks, jitter and silence of the behavior engine end on their rung") {
   inject_all(Category::timing);
 }
+TEST_CASE("Random mistakes in a script stop its behavior and nothing else") { inject_all(Category::script); }

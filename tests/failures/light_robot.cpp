@@ -1,9 +1,13 @@
 #include "light_robot.h"
 
+#include <algorithm>
+
+#include "kadans/control/joint_pid.h"
+
 namespace kadans::failures {
 namespace {
 
-constexpr double tolerance = 1e-9;  // of a limit, for rounding
+constexpr double effort_max_Nm = 20;
 
 RobotModel make_model() {
   RobotModel model;
@@ -17,7 +21,7 @@ RobotModel make_model() {
     joint.axis = {0, 1, 0};
     joint.lower_rad = -1.5;
     joint.upper_rad = 1.5;
-    joint.effort_max_Nm = 20;
+    joint.effort_max_Nm = effort_max_Nm;
     joint.velocity_max_rad_s = 10;
     model.links[i + 1].name = joint.name + "_link";
   }
@@ -26,7 +30,7 @@ RobotModel make_model() {
 
 PlantSettings plant_settings() {
   PlantSettings settings;
-  settings.drives.assign(joints, {.torque_max_Nm = 20, .rotor_inertia_kg_m2 = 0.1});
+  settings.drives.assign(joints, {.torque_max_Nm = effort_max_Nm, .rotor_inertia_kg_m2 = 0.1});
   settings.encoders.resize(joints);
   settings.position_rad = {0.1, -0.2, 0.3, -0.1};
   return settings;
@@ -40,11 +44,24 @@ EstimateSettings estimate_settings() {
   return settings;
 }
 
-SafetySettings safety_settings() {
+SafetySettings safety_settings(const Reactions& reactions) {
   SafetySettings settings;
-  settings.joints.assign(joints, {.lower_rad = -1.5, .upper_rad = 1.5, .velocity_max_rad_s = 10, .effort_max_Nm = 20});
+  settings.joints.assign(
+      joints, {.lower_rad = -1.5, .upper_rad = 1.5, .velocity_max_rad_s = 10, .effort_max_Nm = effort_max_Nm});
+  settings.joints[1].effort_rate_max_Nm_s = 4000;
+  settings.joints[2].power_max_W = 150;
   settings.foot_joints = {1, 3};
+  settings.reactions = reactions;
   return settings;
+}
+
+double servo_Nm(const JointActuation& asked, double position_rad, double velocity_rad_s) {
+  constexpr double position_gain_Nm_per_rad = 100, velocity_gain_Nms_per_rad = 6;
+  double effort_Nm = asked.effort_Nm + velocity_gain_Nms_per_rad * (asked.velocity_rad_s - velocity_rad_s);
+  if (asked.mode == ActuationMode::position) {
+    effort_Nm += position_gain_Nm_per_rad * (asked.position_rad - position_rad);
+  }
+  return std::clamp(effort_Nm, -effort_max_Nm, effort_max_Nm);
 }
 
 }  // namespace
@@ -60,82 +77,47 @@ void NoisyPlant::read(SensorFrame& sensors) noexcept {
   for (std::size_t i = 0; i < joints; ++i) sensors.joints[i].position_rad += random_.uniform(-1e-5, 1e-5);
 }
 
-std::vector<std::unique_ptr<ControlObject>> LightRobot::objects() {
-  auto object = std::make_unique<Saboteur>(ObjectSetup{model, {0, 1, 2, 3}});
-  saboteur = object.get();
+void NoisyPlant::write(const ActuationFrame& actuation) noexcept {
+  ActuationFrame torques = actuation;
+  for (std::size_t i = 0; i < joints; ++i) {
+    JointActuation& asked = torques.joints[i];
+    if (asked.mode != ActuationMode::position && asked.mode != ActuationMode::velocity) continue;
+    const double effort_Nm = servo_Nm(asked, truth().position_rad[i], truth().velocity_rad_s[i]);
+    asked = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};
+  }
+  ideal_.write(torques);
+}
+
+LightParts::LightParts(std::uint64_t seed) : light_model(make_model()), sound(light_model, plant_settings(), seed) {}
+
+std::vector<std::unique_ptr<ControlObject>> LightParts::objects() {
+  Catalog& catalog = light_catalog;
+  std::vector<std::unique_ptr<ControlObject>> all;
+  all.push_back(make_joint_pid(ObjectSetup{light_model, {0, 1, 2, 3}}));
   Declaration declaration("posture", 0, catalog.parameters, catalog.setpoints, catalog.signals);
-  object->declare(declaration);
-  catalog.model = &model;
+  all[0]->declare(declaration);
+  catalog.model = &light_model;
   catalog.objects = {{.name = "posture", .type = "joint_pid", .joints = {0, 1, 2, 3}}};
   for (SetpointId id = 0; id < catalog.setpoints.size(); ++id) catalog.objects[0].setpoints.push_back(id);
   for (ParameterId id = 0; id < catalog.parameters.size(); ++id) catalog.objects[0].parameters.push_back(id);
   catalog.sets = {{"posture", {0}}};
+  catalog.poses = {{"there", {{0, 0.4}, {1, 0.3}, {2, -0.2}, {3, 0.4}}}, {"safe", {{0, 0}, {1, 0}, {2, 0}, {3, 0}}}};
   for (const std::string& parameter : catalog.parameters.names()) {
     const ParameterId id = catalog.parameters.find(parameter).value();
     if (parameter.ends_with("kp_Nm_per_rad")) (void)catalog.parameters.set(id, 40);
     if (parameter.ends_with("kd_Nms_per_rad")) (void)catalog.parameters.set(id, 4);
   }
-  std::vector<std::unique_ptr<ControlObject>> all;
-  all.push_back(std::move(object));
   return all;
 }
 
-LightRobot::LightRobot(std::uint64_t seed, BehaviorHost* host)
-    : model(make_model()),
-      sound(model, plant_settings(), seed),
-      plant(sound, seed),
-      sets(catalog, objects()),
-      estimator(model, estimate_settings(), 1e-9 * static_cast<double>(period_ns)),
-      safety(safety_settings(), model),
-      control(settings, plant, estimator, safety, sets, catalog, *exchange),
-      behaviors(sets, *exchange, host),
-      sender(exchange->commands) {
-  for (const Joint& joint : model.joints) {
-    written_.push_back(catalog.signals.find("actuation." + joint.name + ".effort_Nm").value());
-  }
-}
-
-void LightRobot::send(const Command& command, std::int64_t age_ns) {
-  sender.begin(time_ns - age_ns);
-  (void)sender.add(command);
-  (void)sender.commit();
-}
-
-void LightRobot::tick(std::int64_t dt_ns, std::uint32_t missed) {
-  if (control.ticks() > 0) {
-    plant.step(dt_ns);
-    time_ns += dt_ns;
-  }
-  control.tick(time_ns, 1e-9 * static_cast<double>(dt_ns), missed);
-  look_at_what_was_written();
-  Fault fault;
-  while (safety.log().try_pop(fault)) faults.push_back(fault);
-  if (behaviors_alive && control.ticks() % 10 == 1) behaviors.tick(time_ns);
-}
-
-void LightRobot::look_at_what_was_written() {
-  if (!broken_promise.empty()) return;
-  for (std::size_t i = 0; i < joints; ++i) {
-    const double written_Nm = control.row()[written_[i]];
-    const JointState& state = control.state().joints.joints[i];
-    const JointLimits& most = limits().joints[i];
-    const std::string where = " of " + model.joints[i].name + " in tick " + std::to_string(ticks() - 1);
-    const double power_W = std::abs(written_Nm * state.velocity_rad_s);
-    if (!std::isfinite(written_Nm)) broken_promise = "not finite" + where;
-    if (!(std::abs(written_Nm) <= most.effort_max_Nm + tolerance)) broken_promise = "too much torque" + where;
-    if (!(power_W <= most.effort_max_Nm * most.velocity_max_rad_s + tolerance))
-      broken_promise = "too much power" + where;
-    const bool pushes_on = std::abs(state.position_rad) > 1.5 && written_Nm * state.position_rad > tolerance;
-    const bool damping = safety.joint_level(i) >= SafetyLevel::damp;
-    if (pushes_on && !damping) broken_promise = "pushes into its stop" + where;
-  }
-}
-
-std::int64_t LightRobot::first(FaultCode code) const {
-  for (const Fault& fault : faults) {
-    if (fault.code == code) return static_cast<std::int64_t>(fault.tick);
-  }
-  return -1;
-}
+LightRobot::LightRobot(std::uint64_t seed, const Reactions& reactions)
+    : LightParts(seed),
+      Rig({.model = light_model,
+           .plant = sound,
+           .catalog = light_catalog,
+           .objects = objects(),
+           .estimate = estimate_settings(),
+           .safety = safety_settings(reactions),
+           .seed = seed}) {}
 
 }  // namespace kadans::failures

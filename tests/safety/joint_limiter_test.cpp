@@ -191,3 +191,31 @@ TEST_CASE("In position and velocity mode the set-point stays within the limits")
   bench.asked.joints[0] = {.velocity_rad_s = 20, .mode = ActuationMode::velocity};
   CHECK(bench.check().velocity_rad_s == 8);
 }
+
+TEST_CASE("A fault of a set-point tells what was asked, and what it may be") {
+  Bench bench;
+  bench.asked.joints[0] = {.position_rad = 2.5, .velocity_rad_s = -9, .mode = ActuationMode::position};
+  bench.check();
+  REQUIRE(bench.codes() == "soft_stop soft_speed");
+  CHECK(bench.faults[0].value == 2.5);
+  CHECK(bench.faults[0].limit == 2.0);
+  CHECK(bench.faults[1].value == -9);
+  CHECK(bench.faults[1].limit == 8);
+}
+
+TEST_CASE("In velocity mode the speed asked fades to none into a soft stop, away from it it is free") {
+  struct Row {
+    double position_rad, asked_rad_s, written_rad_s;
+  };
+  const Row rows[] = {{1.96, 6, 6},   {1.985, 6, 4},   {2.0, 6, 0},  {2.03, 6, 0}, {1.999, -6, -6},
+                      {0.04, -6, -6}, {0.015, -6, -4}, {0.0, -6, 0}, {0.001, 6, 6}};
+  for (const Row& row : rows) {
+    CAPTURE(row.position_rad);
+    CAPTURE(row.asked_rad_s);
+    Bench bench;
+    bench.place(row.position_rad);
+    bench.asked.joints[0] = {.velocity_rad_s = row.asked_rad_s, .mode = ActuationMode::velocity};
+    CHECK(bench.check().velocity_rad_s == doctest::Approx(row.written_rad_s));
+    CHECK(bench.codes() == (row.asked_rad_s == row.written_rad_s ? "" : "soft_stop"));
+  }
+}

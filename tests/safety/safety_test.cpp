@@ -7,6 +7,14 @@
 using namespace kadans;
 using namespace kadans::safety_bench;
 
+namespace {
+
+bool damps(const JointActuation& actuation, double velocity_rad_s) {
+  return actuation.mode == ActuationMode::effort && actuation.effort_Nm == doctest::Approx(-2.0 * velocity_rad_s);
+}
+
+}  // namespace
+
 TEST_CASE("What is within the limits passes untouched") {
   Bench bench;
   bench.check_for(1);
@@ -125,6 +133,48 @@ TEST_CASE("A joint that comes back gets its torque back over recover_s") {
   CHECK(bench.written.joints[0].effort_Nm == 20);
   CHECK(bench.safety->joint_level(0) == SafetyLevel::normal);
   CHECK(bench.status.fault_count == 0);
+}
+
+TEST_CASE("Who computes set-points is told once when a joint comes back, cleared or by itself") {
+  Bench cleared;
+  cleared.ask(not_a_number);
+  cleared.check();
+  CHECK(!cleared.safety->came_back());
+  cleared.ask(5);
+  cleared.check();
+  CHECK(!cleared.safety->came_back());  // latched
+  cleared.safety->clear();
+  CHECK(cleared.safety->came_back());
+  cleared.check();
+  CHECK(!cleared.safety->came_back());
+  cleared.safety->clear();
+  CHECK(!cleared.safety->came_back());  // nothing had given way
+}
+
+TEST_CASE("A joint that comes back by itself damps once more, since what is asked is from before") {
+  SafetySettings mild = settings();
+  mild.reactions[static_cast<std::size_t>(FaultCode::position_limit)] = {.joint = SafetyLevel::damp, .exit_s = 0.01};
+  Bench bench(mild);
+  bench.place(2.06, 3);
+  CHECK(damps(bench.check(), 3));
+  bench.place(2.045, 3);
+  bench.ask(-5);
+  int ticks = 0;
+  while (!bench.safety->came_back() && ++ticks < 100) CHECK(damps(bench.check(), 3));
+  CHECK(ticks == doctest::Approx(11).epsilon(0.1));
+  CHECK(bench.check().effort_Nm == doctest::Approx(-0.1));  // of 25 Nm, as much as two ticks of recover_s give
+  CHECK(!bench.safety->came_back());
+}
+
+TEST_CASE("A drive that comes back in position mode is told positions again at once") {
+  Bench bench;
+  bench.asked.joints[0] = {.position_rad = 1.2, .mode = ActuationMode::position};
+  bench.health.joints[0].finite = false;
+  CHECK(bench.check().mode == ActuationMode::off);
+  bench.health.joints[0].finite = true;
+  bench.safety->clear();
+  CHECK(bench.safety->came_back());
+  CHECK(bench.check().mode == ActuationMode::position);
 }
 
 TEST_CASE("When too many joints are lost the robot damps") {

@@ -87,7 +87,8 @@ TEST_CASE("A reading that stays the same while more and more torque is asked is 
   CHECK(ticks <= promised(FaultCode::sensor_stuck));
   Bench still;
   still.knee_noise = false;
-  still.check();
+  still.check_for(0.01);
+  still.place(1.0001);  // from here on it stays, with 5 Nm
   still.ask(10);
   still.check_for(1);
   CHECK(still.codes().empty());

@@ -64,6 +64,7 @@ TEST_CASE("The JSON report is one line and one object with the promised keys") {
   CHECK(json["tick_ns"] == nlohmann::json{{"median", 1200.0}, {"p99", 2000.0}, {"max", 50000.0}});
   CHECK(json["queue"] == nlohmann::json{{"sent", 72}, {"refused", 0}});
   CHECK(json["faults"][0]["code"] == "velocity_limit");
+  CHECK(json["faults"][0]["key"] == "safety.velocity_margin");
   CHECK(json["faults"][0]["joint"] == "knee");
   CHECK_FALSE(json["faults"][1].contains("joint"));
   CHECK(json["errors"][0] == "squat.lua:12: attempt to call a nil value");
@@ -78,7 +79,7 @@ TEST_CASE("The text report tells transitions, checks, errors, faults and the lin
   CHECK(has(text, "FAILED tilt"));
   CHECK(has(text, "<= 0.05"));
   CHECK(has(text, "error: squat.lua:12"));
-  CHECK(has(text, "fault: velocity_limit of knee in tick 1234: 13, limit 12"));
+  CHECK(has(text, "fault: velocity_limit of knee in tick 1234: 13, limit 12 (safety.velocity_margin)"));
   CHECK(has(text, "kadans sim squat.json --seed 7"));
   CHECK(has(text, "FAILED  1 of 2 checks"));
   CHECK(has(text, "0.800"));

@@ -31,6 +31,8 @@ class ControlSets {
   // present state: in that step, or earlier by start_newcomers, so that they can be given set-points before it.
   void switch_to(std::uint32_t set) noexcept;
   void start_newcomers(const ControlInput& input) noexcept;
+  // Control thread, before step. All objects of the active set start anew, as if it had just been switched to.
+  void restart(const ControlInput& input) noexcept;
   // Control thread, before step. `object` is an index in the catalog.
   ControlObject& object(std::uint32_t index) noexcept { return *objects_[index]; }
   void fill(std::uint32_t& active_set, std::uint32_t& count,

@@ -2,8 +2,10 @@
 // fixed number of commands a tick. A transaction with one bad command is refused whole and counted.
 //
 // While the robot is held, or worse, its set-points, parameters and control set stay what they are: commands that would
-// change them are refused, unless the same transaction clears the faults first. A joint that is held alone refuses its
-// set-point.
+// change them are refused, unless the same transaction clears the faults first. A motion under way goes on to its end.
+// So it is for a joint that is held alone: refused are its set-points, set-points without a joint and parameters of the
+// objects that drive it, and any change of the control set. A joint that damps or is off refuses nothing, so that the
+// others can go on; when it comes back, it starts from where it is.
 #pragma once
 
 #include <cstdint>

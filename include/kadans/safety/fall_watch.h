@@ -3,8 +3,9 @@
 //   upright  until roll, pitch or the rate of turning is beyond its limit for time_s: then it falls
 //   falling  torque is a share of what it is else, so that joints give way; impacts are recorded; until it has turned
 //            slower than rest_rate for rest_s: then it lies
-//   fallen   torque is back, to get up; until it has been well within the limits for rest_s. Falling again from here
-//            takes the rate alone, since a robot that gets up is beyond the angles.
+//   fallen   torque comes back, to get up, as fast as it does for a joint that damped (recover_s); until the robot has
+//            been well within the limits for rest_s. Falling again from here takes the rate alone, since a robot that
+//            gets up is beyond the angles.
 // The limits are those of small humanoids in the RoboCup leagues: 60 degrees of roll, 45 of pitch, 7 rad/s for 40 ms.
 //
 // One owner, the control thread; nothing here allocates or throws.
@@ -23,7 +24,7 @@ class FallWatch {
   enum class Phase : std::uint8_t { upright, falling, fallen };
 
   explicit FallWatch(const SafetySettings& settings) noexcept
-      : settings_(settings.fall), tilt_max_rad_(settings.tilt_max_rad) {}
+      : settings_(settings.fall), tilt_max_rad_(settings.tilt_max_rad), recover_s_(settings.recover_s) {}
 
   FaultMask look(const BaseStatus& base, const ImuSample& sample, double dt_s) noexcept;
   // Value and limit of a fault that look() has just found.
@@ -31,8 +32,8 @@ class FallWatch {
 
   Phase phase() const noexcept { return phase_; }
   const std::uint32_t& phase_number() const noexcept { return phase_number_; }
-  // Of every torque.
-  double share() const noexcept { return phase_ == Phase::falling ? settings_.soft_share : 1; }
+  // Of every torque; 1 but while falling and for a while after it.
+  double share() const noexcept { return share_; }
   const double& impact_m_s2() const noexcept { return impact_m_s2_; }  // the largest of the last fall
 
  private:
@@ -40,9 +41,10 @@ class FallWatch {
   void advance(const BaseStatus& base, double rate_rad_s, double dt_s) noexcept;
 
   FallSettings settings_;
-  double tilt_max_rad_;
+  double tilt_max_rad_, recover_s_;
   Phase phase_ = Phase::upright;
   std::uint32_t phase_number_ = 0;
+  double share_ = 1;
   double for_s_ = 0;  // what would end the phase has lasted
   double impact_m_s2_ = 0;
 };

@@ -3,7 +3,8 @@
 //
 // The limits are an interval that the torque is cut to, so the order in which they come does not matter; the rate comes
 // first, so that none of them waits for it. In position and velocity mode the drive makes the torque and keeps its own
-// limit; here the set-point stays within the soft stops and the speed limit, and the torque added is cut as above.
+// limit; here the position asked stays within the position limits, the speed asked within the speed limit and, into a
+// soft stop, fades as torque does, and the torque added is cut as above.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -50,7 +51,8 @@ class JointLimiter {
   Interval soft_stops(double position_rad, Interval effort_Nm) const noexcept;
   Interval soft_speed(double velocity_rad_s, Interval effort_Nm) const noexcept;
   double power_bound_Nm(double velocity_rad_s, double effort_Nm) const noexcept;
-  FaultMask limit_set_point(JointActuation& actuation) noexcept;
+  Interval speeds(double position_rad) const noexcept;
+  FaultMask limit_set_point(double position_rad, JointActuation& actuation) noexcept;
   FaultMask who_cut(const Input& input, double asked_Nm) const noexcept;
 
   double effort_max_Nm_ = 0;  // 0: passive
@@ -58,7 +60,10 @@ class JointLimiter {
   double velocity_max_rad_s_ = 0, velocity_fade_rad_s_ = 0;
   double lower_rad_ = 0, upper_rad_ = 0, zone_rad_ = 0, stiffness_Nm_per_rad_ = 0;
   double damping_Nms_per_rad_ = 0;
-  double asked_Nm_ = 0, asked_set_point_ = 0;  // of the last cut, to describe it
+  // Of the last cut, to describe it; of a set-point what was asked and what it became.
+  double asked_Nm_ = 0;
+  FaultMask of_set_point_ = 0;
+  double asked_rad_ = 0, given_rad_ = 0, asked_rad_s_ = 0, given_rad_s_ = 0;
 };
 
 // Here, because it runs for every joint in every tick.

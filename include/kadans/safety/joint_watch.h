@@ -3,8 +3,8 @@
 //
 // A reading jumps when it is further from the last one than twice the speed limit allows for in the time between them.
 // A reading is stuck when it stays exactly the same for stuck_ticks readings although the motor, behind its spring,
-// moved, or the control objects pulled harder and harder; standing still alone is no fault, since a resolution that is
-// finite repeats itself.
+// moved, or was made to pull harder and harder; standing still alone is no fault, since a resolution that is finite
+// repeats itself. What is asked of a joint that damps or is off is not done, so it tells nothing.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -29,6 +29,7 @@ class JointWatch {
     const SensorState& health;
     const JointActuation& asked;
     double written_Nm;  // in the last tick
+    bool follows;       // in the last tick what was asked was done, within limits
     double dt_s;
   };
 
@@ -46,9 +47,9 @@ class JointWatch {
  private:
   FaultMask look_at_reading(const Input& input) noexcept;
   bool stuck(const Input& input) noexcept;
-  // What the motor is asked for, as one number that a joint follows: torque, or else the position.
+  // What the motor was told, as one number that a joint follows: torque, or else the position.
   static double demand(const Input& input) noexcept {
-    return input.asked.mode == ActuationMode::position ? input.asked.position_rad : input.asked.effort_Nm;
+    return input.asked.mode == ActuationMode::position ? input.asked.position_rad : input.written_Nm;
   }
   FaultMask derate() noexcept;
 

@@ -3,7 +3,8 @@
 //
 // The ladder:  normal   everything goes on
 //              limited  what was asked was made less, or something is reported that costs nothing yet
-//              hold     the control set keeps its last set-points: commands that would change them are refused
+//              hold     the control set keeps its last set-points, a motion under way goes on to its end: commands that
+//                       would change what is asked of the joint, or of any joint when the robot holds, are refused
 //              damp     every torque is -damping times velocity
 //              off      no torque
 // A joint stands on the worst of its own rung and the robot's.

@@ -4,8 +4,11 @@
 // Watches find what is wrong (joint_watch.h, body_watch.h, fall_watch.h, engine_watch.h), how soon stands in
 // detection.h. Reactions say which rung follows (reaction.h), ladders keep it until it may be left (ladder.h). What is
 // asked of a joint that still works is cut to its limits (joint_limiter.h); an actuation that is not finite is never
-// written, whatever the configuration says. A joint that comes back from damp or off gets its torque back over
-// recover_s.
+// written, whatever the configuration says.
+//
+// A joint that comes back from damp or off, by itself or because faults were cleared, gets its torque back over
+// recover_s; came_back() says so in that tick, and whoever computes set-points starts anew from the measured state, as
+// at a switch of control sets: where the joint was to go before it gave way is no longer asked for.
 //
 // One owner, the control thread; check() neither allocates, locks nor throws.
 #pragma once
@@ -60,6 +63,9 @@ class Safety {
   void raise(const Fault& fault) noexcept;
   // Lifts all latches: the next check judges anew.
   void clear() noexcept;
+  // In the last check, or by clearing since: joints that damped or were off follow again what is asked of them. What is
+  // computed for the next tick must start from the measured state.
+  bool came_back() const noexcept { return came_back_; }
 
   // Faults as they happen, for another thread to pop. A full log drops, first_fault stays.
   FaultLog& log() noexcept { return log_; }
@@ -78,10 +84,11 @@ class Safety {
     JointWatch watch;
     JointLimiter limiter;
     Ladder ladder;
-    bool finite = true;    // what was asked for in this tick
-    FaultMask cut = 0;     // by the limiter, in the last tick
-    double authority = 1;  // share of the torque limit; grows after damp and off
-    double last_Nm = 0;    // written in the last tick
+    bool finite = true;     // what was asked for in this tick
+    FaultMask cut = 0;      // by the limiter, in the last tick
+    double authority = 1;   // share of the torque limit; grows after damp and off
+    bool gave_way = false;  // in the last tick it damped or was off, whatever was asked
+    double last_Nm = 0;     // written in the last tick
     std::uint32_t level_number = 0;
   };
 
@@ -91,6 +98,7 @@ class Safety {
   void judge_robot(const SafetyInput& input, FaultMask body, FaultMask others, double dt_s) noexcept;
   void escalate(FaultMask faults, double dt_s) noexcept;
   bool passes(const SafetyInput& input, std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
+  bool gives_way(std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
   void limit_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
   void cut_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
 
@@ -108,6 +116,7 @@ class Safety {
   FaultMask cut_ = 0;         // of any joint, in the last tick
   std::uint32_t lost_ = 0;    // joints that damp or are off by themselves
   double lasting_s_ = 0;      // of what escalates
+  bool came_back_ = false;
   std::uint32_t fault_count_ = 0;
   Fault first_fault_;
   FaultLog log_;

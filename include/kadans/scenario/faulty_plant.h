@@ -38,6 +38,7 @@ class FaultyPlant final : public ModelPlant {
   FaultyPlant(ModelPlant& plant, std::uint64_t seed) noexcept : plant_(plant), random_(seed, "sensor faults") {}
 
   void add(const SensorFault& fault) { faults_.push_back({fault, {}, false}); }
+  void clear() { faults_.clear(); }  // all sensors are sound again
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override { plant_.write(actuation); }
