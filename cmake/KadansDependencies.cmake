@@ -9,6 +9,7 @@ find_package(tinyxml2 REQUIRED)
 pkg_check_modules(urdfdom REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(bullet REQUIRED IMPORTED_TARGET bullet-float64)  # double precision
 pkg_check_modules(luajit REQUIRED IMPORTED_TARGET luajit)
+pkg_check_modules(libedit REQUIRED IMPORTED_TARGET libedit)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 if(KADANS_TESTS)
   find_package(doctest REQUIRED)

@@ -78,12 +78,12 @@ std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
 }
 
 // The behaviors' names are known once they are loaded.
-void verify_reloads(const ScenarioConfig& scenario, const ScriptHost& host) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < host.size(); ++i) names.push_back(host.behavior(i).name());
-  for (const ScenarioReload& reload : scenario.reloads) {
-    if (std::ranges::find(names, reload.behavior.name) == names.end())
-      refuse_unknown(scenario.file, reload.behavior, "behavior", names);
+void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
+  const std::vector<std::string> names = host.names();
+  for (const ScenarioEvent& event : scenario.events) {
+    const PlacedName& behavior = event.order.behavior;
+    if (event.order.kind == PlayOrder::Kind::reload && std::ranges::find(names, behavior.name) == names.end())
+      refuse_unknown(scenario.file, behavior, "behavior", names);
   }
 }
 
@@ -92,13 +92,13 @@ std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Safe
   ScriptHost::Settings settings;
   settings.root = project_root(scenario.file);
   settings.seed = seed;
-  for (const PlacedName& behavior : scenario.behaviors) settings.play.push_back({.file = behavior.name});
-  for (const ScenarioReload& reload : scenario.reloads) {
-    settings.reloads.push_back({std::llround(reload.at_s * 1e9), reload.behavior.name, reload.file.name});
+  settings.play = scenario.behaviors;
+  for (const ScenarioEvent& event : scenario.events) {
+    settings.events.push_back({std::llround(event.at_s * 1e9), event.order});
   }
   settings.safe = {.pose = safe.pose, .after_s = safe.after_s, .time_s = safe.time_s};
   auto host = std::make_unique<ScriptHost>(settings, catalog, log);
-  verify_reloads(scenario, *host);
+  verify_events(scenario, *host);
   return host;
 }
 

@@ -161,7 +161,7 @@ std::unique_ptr<TestStage> IdealStages::make(const fs::path& behavior, const std
       (robot.empty() ? (robot_.empty() ? robot_of_behavior(behavior) : robot_) : project_root(behavior) / robot)
           .string();
   scenario.plant = PlantKind::ideal;
-  scenario.behaviors.push_back({.name = behavior.string(), .place = {}});
+  scenario.behaviors.push_back({.file = behavior});
   return std::make_unique<IdealStage>(std::move(scenario));
 }
 

@@ -17,6 +17,7 @@ struct SimOptions {
   bool no_record = false;
   bool realtime = false;
   bool watch = false;
+  std::string play;    // a list in place of the scenario's; "" = the scenario's
   std::string record;  // "" = NAME.mcap in the working directory
 };
 int run_sim(const SimOptions& options);

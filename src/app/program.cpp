@@ -7,6 +7,7 @@
 #include "behavior_command.h"
 #include "commands.h"
 #include "kadans/signal/nearest_name.h"
+#include "repl_command.h"
 #include "stubs_command.h"
 #include "terminal.h"
 #include "version.h"
@@ -22,6 +23,7 @@ constexpr const char* examples =
     "Examples:\n"
     "  kadans sim config/scenarios/squat.json             run a scenario, read what happened\n"
     "  kadans sim config/scenarios/squat.json --json      the same as one JSON object\n"
+    "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
     "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
     "\n"
@@ -35,6 +37,8 @@ void add_sim(CLI::App& app, SimOptions& options) {
   sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e6));
+  sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
+      ->type_name("LIST");
   CLI::Option* record =
       sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
   sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
@@ -85,6 +89,8 @@ int run(int argc, char** argv) {
   add_check(app, check);
   BehaviorOptions behavior;
   add_behavior(app, behavior);
+  ReplOptions repl;
+  add_repl(app, repl);
   StubsOptions stubs;
   add_stubs(app, stubs);
   ParamsOptions params;
@@ -101,6 +107,7 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
+  if (app.got_subcommand("repl")) return run_repl(repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);
   if (app.got_subcommand("params")) return run_params(params);
   if (app.got_subcommand("behavior")) return run_behavior(app, behavior);

@@ -19,8 +19,15 @@ constexpr const char* height_signal = "plant.base.height_m";
 
 std::string repeat_command(const ScenarioConfig& scenario, const SimOptions& options, std::uint64_t seed) {
   std::string command = "kadans sim " + scenario.file + " --seed " + std::to_string(seed);
+  if (!options.play.empty()) command += " --play '" + options.play + "'";
   if (options.duration_s) command += " --duration " + number_text(*options.duration_s);
   return command;
+}
+
+ScenarioConfig read_scenario(const SimOptions& options) {
+  ScenarioConfig scenario = read_scenario_config(options.scenario);
+  if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
+  return scenario;
 }
 
 std::string read_all(const std::string& file) {
@@ -65,7 +72,7 @@ class Sim {
  public:
   explicit Sim(const SimOptions& options)
       : options_(options),
-        scenario_(read_scenario_config(options.scenario)),
+        scenario_(read_scenario(options)),
         seed_(options.seed.value_or(scenario_.seed)),
         duration_s_(options.duration_s.value_or(scenario_.duration_s)),
         assembly_(scenario_, seed_, log_),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "kadans/config/project_root.h"
 
@@ -11,49 +12,43 @@ namespace {
 const std::array<std::string, 2> plant_names{"bullet", "ideal"};
 constexpr double duration_max_s = 1e6;
 
-void reload_fields(Fields& f, ScenarioReload& reload, Problems& problems) {
-  f.number("at_s", reload.at_s, {0, duration_max_s, "s"}, "when", Need::required);
-  f.string("behavior", reload.behavior.name, "name of a behavior that plays", Need::required);
-  f.string("file", reload.file.name, "what it goes on with, from the project root", Need::required);
-  if (!f.reading()) return;
-  reload.behavior.place = f.place("behavior");
-  reload.file.place = f.place("file");
-  if (!reload.file.name.empty()) {
-    reload.file.name = resolve_file(reload.file.name, reload.file.place, "reload", problems).string();
-  }
-}
-
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   std::string schema;
   f.string("$schema", schema, "the schema of this file, for editors");
   f.string("name", scenario.name, "the scenario's name", Need::required);
   f.string("doc", scenario.doc, "what it shows, one or two sentences");
   f.string("robot", scenario.robot, "the robot's configuration, from the project root", Need::required);
+  if (!scenario.robot.empty()) {
+    scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", problems).string();
+  }
   f.choice("plant", scenario.plant, plant_names, "what plays the robot");
   f.number("duration_s", scenario.duration_s, {1e-3, duration_max_s, "s"}, "simulated time", Need::required);
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
             "where all random numbers of the run come from");
-  f.strings("behaviors", scenario.behaviors, {0, 100}, "behavior files, played one after the other");
-  f.list("reload", {0, 10'000}, "behaviors that go on with another file", [&](Fields& e) {
-    ScenarioReload reload;
-    reload_fields(e, reload, problems);
-    if (e.reading()) scenario.reloads.push_back(std::move(reload));
+  std::vector<PlacedName> lists;
+  f.strings("behaviors", lists, {0, 100}, "what to play, one after the other: files, or \"squat{depth_m=0.08}, wave\"");
+  const PlayFolders folders = folders_of(scenario);
+  for (const PlacedName& list : lists) {
+    const TextPlace start{list.place.line, list.place.column + 1};  // behind the quote
+    std::ranges::move(read_play_items(list.name, start, folders, problems), std::back_inserter(scenario.behaviors));
+  }
+  f.list("events", {0, 10'000}, "what happens to what plays, each at its time", [&](Fields& e) {
+    ScenarioEvent event;
+    event_fields(e, event, folders, problems);
+    if (e.reading()) scenario.events.push_back(std::move(event));
   });
   f.list("checks", {0, 1000}, "what must hold", [&](Fields& e) {
     ScenarioCheck check;
     check_fields(e, check, scenario.duration_s, scenario.checks, problems);
     if (e.reading()) scenario.checks.push_back(std::move(check));
   });
-  if (!f.reading()) return;
-  if (!scenario.robot.empty()) {
-    scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", problems).string();
-  }
-  for (PlacedName& behavior : scenario.behaviors) {
-    behavior.name = resolve_file(behavior.name, behavior.place, "behavior", problems).string();
-  }
 }
 
 }  // namespace
+
+PlayFolders folders_of(const ScenarioConfig& scenario) {
+  return {scenario.file, std::filesystem::path(scenario.robot).parent_path().filename().string()};
+}
 
 ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file) {
   ScenarioConfig scenario;

@@ -1,11 +1,10 @@
 #include "kadans/engine/transaction.h"
 
-#include <span>
-
 namespace kadans {
 
 void CommandSender::begin(std::int64_t time_ns) noexcept {
   discard();
+  committed_ = 0;
   time_ns_ = time_ns;
 }
 
@@ -22,18 +21,21 @@ bool CommandSender::add(const Command& command) noexcept {
 
 std::uint32_t CommandSender::commit() noexcept {
   const std::size_t wanted = size_ - 1 + overflow_;
+  committed_ = 0;
   if (wanted == 0) return sequence_;
   batch_[0] = Command{.kind = CommandKind::transaction,
                       .count = static_cast<std::uint32_t>(size_ - 1),
                       .sequence = sequence_ + 1,
                       .time_ns = time_ns_};
   const bool sent = overflow_ == 0 && queue_.try_push(std::span<const Command>(batch_.data(), size_));
+  const std::size_t commands = size_ - 1;
   discard();
   if (!sent) {
     refused_ += wanted;
     return 0;
   }
   sent_ += wanted;
+  committed_ = commands;
   return ++sequence_;
 }
 

@@ -33,7 +33,7 @@ void Behavior::Parts::say(const char* text) noexcept {
 }
 
 void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text) noexcept {
-  const std::int64_t now_ns = bindings.now_ns;
+  const std::int64_t now_ns = bindings.engine_ns();
   tell_dropped(false);
   const LogBound::Answer answer = bound.admit(now_ns);
   if (answer == LogBound::Answer::say) return log.message(now_ns, severity, chart.name, text);
@@ -43,7 +43,7 @@ void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text)
 }
 
 void Behavior::Parts::tell_dropped(bool at_once) noexcept {
-  const std::int64_t now_ns = bindings.now_ns;
+  const std::int64_t now_ns = bindings.engine_ns();
   const std::uint64_t dropped = bound.take_dropped(now_ns, at_once);
   if (dropped == 0) return;
   log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
@@ -51,7 +51,7 @@ void Behavior::Parts::tell_dropped(bool at_once) noexcept {
 }
 
 void Behavior::Parts::transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept {
-  transition.time_ns = bindings.now_ns;
+  transition.time_ns = bindings.engine_ns();
   transition.behavior = chart.name;
   transition.from = from;
   transition.to = to;
@@ -74,7 +74,7 @@ Behavior::~Behavior() = default;
 bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
   Parts& parts = *parts_;
   if (failed() || finished()) return false;
-  forget_past(snapshot.time_ns);
+  forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
   if (!parts.set_asked_for && bindings.set != nullptr) {
@@ -131,6 +131,15 @@ void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept 
     if (parts.lua->error().breach != ScriptBreach::none) return;
     left -= std::min(left, parts.lua->core().budget.spent());
   }
+}
+
+void Behavior::hold_clock(std::int64_t held_ns) noexcept {
+  parts_->bindings.held_ns = held_ns;
+  if (past_->parts != nullptr) past_->parts->bindings.held_ns = held_ns;
+}
+
+std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
+  return snapshot.time_ns - parts_->bindings.held_ns;
 }
 
 bool Behavior::post(const std::string& event) noexcept {

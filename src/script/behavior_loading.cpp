@@ -27,7 +27,7 @@ int read_file(lua_State* state) {
 int open_bindings(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   open_machines(state, parts.chart, parts.bindings, parts.tables);
-  parts.tables.snapshot = parts.snapshot_tables.open(state, *parts.catalog.model, parts.settings.feet);
+  parts.tables.snapshot = parts.snapshot_tables.open(state, *parts.catalog.model, parts.settings.feet, true);
   return 0;
 }
 
@@ -67,6 +67,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   parts.chart.resolve(parts.problems);
   find_control_set(parts);
   if (!parts.problems.empty()) throw InputError(parts.problems);
+  give_arguments(parts, instructions);
   if (!parts.lua->call(open_bindings, &parts, instructions, 0)) {
     throw InputError(problem_of(parts.lua->error()));
   }

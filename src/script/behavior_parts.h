@@ -56,6 +56,9 @@ struct Behavior::Past {
 // Reads the file, makes the chart and the bindings. 0 instructions: as many as loading may take. Throws InputError.
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
 
+// behavior_arguments.cpp. Gives the behavior what Settings::arguments holds. Throws InputError.
+void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
+
 // behavior_adoption.cpp. Lets `fresh`, newly loaded, stand where `old` stands: active states, vars, parameters, random
 // numbers; `old` is not changed. False: fresh.lua->error() says why.
 bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,

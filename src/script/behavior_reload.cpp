@@ -58,7 +58,8 @@ Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& comma
   std::unique_ptr<Parts> fresh;
   try {
     fresh = std::make_unique<Parts>(settings, parts_->catalog, parts_->log);
-    fresh->bindings.now_ns = snapshot.time_ns;
+    fresh->bindings.held_ns = parts_->bindings.held_ns;
+    fresh->bindings.now_ns = clock_ns(snapshot);
     load_behavior(*fresh, settings.limits.reload_instructions);
   } catch (const std::exception& error) {
     return refuse(snapshot.time_ns, error.what());
@@ -82,8 +83,8 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
       old.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "a state that is gone could not be left: " + old.lua->error().text());
     }
+    past_->swapped_ns = clock_ns(snapshot);
     past_->parts = std::move(parts_);
-    past_->swapped_ns = snapshot.time_ns;
   }
   parts_ = std::move(fresh);
   status_.reloads.fetch_add(1, std::memory_order_relaxed);
@@ -92,7 +93,7 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
 }
 
 bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noexcept {
-  if (past_->parts == nullptr || snapshot.time_ns - past_->swapped_ns >= probation_ns) return false;
+  if (past_->parts == nullptr || clock_ns(snapshot) - past_->swapped_ns >= probation_ns) return false;
   Parts& failing = *parts_;
   Parts& old = *past_->parts;
   const ScriptError error = failing.lua->error();

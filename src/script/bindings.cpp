@@ -17,7 +17,7 @@ bool Bindings::send(const Command& command) noexcept {
 void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept {
   sender = &to;
   snapshot = &seen;
-  now_ns = time_ns;
+  now_ns = time_ns - held_ns;
   refused = false;
   motion_count = 0;
   to.begin(time_ns);

@@ -20,7 +20,8 @@ struct Bindings {
   const ControlSetInfo* set = nullptr;  // nullptr: every object
   const Snapshot* snapshot = nullptr;
   CommandSender* sender = nullptr;
-  std::int64_t now_ns = 0;
+  std::int64_t held_ns = 0;  // how far the behaviors' clock is behind the engine's: pauses
+  std::int64_t now_ns = 0;   // of the behaviors' clock
   ChartRunner* runner = nullptr;
   bool refused = false;                            // a command of this tick found no place
   std::array<Motion*, max_transaction> motions{};  // asked for in this tick
@@ -30,6 +31,7 @@ struct Bindings {
   // False when the queue has no place: the whole transaction will be refused.
   bool send(const Command& command) noexcept;
   void begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept;
+  std::int64_t engine_ns() const noexcept { return now_ns + held_ns; }
   // Commits; motions learn their transaction. False: refused.
   bool commit() noexcept;
 };

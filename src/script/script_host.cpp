@@ -7,50 +7,62 @@
 namespace kadans {
 
 ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
-    : log_(log), root_(settings.root), reloads_(settings.reloads), safe_(settings.safe, catalog) {
+    : settings_(settings), catalog_(catalog), log_(log), pause_(catalog), safe_(settings.safe, catalog) {
   std::vector<InputProblem> problems;
-  for (const ScriptPlay& play : settings.play) {
-    const std::filesystem::path file = play.file.is_absolute() ? play.file : settings.root / play.file;
-    try {
-      behaviors_.push_back({std::make_unique<Behavior>(Behavior::Settings{.root = settings.root,
-                                                                          .file = file,
-                                                                          .seed = settings.seed,
-                                                                          .limits = settings.limits,
-                                                                          .feet = settings.feet},
-                                                       catalog, log),
-                            play.lane});
-    } catch (const InputError& error) {
-      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
-    }
+  std::vector<PlayList::Entry> first = load(settings.play, true, problems);
+  for (const Event& event : settings.events) {
+    events_.push_back({event.at_ns, event.order, load(event.order.list, true, problems)});
   }
   if (!problems.empty()) throw InputError(problems);
-  const auto earlier = [](const ScriptReload& a, const ScriptReload& b) { return a.at_ns < b.at_ns; };
-  std::stable_sort(reloads_.begin(), reloads_.end(), earlier);
+  std::ranges::stable_sort(events_, {}, &Due::at_ns);
+  list_.append(first);
 }
 
 ScriptHost::~ScriptHost() = default;
 
-void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
-  reload(snapshot, commands);
-  for (std::size_t i = 0; i < behaviors_.size(); ++i) {
-    Played& played = behaviors_[i];
-    const auto earlier = behaviors_.begin() + static_cast<std::ptrdiff_t>(i);
-    const bool waits = std::any_of(behaviors_.begin(), earlier,
-                                   [&](const Played& other) { return other.lane == played.lane && !other.over; });
-    if (!played.over && !waits) play(played, snapshot, commands);
+std::vector<PlayList::Entry> ScriptHost::load(const std::vector<PlayItem>& list, bool lasting,
+                                              std::vector<InputProblem>& problems) {
+  std::vector<PlayList::Entry> loaded;
+  for (const PlayItem& item : list) {
+    const Behavior::Settings settings{.root = settings_.root,
+                                      .file = item.file.is_absolute() ? item.file : settings_.root / item.file,
+                                      .seed = settings_.seed,
+                                      .limits = settings_.limits,
+                                      .feet = settings_.feet,
+                                      .arguments = item.arguments,
+                                      .source = item.source};
+    try {
+      loaded.push_back({std::make_unique<Behavior>(settings, catalog_, log_), item.lane, lasting});
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
   }
-  if (!safe_.due(snapshot.time_ns)) return;
-  safe_.move(snapshot, commands, [this](std::uint32_t object) { return plays_with(object); });
+  return loaded;
 }
 
-void ScriptHost::play(Played& played, const Snapshot& snapshot, CommandSender& commands) noexcept {
-  if (played.behavior->tick(snapshot, commands)) return;
-  played.over = true;
-  if (played.behavior->failed()) {
-    report_failure(*played.behavior, snapshot.time_ns);
-    safe_.failed(snapshot.time_ns, played.behavior->control_set());
+void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  take_orders(snapshot, commands);
+  reload_saved(snapshot, commands);
+  if (!pause_.holds(snapshot, commands)) {
+    list_.each_in_turn([&](PlayList::Entry& entry) { step(entry, snapshot, commands); });
+    if (safe_.due(snapshot.time_ns)) {
+      safe_.move(snapshot, commands, [this](std::uint32_t object) { return plays_with(object); });
+      pause_.note(snapshot, commands);
+    }
   }
-  if (played.behavior->outcome() != "done") close_lane(played.lane);
+  list_.publish(pause_.paused());
+}
+
+void ScriptHost::step(PlayList::Entry& entry, const Snapshot& snapshot, CommandSender& commands) noexcept {
+  Behavior& behavior = *entry.behavior;
+  behavior.hold_clock(pause_.held_ns());
+  const bool goes_on = behavior.tick(snapshot, commands);
+  pause_.note(snapshot, commands);
+  if (goes_on) return;
+  list_.end(entry);
+  if (!behavior.failed()) return;
+  report_failure(behavior, snapshot.time_ns);
+  safe_.failed(snapshot.time_ns, behavior.control_set());
 }
 
 void ScriptHost::report_failure(const Behavior& behavior, std::int64_t time_ns) noexcept {
@@ -60,19 +72,34 @@ void ScriptHost::report_failure(const Behavior& behavior, std::int64_t time_ns) 
   log_.message(time_ns, BehaviorLog::Severity::error, behavior.name(), text);
 }
 
-void ScriptHost::close_lane(std::uint32_t lane) noexcept {
-  for (Played& played : behaviors_) played.over = played.over || played.lane == lane;
+bool ScriptHost::plays_with(std::uint32_t object) const noexcept {
+  return std::ranges::any_of(list_.entries(), [object](const PlayList::Entry& entry) {
+    if (entry.over) return false;
+    const ControlSetInfo* set = entry.behavior->control_set();
+    return set == nullptr || std::ranges::find(set->objects, object) != set->objects.end();
+  });
 }
 
-void ScriptHost::stop(const Snapshot& snapshot, CommandSender& commands) noexcept {
-  for (Played& played : behaviors_) {
-    if (!played.over && !played.behavior->failed()) played.behavior->stop(snapshot, commands);
-    played.over = true;
+std::vector<std::string> ScriptHost::names() const {
+  std::vector<std::string> all;
+  for (const PlayList::Entry& entry : list_.entries()) all.push_back(entry.behavior->name());
+  for (const Due& due : events_) {
+    for (const PlayList::Entry& entry : due.loaded) all.push_back(entry.behavior->name());
   }
+  return all;
 }
 
-bool ScriptHost::finished() const noexcept {
-  return std::all_of(behaviors_.begin(), behaviors_.end(), [](const Played& played) { return played.over; });
+void ScriptHost::declare_signals(SignalTable& signals) const {
+  list_.status().declare(signals);
+  const auto declare = [&](const PlayList::Entry& entry) {
+    std::string name = entry.behavior->name();
+    for (int number = 2; signals.find("behavior." + name + ".state"); ++number) {
+      name = entry.behavior->name() + "_" + std::to_string(number);
+    }
+    entry.behavior->status().declare(signals, name);
+  };
+  std::ranges::for_each(list_.entries(), declare);
+  for (const Due& due : events_) std::ranges::for_each(due.loaded, declare);
 }
 
 }  // namespace kadans

@@ -16,6 +16,10 @@ const std::filesystem::path squat = KADANS_SOURCE_DIR "/behaviors/tulip/squat.lu
 
 ScenarioConfig squat_scenario() { return read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json"); }
 
+ScenarioEvent reload(double at_s, const std::filesystem::path& file) {
+  return {at_s, {.kind = PlayOrder::Kind::reload, .behavior = {"squat", {}}, .file = file}};
+}
+
 struct Played {
   RunResult result;
   RunLog log;
@@ -46,7 +50,7 @@ TEST_CASE("A squat whose file is reloaded again and again with the same text is 
   Played alone;
   play(scenario, 5, alone);
   for (int i = 0; i < reloads; ++i)
-    scenario.reloads.push_back({4.9 * i / reloads, {"squat", {}}, {squat.string(), {}}});
+    scenario.events.push_back(reload(4.9 * i / reloads, squat));
   Played reloaded;
   play(scenario, 5, reloaded);
   CHECK(reloaded.result.state_hash == alone.result.state_hash);
@@ -60,7 +64,7 @@ TEST_CASE("A squat that gets another depth while it is down goes on squatting, a
   text.replace(text.find("0.10, min"), 4, "0.05");
   program::write(folder / "squat.lua", text);
   ScenarioConfig scenario = squat_scenario();
-  scenario.reloads.push_back({4, {"squat", {}}, {(folder / "squat.lua").string(), {}}});
+  scenario.events.push_back(reload(4, folder / "squat.lua"));
   Played first, second;
   play(scenario, 12, first);
   play(scenario, 12, second);
@@ -79,7 +83,7 @@ TEST_CASE("A reload of a file that is wrong leaves the squat as it was, bit for 
   ScenarioConfig scenario = squat_scenario();
   Played alone;
   play(scenario, 5, alone);
-  scenario.reloads.push_back({3, {"squat", {}}, {(folder / "squat.lua").string(), {}}});
+  scenario.events.push_back(reload(3, folder / "squat.lua"));
   Played reloaded;
   play(scenario, 5, reloaded);
   CHECK(reloaded.result.state_hash == alone.result.state_hash);
@@ -102,7 +106,7 @@ TEST_CASE("while true do end, wherever it stands, is reported with its line and 
     CAPTURE(bad);
     program::write(folder / "endless.lua", head + bad + " }\n");
     ScenarioConfig scenario = squat_scenario();
-    scenario.behaviors = {{(folder / "endless.lua").string(), {}}};
+    scenario.behaviors = {{.file = folder / "endless.lua"}};
     Played played;
     play(scenario, 4, played);
     REQUIRE(played.log.has_errors());
@@ -116,7 +120,8 @@ TEST_CASE("while true do end, wherever it stands, is reported with its line and 
 
 TEST_CASE("A reload of a behavior that does not play is refused where the scenario names it") {
   ScenarioConfig scenario = squat_scenario();
-  scenario.reloads.push_back({3, {"sqat", {7, 3}}, {squat.string(), {}}});
+  scenario.events.push_back(reload(3, squat));
+  scenario.events.back().order.behavior = {"sqat", {7, 3}};
   RunLog log;
   try {
     const Assembly robot(scenario, 1, log);

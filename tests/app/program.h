@@ -11,7 +11,7 @@ struct Outcome {
   std::string out, err;
 };
 
-// `arguments` as typed in a shell, in folder `where`.
+// `arguments` as typed in a shell, in folder `where`; "<file" among them is its input, else there is none.
 Outcome run(const std::string& arguments, const std::filesystem::path& where);
 
 // A fresh folder below the build folder, emptied first, this process's own; gone when the process ends.

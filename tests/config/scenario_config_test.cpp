@@ -36,8 +36,8 @@ TEST_CASE("A scenario names its robot and behaviors by path and bounds signals i
   CHECK(scenario.seed == 7);
   CHECK(scenario.robot == KADANS_SOURCE_DIR "/config/tulip/robot.json");
   REQUIRE(scenario.behaviors.size() == 1);
-  CHECK(scenario.behaviors[0].name == KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
-  CHECK(scenario.behaviors[0].place == TextPlace{7, 17});
+  CHECK(scenario.behaviors[0].file == KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
+  CHECK(scenario.behaviors[0].place == TextPlace{7, 18});
   REQUIRE(scenario.checks.size() == 3);
   CHECK(scenario.checks[0].kind == CheckKind::always);
   CHECK(scenario.checks[0].max == 0.05);

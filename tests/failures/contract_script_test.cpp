@@ -47,7 +47,8 @@ struct Play {
     if (!reload_with.empty()) {
       const auto file = project / "behaviors/tulip/next.lua";
       write(file, reload_with);
-      scenario.reloads.push_back({.at_s = 0.2, .behavior = {"squat", {}}, .file = {file.string(), {}}});
+      scenario.events.push_back(
+          {.at_s = 0.2, .order = {.kind = PlayOrder::Kind::reload, .behavior = {"squat", {}}, .file = file}});
     }
   }
   void run(double duration_s) {

@@ -10,6 +10,7 @@
 
 #include "kadans/engine/transaction.h"
 #include "kadans/script/behavior.h"
+#include "kadans/script/script_host.h"
 
 namespace kadans::script_test {
 
@@ -113,8 +114,28 @@ class Scripts {
   std::filesystem::path root;
 };
 
+// The control engine's place: applies what waits in the queue, lets motions take their time, and makes the snapshot of
+// the next behavior tick, 10 ms later.
+class Engine {
+ public:
+  void step();
+  // How many of the commands applied so far were of that kind.
+  std::size_t commands(CommandKind kind) const;
+
+  Robot robot;
+  CommandQueue queue;
+  CommandSender sender{queue};
+  Snapshot snapshot;
+  std::vector<Command> applied;  // all so far, headers too
+  bool applying = true;          // whether the control engine takes transactions
+
+ private:
+  void apply();
+  double moving_until_s_[max_objects]{};
+};
+
 // Plays one behavior, tick by tick of 10 ms.
-class Stage {
+class Stage : public Engine {
  public:
   explicit Stage(const std::string& text, ScriptLimits limits = {}, std::uint64_t seed = 1);  // throws InputError
   Stage(const std::filesystem::path& root, const std::filesystem::path& file);
@@ -125,22 +146,26 @@ class Stage {
     }
   }
   std::string said() const { return log.joined(); }
-  // Applies what waits in the queue; returns how many commands of that kind there were.
-  std::size_t commands(CommandKind kind) const;
 
   Scripts scripts;
-  Robot robot;
   Log log;
-  CommandQueue queue;
-  CommandSender sender{queue};
-  Snapshot snapshot;
-  std::vector<Command> applied;  // all so far, headers too
-  bool applying = true;          // whether the control engine takes transactions
   std::unique_ptr<Behavior> behavior;
+};
 
- private:
-  void apply();
-  double moving_until_s_[max_objects]{};
+// Plays lists of behaviors, whose files are in `scripts`, tick by tick of 10 ms.
+class Theatre : public Engine {
+ public:
+  // Opens with behaviors/b0.lua, b1.lua ... of these texts; all in lane 0 when no lanes are given.
+  explicit Theatre(const std::vector<std::string>& texts, const std::vector<std::uint32_t>& lanes = {});
+  Theatre() = default;
+  void open(ScriptHost::Settings settings);  // throws InputError
+  void tick(int times = 1);
+  // What is in behaviors/<name>.lua, as an order's list.
+  std::vector<PlayItem> list(const std::vector<std::string>& names) const;
+
+  Scripts scripts;
+  Log log;
+  std::unique_ptr<ScriptHost> host;
 };
 
 // A behavior that runs `code`, with m and s, on entering its only state.

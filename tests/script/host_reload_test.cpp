@@ -14,26 +14,6 @@ std::string says(const std::string& name, const std::string& word) {
          word + "' end } }\n";
 }
 
-struct Theatre {
-  void open(ScriptHost::Settings settings) {
-    settings.root = scripts.root;
-    host = std::make_unique<ScriptHost>(settings, robot.catalog, log);
-  }
-  void tick(int times) {
-    for (int i = 0; i < times; ++i) {
-      host->tick(snapshot, sender);
-      snapshot.time_ns += 10'000'000;
-    }
-  }
-  Scripts scripts;
-  Robot robot;
-  Log log;
-  CommandQueue queue;
-  CommandSender sender{queue};
-  Snapshot snapshot;
-  std::unique_ptr<ScriptHost> host;
-};
-
 }  // namespace
 
 TEST_CASE("reloads are events of the run: at their time, for their behavior") {
@@ -41,7 +21,8 @@ TEST_CASE("reloads are events of the run: at their time, for their behavior") {
   theatre.scripts.write("behaviors/one.lua", says("one", "one"));
   theatre.scripts.write("behaviors/two.lua", says("two", "two"));
   const auto later = theatre.scripts.write("behaviors/later.lua", says("two", "new"));
-  theatre.open({.play = {{"behaviors/one.lua", 0}, {"behaviors/two.lua", 1}}, .reloads = {{20'000'000, "two", later}}});
+  const PlayOrder reload{.kind = PlayOrder::Kind::reload, .behavior = {"two", {}}, .file = later};
+  theatre.open({.play = {{"behaviors/one.lua", 0}, {"behaviors/two.lua", 1}}, .events = {{20'000'000, reload}}});
   theatre.tick(3);
   CHECK(theatre.log.joined() == "one\ntwo\none\ntwo\nreloaded behaviors/later.lua\none\nnew\n");
 }
@@ -67,6 +48,7 @@ TEST_CASE("after a script error the robot holds, then goes to the safe posture, 
       "local k = require 'kadans'\nreturn k.behavior 'bad' { controls = 'posture', k.state 'a' { enter = "
       "function() error 'x' end } }");
   theatre.open({.play = {{"behaviors/bad.lua", 0}}, .safe = {.pose = "stand", .after_s = 0.5, .time_s = 1.5}});
+  theatre.applying = false;
   theatre.tick(50);
   CHECK(theatre.sender.sent() == 0);
   CHECK_FALSE(theatre.host->in_safe_posture());

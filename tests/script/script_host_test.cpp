@@ -21,31 +21,6 @@ std::string lasting(const std::string& name, const std::string& outcome) {
                       outcome + "' }");
 }
 
-struct Theatre {
-  explicit Theatre(const std::vector<std::string>& texts, const std::vector<std::uint32_t>& lanes = {}) {
-    ScriptHost::Settings settings{.root = scripts.root};
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-      const std::string name = "behaviors/b" + std::to_string(i) + ".lua";
-      scripts.write(name, texts[i]);
-      settings.play.push_back({name, lanes.empty() ? 0 : lanes[i]});
-    }
-    host = std::make_unique<ScriptHost>(settings, robot.catalog, log);
-  }
-  void tick(int times) {
-    for (int i = 0; i < times; ++i) {
-      host->tick(snapshot, sender);
-      snapshot.time_ns += 10'000'000;
-    }
-  }
-  Scripts scripts;
-  Robot robot;
-  Log log;
-  CommandQueue queue;
-  CommandSender sender{queue};
-  Snapshot snapshot;
-  std::unique_ptr<ScriptHost> host;
-};
-
 }  // namespace
 
 TEST_CASE("a list is played one behavior after the other") {
@@ -82,6 +57,7 @@ TEST_CASE("a behavior that loops is stopped and reported, the others do not noti
 TEST_CASE("each behavior's commands are a transaction of their own") {
   const std::string moves = behavior("good", "k.state 'a' { enter = function(m) m.posture:set_gains('stiff') end }");
   Theatre theatre({moves, moves}, {0, 1});
+  theatre.applying = false;
   theatre.tick(1);
   CHECK(theatre.sender.last_sequence() == 2);
   CHECK(theatre.queue.peek(0).count == 12);
@@ -111,7 +87,8 @@ TEST_CASE("an error is reported once, with its line and the stack") {
 TEST_CASE("stop leaves what plays") {
   Theatre theatre({behavior("one", "exit = function(m) m.posture:set_gains('soft') end, k.state 'a' {}")});
   theatre.tick(2);
-  theatre.host->stop(theatre.snapshot, theatre.sender);
+  theatre.host->order({.kind = PlayOrder::Kind::stop});
+  theatre.tick(1);
   CHECK(theatre.sender.sent() == 12);
   CHECK(theatre.host->finished());
 }

@@ -7,18 +7,13 @@
 #include <vector>
 
 #include "kadans/config/fields.h"
+#include "kadans/config/play_item.h"
 #include "kadans/config/scenario_check.h"
+#include "kadans/config/scenario_event.h"
 
 namespace kadans {
 
 enum class PlantKind : std::uint8_t { bullet, ideal };
-
-// A behavior goes on with the text of another file, as if somebody had saved it at this time.
-struct ScenarioReload {
-  double at_s = 0;
-  PlacedName behavior;  // its name
-  PlacedName file;      // resolved
-};
 
 struct ScenarioConfig {
   std::string file;
@@ -28,10 +23,13 @@ struct ScenarioConfig {
   PlantKind plant = PlantKind::bullet;
   double duration_s = 0;
   std::uint64_t seed = 1;
-  std::vector<PlacedName> behaviors;  // paths, resolved; played one after the other
-  std::vector<ScenarioReload> reloads;
+  std::vector<PlayItem> behaviors;
+  std::vector<ScenarioEvent> events;
   std::vector<ScenarioCheck> checks;
 };
+
+// Where the names in its lists are looked for.
+PlayFolders folders_of(const ScenarioConfig& scenario);
 
 // Throws InputError with everything that is wrong. The files that it names are there, but not yet read; whether the
 // signals exist is for whoever has the table: refuse_unknown(file, {check.signal, check.signal_place}, "signal", ...).

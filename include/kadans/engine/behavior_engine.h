@@ -22,6 +22,8 @@ class BehaviorEngine {
 
   std::uint64_t ticks() const noexcept { return tick_; }
   const CommandSender& commands() const noexcept { return commands_; }
+  // Behavior thread, between ticks: for who commands besides the host, a console.
+  CommandSender& sender() noexcept { return commands_; }
 
  private:
   ControlSets& sets_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "kadans/signal/command.h"
 
@@ -21,6 +22,8 @@ class CommandSender {
   // The number of the transaction, from 1; 0 when it was refused; the last number again when nothing was added.
   std::uint32_t commit() noexcept;
   void discard() noexcept;
+  // What the last commit() sent; nothing when it sent nothing. Until the next add().
+  std::span<const Command> committed() const noexcept { return {batch_.data() + 1, committed_}; }
 
   std::uint32_t last_sequence() const noexcept { return sequence_; }
   std::uint64_t sent() const noexcept { return sent_; }        // commands, headers not counted
@@ -30,6 +33,7 @@ class CommandSender {
   CommandQueue& queue_;
   std::array<Command, max_transaction> batch_{};
   std::size_t size_ = 1;  // batch_[0] is the header
+  std::size_t committed_ = 0;
   std::int64_t time_ns_ = 0;
   std::uint32_t sequence_ = 0;
   std::uint64_t sent_ = 0, refused_ = 0;

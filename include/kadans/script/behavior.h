@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "kadans/config/play_item.h"
 #include "kadans/control/catalog.h"
 #include "kadans/engine/behavior_host.h"
 #include "kadans/script/behavior_status.h"
@@ -38,6 +39,8 @@ class Behavior {
     std::uint64_t seed = 1;
     ScriptLimits limits{};
     std::vector<std::string> feet{"left", "right"};  // names of the feet in the snapshot's order
+    std::vector<PlayArgument> arguments{};           // values of its `args` or of its parameters
+    std::string source{};                            // where the arguments were written
   };
   // The catalog and the log must outlive the behavior. Throws InputError.
   Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log);
@@ -54,6 +57,9 @@ class Behavior {
   enum class Reload : std::uint8_t { unchanged, taken, refused };
   Reload reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file = {}) noexcept;
   std::vector<std::filesystem::path> files() const;
+  // Behavior thread, between ticks. The clock of the chart, that `after`, m.time_s and motions go by, is from now on so
+  // far behind the engine's.
+  void hold_clock(std::int64_t held_ns) noexcept;
 
   // False: unknown to this behavior, or its queue is full.
   [[nodiscard]] bool post(const std::string& event) noexcept;
@@ -82,6 +88,7 @@ class Behavior {
   bool take_back(const Snapshot& snapshot, CommandSender& commands) noexcept;
   void swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, CommandSender& commands) noexcept;
   Reload refuse(std::int64_t time_ns, const std::string& why) noexcept;
+  std::int64_t clock_ns(const Snapshot& snapshot) const noexcept;
   void forget_past(std::int64_t now_ns) noexcept;
   void publish_status() noexcept;
 

@@ -1,8 +1,9 @@
-// Plays behaviors. Each lane plays a list, one behavior after the other, as long as they end with "done"; several lanes
-// play at the same time, in their order within a tick. Every behavior has a Lua state of its own, so one that fails
-// stops its lane and nothing else; what it moved goes to the safe posture.
+// Plays behaviors: a list (play_list.h) that the supervisor can lengthen, replace, pause and stop. Every behavior has a
+// Lua state of its own, so one that fails stops its lane and nothing else; what it moved goes to the safe posture.
 //
-// Files are read again between ticks: at times given beforehand, so that a run repeats, or when somebody saved them.
+// Orders take effect at the beginning of a tick: those given beforehand, with a time, so that a run repeats, and those
+// that somebody gives meanwhile. What an order names is loaded before it counts, so a wrong list is refused whole and
+// nothing moves. Files are read again when an order says so, or when somebody saved them.
 #pragma once
 
 #include <cstdint>
@@ -11,74 +12,90 @@
 #include <string>
 #include <vector>
 
+#include "kadans/config/play_order.h"
 #include "kadans/engine/behavior_host.h"
-#include "kadans/script/behavior.h"
 #include "kadans/script/file_watch.h"
+#include "kadans/script/pause.h"
+#include "kadans/script/play_list.h"
 #include "kadans/script/safe_posture.h"
 
 namespace kadans {
 
-struct ScriptPlay {
-  std::filesystem::path file;
-  std::uint32_t lane = 0;
-};
-
-// At this time a behavior goes on with the text of another file.
-struct ScriptReload {
-  std::int64_t at_ns = 0;
-  std::string behavior;  // its name
-  std::filesystem::path file;
-};
-
 class ScriptHost final : public BehaviorHost {
  public:
+  struct Event {
+    std::int64_t at_ns = 0;
+    PlayOrder order;
+  };
   struct Settings {
-    std::filesystem::path root;    // of the project
-    std::vector<ScriptPlay> play;  // in order
+    std::filesystem::path root;  // of the project
+    std::vector<PlayItem> play;  // files absolute, or from the root
     std::uint64_t seed = 1;
     ScriptLimits limits{};
     std::vector<std::string> feet{"left", "right"};
-    std::vector<ScriptReload> reloads{};  // in any order
+    std::vector<Event> events{};  // in any order
     SafePosture::Settings safe{};
   };
-  // Loads all behaviors; throws InputError with every file's problems. Catalog and log must outlive the host.
+  // Loads all behaviors, those of events too; throws InputError with every file's problems. Catalog and log must
+  // outlive the host.
   ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log);
   ~ScriptHost() override;
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
-  // Behavior thread: stops what plays; each leaves its states.
-  void stop(const Snapshot& snapshot, CommandSender& commands) noexcept;
+  // Behavior thread, between ticks: takes effect with the next. Throws InputError, and nothing changes, when something
+  // in it is wrong: a file, an argument, a behavior that does not play.
+  void order(const PlayOrder& order);
+  // Behavior thread, between ticks: what somebody else has just committed, so that a pause halts its motions too.
+  void note(const Snapshot& snapshot, const CommandSender& commands) noexcept { pause_.note(snapshot, commands); }
 
   // Before the loop. Reloads what somebody saves; throws std::runtime_error when nothing can be watched.
   void watch();
-  // Before the loop. Declares the signals behavior.<name>.*; a name that plays twice gets a number.
+  // Before the loop. Declares play.*, and behavior.<name>.* of all that was loaded; a name that plays twice gets a
+  // number.
   void declare_signals(SignalTable& signals) const;
-  bool in_safe_posture() const noexcept { return safe_.moved(); }  // sent there after a failure
 
-  bool finished() const noexcept;  // every lane is at its end, or stopped
-  // In the order of Settings::play.
-  std::size_t size() const noexcept { return behaviors_.size(); }
-  Behavior& behavior(std::size_t index) noexcept { return *behaviors_[index].behavior; }
-  const Behavior& behavior(std::size_t index) const noexcept { return *behaviors_[index].behavior; }
+  bool in_safe_posture() const noexcept { return safe_.moved(); }  // sent there after a failure
+  bool paused() const noexcept { return pause_.paused(); }
+  bool finished() const noexcept { return list_.over(); }  // every lane is at its end, or stopped
+  const PlayStatus& status() const noexcept { return list_.status(); }
+  std::vector<std::string> names() const;  // of what was loaded and is not forgotten
+
+  // What plays, waits or played, in order; what events bring is there from then on.
+  std::size_t size() const noexcept { return list_.entries().size(); }
+  Behavior& behavior(std::size_t index) noexcept { return *list_.entries()[index].behavior; }
+  const Behavior& behavior(std::size_t index) const noexcept { return *list_.entries()[index].behavior; }
+  bool over(std::size_t index) const noexcept { return list_.entries()[index].over; }
 
  private:
-  struct Played {
-    std::unique_ptr<Behavior> behavior;
-    std::uint32_t lane = 0;
-    bool over = false;
+  struct Due {  // an order with what it names, loaded
+    std::int64_t at_ns = 0;
+    PlayOrder order;
+    std::vector<PlayList::Entry> loaded{};
   };
-  void play(Played& played, const Snapshot& snapshot, CommandSender& commands) noexcept;
+  std::vector<PlayList::Entry> load(const std::vector<PlayItem>& list, bool lasting,
+                                    std::vector<InputProblem>& problems);
+
+  void step(PlayList::Entry& entry, const Snapshot& snapshot, CommandSender& commands) noexcept;
   void report_failure(const Behavior& behavior, std::int64_t time_ns) noexcept;
-  void close_lane(std::uint32_t lane) noexcept;
-  void reload(const Snapshot& snapshot, CommandSender& commands) noexcept;
-  void watch_folders();
   bool plays_with(std::uint32_t object) const noexcept;
 
+  // script_host_orders.cpp
+  void take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept;
+  void carry_out(Due& due, const Snapshot& snapshot, CommandSender& commands) noexcept;
+  void leave_all(const Snapshot& snapshot, CommandSender& commands) noexcept;
+  void begin(std::vector<PlayList::Entry>& entries);
+  void reload(const PlayOrder& order, const Snapshot& snapshot, CommandSender& commands) noexcept;
+  void reload_saved(const Snapshot& snapshot, CommandSender& commands) noexcept;
+  void watch_folders();
+
+  Settings settings_;
+  const Catalog& catalog_;
   BehaviorLog& log_;
-  std::vector<Played> behaviors_;
-  std::filesystem::path root_;
-  std::vector<ScriptReload> reloads_;  // by time
-  std::size_t reloads_done_ = 0;
+  PlayList list_;
+  Pause pause_;
+  std::vector<Due> events_;  // by time
+  std::size_t events_done_ = 0;
+  std::vector<Due> orders_;  // given since the last tick
   std::unique_ptr<FileWatch> watch_;
   SafePosture safe_;
 };

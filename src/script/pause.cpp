@@ -1,0 +1,67 @@
+#include "kadans/script/pause.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::int64_t patience_ns = 1'000'000'000;  // for a transaction that the control engine never takes
+
+}  // namespace
+
+void Pause::begin() noexcept {
+  if (phase_ == Phase::going) phase_ = Phase::resting;
+  if (phase_ == Phase::none || phase_ == Phase::sent) phase_ = Phase::coming;
+}
+
+void Pause::end() noexcept {
+  if (phase_ == Phase::coming) return run_on();
+  if (phase_ == Phase::resting) phase_ = Phase::going;
+}
+
+void Pause::run_on() noexcept {
+  phase_ = Phase::none;
+  standing_ = false;
+}
+
+bool Pause::holds(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  if (phase_ == Phase::none) return false;
+  if (!standing_) stands_ns_ = now_ns(snapshot);
+  standing_ = true;
+  held_ns_ = snapshot.time_ns - stands_ns_;
+  if (phase_ == Phase::coming && send_rest(snapshot, commands)) {
+    phase_ = Phase::resting;
+  } else if (phase_ == Phase::going && !motions_.any(stands_ns_)) {
+    run_on();
+  } else if (phase_ == Phase::going && send_on(snapshot, commands)) {
+    phase_ = Phase::sent;
+  } else if (phase_ == Phase::sent) {
+    const bool taken = snapshot.transactions_applied >= sequence_;
+    if (taken || snapshot.time_ns - sent_ns_ > patience_ns) run_on();
+  }
+  return phase_ != Phase::none;
+}
+
+bool Pause::send_rest(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  commands.begin(snapshot.time_ns);
+  const bool fits = motions_.rest(now_ns(snapshot), commands);
+  return commands.commit() != 0 || (fits && !motions_.any(now_ns(snapshot)));
+}
+
+bool Pause::send_on(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  commands.begin(snapshot.time_ns);
+  const bool fits = motions_.go_on(stands_ns_, commands);
+  sequence_ = commands.commit();
+  sent_ns_ = snapshot.time_ns;
+  return fits && sequence_ != 0;
+}
+
+void Pause::note(const Snapshot& snapshot, const CommandSender& commands) noexcept {
+  motions_.note(commands.committed(), now_ns(snapshot));
+}
+
+void Pause::finish(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  (void)send_rest(snapshot, commands);
+  motions_.forget();
+  run_on();
+}
+
+}  // namespace kadans

@@ -1,0 +1,89 @@
+// What the supervisor asks of what plays, and files that somebody saved: both between two ticks.
+#include <algorithm>
+
+#include "kadans/script/script_host.h"
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+
+void ScriptHost::order(const PlayOrder& order) {
+  std::vector<InputProblem> problems;
+  Due due{0, order, load(order.list, false, problems)};
+  if (!problems.empty()) throw InputError(problems);
+  const std::vector<std::string> known = names();
+  if (order.kind == PlayOrder::Kind::reload && std::ranges::find(known, order.behavior.name) == known.end())
+    throw InputError({.message = unknown_name("behavior", order.behavior.name, known)});
+  orders_.push_back(std::move(due));
+}
+
+void ScriptHost::take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  for (; events_done_ < events_.size() && events_[events_done_].at_ns <= snapshot.time_ns; ++events_done_) {
+    carry_out(events_[events_done_], snapshot, commands);
+  }
+  for (Due& due : orders_) carry_out(due, snapshot, commands);
+  orders_.clear();
+}
+
+void ScriptHost::carry_out(Due& due, const Snapshot& snapshot, CommandSender& commands) noexcept {
+  using Kind = PlayOrder::Kind;
+  const Kind kind = due.order.kind;
+  if (kind == Kind::reload) return reload(due.order, snapshot, commands);
+  std::string text = play_order_names[static_cast<std::size_t>(kind)];
+  for (const PlayList::Entry& entry : due.loaded) text += " " + entry.behavior->name();
+  log_.message(snapshot.time_ns, BehaviorLog::Severity::info, "supervisor", text);
+  if (kind == Kind::pause) pause_.begin();
+  if (kind == Kind::resume) pause_.end();
+  if (kind == Kind::stop || kind == Kind::replace) leave_all(snapshot, commands);
+  begin(due.loaded);
+}
+
+// Motions come to rest first, so that what an `exit` moves does move.
+void ScriptHost::leave_all(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  pause_.finish(snapshot, commands);
+  for (PlayList::Entry& entry : list_.entries()) {
+    if (entry.over) continue;
+    entry.behavior->hold_clock(pause_.held_ns());
+    entry.behavior->stop(snapshot, commands);
+    pause_.note(snapshot, commands);
+    if (entry.behavior->failed()) report_failure(*entry.behavior, snapshot.time_ns);
+  }
+  list_.end_all();
+}
+
+void ScriptHost::begin(std::vector<PlayList::Entry>& entries) {
+  if (entries.empty()) return;
+  list_.append(entries);
+  if (watch_ != nullptr) watch_folders();
+}
+
+void ScriptHost::reload(const PlayOrder& order, const Snapshot& snapshot, CommandSender& commands) noexcept {
+  for (PlayList::Entry& entry : list_.entries()) {
+    if (entry.over || entry.behavior->name() != order.behavior.name) continue;
+    entry.behavior->hold_clock(pause_.held_ns());
+    (void)entry.behavior->reload(snapshot, commands, order.file);
+  }
+}
+
+void ScriptHost::reload_saved(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  if (watch_ == nullptr || !watch_->poll()) return;
+  for (PlayList::Entry& entry : list_.entries()) {
+    if (entry.over) continue;
+    entry.behavior->hold_clock(pause_.held_ns());
+    (void)entry.behavior->reload(snapshot, commands);
+  }
+  watch_folders();  // of modules that are new
+}
+
+void ScriptHost::watch() {
+  watch_ = std::make_unique<FileWatch>();
+  watch_folders();
+}
+
+void ScriptHost::watch_folders() {
+  (void)watch_->add(settings_.root / "behaviors/lib");
+  for (const PlayList::Entry& entry : list_.entries()) {
+    for (const std::filesystem::path& file : entry.behavior->files()) (void)watch_->add(file.parent_path());
+  }
+}
+
+}  // namespace kadans
