@@ -185,7 +185,7 @@ TEST_CASE("a spline goes through the points that name the joint, and follow send
       "k.state 'b' { during = function(m) m.posture:follow({ l_knee = m.time_s }, { velocity_max_rad_s = 1, "
       "acceleration_max_rad_s2 = 5 }) end } }");
   lead(stage.robot);
-  stage.tick(5);
+  stage.tick();
   const auto knee = sent(stage, "posture.l_knee.position_rad"), hip = sent(stage, "posture.l_hip_yaw.position_rad");
   REQUIRE(knee.size() == 3);
   REQUIRE(hip.size() == 2);
