@@ -1,4 +1,5 @@
 // Mistakes in a script, wherever a behavior's code runs: guard, enter, during, run.
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -74,10 +75,7 @@ std::filesystem::path write_behavior(const std::string& text) {
 }
 
 bool said(const RunLog& log, const std::string& what) {
-  for (const LogLine& line : log.lines()) {
-    if (program::has(line.text, what)) return true;
-  }
-  return false;
+  return std::ranges::any_of(log.lines(), [&](const LogLine& line) { return program::has(line.text, what); });
 }
 
 }  // namespace

@@ -163,7 +163,7 @@ TEST_CASE("A winding heats up as the torque squared, is derated when warm and ta
   CHECK(steady.count(FaultCode::motor_hot) == 0);
   Bench bench(hot);
   bench.ask(20);
-  bench.joints.joints[0].effort_Nm = 20;  // measured: goes on heating whatever is asked
+  bench.sensors.joints[0].motor_effort_Nm = 20;  // measured: goes on heating whatever is asked
   const int warm = bench.ticks_until(FaultCode::motor_warm, 10000);
   CHECK(warm == doctest::Approx(1e4 * std::log(380.0 / (380 - 70))).epsilon(0.01));
   CHECK(bench.status.level == SafetyLevel::limited);
@@ -176,6 +176,17 @@ TEST_CASE("A winding heats up as the torque squared, is derated when warm and ta
   CHECK(derated.safety->temperature_C(0) > 95);
   CHECK(derated.written.joints[0].effort_Nm < 25);
   CHECK(derated.written.joints[0].effort_Nm > 10);
+}
+
+TEST_CASE("What the ground loads onto a joint's spring, or a broken sensor says of it, does not heat the motor") {
+  Bench bench;
+  bench.ask(0);
+  for (const double spring_Nm : {1000.0, not_a_number}) {
+    bench.joints.joints[0].effort_Nm = spring_Nm;
+    bench.sensors.joints[0].motor_effort_Nm = spring_Nm > 0 ? 0 : spring_Nm;
+    bench.check_for(10);
+    CHECK(bench.safety->temperature_C(0) == 25);
+  }
 }
 
 TEST_CASE("In position and velocity mode the set-point stays within the limits") {

@@ -85,7 +85,8 @@ inline FaultMask JointWatch::look(const Input& in) noexcept {
   if (passive_) return found;  // nothing to take away
   found |= bit_if(!(in.state.position_rad >= lowest_rad_ && in.state.position_rad <= highest_rad_), position_limit) |
            bit_if(!(std::abs(in.state.velocity_rad_s) <= fastest_rad_s_), velocity_limit);
-  thermal_.step(std::max(std::abs(in.state.effort_Nm), std::abs(in.written_Nm)), in.dt_s);
+  // By the motor's own torque: what the ground loads onto a spring heats nothing.
+  thermal_.step(std::max(std::abs(in.written_Nm), std::abs(in.sample.motor_effort_Nm)), in.dt_s);
   derating_ = 1;
   return thermal_.temperature_C() <= warm_C_ ? found : found | derate();
 }
