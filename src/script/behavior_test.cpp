@@ -14,7 +14,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::uint64_t instructions_max = 2'000'000'000;  // of a file
+constexpr std::uint64_t instructions_max = 200'000'000;  // of a file
 constexpr std::size_t memory_max_bytes = std::size_t{64} << 20;
 constexpr std::size_t stages_max = 8;  // of one test
 

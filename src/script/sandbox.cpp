@@ -15,6 +15,7 @@ namespace {
 
 const char environment_key = 0;
 const char content_key = 0;
+const char filler_key = 0;
 
 // The message is made here, so that nothing that needs a destructor is alive when Lua raises.
 void describe_unknown(lua_State* state, const char* name, int content, const char* key, char* text,
@@ -227,6 +228,19 @@ void guard_string_metatable(lua_State* state, int strings) {
   lua_pop(state, 2);
 }
 
+// Content at the top that is filled when it is read is read.
+void fill(lua_State* state) {
+  if (lua_getmetatable(state, -1) == 0) return;
+  lua_pushlightuserdata(state, const_cast<char*>(&filler_key));
+  lua_rawget(state, -2);
+  if (lua_isfunction(state, -1)) {
+    lua_pushboolean(state, 1);
+    lua_call(state, 1, 0);
+    return lua_pop(state, 1);
+  }
+  lua_pop(state, 2);
+}
+
 }  // namespace
 
 int raise_unknown_field(lua_State* state, const char* name, int content, int key) {
@@ -270,9 +284,15 @@ bool push_content(lua_State* state, int index) {
   lua_pushlightuserdata(state, const_cast<char*>(&content_key));
   lua_rawget(state, -2);
   lua_remove(state, -2);
-  if (lua_istable(state, -1)) return true;
+  if (lua_istable(state, -1)) return fill(state), true;
   lua_pop(state, 1);
   return false;
+}
+
+void set_filler(lua_State* state) {
+  lua_pushlightuserdata(state, const_cast<char*>(&filler_key));
+  lua_insert(state, -2);
+  lua_rawset(state, -3);
 }
 
 void open_sandbox(lua_State* state) {

@@ -14,6 +14,9 @@ void push_environment(lua_State* state);
 void make_read_only(lua_State* state, const char* name, bool strict = true);
 // [-0 +1 when true] Pushes the content behind a read-only table.
 bool push_content(lua_State* state, int index);
+// [-1 +0] For the metatable of read-only content, below the top: the function at the top, called with one argument,
+// fills the content; push_content() calls it.
+void set_filler(lua_State* state);
 // Raises "NAME has no field 'x', did you mean 'y'?" for the key at `key`, from the names in the table at `content`.
 int raise_unknown_field(lua_State* state, const char* name, int content, int key);
 

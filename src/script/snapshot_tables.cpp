@@ -7,7 +7,7 @@
 namespace kadans {
 namespace {
 
-// The field names, interned once: their strings sit on the stack while the tables are refilled.
+// The field names, interned once.
 // NOLINTBEGIN(readability-identifier-naming): they carry their units as the fields do
 enum Key : int {
   position_rad = 1,
@@ -55,35 +55,96 @@ constexpr const char* key_names[] = {"",
                                      "time_s",
                                      "tick"};
 
-void put(lua_State* state, int table, int key, double value) {
-  lua_pushvalue(state, key);
+// What `keys` holds at this number becomes a field of the table.
+void put(lua_State* state, int table, int keys, Key key, double value) {
+  lua_rawgeti(state, keys, key);
   lua_pushnumber(state, value);
   lua_rawset(state, table);
 }
 
-// [-0 +1] A table with these fields, numbers all.
-void push_fields(lua_State* state, std::initializer_list<Key> fields) {
-  lua_newtable(state);
-  for (const Key key : fields) {
-    lua_pushnumber(state, 0);
-    lua_setfield(state, -2, key_names[key]);
-  }
-}
-
-// The table at the top becomes field `name` of the table below it, read-only. Returns a reference to its content.
-int attach(lua_State* state, const char* name, const char* shown) {
-  lua_pushvalue(state, -1);
-  const int content = luaL_ref(state, LUA_REGISTRYINDEX);
-  make_read_only(state, shown);
-  lua_setfield(state, -2, name);
-  return content;
+// first_read(content, key): a field that is not there, for nobody read this part yet, or at all. Upvalues: what
+// messages call it, its content, the tables, the part's number.
+int first_read(lua_State* state) {
+  auto& tables = *static_cast<SnapshotTables*>(lua_touserdata(state, lua_upvalueindex(3)));
+  tables.read_first(state, static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(4))));
+  if (lua_gettop(state) < 2) return 0;  // called to fill
+  lua_pushvalue(state, 2);
+  lua_rawget(state, lua_upvalueindex(2));
+  if (!lua_isnil(state, -1)) return 1;
+  return raise_unknown_field(state, lua_tostring(state, lua_upvalueindex(1)), lua_upvalueindex(2), 2);
 }
 
 }  // namespace
 
-int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet) {
-  joints_ = model.joints.size();
-  feet_ = std::min(feet.size(), max_feet);
+// [-0 +1] An empty table, content of a part.
+void SnapshotTables::push_part(lua_State* state, Kind kind, std::size_t index) {
+  lua_createtable(state, 0, kind == Kind::joint ? 3 : 8);
+  lua_pushvalue(state, -1);
+  parts_.push_back({kind, static_cast<std::uint32_t>(index), luaL_ref(state, LUA_REGISTRYINDEX)});
+}
+
+// The content of part `number`, at the top, becomes read-only; it is filled when something reads it.
+void SnapshotTables::finish_part(lua_State* state, std::size_t number, const char* shown) {
+  const int content = lua_gettop(state);
+  lua_pushvalue(state, content);
+  make_read_only(state, shown);
+  if (on_demand_) {
+    lua_getmetatable(state, content);
+    lua_pushstring(state, shown);
+    lua_pushvalue(state, content);
+    lua_pushlightuserdata(state, this);
+    lua_pushinteger(state, static_cast<lua_Integer>(number));
+    lua_pushcclosure(state, first_read, 4);
+    lua_pushvalue(state, -1);
+    lua_setfield(state, -3, "__index");
+    set_filler(state);
+    lua_pop(state, 1);
+  }
+  lua_remove(state, content);
+}
+
+// [-0 +1]
+void SnapshotTables::push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown) {
+  push_part(state, kind, index);
+  finish_part(state, parts_.size() - 1, shown);
+}
+
+int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet,
+                         bool on_demand) {
+  on_demand_ = on_demand;
+  push_names(state);
+  push_part(state, Kind::root, 0);
+  lua_newtable(state);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    push_whole_part(state, Kind::joint, i, "a joint");
+    lua_setfield(state, -2, model.joints[i].name.c_str());
+  }
+  make_read_only(state, "s.joints");
+  lua_setfield(state, -2, "joints");
+  push_part(state, Kind::base, 0);
+  const std::size_t base = parts_.size() - 1;
+  push_whole_part(state, Kind::rate, 0, "s.base.angular_velocity_rad_s");
+  lua_setfield(state, -2, "angular_velocity_rad_s");
+  finish_part(state, base, "s.base");
+  lua_setfield(state, -2, "base");
+  lua_newtable(state);
+  for (std::size_t i = 0; i < std::min(feet.size(), max_feet); ++i) {
+    push_whole_part(state, Kind::foot, i, "a foot");
+    lua_setfield(state, -2, feet[i].c_str());
+  }
+  make_read_only(state, "s.feet");
+  lua_setfield(state, -2, "feet");
+  push_whole_part(state, Kind::support, 0, "s.support");
+  lua_setfield(state, -2, "support");
+  push_whole_part(state, Kind::safety, 0, "s.safety");
+  lua_setfield(state, -2, "safety");
+  finish_part(state, 0, "s");
+  read_.reserve(parts_.size());
+  for (std::size_t i = 0; !on_demand && i < parts_.size(); ++i) read_first(state, i);
+  return luaL_ref(state, LUA_REGISTRYINDEX);
+}
+
+void SnapshotTables::push_names(lua_State* state) {
   lua_createtable(state, key_count, 0);
   for (int key = 1; key < key_count; ++key) {
     lua_pushstring(state, key_names[key]);
@@ -96,106 +157,97 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
     lua_rawseti(state, -2, i + 1);
   }
   levels_ = luaL_ref(state, LUA_REGISTRYINDEX);
-
-  push_fields(state, {time_s, tick});
-  const int root = lua_gettop(state);
-  lua_newtable(state);  // joints
-  lua_newtable(state);
-  for (std::size_t i = 0; i < joints_; ++i) {
-    push_fields(state, {position_rad, velocity_rad_s, effort_Nm});
-    lua_pushvalue(state, -1);
-    lua_rawseti(state, -3, static_cast<int>(i + 1));
-    make_read_only(state, "a joint");
-    lua_setfield(state, -3, model.joints[i].name.c_str());
-  }
-  joint_tables_ = luaL_ref(state, LUA_REGISTRYINDEX);
-  luaL_unref(state, LUA_REGISTRYINDEX, attach(state, "joints", "s.joints"));
-  push_fields(state, {roll_rad, pitch_rad, yaw_rad, tilt_rad, height_m});
-  push_fields(state, {axis_x, axis_y, axis_z});
-  rate_ = attach(state, "angular_velocity_rad_s", "s.base.angular_velocity_rad_s");
-  base_ = attach(state, "base", "s.base");
-  lua_newtable(state);  // feet
-  lua_newtable(state);
-  for (std::size_t i = 0; i < feet_; ++i) {
-    push_fields(state, {contact, force_N, cop_x_m, cop_y_m});
-    lua_pushvalue(state, -1);
-    lua_rawseti(state, -3, static_cast<int>(i + 1));
-    make_read_only(state, "a foot");
-    lua_setfield(state, -3, feet[i].c_str());
-  }
-  foot_tables_ = luaL_ref(state, LUA_REGISTRYINDEX);
-  luaL_unref(state, LUA_REGISTRYINDEX, attach(state, "feet", "s.feet"));
-  push_fields(state, {force_N, cop_x_m, cop_y_m});
-  support_ = attach(state, "support", "s.support");
-  push_fields(state, {level, faults, first_fault});
-  safety_ = attach(state, "safety", "s.safety");
-  lua_pushvalue(state, root);
-  root_ = luaL_ref(state, LUA_REGISTRYINDEX);
-  make_read_only(state, "s");
-  return luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
-void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) const {
-  const int bottom = lua_gettop(state);
-  luaL_checkstack(state, key_count + 8, "snapshot");
+void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
+  snapshot_ = &snapshot;
+  now_ns_ = now_ns;
+  if (read_.empty()) return;
+  luaL_checkstack(state, 8, "snapshot");
   lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
-  const auto key = [bottom](Key which) { return bottom + 1 + which; };
-  for (int i = 1; i < key_count; ++i) lua_rawgeti(state, bottom + 1, i);
-  const auto into = [state](int reference) {
-    lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
-    return lua_gettop(state);
-  };
+  for (const std::uint16_t number : read_) fill(state, parts_[number]);
+  lua_pop(state, 1);
+}
 
-  const int lists = into(joint_tables_);
-  for (std::size_t i = 0; i < joints_; ++i) {
-    lua_rawgeti(state, lists, static_cast<int>(i + 1));
-    put(state, lists + 1, key(position_rad), snapshot.joints.joints[i].position_rad);
-    put(state, lists + 1, key(velocity_rad_s), snapshot.joints.joints[i].velocity_rad_s);
-    put(state, lists + 1, key(effort_Nm), snapshot.joints.joints[i].effort_Nm);
-    lua_settop(state, lists);
-  }
-  const BaseStatus& base = snapshot.status.base;
-  const int body = into(base_);
-  put(state, body, key(roll_rad), base.roll_rad);
-  put(state, body, key(pitch_rad), base.pitch_rad);
-  put(state, body, key(yaw_rad), base.yaw_rad);
-  put(state, body, key(tilt_rad), base.tilt_rad);
-  put(state, body, key(height_m), base.height_m);
-  const int rate = into(rate_);
-  put(state, rate, key(axis_x), base.angular_velocity_rad_s[0]);
-  put(state, rate, key(axis_y), base.angular_velocity_rad_s[1]);
-  put(state, rate, key(axis_z), base.angular_velocity_rad_s[2]);
-  lua_settop(state, lists - 1);
+void SnapshotTables::read_first(lua_State* state, std::size_t number) {
+  Part& part = parts_[number];
+  if (part.read) return;
+  luaL_checkstack(state, 8, "snapshot");
+  lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
+  fill(state, part);
+  lua_pop(state, 1);
+  part.read = true;
+  read_.push_back(static_cast<std::uint16_t>(number));
+}
 
-  const int soles = into(foot_tables_);
-  for (std::size_t i = 0; i < feet_; ++i) {
-    const FootStatus& foot = snapshot.status.feet[i];
-    lua_rawgeti(state, soles, static_cast<int>(i + 1));
-    lua_pushvalue(state, key(contact));
-    lua_pushboolean(state, foot.contact ? 1 : 0);
-    lua_rawset(state, soles + 1);
-    put(state, soles + 1, key(force_N), foot.force_N);
-    put(state, soles + 1, key(cop_x_m), foot.cop_x_m);
-    put(state, soles + 1, key(cop_y_m), foot.cop_y_m);
-    lua_settop(state, soles);
+// The names are at the top.
+void SnapshotTables::fill(lua_State* state, const Part& part) const {
+  const int keys = lua_gettop(state), table = keys + 1;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
+  const auto set = [=](Key key, double value) { put(state, table, keys, key, value); };
+  switch (part.kind) {
+    case Kind::joint: {
+      const JointState& joint = snapshot_->joints.joints[part.index];
+      set(position_rad, joint.position_rad);
+      set(velocity_rad_s, joint.velocity_rad_s);
+      set(effort_Nm, joint.effort_Nm);
+      break;
+    }
+    case Kind::base: {
+      const BaseStatus& base = snapshot_->status.base;
+      set(roll_rad, base.roll_rad);
+      set(pitch_rad, base.pitch_rad);
+      set(yaw_rad, base.yaw_rad);
+      set(tilt_rad, base.tilt_rad);
+      set(height_m, base.height_m);
+      break;
+    }
+    case Kind::rate:
+      for (int i = 0; i < 3; ++i) {
+        set(static_cast<Key>(axis_x + i), snapshot_->status.base.angular_velocity_rad_s[i]);
+      }
+      break;
+    case Kind::foot:
+      fill_foot(state, keys, snapshot_->status.feet[part.index]);
+      break;
+    case Kind::support: {
+      const SupportStatus& ground = snapshot_->status.support;
+      set(force_N, ground.force_N);
+      set(cop_x_m, ground.cop_x_m);
+      set(cop_y_m, ground.cop_y_m);
+      break;
+    }
+    case Kind::safety:
+      fill_safety(state, keys, snapshot_->status.safety);
+      break;
+    case Kind::root:
+      set(time_s, static_cast<double>(now_ns_) / 1e9);
+      set(tick, static_cast<double>(snapshot_->tick));
+      break;
   }
-  const SupportStatus& ground = snapshot.status.support;
-  const int support = into(support_);
-  put(state, support, key(force_N), ground.force_N);
-  put(state, support, key(cop_x_m), ground.cop_x_m);
-  put(state, support, key(cop_y_m), ground.cop_y_m);
-  const SafetyStatus& status = snapshot.status.safety;
-  const int safety = into(safety_);
-  const int levels = into(levels_);
-  lua_pushvalue(state, key(level));
-  lua_rawgeti(state, levels, static_cast<int>(status.level) + 1);
-  lua_rawset(state, safety);
-  put(state, safety, key(faults), status.fault_count);
-  put(state, safety, key(first_fault), static_cast<double>(status.first_fault.code));
-  const int root = into(root_);
-  put(state, root, key(time_s), static_cast<double>(now_ns) / 1e9);
-  put(state, root, key(tick), static_cast<double>(snapshot.tick));
-  lua_settop(state, bottom);
+  lua_settop(state, keys);
+}
+
+// The content is at the top.
+void SnapshotTables::fill_foot(lua_State* state, int keys, const FootStatus& foot) const {
+  const int table = lua_gettop(state);
+  lua_rawgeti(state, keys, contact);
+  lua_pushboolean(state, foot.contact ? 1 : 0);
+  lua_rawset(state, table);
+  put(state, table, keys, force_N, foot.force_N);
+  put(state, table, keys, cop_x_m, foot.cop_x_m);
+  put(state, table, keys, cop_y_m, foot.cop_y_m);
+}
+
+void SnapshotTables::fill_safety(lua_State* state, int keys, const SafetyStatus& status) const {
+  const int table = lua_gettop(state);
+  lua_rawgeti(state, keys, level);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, levels_);
+  lua_rawgeti(state, -1, static_cast<int>(status.level) + 1);
+  lua_remove(state, -2);
+  lua_rawset(state, table);
+  put(state, table, keys, faults, status.fault_count);
+  put(state, table, keys, first_fault, static_cast<double>(status.first_fault.code));
 }
 
 }  // namespace kadans

@@ -1,4 +1,5 @@
-// `s`: the snapshot as scripts see it. The tables are made once; each tick only their numbers are replaced.
+// `s`: the snapshot as scripts see it. The tables are made once; each tick only their numbers are replaced, and only
+// those of parts (a joint, a foot, the base ...) that this script has ever read: the first read of a part fills it.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +15,38 @@ namespace kadans {
 
 class SnapshotTables {
  public:
-  // Makes the tables; `feet` names the feet in their order. Returns the registry reference of `s`. Raises.
-  int open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet);
-  // Raises only when out of memory; keys that exist are replaced without allocation.
-  void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) const;
+  // Makes the tables; `feet` names the feet in their order. On demand: this must outlive the state, and stay where it
+  // is; else every part is refilled always. Returns the registry reference of `s`. Raises.
+  int open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet, bool on_demand = false);
+  // The snapshot must live as long as functions of this tick run. Raises only when out of memory; fields that exist are
+  // replaced without allocation.
+  void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
+  // Fills a part from now on.
+  void read_first(lua_State* state, std::size_t part);
 
  private:
-  std::size_t joints_ = 0, feet_ = 0;
-  int keys_ = 0, joint_tables_ = 0, foot_tables_ = 0, root_ = 0, base_ = 0, rate_ = 0, support_ = 0, safety_ = 0,
-      levels_ = 0;
+  enum class Kind : std::uint8_t { root, joint, base, rate, foot, support, safety };
+  struct Part {
+    Kind kind;
+    std::uint32_t index;
+    int content;  // registry reference
+    bool read = false;
+  };
+  void push_names(lua_State* state);
+  void push_part(lua_State* state, Kind kind, std::size_t index);
+  void finish_part(lua_State* state, std::size_t number, const char* shown);
+  void push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown);
+  void fill(lua_State* state, const Part& part) const;
+  void fill_foot(lua_State* state, int keys, const FootStatus& foot) const;
+  void fill_safety(lua_State* state, int keys, const SafetyStatus& status) const;
+
+  bool on_demand_ = true;
+  std::vector<Part> parts_;
+  std::vector<std::uint16_t> read_;  // parts, in the order of their first read
+  Snapshot nothing_{};
+  const Snapshot* snapshot_ = &nothing_;
+  std::int64_t now_ns_ = 0;
+  int keys_ = 0, levels_ = 0;
 };
 
 }  // namespace kadans

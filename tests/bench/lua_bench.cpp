@@ -1,9 +1,12 @@
 // Behaviors: what a tick costs when it is hot, and cold, at a real 100 Hz with other work between.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <thread>
 
 #include "kadans/script/behavior.h"
+#include "kadans/signal/random.h"
 #include "report.h"
 
 namespace kadans::bench {
@@ -20,16 +23,16 @@ class Silence final : public BehaviorLog {
   std::string last;
 };
 
-// Ten states in a ring; `during` reads 14 joints; every state is left after `ticks` ticks of 10 ms.
-std::string ring(double after_s, bool reads) {
+// Ten states in a ring; `during` reads 14 joints; every state is left after so long, or as `by` says.
+std::string ring(double after_s, bool reads, const std::string& by = "") {
   std::string text = "local k = require 'kadans'\nlocal total = 0\n";
   text += "local function look(m, s)\n  local j, sum = s.joints, 0\n";
   for (int i = 0; i < 14; ++i) text += "  sum = sum + j.joint_" + std::to_string(i) + ".position_rad\n";
   text += "  total = sum\nend\nreturn k.behavior 'ring' { initial = 's0', " +
           std::string(reads ? "during = look,\n" : "\n");
   for (int i = 0; i < 10; ++i) {
-    text += "k.state 's" + std::to_string(i) + "' { { after = " + std::to_string(after_s) + ", to = 's" +
-            std::to_string((i + 1) % 10) + "' } },\n";
+    text += "k.state 's" + std::to_string(i) + "' { { " + (by.empty() ? "after = " + std::to_string(after_s) : by) +
+            ", to = 's" + std::to_string((i + 1) % 10) + "' } },\n";
   }
   return text + "}\n";
 }
@@ -64,22 +67,75 @@ struct Played {
   std::unique_ptr<Behavior> behavior;
 };
 
-// At a real 100 Hz: whatever the machine does meanwhile takes the caches. With `wiped`, 4 MB are written before each
-// tick.
-double cold_ns(Played& played, bool wiped) {
-  std::vector<double> each;
+// A chain through as many cache lines as a tick touches (269 of data, 211 of code, counted with valgrind's lackey),
+// over as many pages: what the machine asks for memory alone, however busy it is.
+class Walk {
+ public:
+  Walk() : lines_(pages * page_lines) {
+    std::vector<std::uint32_t> order(lines_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    RandomStream random(1, "bench.walk");
+    for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random.next() % (i + 1)]);
+    order.resize(steps);
+    for (std::size_t i = 0; i < steps; ++i) lines_[order[i]].next = order[(i + 1) % steps];
+    at_ = order[0];
+  }
+  void go() {
+    for (int i = 0; i < steps; ++i) at_ = lines_[at_].next;
+    keep(at_);
+  }
+
+ private:
+  static constexpr int steps = 480, pages = 68, page_lines = 64;
+  struct alignas(64) Line {
+    std::uint32_t next = 0;
+  };
+  std::vector<Line> lines_;
+  std::uint32_t at_ = 0;
+};
+
+struct Cold {
+  std::vector<double> ticks_ns, walks_ns;
+};
+
+// At a real 100 Hz, ticks and walks in turn: whatever the machine does meanwhile takes the caches from both. With
+// `wiped`, 4 MB are written before each.
+Cold run_cold(Played& played, bool wiped) {
+  Cold cold;
+  Walk walk;
   std::vector<char> other(std::size_t{4} << 20);
   auto next = std::chrono::steady_clock::now();
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 600; ++i) {
     for (std::size_t at = 0; wiped && at < other.size(); at += 64) other[at] = static_cast<char>(other[at] + 1);
     keep(other);
     next += std::chrono::milliseconds(10);
     std::this_thread::sleep_until(next);
     const double began = now_ns();
-    played.tick();
-    each.push_back(now_ns() - began);
+    i % 2 == 0 ? played.tick() : walk.go();
+    (i % 2 == 0 ? cold.ticks_ns : cold.walks_ns).push_back(now_ns() - began);
   }
-  return median(std::move(each));
+  return cold;
+}
+
+void add_cold(Report& report, Played& played, bool wiped) {
+  const std::string key = wiped ? ".wiped" : ".cold", how = wiped ? ", 4 MB written before each" : ", at a real 100 Hz";
+  const Cold cold = run_cold(played, wiped);
+  const double tick_ns = median(cold.ticks_ns), walk_ns = median(cold.walks_ns);
+  report.add("behavior_tick_ns" + key, "the same, cold" + how, tick_ns, "ns");
+  report.add("behavior_tick_min_ns" + key, "  the fastest", *std::ranges::min_element(cold.ticks_ns), "ns");
+  report.add("memory_walk_ns" + key, "  a walk over as many cache lines, in turn with it", walk_ns, "ns");
+  report.add("behavior_tick_walks" + key, "  tick per walk", tick_ns / walk_ns, "");
+}
+
+// Median of a step of this chart with "next" sent before every tenth.
+double with_events_ns(Played& played) {
+  int ticks = 0;
+  return time_ns(
+      [&] {
+        if (++ticks % 10 == 0) (void)played.behavior->post("next");
+        played.tick();
+      },
+      100);
 }
 
 }  // namespace
@@ -89,13 +145,17 @@ void bench_behavior(Report& report) {
     Played played(ring(0.095, true));
     report.add("behavior_tick_ns.hot", "behavior tick: 10 states, 14 joint readings, hook on, hot",
                time_ns([&] { played.tick(); }, 100), "ns");
-    report.add("behavior_tick_ns.cold", "the same, cold at a real 100 Hz", cold_ns(played, false), "ns");
-    report.add("behavior_tick_ns.wiped", "the same, 4 MB written before each", cold_ns(played, true), "ns");
+    add_cold(report, played, false);
+    add_cold(report, played, true);
   }
   Played slow(ring(1e6, false)), every(ring(0.095, false));
   report.add("chart_step_ns.still", "chart of 10 states, nothing to do", time_ns([&] { slow.tick(); }, 100), "ns");
   report.add("chart_step_ns.average", "the same with a transition every 10 ticks", time_ns([&] { every.tick(); }, 100),
              "ns");
+  Played sent(ring(0, false, "on = 'next'"));
+  report.add("chart_step_ns.event", "the same chart, a transition by an event every 10 ticks", with_events_ns(sent),
+             "ns");
+  bench_rfsm(report);
 }
 
 }  // namespace kadans::bench

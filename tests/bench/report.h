@@ -65,6 +65,7 @@ void bench_exchange(Report& report);
 void bench_objects(Report& report);
 void bench_record(Report& report);
 void bench_simulation(Report& report);
+void bench_rfsm(Report& report);  // part of bench_behavior; nothing without KADANS_RFSM
 void bench_switch(Report& report);
 
 }  // namespace kadans::bench

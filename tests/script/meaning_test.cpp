@@ -189,6 +189,20 @@ TEST_CASE("every function of a tick sees the same snapshot, and the tick after i
         "during 20 0.02 run 20 0.02 ");
 }
 
+TEST_CASE("a part of the snapshot that is read late, or was kept from earlier, shows the numbers of the present tick") {
+  Stage stage(head + R"(local kept
+    return k.behavior 't' { k.state 'a' { enter = function(m, s) kept = s.joints end, during = function(m, s)
+      if s.tick >= 20 then print(kept.l_knee.position_rad, s.joints.l_knee.velocity_rad_s, s.base.height_m) end
+      if s.tick == 40 then for key, value in pairs(s.support) do print(key, value) end end end } })");
+  for (int i = 0; i < 5; ++i) {
+    stage.snapshot.joints.joints[3] = {.position_rad = i / 8.0, .velocity_rad_s = -i / 8.0, .effort_Nm = 0};
+    stage.snapshot.status.base.height_m = i;
+    stage.snapshot.status.support.force_N = 10.0 * i;
+    stage.tick();
+  }
+  CHECK(stage.said() == "0.25 -0.25 2\n0.375 -0.375 3\n0.5 -0.5 4\ncop_x_m 0\ncop_y_m 0\nforce_N 40\n");
+}
+
 TEST_CASE("a guard is asked at most once in a tick, however many regions it concerns") {
   CHECK(
       played(
