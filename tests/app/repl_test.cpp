@@ -18,8 +18,8 @@ TEST_CASE("repl prints what lines give; time passes by :run only") {
   const auto project = project_copy("repl_values");
   const Outcome outcome = type(project,
                                "s.time_s\nbehaviors.squat.state\nsignals.plant.base.height_m > 0.8\n"
-                               ":run 1.5\nstring.format('%.2f', s.time_s)\nbehaviors.squat.state\n");
-  CHECK(outcome.out == "0\nsettle\ntrue\n1.50\nsquat\n");
+                               ":run 1.6\nstring.format('%.2f', s.time_s)\nbehaviors.squat.state\n");
+  CHECK(outcome.out == "0\nsettle\ntrue\n1.60\nsquat\n");
   CHECK(outcome.err.empty());
   CHECK(outcome.exit_code == 0);
 }
