@@ -1,6 +1,8 @@
 #include "snapshot_tables.h"
 
 #include <algorithm>
+#include <initializer_list>
+#include <utility>
 
 #include "sandbox.h"
 
@@ -184,45 +186,35 @@ void SnapshotTables::read_first(lua_State* state, std::size_t number) {
 void SnapshotTables::fill(lua_State* state, const Part& part) const {
   const int keys = lua_gettop(state), table = keys + 1;
   lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
-  const auto set = [=](Key key, double value) { put(state, table, keys, key, value); };
+  const auto set = [=](std::initializer_list<std::pair<Key, double>> fields) {
+    for (const auto& [key, value] : fields) put(state, table, keys, key, value);
+  };
+  const RobotStatus& status = snapshot_->status;
+  const BaseStatus& base = status.base;
+  const auto& rate = base.angular_velocity_rad_s;
+  const JointState& joint = snapshot_->joints.joints[part.kind == Kind::joint ? part.index : 0];
   switch (part.kind) {
-    case Kind::joint: {
-      const JointState& joint = snapshot_->joints.joints[part.index];
-      set(position_rad, joint.position_rad);
-      set(velocity_rad_s, joint.velocity_rad_s);
-      set(effort_Nm, joint.effort_Nm);
+    case Kind::joint:
+      set({{position_rad, joint.position_rad}, {velocity_rad_s, joint.velocity_rad_s}, {effort_Nm, joint.effort_Nm}});
       break;
-    }
-    case Kind::base: {
-      const BaseStatus& base = snapshot_->status.base;
-      set(roll_rad, base.roll_rad);
-      set(pitch_rad, base.pitch_rad);
-      set(yaw_rad, base.yaw_rad);
-      set(tilt_rad, base.tilt_rad);
-      set(height_m, base.height_m);
+    case Kind::base:
+      set({{roll_rad, base.roll_rad}, {pitch_rad, base.pitch_rad}, {yaw_rad, base.yaw_rad}});
+      set({{tilt_rad, base.tilt_rad}, {height_m, base.height_m}});
       break;
-    }
     case Kind::rate:
-      for (int i = 0; i < 3; ++i) {
-        set(static_cast<Key>(axis_x + i), snapshot_->status.base.angular_velocity_rad_s[i]);
-      }
+      set({{axis_x, rate[0]}, {axis_y, rate[1]}, {axis_z, rate[2]}});
       break;
     case Kind::foot:
-      fill_foot(state, keys, snapshot_->status.feet[part.index]);
+      fill_foot(state, keys, status.feet[part.index]);
       break;
-    case Kind::support: {
-      const SupportStatus& ground = snapshot_->status.support;
-      set(force_N, ground.force_N);
-      set(cop_x_m, ground.cop_x_m);
-      set(cop_y_m, ground.cop_y_m);
+    case Kind::support:
+      set({{force_N, status.support.force_N}, {cop_x_m, status.support.cop_x_m}, {cop_y_m, status.support.cop_y_m}});
       break;
-    }
     case Kind::safety:
-      fill_safety(state, keys, snapshot_->status.safety);
+      fill_safety(state, keys, status.safety);
       break;
     case Kind::root:
-      set(time_s, static_cast<double>(now_ns_) / 1e9);
-      set(tick, static_cast<double>(snapshot_->tick));
+      set({{time_s, static_cast<double>(now_ns_) / 1e9}, {tick, static_cast<double>(snapshot_->tick)}});
       break;
   }
   lua_settop(state, keys);
