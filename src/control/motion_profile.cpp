@@ -15,6 +15,7 @@ constexpr int search_steps_max = 60;
 constexpr double fastest_tolerance = 1e-8, slower_tolerance = 1e-6;
 
 State advance(const State& s, double jerk, double t) noexcept {
+  if (t == 0) return s;  // many phases are empty
   return {s.position + t * (s.velocity + t * (0.5 * s.acceleration + t * jerk / 6)),
           s.velocity + t * (s.acceleration + 0.5 * t * jerk), s.acceleration + t * jerk};
 }

@@ -112,3 +112,16 @@ TEST_CASE("While squatting, switching PID, computed torque, impedance every seco
   CHECK(switcher.lowest_m < 0.8);
   CHECK(switcher.worst_m < 0.015);
 }
+
+TEST_CASE("A switch is bounded as the configuration says, and foreseen with each joint's own filter") {
+  Robot robot = read_robot(KADANS_SOURCE_DIR "/config/tulip/robot.json");
+  robot.config.switching = {.step_max = 0.01, .fade_s = 0.5};
+  robot.config.estimate.velocity_cutoff_Hz = 100;
+  robot.config.estimate.joint_velocity_cutoff_Hz.at(3) = 50;
+  robot.config.estimate.sample_divisor.at(3) = 2;
+  const auto system = make_control_system(robot);
+  CHECK(system->catalog.switching.step_max == 0.01);
+  CHECK(system->catalog.switching.fade_s == 0.5);
+  CHECK(system->catalog.drives.at(0).velocity_delay_s == doctest::Approx(0.00225 + 0.0005).epsilon(1e-3));
+  CHECK(system->catalog.drives.at(3).velocity_delay_s == doctest::Approx(0.0045 + 0.001).epsilon(1e-3));
+}
