@@ -253,8 +253,7 @@ std::vector<std::string> console_names(Console::Parts& parts, const std::string&
   naming.begin = path.substr(from);
   (void)parts.lua.call(find_names, &naming, parts.settings.limits.tick_instructions, 0);
   std::ranges::sort(naming.found);
-  const auto doubled = std::ranges::unique(naming.found);
-  naming.found.erase(doubled.begin(), doubled.end());
+  naming.found.erase(std::unique(naming.found.begin(), naming.found.end()), naming.found.end());
   for (std::string& name : naming.found) name.insert(0, path, 0, from);
   return naming.found;
 }

@@ -49,8 +49,7 @@ TEST_CASE("A squat whose file is reloaded again and again with the same text is 
   ScenarioConfig scenario = squat_scenario();
   Played alone;
   play(scenario, 5, alone);
-  for (int i = 0; i < reloads; ++i)
-    scenario.events.push_back(reload(4.9 * i / reloads, squat));
+  for (int i = 0; i < reloads; ++i) scenario.events.push_back(reload(4.9 * i / reloads, squat));
   Played reloaded;
   play(scenario, 5, reloaded);
   CHECK(reloaded.result.state_hash == alone.result.state_hash);
