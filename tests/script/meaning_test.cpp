@@ -212,9 +212,9 @@ TEST_CASE("a guard is asked at most once in a tick, however many regions it conc
 }
 
 TEST_CASE("what a guard emits is seen in the next tick, and a chart never loops inside one") {
-  CHECK(played(R"(return k.behavior 't' { initial = 'a', k.state 'a' {
+  CHECK(played(R"(return k.behavior 't' { initial = 'a', k.state 'a' { enter = function(m) m:emit 'other' end,
       { when = function(s, m) m:emit 'go' return false end, to = 'a' },
-      { on = 'go', to = 'b' } }, k.state 'b' { enter = function(m, s) print(s.tick) end } })",
+      { on = 'go', to = 'b' } }, k.state 'b' { { on = 'other', to = 'a' }, enter = function(m, s) print(s.tick) end } })",
                5) == "20 ");
 }
 
