@@ -174,6 +174,7 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
     : scenario_(scenario), log_(log), robot_(read_robot(scenario.robot)) {
   control_system_ = make_control_system(robot_);
   Catalog& catalog = control_system_->catalog;
+  robot_.config.plant.world = world_for(scenario.world, robot_.config.model, scenario.file);
   try {
     plant_ = make_plant(scenario.plant, robot_.config, seed);
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
@@ -184,7 +185,8 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
     throw InputError({.file = robot_.config.file, .message = error.what()});
   }
   exchange_ = std::make_unique<EngineExchange>();
-  truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.config.plant), feet_settle_s);
+  truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.config.plant), feet_settle_s,
+                                          robot_.config.plant.world);
   host_ = make_host(scenario, robot_.config.safe, catalog, seed, log);
   upkeep_first_ = catalog.signals.size();
   host_->declare_signals(catalog.signals);

@@ -37,6 +37,10 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     event_fields(e, event, folders, problems);
     if (e.reading()) scenario.events.push_back(std::move(event));
   });
+  world_fields(f, scenario.world, problems);
+  if (scenario.plant == PlantKind::ideal && f.has("world")) {
+    problems.add(f.place("world"), "world: only the bullet plant has one, this scenario's plant is ideal");
+  }
   f.list("checks", {0, 1000}, "what must hold", [&](Fields& e) {
     ScenarioCheck check;
     check_fields(e, check, scenario.duration_s, scenario.checks, problems);

@@ -5,7 +5,8 @@
 #include <limits>
 
 namespace kadans {
-TruthSignals::TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s)
+TruthSignals::TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
+                           const WorldSettings& world)
     : plant_(plant), model_(*catalog.model), settle_s_(settle_s), kinematics_(*catalog.model) {
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const std::string& joint = model_.joints[i].name;
@@ -23,6 +24,9 @@ TruthSignals::TruthSignals(const ModelPlant& plant, Catalog& catalog, const std:
     feet_.push_back(std::move(state));
   }
   declare(catalog.signals, feet);
+  std::vector<std::size_t> links;
+  for (const FootState& foot : feet_) links.push_back(foot.link);
+  world_.emplace(catalog.signals, world, links);
 }
 
 void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
@@ -114,6 +118,7 @@ void TruthSignals::update(double time_s, std::span<const double> row) noexcept {
   state_.speed_m_s = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   update_limits();
   update_feet(time_s);
+  world_->update(truth);
   state_.reference_height_m = reference_height_m(row);
   state_.reference_error_m = state_.height_m - state_.reference_height_m;
 }

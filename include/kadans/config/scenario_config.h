@@ -10,6 +10,7 @@
 #include "kadans/config/play_item.h"
 #include "kadans/config/scenario_check.h"
 #include "kadans/config/scenario_event.h"
+#include "kadans/config/world_config.h"
 
 namespace kadans {
 
@@ -25,6 +26,7 @@ struct ScenarioConfig {
   std::uint64_t seed = 1;
   std::vector<PlayItem> behaviors;
   std::vector<ScenarioEvent> events;
+  WorldConfig world;
   std::vector<ScenarioCheck> checks;
 };
 

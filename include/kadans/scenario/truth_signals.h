@@ -7,16 +7,19 @@
 //   plant.limits.speed_share    the largest joint velocity, as a share of its limit
 //   reference.base.height_m     where the base would be if every joint stood at its set-point
 //   reference.base.error_m      plant.base.height_m minus that
+// and those of world_signals.h.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "kadans/control/catalog.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/plant/plant.h"
+#include "kadans/scenario/world_signals.h"
 
 namespace kadans {
 
@@ -28,7 +31,8 @@ class TruthSignals {
     std::string link;
     std::vector<Vec3> sole_m;  // in the link's frame
   };
-  TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s);
+  TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
+               const WorldSettings& world = {});
 
   // After each step of the plant. `row` holds the signals of the last control tick: the set-points are read from it.
   void update(double time_s, std::span<const double> row) noexcept;
@@ -58,6 +62,7 @@ class TruthSignals {
   Kinematics kinematics_;
   State state_;
   std::vector<FootState> feet_;
+  std::optional<WorldSignals> world_;
   struct Reference {  // a control object's set-point of a joint
     std::uint32_t object;
     SignalId signal;
