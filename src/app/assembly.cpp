@@ -2,72 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <stdexcept>
 
 #include "kadans/config/project_root.h"
-#include "kadans/control/plugin_library.h"
 #include "kadans/estimate/signals.h"
 #include "kadans/plant/bullet/bullet_plant.h"
 #include "kadans/plant/ideal_plant.h"
-#include "shipped_types.h"
+#include "kadans/scenario/planned_faults.h"
 
 namespace kadans {
 namespace {
 
 constexpr double feet_settle_s = 0.5;
-
-ObjectOptions options_of(const ObjectConfig& object) {
-  std::map<std::string, std::string> texts;
-  for (const TextEntry& entry : object.options) texts[entry.key] = entry.text;
-  return texts;
-}
-
-// Of an option's text, or of the object when it has none.
-TextPlace place_of(const ObjectConfig& object, const std::string& option) {
-  const auto given = std::ranges::find(object.options, option, &TextEntry::key);
-  return given == object.options.end() ? object.place : given->text_place;
-}
-
-void refuse_unasked(const RobotConfig& config, const ObjectConfig& object, const std::vector<std::string>& asked) {
-  for (const TextEntry& entry : object.options) {
-    if (std::ranges::find(asked, entry.key) != asked.end()) continue;
-    if (asked.empty()) {
-      refuse(config.file, entry.place, "control objects of type " + in_quotes(object.type.name) + " have no options");
-    }
-    refuse_unknown(config.file, {entry.key, entry.place}, "option", asked);
-  }
-}
-
-std::unique_ptr<ControlObject> make_object(const Robot& robot, const ObjectConfig& object) {
-  const RobotConfig& config = robot.config;
-  const MakeControlObject* make = robot.types.find(object.type.name);
-  if (make == nullptr) refuse_unknown(config.file, object.type, "type of control object", robot.types.names());
-  const ObjectSetup setup{config.model, object.joints, options_of(object)};
-  try {
-    std::unique_ptr<ControlObject> made = (*make)(setup);
-    refuse_unasked(config, object, setup.options.asked());
-    return made;
-  } catch (const OptionError& error) {
-    refuse(config.file, place_of(object, error.option()),
-           "control object " + in_quotes(object.name) + ": " + error.what());
-  } catch (const std::invalid_argument& error) {
-    refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
-  }
-}
-
-void declare(const RobotConfig& config, const ObjectConfig& object, ControlObject& made, Declaration& declaration) {
-  try {
-    made.declare(declaration);
-  } catch (const std::invalid_argument& error) {
-    refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
-  }
-}
-
-std::unique_ptr<ModelPlant> make_plant(PlantKind kind, const RobotConfig& config, std::uint64_t seed) {
-  if (kind == PlantKind::ideal) return std::make_unique<IdealPlant>(config.model, config.plant);
-  return std::make_unique<BulletPlant>(config.model, config.plant, seed);
-}
 
 std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
   std::vector<TruthSignals::Foot> feet;
@@ -102,81 +47,15 @@ std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Safe
   return host;
 }
 
-std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
-  const EstimateSettings& estimate = config.estimate;
-  std::vector<DriveLaw> laws;
-  for (std::size_t i = 0; i < config.model.joints.size(); ++i) {
-    const DriveSettings& drive = config.plant.drives[i];
-    const double own_Hz = i < estimate.joint_velocity_cutoff_Hz.size() ? estimate.joint_velocity_cutoff_Hz[i] : 0;
-    const std::uint32_t divisor = i < estimate.sample_divisor.size() ? estimate.sample_divisor[i] : 1;
-    laws.push_back(
-        {.effort_max_Nm = config.safety.joints[i].effort_max_Nm,
-         .position_gain_Nm_per_rad = drive.position_gain_Nm_per_rad,
-         .velocity_gain_Nms_per_rad = drive.velocity_gain_Nms_per_rad,
-         .velocity_delay_s = VelocityFilter::delay_s({.cutoff_Hz = own_Hz > 0 ? own_Hz : estimate.velocity_cutoff_Hz,
-                                                      .dt_s = divisor * config.engine.control_period_s})});
-  }
-  return laws;
-}
-
 }  // namespace
-
-Robot read_robot(const std::filesystem::path& file) {
-  Robot robot;
-  add_shipped_types(robot.types);
-  robot.types.add_registered();
-  for (const PluginFile& plugin : read_plugin_files(file)) {
-    try {
-      load_plugin(plugin.file, robot.types);
-    } catch (const std::invalid_argument& error) {
-      refuse(file.string(), plugin.place, error.what());
-    }
-  }
-  robot.config = read_robot_config(file, robot.types.names());
-  return robot;
-}
-
-std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
-  const RobotConfig& config = robot.config;
-  auto system = std::make_unique<ControlSystem>();
-  Catalog& catalog = system->catalog;
-  catalog.model = &config.model;
-  catalog.sets = config.sets;
-  catalog.poses = config.poses;
-  catalog.initial_set = config.initial_set;
-  catalog.drives = drive_laws(config);
-  catalog.switching = config.switching;
-  for (const ObjectConfig& object : config.objects) {
-    const auto index = static_cast<std::uint32_t>(system->objects.size());
-    system->objects.push_back(make_object(robot, object));
-    Declaration declaration(object.name, index, catalog.parameters, catalog.setpoints, catalog.signals);
-    const auto first_parameter = static_cast<ParameterId>(catalog.parameters.size());
-    const auto first_setpoint = static_cast<SetpointId>(catalog.setpoints.size());
-    declare(config, object, *system->objects.back(), declaration);
-    ObjectInfo info{.name = object.name,
-                    .type = object.type.name,
-                    .joints = object.joints,
-                    .parameters = {},
-                    .setpoints = {},
-                    .presets = {},
-                    .divisor = object.divisor,
-                    .high_level_divisor = object.high_level_divisor};
-    for (ParameterId id = first_parameter; id < catalog.parameters.size(); ++id) info.parameters.push_back(id);
-    for (SetpointId id = first_setpoint; id < catalog.setpoints.size(); ++id) info.setpoints.push_back(id);
-    catalog.objects.push_back(std::move(info));
-  }
-  apply_parameters(config, catalog);
-  for (const auto& object : system->objects) object->parameters_changed();
-  return system;
-}
 
 Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log)
     : scenario_(scenario), log_(log), robot_(read_robot(scenario.robot)) {
   control_system_ = make_control_system(robot_);
   Catalog& catalog = control_system_->catalog;
-  robot_.config.plant.world = world_for(scenario.world, robot_.config.model, scenario.file);
   try {
-    plant_ = make_plant(scenario.plant, robot_.config, seed);
+    vary(seed);
+    make_plant(seed);
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
     estimator_ =
         std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
@@ -185,28 +64,81 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
     throw InputError({.file = robot_.config.file, .message = error.what()});
   }
   exchange_ = std::make_unique<EngineExchange>();
-  truth_ = std::make_unique<TruthSignals>(*plant_, catalog, feet_of(robot_.config.plant), feet_settle_s,
-                                          robot_.config.plant.world);
+  truth_ =
+      std::make_unique<TruthSignals>(*plant_, catalog, feet_of(variant_.plant), feet_settle_s, variant_.plant.world);
   host_ = make_host(scenario, robot_.config.safe, catalog, seed, log);
   upkeep_first_ = catalog.signals.size();
   host_->declare_signals(catalog.signals);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
   control_ = std::make_unique<ControlEngine>(robot_.config.engine, *plant_, *estimator_, *safety_, *sets_, catalog,
                                              *exchange_);
-  behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host_.get());
+  faulty_host_ = make_faulty_host(scenario, *host_);
+  disturbances_ = std::make_unique<Disturbances>(scenario, robot_.config.model);
+  make_behaviors();
+}
+
+// The plant's robot: what the files say, then the scenario's start pose, then what it sets and draws.
+void Assembly::vary(std::uint64_t seed) {
+  const RobotConfig& config = robot_.config;
+  variant_.model = config.model;
+  variant_.plant = config.plant;
+  variant_.plant.world = world_for(scenario_.world, config.model, scenario_.file);
+  if (!scenario_.start_pose.name.empty()) start_in_pose();
+  Problems problems(scenario_.file);
+  Quantities quantities(variant_, control_system_->catalog);
+  for (const NumberEntry& entry : scenario_.set) quantities.set(entry, quantities_, problems);
+  for (const Variation& variation : scenario_.randomise) quantities.draw(variation, seed, quantities_, problems);
+  for (const NumberEntry& entry : scenario_.set_last) quantities.set(entry, quantities_, problems);
+  problems.throw_if_any();
+  for (const auto& object : control_system_->objects) object->parameters_changed();
+}
+
+void Assembly::start_in_pose() {
+  const RobotConfig& config = robot_.config;
+  const auto pose = std::ranges::find(config.poses, scenario_.start_pose.name, &PoseInfo::name);
+  if (pose == config.poses.end()) {
+    std::vector<std::string> names;
+    for (const PoseInfo& known : config.poses) names.push_back(known.name);
+    refuse_unknown(scenario_.file, scenario_.start_pose, "pose", names);
+  }
+  variant_.plant.position_rad.resize(config.model.joints.size());
+  for (const auto& [joint, position_rad] : pose->position_rad) variant_.plant.position_rad[joint] = position_rad;
+}
+
+void Assembly::make_plant(std::uint64_t seed) {
+  if (scenario_.plant == PlantKind::ideal) {
+    model_plant_ = std::make_unique<IdealPlant>(variant_.model, variant_.plant);
+  } else {
+    model_plant_ = std::make_unique<BulletPlant>(variant_.model, variant_.plant, seed);
+  }
+  faulty_plant_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed, *model_plant_);
+  plant_ = faulty_plant_ ? static_cast<ModelPlant*>(faulty_plant_.get()) : model_plant_.get();
+}
+
+void Assembly::make_behaviors() {
+  BehaviorHost* host = host_.get();
+  if (faulty_host_) host = faulty_host_.get();
+  if (filtered_) host = filtered_.get();
+  lockstep_.reset();
+  behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host);
   lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);
 }
 
 void Assembly::filter(SnapshotFilter& filter) {
-  filtered_ = std::make_unique<FilteredHost>(*host_, filter);
-  lockstep_.reset();
-  behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, filtered_.get());
-  lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);
+  filtered_ = std::make_unique<FilteredHost>(faulty_host_ ? static_cast<BehaviorHost&>(*faulty_host_) : *host_, filter);
+  make_behaviors();
 }
 
 RunParts Assembly::parts() noexcept {
-  return {*plant_,      *control_, *behaviors_, *lockstep_, *truth_, log_, static_cast<SignalId>(upkeep_first_),
-          upkeep_count_};
+  return {.plant = *plant_,
+          .control = *control_,
+          .behaviors = *behaviors_,
+          .lockstep = *lockstep_,
+          .truth = *truth_,
+          .log = log_,
+          .disturbances = disturbances_.get(),
+          .upkeep_first = static_cast<SignalId>(upkeep_first_),
+          .upkeep_count = upkeep_count_};
 }
 
 }  // namespace kadans

@@ -18,9 +18,24 @@ struct SimOptions {
   bool realtime = false;
   bool watch = false;
   std::string play;    // a list in place of the scenario's; "" = the scenario's
+  std::vector<std::string> set;  // "ground.friction=0.3"
   std::string record;  // "" = NAME.mcap in the working directory
 };
 int run_sim(const SimOptions& options);
+
+struct TestOptions {
+  std::vector<std::string> selectors;  // files, folders, tags, names
+  std::string folder;                  // where scenarios are looked for; "" = config/scenarios of the project
+  unsigned jobs = 0;                   // 0 = one a core
+  std::optional<std::uint32_t> repeat;
+  std::optional<std::uint64_t> seed;
+  bool fail_fast = false;
+  bool rerun_failed = false;
+  bool list = false;
+  bool json = false;
+  std::string junit;
+};
+int run_test(const TestOptions& options);
 
 struct CheckOptions {
   std::vector<std::string> files;

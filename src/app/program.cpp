@@ -23,6 +23,7 @@ constexpr const char* examples =
     "Examples:\n"
     "  kadans sim config/scenarios/squat.json             run a scenario, read what happened\n"
     "  kadans sim config/scenarios/squat.json --json      the same as one JSON object\n"
+    "  kadans test push --jobs 2                          run all scenarios tagged push, two at a time\n"
     "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
     "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
@@ -39,6 +40,8 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->check(CLI::Range(0.001, 1e6));
   sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
       ->type_name("LIST");
+  sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
+      ->type_name("NAME=NUMBER");
   CLI::Option* record =
       sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
   sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
@@ -46,6 +49,23 @@ void add_sim(CLI::App& app, SimOptions& options) {
   sim->add_flag("--watch", options.watch, "Reload behaviors when their files are saved")->needs(realtime);
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");
   sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
+}
+
+void add_test(CLI::App& app, TestOptions& options) {
+  CLI::App* test = app.add_subcommand("test", "Run scenarios side by side and say which failed, and how");
+  test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
+      ->type_name("PATH|TAG|NAME...");
+  test->add_option("--in", options.folder, "Folder of scenarios (default: config/scenarios)")->type_name("FOLDER");
+  test->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
+      ->check(CLI::Range(1, 1024));
+  test->add_option("--repeat", options.repeat, "Runs of each scenario, each with the next seed")
+      ->check(CLI::Range(1, 1'000'000));
+  test->add_option("--seed", options.seed, "First seed (default: each scenario's)")->type_name("N");
+  test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
+  test->add_flag("--rerun-failed", options.rerun_failed, "Only what failed the last time");
+  test->add_flag("--list", options.list, "Say what would run");
+  test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
+  test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
 }
 
 void add_check(CLI::App& app, CheckOptions& options) {
@@ -86,6 +106,8 @@ int run(int argc, char** argv) {
   SimOptions sim;
   CheckOptions check;
   add_sim(app, sim);
+  TestOptions test;
+  add_test(app, test);
   add_check(app, check);
   BehaviorOptions behavior;
   add_behavior(app, behavior);
@@ -106,6 +128,7 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "Run 'kadans --help' or 'kadans COMMAND --help'.\n");
     return exit_usage;
   }
+  if (app.got_subcommand("test")) return run_test(test);
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
   if (app.got_subcommand("repl")) return run_repl(repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);

@@ -116,6 +116,7 @@ class Repl {
 
   void step() {
     parts_.truth.update(time_s(), parts_.control.row());
+    if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.plant);
     parts_.lockstep.step();
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) {

@@ -1,3 +1,4 @@
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -20,13 +21,27 @@ constexpr const char* height_signal = "plant.base.height_m";
 std::string repeat_command(const ScenarioConfig& scenario, const SimOptions& options, std::uint64_t seed) {
   std::string command = "kadans sim " + scenario.file + " --seed " + std::to_string(seed);
   if (!options.play.empty()) command += " --play '" + options.play + "'";
+  for (const std::string& setting : options.set) command += " --set " + setting;
   if (options.duration_s) command += " --duration " + number_text(*options.duration_s);
   return command;
+}
+
+// "ground.friction=0.3"
+NumberEntry parse_setting(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  NumberEntry setting{.key = text.substr(0, equals)};
+  const char* const end = text.data() + text.size();
+  const char* const begin = equals == std::string::npos ? end : text.data() + equals + 1;
+  const auto [stop, error] = std::from_chars(begin, end, setting.value);
+  if (error != std::errc{} || stop != end)
+    throw InputError({.file = "--set", .message = "'" + text + "' must be NAME=NUMBER, such as ground.friction=0.3"});
+  return setting;
 }
 
 ScenarioConfig read_scenario(const SimOptions& options) {
   ScenarioConfig scenario = read_scenario_config(options.scenario);
   if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
+  for (const std::string& setting : options.set) scenario.set_last.push_back(parse_setting(setting));
   return scenario;
 }
 
@@ -84,6 +99,7 @@ class Sim {
     std::vector<RunObserver*> observers{&progress};
     TraceObserver height("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_);
     observers.push_back(&height);
+    observers.push_back(&evidence_);
     Pace pace;
     if (options_.realtime) observers.push_back(&pace);
     if (options_.watch) {
@@ -108,7 +124,7 @@ class Sim {
   // The file that is written, or "". A file that was asked for and cannot be written is an error; the usual one is not.
   std::string start_record() {
     if (options_.no_record) return {};
-    const std::string file = options_.record.empty() ? scenario_.name + ".mcap" : options_.record;
+    std::string file = options_.record.empty() ? scenario_.name + ".mcap" : options_.record;
     recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
     if (!recorder_->open(file)) {
       const std::string why = recorder_->error();
@@ -133,7 +149,12 @@ class Sim {
 
   void print(const RunResult& result, const ReportTrace& height, const std::string& record) const {
     if (options_.json) {
-      std::puts(json_report(result, log_, assembly_.robot().model, record).c_str());
+      const ReportContext context{.log = log_,
+                                  .model = assembly_.robot().model,
+                                  .quantities = assembly_.quantities(),
+                                  .evidence = evidence_.around(result.checks),
+                                  .record = record};
+      std::puts(json_report(result, context).c_str());
       return;
     }
     std::vector<ScenarioCheck> wanted;
@@ -160,6 +181,7 @@ class Sim {
   RunLog log_{&late_log_};
   Assembly assembly_;
   Checks checks_;
+  Evidence evidence_{checks_, assembly_.catalog().signals};
   std::unique_ptr<Recorder> recorder_;
 };
 

@@ -176,4 +176,28 @@ bool Fields::numbers(std::string_view name, std::span<double> values, NumberRang
   return all;
 }
 
+bool Fields::number_list(std::string_view name, std::vector<double>& values, CountRange count, NumberRange range,
+                         std::string_view doc, Need need) {
+  FieldInfo info = info_of(FieldInfo::Kind::list, name, doc, need);
+  info.count = count;
+  info.fields.push_back(number_info("", range, "", Need::optional));
+  const JsonValue* given = take(std::move(info), need);
+  if (given == nullptr) return false;
+  if (given->kind != Kind::array) {
+    wrong_type(*given, path(name), "an array of numbers", doc);
+    return false;
+  }
+  if (!(given->items.size() >= count.min && given->items.size() <= count.max)) {
+    problems_->add(given->place, path(name) + " " + count_text(given->items.size(), count) + with_doc(doc));
+    return false;
+  }
+  std::vector<double> read(given->items.size());
+  bool all = true;
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    all = read_number(given->items[i], path(name) + "[" + std::to_string(i) + "]", range, doc, read[i]) && all;
+  }
+  if (all) values = std::move(read);
+  return all;
+}
+
 }  // namespace kadans

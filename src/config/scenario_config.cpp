@@ -12,6 +12,29 @@ namespace {
 const std::array<std::string, 2> plant_names{"bullet", "ideal"};
 constexpr double duration_max_s = 1e6;
 
+// How it is run among others.
+void suite_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+  std::vector<PlacedName> tags;
+  f.strings("tags", tags, {0, 100}, "words by which kadans test finds it");
+  for (const PlacedName& tag : tags) {
+    if (tag.name.empty() || tag.name.find_first_of("/ ,*") != std::string::npos)
+      problems.add(tag.place,
+                   "tag " + in_quotes(tag.name) + " must be a word without blanks, commas, slashes and stars");
+    scenario.tags.push_back(tag.name);
+  }
+  f.integer("repeat", scenario.repeat, {1, 10'000}, "runs of it in kadans test, each with the next seed");
+  f.number("wall_limit_s", scenario.wall_limit_s, {0.1, 1e6, "s"}, "a run that takes longer is stopped and has failed");
+}
+
+// How this run's robot differs from the configured one.
+void variant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+  f.string("start_pose", scenario.start_pose.name, "the pose in which the robot starts, else its own");
+  scenario.start_pose.place = f.place("start_pose");
+  f.object("set", "quantities that differ from the robot's files, by patterns over their names",
+           [&](Fields& e) { e.number_entries(scenario.set, {}, "the quantity's value"); });
+  variation_fields(f, "randomise", scenario.randomise, problems);
+}
+
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   std::string schema;
   f.string("$schema", schema, "the schema of this file, for editors");
@@ -25,6 +48,8 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   f.number("duration_s", scenario.duration_s, {1e-3, duration_max_s, "s"}, "simulated time", Need::required);
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
             "where all random numbers of the run come from");
+  suite_fields(f, scenario, problems);
+  variant_fields(f, scenario, problems);
   std::vector<PlacedName> lists;
   f.strings("behaviors", lists, {0, 100}, "what to play, one after the other: files, or \"squat{depth_m=0.08}, wave\"");
   const PlayFolders folders = folders_of(scenario);
@@ -36,6 +61,16 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     ScenarioEvent event;
     event_fields(e, event, folders, problems);
     if (e.reading()) scenario.events.push_back(std::move(event));
+  });
+  f.list("pushes", {0, 1000}, "pushes on the robot", [&](Fields& e) {
+    ScenarioPush push;
+    push_fields(e, push, problems);
+    if (e.reading()) scenario.pushes.push_back(std::move(push));
+  });
+  f.list("faults", {0, 1000}, "what fails, each at its time", [&](Fields& e) {
+    ScenarioFault fault;
+    fault_fields(e, fault, problems);
+    if (e.reading()) scenario.faults.push_back(std::move(fault));
   });
   world_fields(f, scenario.world, problems);
   if (scenario.plant == PlantKind::ideal && f.has("world")) {

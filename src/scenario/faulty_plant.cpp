@@ -1,5 +1,7 @@
 #include "kadans/scenario/faulty_plant.h"
 
+#include <algorithm>
+
 namespace kadans {
 namespace {
 
@@ -29,6 +31,7 @@ void silence(const SensorFault& fault, const SensorFrame& from, SensorFrame& fra
 void FaultyPlant::read(SensorFrame& sensors) noexcept {
   const SensorFrame before = sensors;  // a silent sensor repeats what it said last, sequence number included
   plant_.read(sensors);
+  time_ns_ = sensors.time_ns;
   for (Planned& planned : faults_) {
     const SensorFault& fault = planned.fault;
     if (sensors.time_ns < fault.from_ns || sensors.time_ns >= fault.until_ns) continue;
@@ -63,6 +66,53 @@ void FaultyPlant::spoil(Planned& planned, SensorFrame& sensors) noexcept {
       value = std::numeric_limits<double>::quiet_NaN();
       break;
   }
+}
+
+void FaultyPlant::add(const ActuatorFault& fault) {
+  if (fault.kind == ActuatorFaultKind::late && written_.empty()) written_.resize(late_ticks_max + 1);
+  actuator_faults_.push_back({fault, {}});
+}
+
+void FaultyPlant::spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept {
+  const ActuatorFault& fault = planned.fault;
+  if (time_ns_ < fault.from_ns || time_ns_ >= fault.until_ns) {
+    planned.held = actuation;
+    return;
+  }
+  switch (fault.kind) {
+    case ActuatorFaultKind::dead:
+      actuation = {};
+      break;
+    case ActuatorFaultKind::weak:
+      actuation.effort_Nm *= fault.size;
+      break;
+    case ActuatorFaultKind::stuck:
+      actuation = planned.held;
+      break;
+    case ActuatorFaultKind::offset:
+      actuation.effort_Nm += fault.size;
+      break;
+    case ActuatorFaultKind::late: {
+      const auto ticks = static_cast<std::size_t>(std::clamp(fault.size, 0.0, double{late_ticks_max}));
+      actuation = written_[(newest_ + written_.size() - ticks) % written_.size()].joints[fault.joint];
+      break;
+    }
+  }
+}
+
+void FaultyPlant::write(const ActuationFrame& actuation) noexcept {
+  ActuationFrame spoiled = actuation;
+  if (!written_.empty()) {
+    newest_ = (newest_ + 1) % written_.size();
+    written_[newest_] = actuation;
+  }
+  for (PlannedActuator& planned : actuator_faults_) spoil(planned, spoiled.joints[planned.fault.joint]);
+  plant_.write(spoiled);
+}
+
+void FaultyPlant::hash(StateHash& hash) const noexcept {
+  plant_.hash(hash);
+  for (const PlannedActuator& planned : actuator_faults_) hash.add(planned.held.effort_Nm);
 }
 
 }  // namespace kadans

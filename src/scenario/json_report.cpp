@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -24,10 +25,30 @@ Json fault_json(const Fault& fault, const RobotModel& model) {
   return json;
 }
 
+// "2.34 s  squat: down -> up (arrived)"
+std::string transition_line(const Transition& transition) {
+  char time[32];
+  std::snprintf(time, sizeof time, "%7.2f s  ", 1e-9 * static_cast<double>(transition.time_ns));
+  return time + transition.behavior + ": " + transition.from + (transition.from.empty() ? "-> " : " -> ") +
+         transition.to + (transition.why.empty() ? "" : " (" + transition.why + ")");
+}
+
+Json evidence_json(const std::vector<EvidenceTrace>& traces) {
+  Json json = Json::array();
+  for (const EvidenceTrace& trace : traces) {
+    json.push_back({{"check", trace.check},
+                    {"signal", trace.signal},
+                    {"unit", trace.unit},
+                    {"from_s", trace.from_s},
+                    {"to_s", trace.to_s},
+                    {"values", trace.values}});
+  }
+  return json;
+}
+
 }  // namespace
 
-std::string json_report(const RunResult& result, const RunLog& log, const RobotModel& model,
-                        const std::string& record) {
+std::string json_report(const RunResult& result, const ReportContext& context) {
   Json json{{"scenario", result.scenario}, {"seed", result.seed}, {"passed", result.passed}};
   json["checks"] = Json::array();
   for (const CheckResult& check : result.checks) {
@@ -43,13 +64,23 @@ std::string json_report(const RunResult& result, const RunLog& log, const RobotM
   json["tick_ns"] = {{"median", result.tick.median_ns}, {"p99", result.tick.p99_ns}, {"max", result.tick.max_ns}};
   json["queue"] = {{"sent", result.commands_sent}, {"refused", result.commands_refused}};
   json["faults"] = Json::array();
-  for (const Fault& fault : result.faults) json["faults"].push_back(fault_json(fault, model));
+  for (const Fault& fault : result.faults) json["faults"].push_back(fault_json(fault, context.model));
   json["errors"] = Json::array();
   if (!result.error.empty()) json["errors"].push_back(result.error);
-  for (const LogLine& line : log.lines()) {
+  for (const LogLine& line : context.log.lines()) {
     if (line.severity == BehaviorLog::Severity::error) json["errors"].push_back(line.text);
   }
-  json["record"] = record;
+  json["record"] = context.record;
+  json["quantities"] = Json::object();
+  for (const QuantityValue& quantity : context.quantities) json["quantities"][quantity.name] = quantity.value;
+  if (!result.passed) {
+    constexpr std::ptrdiff_t last = 20;
+    const std::vector<Transition>& all = context.log.transitions();
+    json["transitions"] = Json::array();
+    const auto from = all.end() - std::min(last, static_cast<std::ptrdiff_t>(all.size()));
+    for (auto it = from; it != all.end(); ++it) json["transitions"].push_back(transition_line(*it));
+    json["evidence"] = evidence_json(context.evidence);
+  }
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -13,12 +13,11 @@ class Run {
       : parts_(parts), checks_(checks), observers_(observers) {}
 
   void go(double duration_s) {
-    const auto ticks = static_cast<std::uint64_t>(
-        std::llround(duration_s * 1e9 / static_cast<double>(parts_.lockstep.control_period_ns())));
+    const std::int64_t end_ns = std::llround(duration_s * 1e9);
     const WallClock wall;
     const std::int64_t began_ns = wall.now_ns();
     try {
-      while (parts_.control.ticks() < ticks && !stop_asked()) step();
+      while (parts_.lockstep.time_ns() < end_ns && !stop_asked()) step();
     } catch (const std::exception& error) {
       result_.error = error.what();
     }
@@ -49,9 +48,10 @@ class Run {
   }
 
   void step() {
-    const double time_s = 1e-9 * static_cast<double>(parts_.lockstep.time_ns());
-    parts_.truth.update(time_s, parts_.control.row());
+    parts_.truth.update(1e-9 * static_cast<double>(parts_.lockstep.time_ns()), parts_.control.row());
+    if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.plant);
     parts_.lockstep.step();
+    const double time_s = 1e-9 * static_cast<double>(parts_.control.state().time_ns);
     const std::span<const double> row = parts_.control.row();
     hash_.add(row.first(parts_.upkeep_first));
     hash_.add(row.subspan(parts_.upkeep_first + parts_.upkeep_count));

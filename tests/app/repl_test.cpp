@@ -14,7 +14,7 @@ Outcome type(const std::filesystem::path& project, const std::string& lines, con
 
 }  // namespace
 
-TEST_CASE("repl prints what lines give; time passes by :run only") {
+TEST_CASE("repl prints what lines give, time passes by :run only") {
   const auto project = project_copy("repl_values");
   const Outcome outcome = type(project,
                                "s.time_s\nbehaviors.squat.state\nsignals.plant.base.height_m > 0.8\n"
@@ -48,7 +48,7 @@ TEST_CASE("repl refuses to move the robot before :write and moves it after") {
   CHECK(has(moved.out, "true\n"));
 }
 
-TEST_CASE("repl plays lists, pauses and resumes; a wrong list changes nothing") {
+TEST_CASE("repl plays lists, pauses and resumes, a wrong list changes nothing") {
   const auto project = project_copy("repl_play");
   const Outcome outcome =
       type(project,

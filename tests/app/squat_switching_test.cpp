@@ -26,8 +26,9 @@ std::filesystem::path robot_with_three_objects() {
        {"parameters",
         {{"*.kp_per_s2", 2000},
          {"*.kd_per_s", 40},
-         {"*_ankle_pitch.kp_per_s2", 14000},  // little inertia of its own, but the whole robot stands on it
-         {"*_ankle_pitch.kd_per_s", 180},
+         // Little inertia of its own, but the whole robot stands on it, and its sway must die out.
+         {"*_ankle_pitch.kp_per_s2", 14000},
+         {"*_ankle_pitch.kd_per_s", 900},
          {"*.ki_Nm_per_rads", 300},
          {"*.rotor_inertia_kg_m2", 0.02}}}});
   robot["control"]["objects"].push_back({{"name", "impedance"},
@@ -36,6 +37,7 @@ std::filesystem::path robot_with_three_objects() {
                                          {"parameters",
                                           {{"*.stiffness_Nm_per_rad", 350},
                                            {"*.damping_Nms_per_rad", 5},
+                                           {"*_ankle_*.damping_Nms_per_rad", 15},
                                            {"*_hip_yaw.stiffness_Nm_per_rad", 100},
                                            {"*_hip_yaw.damping_Nms_per_rad", 2},
                                            {"*_shoulder_pitch.stiffness_Nm_per_rad", 40},
@@ -98,19 +100,22 @@ class Switcher final : public RunObserver {
 TEST_CASE("While squatting, switching PID, computed torque, impedance every second keeps the robot up within 15 mm") {
   ScenarioConfig scenario = read_scenario_config(robot_with_three_objects());
   scenario.behaviors.clear();
-  RunLog log;
-  Assembly robot(scenario, 1, log);
-  Checks checks(robot.catalog().signals);
-  const RunParts parts = robot.parts();
-  Switcher switcher(robot.catalog(), parts.control.exchange());
-  const RunResult result = run_scenario(parts, 20.0, checks, {&switcher});
-  MESSAGE("largest height error ", 1000 * switcher.worst_m, " mm in ", switcher.switches, " switches");
-  CHECK(result.error.empty());
-  CHECK(result.commands_refused == 0);
-  CHECK(switcher.switches == 19);
-  CHECK(switcher.lowest_m > 0.7);
-  CHECK(switcher.lowest_m < 0.8);
-  CHECK(switcher.worst_m < 0.015);
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    CAPTURE(seed);
+    RunLog log;
+    Assembly robot(scenario, seed, log);
+    Checks checks(robot.catalog().signals);
+    const RunParts parts = robot.parts();
+    Switcher switcher(robot.catalog(), parts.control.exchange());
+    const RunResult result = run_scenario(parts, 20.0, checks, {&switcher});
+    MESSAGE("largest height error ", 1000 * switcher.worst_m, " mm in ", switcher.switches, " switches");
+    CHECK(result.error.empty());
+    CHECK(result.commands_refused == 0);
+    CHECK(switcher.switches == 19);
+    CHECK(switcher.lowest_m > 0.7);
+    CHECK(switcher.lowest_m < 0.8);
+    CHECK(switcher.worst_m < 0.015);
+  }
 }
 
 TEST_CASE("A switch is bounded as the configuration says, and foreseen with each joint's own filter") {

@@ -47,7 +47,8 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 
 TEST_CASE("The JSON report is one line and one object with the promised keys") {
   const Subject subject;
-  const std::string text = json_report(subject.result, subject.log, subject.model, "squat.mcap");
+  const std::string text =
+      json_report(subject.result, {.log = subject.log, .model = subject.model, .record = "squat.mcap"});
   CHECK(text.find('\n') == std::string::npos);
   const auto json = nlohmann::json::parse(text);
   CHECK(json["scenario"] == "squat");

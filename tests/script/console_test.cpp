@@ -137,7 +137,7 @@ TEST_CASE("a pause halts what the console moves too") {
   CHECK(desk.commands(CommandKind::cancel_motion) == 12);
 }
 
-TEST_CASE("commands with a colon order what plays; a wrong one says what was meant") {
+TEST_CASE("commands with a colon order what plays, a wrong one says what was meant") {
   Desk desk;
   CHECK(desk.says(":play nod, nod").empty());
   desk.tick(2);

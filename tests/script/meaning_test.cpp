@@ -86,11 +86,12 @@ TEST_CASE("a transition of the behavior itself leaves the states but not the beh
 TEST_CASE("history is what was active when its state was left, not what was left inside it") {
   const auto back = [](const char* deep) {
     return played(
-        std::string("return k.behavior 't' { initial = 'w', k.state 'w' { initial = 'a', k.history 'h' { deep = ") +
-            deep + R"( },
+        std::string("return k.behavior 't' { initial = 'w', k.state 'w' { initial = 'a', k.history 'h' { deep = ")
+            .append(deep)
+            .append(R"( },
       k.state 'a' { enter = log 'a', { to = 'b' } },
       k.state 'b' { enter = log 'b', { to = 'h', when = at(0.05) } }, { when = at(0.03), after = 0.03, to = 'pause' } },
-    k.state 'pause' { { after = 0.02, to = 'h' } } })",
+    k.state 'pause' { { after = 0.02, to = 'h' } } })"),
         6);
   };
   CHECK(back("false") == "a b b ");
@@ -107,11 +108,12 @@ TEST_CASE("history inside its own state, never left, leads to the default") {
 TEST_CASE("deep history restores every region, shallow history the parallel from its start") {
   const auto back = [](const char* deep) {
     return played(
-        std::string("return k.behavior 't' { initial = 'w', k.state 'w' { initial = 'p', k.history 'h' { deep = ") +
-            deep + R"( }, k.parallel 'p' {
+        std::string("return k.behavior 't' { initial = 'w', k.state 'w' { initial = 'p', k.history 'h' { deep = ")
+            .append(deep)
+            .append(R"( }, k.parallel 'p' {
         k.region 'l' { initial = 'a', k.state 'a' { enter = log 'a', { to = 'b' } }, k.state 'b' { enter = log 'b' } },
         k.region 'r' { initial = 'c', k.state 'c' { enter = log 'c', { to = 'd' } }, k.state 'd' { enter = log 'd' } } },
-      { after = 0.03, to = 'pause' } }, k.state 'pause' { enter = log '|', { to = 'h' } } })",
+      { after = 0.03, to = 'pause' } }, k.state 'pause' { enter = log '|', { to = 'h' } } })"),
         5);
   };
   CHECK(back("true") == "a c b d | b d ");

@@ -13,6 +13,10 @@
 #include "kadans/control/control_object_types.h"
 #include "kadans/engine/lockstep.h"
 #include "kadans/plant/plant.h"
+#include "kadans/scenario/disturbances.h"
+#include "kadans/scenario/faulty_host.h"
+#include "kadans/scenario/faulty_plant.h"
+#include "kadans/scenario/quantities.h"
 #include "kadans/scenario/run.h"
 #include "kadans/script/script_host.h"
 
@@ -47,6 +51,8 @@ class Assembly {
   // Before the run: takes what somebody saves. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() { host_->watch(); }
   RunParts parts() noexcept;
+  // What was set and drawn for this run.
+  const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
 
   // Before the first step: from then on the behaviors see what the filter, which must outlive this, makes of the
@@ -54,10 +60,19 @@ class Assembly {
   void filter(SnapshotFilter& filter);
 
  private:
+  void vary(std::uint64_t seed);
+  void start_in_pose();
+  void make_plant(std::uint64_t seed);
+  void make_behaviors();
+
   const ScenarioConfig& scenario_;
   RunLog& log_;
   Robot robot_;
-  std::unique_ptr<ModelPlant> plant_;
+  PlantVariant variant_;
+  std::vector<QuantityValue> quantities_;
+  std::unique_ptr<ModelPlant> model_plant_;
+  std::unique_ptr<FaultyPlant> faulty_plant_;  // around it, when something of it fails
+  ModelPlant* plant_ = nullptr;                // what the engine sees
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;
   std::unique_ptr<Estimator> estimator_;
@@ -67,9 +82,11 @@ class Assembly {
   std::unique_ptr<ScriptHost> host_;
   std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the behaviors' signals
   std::unique_ptr<ControlEngine> control_;
+  std::unique_ptr<FaultyHost> faulty_host_;
   std::unique_ptr<FilteredHost> filtered_;
   std::unique_ptr<BehaviorEngine> behaviors_;
   std::unique_ptr<Lockstep> lockstep_;
+  std::unique_ptr<Disturbances> disturbances_;
 };
 
 }  // namespace kadans

@@ -92,6 +92,9 @@ class Fields {
   // As many numbers as `values` has.
   bool numbers(std::string_view name, std::span<double> values, NumberRange range, std::string_view doc,
                Need need = Need::optional);
+  // As many numbers as the file gives.
+  bool number_list(std::string_view name, std::vector<double>& values, CountRange count, NumberRange range,
+                   std::string_view doc, Need need = Need::optional);
   // The members of this object itself: any keys, each with a number.
   void number_entries(std::vector<NumberEntry>& entries, NumberRange range, std::string_view doc);
   // Likewise, each with a string.

@@ -6,10 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "kadans/config/distribution.h"
 #include "kadans/config/fields.h"
 #include "kadans/config/play_item.h"
 #include "kadans/config/scenario_check.h"
 #include "kadans/config/scenario_event.h"
+#include "kadans/config/scenario_fault.h"
+#include "kadans/config/scenario_push.h"
 #include "kadans/config/world_config.h"
 
 namespace kadans {
@@ -24,8 +27,17 @@ struct ScenarioConfig {
   PlantKind plant = PlantKind::bullet;
   double duration_s = 0;
   std::uint64_t seed = 1;
+  std::vector<std::string> tags;
+  std::uint32_t repeat = 1;      // runs of it in a test, each with the next seed
+  double wall_limit_s = 60;      // a run that takes longer is stopped
+  PlacedName start_pose;         // "": the robot's own
+  std::vector<NumberEntry> set;  // quantities, by patterns over their names
+  std::vector<Variation> randomise;
+  std::vector<NumberEntry> set_last;  // not in the file: what the command line sets, after all draws
   std::vector<PlayItem> behaviors;
   std::vector<ScenarioEvent> events;
+  std::vector<ScenarioPush> pushes;
+  std::vector<ScenarioFault> faults;
   WorldConfig world;
   std::vector<ScenarioCheck> checks;
 };

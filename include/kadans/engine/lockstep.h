@@ -21,12 +21,19 @@ class Lockstep {
   // Throws what the plant's step throws.
   void step();
 
+  // What tests and scenarios let go wrong: control ticks that are missed before the next one, and behavior ticks that
+  // do not come until it is taken back.
+  void miss(std::uint32_t control_ticks) noexcept { missed_ = control_ticks; }
+  void silence_behaviors(bool silent) noexcept { behaviors_silent_ = silent; }
+
   std::int64_t time_ns() const noexcept { return clock_.now_ns(); }
   std::int64_t control_period_ns() const noexcept { return control_period_ns_; }
   const Clock& clock() const noexcept { return clock_; }
   const TickStatistics& control_tick_cost() const noexcept { return control_tick_cost_; }  // in wall time
 
  private:
+  void pass_period();
+
   Plant& plant_;
   ControlEngine& control_;
   BehaviorEngine& behaviors_;
@@ -34,7 +41,10 @@ class Lockstep {
   WallClock wall_;
   TickStatistics control_tick_cost_;
   std::int64_t control_period_ns_;
-  std::uint32_t behavior_divisor_;
+  std::int64_t behavior_period_ns_;
+  std::int64_t behaviors_due_ns_ = 0;
+  std::uint32_t missed_ = 0;
+  bool behaviors_silent_ = false;
 };
 
 }  // namespace kadans

@@ -1,7 +1,7 @@
-// A plant whose sensors fail on time: a plant around another one that spoils what is read from it. Everything else,
-// what is written included, passes through.
+// A plant whose sensors and drives fail on time: a plant around another one that spoils what is read from it and what
+// is written to it. Everything else passes through.
 //
-// The thread that owns the model adds faults; read neither allocates nor throws.
+// The thread that owns the model adds faults; read and write neither allocate nor throw.
 #pragma once
 
 #include <cstdint>
@@ -32,22 +32,41 @@ struct SensorFault {
   double size = 0;  // joint: rad of the joint's position; IMU: rad/s about x; foot: N on the first sensor
 };
 
+enum class ActuatorFaultKind : std::uint8_t {
+  dead,    // no torque
+  weak,    // efforts times `size`; in position and velocity mode nothing changes
+  stuck,   // goes on with what was written last before
+  offset,  // `size` added to the effort, Nm
+  late,    // what was written `size` ticks before
+};
+
+struct ActuatorFault {
+  ActuatorFaultKind kind = ActuatorFaultKind::dead;
+  std::size_t joint = 0;
+  std::int64_t from_ns = 0;
+  std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
+  double size = 0;
+};
+
 class FaultyPlant final : public ModelPlant {
  public:
   // Keeps a reference. The seed is the run's.
   FaultyPlant(ModelPlant& plant, std::uint64_t seed) noexcept : plant_(plant), random_(seed, "sensor faults") {}
 
+  static constexpr std::size_t late_ticks_max = 255;
+
   void add(const SensorFault& fault) { faults_.push_back({fault, {}, false}); }
   void clear() { faults_.clear(); }  // all sensors are sound again
+  void add(const ActuatorFault& fault);
 
   void read(SensorFrame& sensors) noexcept override;
-  void write(const ActuationFrame& actuation) noexcept override { plant_.write(actuation); }
+  void write(const ActuationFrame& actuation) noexcept override;
   void step(std::int64_t dt_ns) override { plant_.step(dt_ns); }
   const PlantTruth& truth() const noexcept override { return plant_.truth(); }
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
     plant_.push(link, force_N, point_in_link_m);
   }
-  void hash(StateHash& hash) const noexcept override { plant_.hash(hash); }
+  void hash(StateHash& hash) const noexcept override;
 
  private:
   struct Planned {
@@ -55,11 +74,20 @@ class FaultyPlant final : public ModelPlant {
     SensorFrame first;  // what was read when it began
     bool begun;
   };
+  struct PlannedActuator {
+    ActuatorFault fault;
+    JointActuation held;  // what was written before it began
+  };
   void spoil(Planned& planned, SensorFrame& sensors) noexcept;
+  void spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept;
 
   ModelPlant& plant_;
   RandomStream random_;
   std::vector<Planned> faults_;
+  std::vector<PlannedActuator> actuator_faults_;
+  std::int64_t time_ns_ = 0;             // of the last read
+  std::vector<ActuationFrame> written_;  // the last ones, a ring; empty when nothing is ever late
+  std::size_t newest_ = 0;
 };
 
 }  // namespace kadans

@@ -8,6 +8,7 @@
 #include "kadans/engine/lockstep.h"
 #include "kadans/plant/plant.h"
 #include "kadans/scenario/checks.h"
+#include "kadans/scenario/disturbances.h"
 #include "kadans/scenario/run_log.h"
 #include "kadans/scenario/truth_signals.h"
 
@@ -20,6 +21,7 @@ struct RunParts {
   Lockstep& lockstep;
   TruthSignals& truth;
   RunLog& log;
+  Disturbances* disturbances = nullptr;
   // Signals that tell of the behaviors' own upkeep: they stay out of the state hash, since memory depends on the
   // machine.
   SignalId upkeep_first = 0;

@@ -149,7 +149,7 @@ TEST_CASE("A file that is no plug-in is refused with a reason") {
 }
 
 TEST_CASE("A plug-in of another version or with other frames is refused before anything of it is used") {
-  CHECK(refusal(plugin("wrong_version")) == "is made for version 7 of the seam, this program has 1: build it again");
+  CHECK(refusal(plugin("wrong_version")) == "is made for version 7 of the seam, this program has 2: build it again");
   const std::string own = std::to_string(sizeof(ActuationFrame)), other = std::to_string(sizeof(ActuationFrame) + 8);
   CHECK(refusal(plugin("other_frames")) ==
         "was built with another ActuationFrame: " + other + " bytes, this program has " + own);

@@ -1,0 +1,42 @@
+// Something that fails in a scenario: a sensor, a drive, the behaviors' tick, the commands on their way, the clock.
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "kadans/config/fields.h"
+
+namespace kadans {
+
+struct ScenarioFault {
+  enum class Kind : std::uint8_t {
+    sensor_silent,
+    sensor_stuck,
+    sensor_offset,
+    sensor_noise,
+    sensor_jump,
+    sensor_not_finite,
+    drive_dead,
+    drive_weak,
+    drive_stuck,
+    drive_offset,
+    drive_late,
+    behaviors_silent,
+    commands_lost,
+    commands_late,
+    commands_not_finite,
+    clock_missed,
+  };
+  Kind kind = Kind::sensor_silent;
+  PlacedName of;  // a joint; of sensors also a foot's link, or "imu"; "" with behaviors, commands and clock
+  double from_s = 0;
+  double until_s = std::numeric_limits<double>::infinity();  // not included
+  double size = 0;                                           // see the fields' docs
+
+  bool of_sensor() const noexcept { return kind <= Kind::sensor_not_finite; }
+  bool of_drive() const noexcept { return kind >= Kind::drive_dead && kind <= Kind::drive_late; }
+};
+
+void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems);
+
+}  // namespace kadans

@@ -1,0 +1,72 @@
+// What may be set or drawn for a run: the plant's physics, its sensors, where it starts, and the parameters of the
+// control objects, each a number under a name.
+//
+//   ground.friction                      joint.<joint>.torque_scale, damping_scale, coulomb_scale, spring_scale
+//   link.<link>.mass_scale, friction     joint.<joint>.start_rad (added), encoder_noise_rad
+//   start.roll_rad, pitch_rad, yaw_rad   imu.gyro_noise_rad_s, gyro_bias_rad_s, accelerometer_noise_m_s2, ...
+//   foot.<link>.noise_N                  control.<object>.<parameter>, and <parameter>_scale
+//   actuation.delay_s                    between what the control engine writes and what the drives do
+//
+// Only the plant changes, never what the control side believes of it: a heavier link is a heavier link that nobody told
+// the controller of. Names may be patterns ("joint.*_knee.torque_scale"). Before the run; not for the tick.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kadans/config/distribution.h"
+#include "kadans/control/catalog.h"
+#include "kadans/plant/settings.h"
+
+namespace kadans {
+
+// A quantity by its full name, and the value that it got.
+struct QuantityValue {
+  std::string name;
+  double value = 0;
+};
+
+// The robot as this run's plant has it.
+struct PlantVariant {
+  RobotModel model;
+  PlantSettings plant;
+  double actuation_delay_s = 0;
+};
+
+class Quantities {
+ public:
+  // Keeps references.
+  Quantities(PlantVariant& variant, Catalog& catalog);
+
+  // Full names, in a fixed order.
+  const std::vector<std::string>& names() const noexcept { return names_; }
+
+  // Sets what `pattern` chooses. Adds a problem at the places of the entry when it chooses nothing or the value is out
+  // of range.
+  void set(const NumberEntry& entry, std::vector<QuantityValue>& done, Problems& problems);
+  // Draws for what the variation's pattern chooses. Each name has a random stream of its own: what else varies in the
+  // run makes no difference to it.
+  void draw(const Variation& variation, std::uint64_t seed, std::vector<QuantityValue>& done, Problems& problems);
+
+ private:
+  struct Quantity {
+    NumberRange range;
+    std::function<void(double)> set;
+  };
+  void add(std::string name, NumberRange range, std::function<void(double)> set);
+  void add_value(std::string name, NumberRange range, double& value);
+  void add_scale(std::string name, double& value);
+  void add_joints(const RobotModel& model, PlantSettings& plant);
+  void add_links(RobotModel& model, PlantSettings& plant);
+  void add_sensors(PlantSettings& plant);
+  void add_start(PlantSettings& plant);
+  void add_parameters(Catalog& catalog);
+  std::vector<std::size_t> chosen(const std::string& pattern, TextPlace place, Problems& problems) const;
+  bool apply(std::size_t index, double value, TextPlace place, std::vector<QuantityValue>& done, Problems& problems);
+
+  std::vector<std::string> names_;
+  std::vector<Quantity> quantities_;
+};
+
+}  // namespace kadans

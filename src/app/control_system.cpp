@@ -1,0 +1,128 @@
+// A robot's control objects, made from its configuration.
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "kadans/app/assembly.h"
+#include "kadans/control/plugin_library.h"
+#include "shipped_types.h"
+
+namespace kadans {
+namespace {
+
+ObjectOptions options_of(const ObjectConfig& object) {
+  std::map<std::string, std::string> texts;
+  for (const TextEntry& entry : object.options) texts[entry.key] = entry.text;
+  return texts;
+}
+
+// Of an option's text, or of the object when it has none.
+TextPlace place_of(const ObjectConfig& object, const std::string& option) {
+  const auto given = std::ranges::find(object.options, option, &TextEntry::key);
+  return given == object.options.end() ? object.place : given->text_place;
+}
+
+void refuse_unasked(const RobotConfig& config, const ObjectConfig& object, const std::vector<std::string>& asked) {
+  for (const TextEntry& entry : object.options) {
+    if (std::ranges::find(asked, entry.key) != asked.end()) continue;
+    if (asked.empty()) {
+      refuse(config.file, entry.place, "control objects of type " + in_quotes(object.type.name) + " have no options");
+    }
+    refuse_unknown(config.file, {entry.key, entry.place}, "option", asked);
+  }
+}
+
+std::unique_ptr<ControlObject> make_object(const Robot& robot, const ObjectConfig& object) {
+  const RobotConfig& config = robot.config;
+  const MakeControlObject* make = robot.types.find(object.type.name);
+  if (make == nullptr) refuse_unknown(config.file, object.type, "type of control object", robot.types.names());
+  const ObjectSetup setup{config.model, object.joints, options_of(object)};
+  try {
+    std::unique_ptr<ControlObject> made = (*make)(setup);
+    refuse_unasked(config, object, setup.options.asked());
+    return made;
+  } catch (const OptionError& error) {
+    refuse(config.file, place_of(object, error.option()),
+           "control object " + in_quotes(object.name) + ": " + error.what());
+  } catch (const std::invalid_argument& error) {
+    refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
+  }
+}
+
+void declare(const RobotConfig& config, const ObjectConfig& object, ControlObject& made, Declaration& declaration) {
+  try {
+    made.declare(declaration);
+  } catch (const std::invalid_argument& error) {
+    refuse(config.file, object.place, "control object " + in_quotes(object.name) + ": " + error.what());
+  }
+}
+
+std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
+  const EstimateSettings& estimate = config.estimate;
+  std::vector<DriveLaw> laws;
+  for (std::size_t i = 0; i < config.model.joints.size(); ++i) {
+    const DriveSettings& drive = config.plant.drives[i];
+    const double own_Hz = i < estimate.joint_velocity_cutoff_Hz.size() ? estimate.joint_velocity_cutoff_Hz[i] : 0;
+    const std::uint32_t divisor = i < estimate.sample_divisor.size() ? estimate.sample_divisor[i] : 1;
+    laws.push_back(
+        {.effort_max_Nm = config.safety.joints[i].effort_max_Nm,
+         .position_gain_Nm_per_rad = drive.position_gain_Nm_per_rad,
+         .velocity_gain_Nms_per_rad = drive.velocity_gain_Nms_per_rad,
+         .velocity_delay_s = VelocityFilter::delay_s({.cutoff_Hz = own_Hz > 0 ? own_Hz : estimate.velocity_cutoff_Hz,
+                                                      .dt_s = divisor * config.engine.control_period_s})});
+  }
+  return laws;
+}
+
+}  // namespace
+
+Robot read_robot(const std::filesystem::path& file) {
+  Robot robot;
+  add_shipped_types(robot.types);
+  robot.types.add_registered();
+  for (const PluginFile& plugin : read_plugin_files(file)) {
+    try {
+      load_plugin(plugin.file, robot.types);
+    } catch (const std::invalid_argument& error) {
+      refuse(file.string(), plugin.place, error.what());
+    }
+  }
+  robot.config = read_robot_config(file, robot.types.names());
+  return robot;
+}
+
+std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
+  const RobotConfig& config = robot.config;
+  auto system = std::make_unique<ControlSystem>();
+  Catalog& catalog = system->catalog;
+  catalog.model = &config.model;
+  catalog.sets = config.sets;
+  catalog.poses = config.poses;
+  catalog.initial_set = config.initial_set;
+  catalog.drives = drive_laws(config);
+  catalog.switching = config.switching;
+  for (const ObjectConfig& object : config.objects) {
+    const auto index = static_cast<std::uint32_t>(system->objects.size());
+    system->objects.push_back(make_object(robot, object));
+    Declaration declaration(object.name, index, catalog.parameters, catalog.setpoints, catalog.signals);
+    const auto first_parameter = static_cast<ParameterId>(catalog.parameters.size());
+    const auto first_setpoint = static_cast<SetpointId>(catalog.setpoints.size());
+    declare(config, object, *system->objects.back(), declaration);
+    ObjectInfo info{.name = object.name,
+                    .type = object.type.name,
+                    .joints = object.joints,
+                    .parameters = {},
+                    .setpoints = {},
+                    .presets = {},
+                    .divisor = object.divisor,
+                    .high_level_divisor = object.high_level_divisor};
+    for (ParameterId id = first_parameter; id < catalog.parameters.size(); ++id) info.parameters.push_back(id);
+    for (SetpointId id = first_setpoint; id < catalog.setpoints.size(); ++id) info.setpoints.push_back(id);
+    catalog.objects.push_back(std::move(info));
+  }
+  apply_parameters(config, catalog);
+  for (const auto& object : system->objects) object->parameters_changed();
+  return system;
+}
+
+}  // namespace kadans

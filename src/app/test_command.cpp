@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "commands.h"
+#include "kadans/campaign/scenario_search.h"
+#include "kadans/campaign/suite_report.h"
+#include "kadans/config/project_root.h"
+#include "line_editor.h"
+#include "terminal.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One run that is wanted.
+struct PlannedRun {
+  FoundScenario scenario;
+  std::uint64_t seed = 1;
+};
+
+std::string repeat_command(const PlannedRun& run) {
+  return "kadans sim " + run.scenario.file.string() + " --seed " + std::to_string(run.seed);
+}
+
+// What failed the last time, a "seed file" a line; one list for each project.
+class FailedRuns {
+ public:
+  explicit FailedRuns(const fs::path& root)
+      : file_(state_file("failed-" + std::to_string(std::hash<std::string>()(fs::absolute(root).string())))) {}
+
+  bool contains(const PlannedRun& run) const { return std::ranges::find(lines_, line(run)) != lines_.end(); }
+  void read() {
+    std::ifstream stream(file_);
+    for (std::string text; std::getline(stream, text);) lines_.push_back(text);
+  }
+  bool empty() const noexcept { return lines_.empty(); }
+  // A list that cannot be written is a comfort that is missing, no more.
+  void write(const std::vector<PlannedRun>& failed) const {
+    if (file_.empty()) return;
+    std::ofstream stream(file_);
+    for (const PlannedRun& run : failed) stream << line(run) << '\n';
+  }
+
+ private:
+  static std::string line(const PlannedRun& run) {
+    return std::to_string(run.seed) + " " + fs::absolute(run.scenario.file).lexically_normal().string();
+  }
+  fs::path file_;
+  std::vector<std::string> lines_;
+};
+
+class Suite final : public JobWatcher {
+ public:
+  Suite(const TestOptions& options, std::vector<PlannedRun> runs)
+      : options_(options), runs_(std::move(runs)), style_{.color = stdout_takes_color(), .unicode = true} {}
+
+  int run(const FailedRuns& failed_runs) {
+    std::vector<Job> jobs;
+    for (const PlannedRun& run : runs_) {
+      jobs.push_back({{fs::read_symlink("/proc/self/exe").string(), "sim", run.scenario.file.string(), "--seed",
+                       std::to_string(run.seed), "--json", "--no-record"},
+                      run.scenario.wall_limit_s});
+    }
+    began_ = std::chrono::steady_clock::now();
+    const std::size_t at_once = options_.jobs > 0 ? options_.jobs : std::max(1U, std::thread::hardware_concurrency());
+    run_jobs(jobs, at_once, *this);
+    clear_progress();
+    report(failed_runs);
+    if (interrupted()) return exit_interrupted;
+    return failed() ? exit_failed : exit_passed;
+  }
+
+  void ended(const JobOutcome& outcome) override {
+    const PlannedRun& planned = runs_[outcome.job];
+    RunOutcome run = read_run_outcome(outcome);
+    run.scenario = planned.scenario.name;
+    run.file = planned.scenario.file.string();
+    run.seed = planned.seed;
+    run.repeat = repeat_command(planned);
+    clear_progress();
+    if (options_.json) {
+      std::puts(run_json(run).c_str());
+    } else if (run.status != RunStatus::cancelled) {
+      std::fputs(suite_line(run, style_).c_str(), stdout);
+    }
+    std::fflush(stdout);
+    stop_ = stop_ || (options_.fail_fast && run.status != RunStatus::passed);
+    ended_.emplace_back(outcome.job, std::move(run));
+  }
+
+  void passed_time(std::size_t running) override {
+    if (!stderr_is_terminal() || options_.json) return;
+    const double wall_s = elapsed_s();
+    if (wall_s < drawn_s_ + 0.1) return;
+    drawn_s_ = wall_s;
+    const double share = static_cast<double>(ended_.size()) / static_cast<double>(runs_.size());
+    std::fprintf(stderr, "\r\033[K  %zu of %zu, %zu running, %.0f s", ended_.size(), runs_.size(), running, wall_s);
+    if (share > 0) std::fprintf(stderr, ", about %.0f s left", wall_s / share - wall_s);
+    std::fflush(stderr);
+  }
+  bool stop_asked() const override { return stop_ || interrupted(); }
+
+ private:
+  double elapsed_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+  bool failed() const {
+    return ended_.size() < runs_.size() ||
+           std::ranges::any_of(ended_, [](const auto& e) { return e.second.status != RunStatus::passed; });
+  }
+  void clear_progress() const {
+    if (stderr_is_terminal() && drawn_s_ > 0) std::fputs("\r\033[K", stderr);
+  }
+
+  // In the order of the plan, whatever order they ended in.
+  void report(const FailedRuns& failed_runs) {
+    std::ranges::sort(ended_, {}, [](const auto& e) { return e.first; });
+    std::vector<RunOutcome> outcomes;
+    std::vector<PlannedRun> failures;
+    for (auto& [job, run] : ended_) {
+      if (run.status != RunStatus::passed && run.status != RunStatus::cancelled) failures.push_back(runs_[job]);
+      outcomes.push_back(std::move(run));
+    }
+    if (!interrupted()) failed_runs.write(failures);
+    if (!options_.json) std::fputs(suite_summary(outcomes, elapsed_s(), style_).c_str(), stdout);
+    if (options_.junit.empty()) return;
+    std::ofstream file(options_.junit);
+    file << junit_xml(outcomes, elapsed_s());
+    file.close();
+    if (!file) throw InputError({.file = options_.junit, .message = "cannot be written"});
+  }
+
+  const TestOptions& options_;
+  std::vector<PlannedRun> runs_;
+  SuiteStyle style_;
+  std::chrono::steady_clock::time_point began_;
+  double drawn_s_ = 0;
+  bool stop_ = false;
+  std::vector<std::pair<std::size_t, RunOutcome>> ended_;
+};
+
+std::vector<PlannedRun> plan(const TestOptions& options, const std::vector<FoundScenario>& scenarios) {
+  std::vector<PlannedRun> runs;
+  for (const FoundScenario& scenario : scenarios) {
+    const std::uint64_t first = options.seed.value_or(scenario.seed);
+    for (std::uint32_t i = 0; i < options.repeat.value_or(scenario.repeat); ++i) runs.push_back({scenario, first + i});
+  }
+  return runs;
+}
+
+void print_list(const std::vector<FoundScenario>& scenarios) {
+  for (const FoundScenario& scenario : scenarios) {
+    std::string tags;
+    for (const std::string& tag : scenario.tags) tags += " #" + tag;
+    std::printf("%s%s\n    %s\n", scenario.name.c_str(), tags.c_str(), scenario.doc.c_str());
+  }
+}
+
+}  // namespace
+
+int run_test(const TestOptions& options) {
+  const fs::path root = project_root(fs::current_path() / "kadans");
+  const fs::path folder = options.folder.empty() ? root / "config" / "scenarios" : fs::path(options.folder);
+  const std::vector<FoundScenario> scenarios = find_scenarios(folder, options.selectors);
+  if (scenarios.empty()) throw InputError({.file = folder.string(), .message = "there is no scenario here"});
+  if (options.list) {
+    print_list(scenarios);
+    return exit_passed;
+  }
+  std::vector<PlannedRun> runs = plan(options, scenarios);
+  FailedRuns failed_runs(root);
+  if (options.rerun_failed) {
+    failed_runs.read();
+    std::erase_if(runs, [&](const PlannedRun& run) { return !failed_runs.contains(run); });
+    if (runs.empty()) {
+      std::puts("nothing failed the last time");
+      return exit_passed;
+    }
+  }
+  catch_interrupts();
+  return Suite(options, std::move(runs)).run(failed_runs);
+}
+
+}  // namespace kadans

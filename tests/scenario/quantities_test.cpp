@@ -1,0 +1,95 @@
+// What may be set and drawn for a run: names, patterns, ranges, and that draws repeat and do not disturb each other.
+#include "kadans/scenario/quantities.h"
+
+#include <doctest/doctest.h>
+
+using namespace kadans;
+
+namespace {
+
+struct Robot {
+  PlantVariant variant;
+  Catalog catalog;
+  double kp = 100;
+  std::vector<QuantityValue> done;
+  Problems problems{"s.json"};
+
+  Robot() {
+    for (const char* name : {"torso", "l_shin", "r_shin"})
+      variant.model.links.push_back({.name = name, .inertia = {.mass_kg = 2, .xx = 0.1, .yy = 0.1, .zz = 0.1}});
+    for (const char* name : {"l_knee", "r_knee"}) variant.model.joints.push_back({.name = name});
+    variant.plant.drives.resize(2, DriveSettings{.torque_max_Nm = 60});
+    variant.plant.encoders.resize(2);
+    catalog.parameters.add({.name = "posture.l_knee.kp", .min = 0, .max = 500, .initial = 100}, &kp);
+  }
+  void set(const char* pattern, double value) {
+    Quantities(variant, catalog).set({pattern, value, {3, 5}, {3, 20}}, done, problems);
+  }
+  void draw(const char* pattern, std::uint64_t seed, Distribution distribution) {
+    Quantities(variant, catalog).draw({{pattern, {4, 5}}, std::move(distribution)}, seed, done, problems);
+  }
+  std::string refusal() const {
+    try {
+      problems.throw_if_any();
+    } catch (const InputError& error) {
+      return error.problems().front().text();
+    }
+    return "";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Quantities change the plant and the control objects' parameters, by name and by pattern") {
+  Robot robot;
+  robot.set("ground.friction", 0.3);
+  robot.set("joint.*_knee.torque_scale", 0.5);
+  robot.set("link.torso.mass_scale", 1.5);
+  robot.set("control.posture.l_knee.kp_scale", 1.2);
+  CHECK(robot.refusal().empty());
+  CHECK(robot.variant.plant.ground_friction == 0.3);
+  CHECK(robot.variant.plant.drives[1].torque_max_Nm == 30);
+  CHECK(robot.variant.model.links[0].inertia.mass_kg == 3);
+  CHECK(robot.variant.model.links[0].inertia.xx == doctest::Approx(0.15));
+  CHECK(robot.variant.model.links[1].inertia.mass_kg == 2);
+  CHECK(robot.kp == doctest::Approx(120));
+  CHECK(robot.done.size() == 5);
+  CHECK(robot.done[1].name == "joint.l_knee.torque_scale");
+}
+
+TEST_CASE("An unknown quantity and a value out of range are refused at their places") {
+  Robot unknown;
+  unknown.set("ground.fricton", 0.3);
+  CHECK(unknown.refusal() == "s.json:3:5: unknown quantity 'ground.fricton', did you mean 'ground.friction'?");
+  Robot range;
+  range.set("ground.friction", -1);
+  CHECK(range.refusal() == "s.json:3:20: ground.friction is -1, must be 0..10");
+  CHECK(range.variant.plant.ground_friction == 1.0);
+}
+
+TEST_CASE("Draws repeat with the seed, differ between joints, and are alike when told so") {
+  const Distribution spread{.kind = Distribution::Kind::uniform, .of = {0.5, 1}};
+  Robot first, again, other;
+  first.draw("joint.*.torque_scale", 5, spread);
+  again.draw("link.*.mass_scale", 5, spread);  // what else is drawn makes no difference
+  again.draw("joint.*.torque_scale", 5, spread);
+  other.draw("joint.*.torque_scale", 6, spread);
+  CHECK(first.variant.plant.drives[0].torque_max_Nm == again.variant.plant.drives[0].torque_max_Nm);
+  CHECK(first.variant.plant.drives[0].torque_max_Nm != first.variant.plant.drives[1].torque_max_Nm);
+  CHECK(first.variant.plant.drives[0].torque_max_Nm != other.variant.plant.drives[0].torque_max_Nm);
+  Distribution together = spread;
+  together.together = true;
+  Robot alike;
+  alike.draw("joint.*.torque_scale", 5, together);
+  CHECK(alike.variant.plant.drives[0].torque_max_Nm == alike.variant.plant.drives[1].torque_max_Nm);
+}
+
+TEST_CASE("A distribution's quantiles are those of its kind") {
+  using Kind = Distribution::Kind;
+  CHECK(Distribution{.kind = Kind::uniform, .of = {2, 4}}.at(0.25) == 2.5);
+  CHECK(Distribution{.kind = Kind::log_uniform, .of = {1, 100}}.at(0.5) == doctest::Approx(10));
+  CHECK(Distribution{.kind = Kind::normal, .of = {10, 2}}.at(0.8413447) == doctest::Approx(12).epsilon(1e-6));
+  CHECK(Distribution{.kind = Kind::normal, .of = {10, 2}}.at(0) == doctest::Approx(2));  // four deviations
+  CHECK(Distribution{.kind = Kind::values, .values = {1, 5, 9}}.at(0.5) == 5);
+  CHECK(Distribution{.kind = Kind::values, .values = {1, 5, 9}}.at(0.999) == 9);
+}
