@@ -5,6 +5,8 @@
 #include <numeric>
 #include <thread>
 
+#include <lua.hpp>
+
 #include "kadans/script/behavior.h"
 #include "kadans/signal/random.h"
 #include "report.h"
@@ -94,25 +96,57 @@ class Walk {
   std::uint32_t at_ = 0;
 };
 
-struct Cold {
-  std::vector<double> ticks_ns, walks_ns;
+// The least that any use of Lua does: C++ refills a table of 14 numbers, a function adds them up; compiler off, no
+// hook, no chart, nothing around it.
+class BareLua {
+ public:
+  BareLua() : state_(luaL_newstate()) {
+    luaJIT_setmode(state_.get(), 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
+    lua_createtable(state_.get(), 14, 0);
+    (void)luaL_loadstring(state_.get(), "local t, sum = ..., 0 for i = 1, 14 do sum = sum + t[i] end return sum");
+  }
+  void go() {
+    lua_State* const state = state_.get();
+    for (int i = 1; i <= 14; ++i) {
+      lua_pushnumber(state, 0.1 * i);
+      lua_rawseti(state, 1, i);
+    }
+    lua_pushvalue(state, 2);
+    lua_pushvalue(state, 1);
+    lua_call(state, 1, 1);
+    sum_ = lua_tonumber(state, -1);
+    keep(sum_);
+    lua_settop(state, 2);
+  }
+
+ private:
+  struct Close {
+    void operator()(lua_State* state) const { lua_close(state); }
+  };
+  std::unique_ptr<lua_State, Close> state_;
+  double sum_ = 0;
 };
 
-// At a real 100 Hz, ticks and walks in turn: whatever the machine does meanwhile takes the caches from both. With
-// `wiped`, 4 MB are written before each.
+struct Cold {
+  std::vector<double> ticks_ns, walks_ns, bare_ns;
+};
+
+// At a real 100 Hz, ticks, walks and bare Lua in turn: whatever the machine does meanwhile takes the caches from all
+// three. With `wiped`, 4 MB are written before each.
 Cold run_cold(Played& played, bool wiped) {
   Cold cold;
   Walk walk;
+  BareLua bare;
   std::vector<char> other(std::size_t{4} << 20);
   auto next = std::chrono::steady_clock::now();
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 900; ++i) {
     for (std::size_t at = 0; wiped && at < other.size(); at += 64) other[at] = static_cast<char>(other[at] + 1);
     keep(other);
     next += std::chrono::milliseconds(10);
     std::this_thread::sleep_until(next);
     const double began = now_ns();
-    i % 2 == 0 ? played.tick() : walk.go();
-    (i % 2 == 0 ? cold.ticks_ns : cold.walks_ns).push_back(now_ns() - began);
+    i % 3 == 0 ? played.tick() : i % 3 == 1 ? walk.go() : bare.go();
+    (i % 3 == 0 ? cold.ticks_ns : i % 3 == 1 ? cold.walks_ns : cold.bare_ns).push_back(now_ns() - began);
   }
   return cold;
 }
@@ -125,6 +159,9 @@ void add_cold(Report& report, Played& played, bool wiped) {
   report.add("behavior_tick_min_ns" + key, "  the fastest", *std::ranges::min_element(cold.ticks_ns), "ns");
   report.add("memory_walk_ns" + key, "  a walk over as many cache lines, in turn with it", walk_ns, "ns");
   report.add("behavior_tick_walks" + key, "  tick per walk", tick_ns / walk_ns, "");
+  const double bare_ns = median(cold.bare_ns);
+  report.add("bare_lua_ns" + key, "  bare Lua: a table of 14 refilled and added up, in turn with it", bare_ns, "ns");
+  report.add("behavior_tick_bare_lua" + key, "  tick per bare Lua", tick_ns / bare_ns, "");
 }
 
 // Median of a step of this chart with "next" sent before every tenth.
