@@ -13,8 +13,9 @@ namespace fs = std::filesystem;
 
 Outcome run(const std::string& arguments, const fs::path& where) {
   const fs::path out = where / "stdout.txt", err = where / "stderr.txt";
-  const std::string command = "cd '" + where.string() + "' && '" KADANS_BINARY_DIR "/kadans' </dev/null " + arguments +
-                              " >'" + out.string() + "' 2>'" + err.string() + "'";
+  const std::string command = "cd '" + where.string() +
+                              "' && XDG_STATE_HOME=\"$PWD/state\" '" KADANS_BINARY_DIR "/kadans' </dev/null " +
+                              arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
   const int status = std::system(command.c_str());  // NOLINT: the shell is the point
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return {code, read(out), read(err)};
