@@ -55,7 +55,7 @@ void read_report(const Json& json, RunOutcome& run) {
 void add_last_words(const std::string& err, RunOutcome& run) {
   constexpr std::size_t shown = 2000;
   const std::string tail = err.size() > shown ? "..." + err.substr(err.size() - shown) : err;
-  if (!tail.empty()) run.errors.push_back(tail.substr(0, tail.find_last_not_of("\n") + 1));
+  if (!tail.empty()) run.errors.push_back(tail.substr(0, tail.find_last_not_of('\n') + 1));
 }
 
 RunStatus status_of(const JobOutcome& outcome, bool reported) {
