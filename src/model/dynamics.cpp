@@ -65,7 +65,12 @@ KDL::Tree kdl_tree(const RobotModel& model, const std::vector<double>& rotors_kg
 }  // namespace
 
 struct Dynamics::Tree {
-  Tree(const RobotModel& model, const std::vector<double>& rotors_kg_m2) : tree(kdl_tree(model, rotors_kg_m2)) {}
+  Tree(const RobotModel& model, const std::vector<double>& rotors_kg_m2) : tree(kdl_tree(model, rotors_kg_m2)) {
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      const KDL::TreeElement& element = tree.getSegment(segment(i))->second;
+      parts.push_back({&element, i > 0 ? model.joints[i - 1].parent : 0});
+    }
+  }
 
   void place(std::span<const double> position_rad, std::span<const double> velocity_rad_s,
              const BaseState& at) noexcept {
@@ -76,28 +81,78 @@ struct Dynamics::Tree {
   }
 
   // `force` for `acceleration`, which is lost; the base's six first, both in world axes. No gravity.
-  void solve(const KDL::JntArray& moving) noexcept {
+  void solve() noexcept {
     auto linear = acceleration.data.head<3>(), angular = acceleration.data.segment<3>(3);
-    const Vector3d w = moving.data.segment<3>(3);
+    const Vector3d w = velocity.data.segment<3>(3);
     linear = base.transpose() * Vector3d(linear);
     angular = base.transpose() * Vector3d(angular) - Vector3d(w.y() * w.z(), -w.x() * w.z(), w.x() * w.y());
-    [[maybe_unused]] const int error = newton_euler.CartToJnt(position, moving, acceleration, no_push, force);
+    [[maybe_unused]] const int error = newton_euler.CartToJnt(position, velocity, acceleration, no_push, force);
     assert(error == KDL::SolverI::E_NOERROR);
     force.data.head<3>() = base * Vector3d(force.data.head<3>());
     force.data.segment<3>(3) = base * Vector3d(force.data.segment<3>(3));
   }
 
+  // The mass matrix with a floating base, as KDL::ChainDynParam has it for chains (Featherstone 2008, section 6.2):
+  // from composite bodies, each a link with all that hangs on it, the wrench that a unit acceleration takes is carried
+  // to all the joints on the way to the base.
+  void fill(Eigen::MatrixXd& mass) noexcept {
+    for (Part& part : parts) {
+      const KDL::Segment& segment = part.element->segment;
+      const double at = position(part.element->q_nr);
+      part.pose = segment.pose(at);
+      part.axis = part.pose.M.Inverse(segment.twist(at, 1));
+      part.composite = segment.getInertia();
+    }
+    for (std::size_t i = parts.size(); i-- > 1;) {
+      KDL::RigidBodyInertia& carrier = parts[parts[i].parent].composite;
+      carrier = carrier + parts[i].pose * parts[i].composite;
+    }
+    for (Index i = 0; i < virtual_joints; ++i) {
+      const KDL::Vector axis(base(i % 3, 0), base(i % 3, 1), base(i % 3, 2)), none = KDL::Vector::Zero();
+      mass.col(i).head<6>() = in_world(parts[0].composite * (i < 3 ? KDL::Twist(axis, none) : KDL::Twist(none, axis)));
+    }
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      const auto column = static_cast<Index>(parts[i].element->q_nr);
+      KDL::Wrench wrench = parts[i].composite * parts[i].axis;
+      mass(column, column) = dot(parts[i].axis, wrench) + parts[i].element->segment.getJoint().getInertia();
+      for (std::size_t k = i; k > 0;) {
+        wrench = parts[k].pose * wrench;
+        k = parts[k].parent;
+        if (k > 0) mass(static_cast<Index>(parts[k].element->q_nr), column) = dot(parts[k].axis, wrench);
+      }
+      mass.col(column).head<6>() = in_world(wrench);
+    }
+    mass.triangularView<Eigen::StrictlyLower>() = mass.transpose();  // symmetric to the last bit
+  }
+
+  Eigen::Vector<double, 6> in_world(const KDL::Wrench& wrench) const noexcept {
+    Eigen::Vector<double, 6> result;
+    result << base * Eigen::Map<const Vector3d>(wrench.force.data),
+        base * Eigen::Map<const Vector3d>(wrench.torque.data);
+    return result;
+  }
+
+  // A link, in its own axes.
+  struct Part {
+    const KDL::TreeElement* element;
+    std::size_t parent;
+    KDL::Frame pose{};  // in the parent
+    KDL::Twist axis{};  // of its joint
+    KDL::RigidBodyInertia composite = KDL::RigidBodyInertia::Zero();
+  };
+
   KDL::Tree tree;
+  std::vector<Part> parts;  // one a link
   KDL::TreeIdSolver_RNE newton_euler{tree, KDL::Vector::Zero()};
   KDL::TreeJntToJacSolver jacobian_solver{tree};
-  KDL::JntArray position{tree.getNrOfJoints()}, velocity{position}, still{position}, acceleration{position};
+  KDL::JntArray position{tree.getNrOfJoints()}, velocity{position}, acceleration{position};
   KDL::JntArray force{position};
   KDL::Jacobian jacobian{tree.getNrOfJoints()};
   const KDL::WrenchMap no_push;
   Matrix3d base;  // its axes in the world
 };
 
-Dynamics::Dynamics(const RobotModel& model, Config config)
+Dynamics::Dynamics(const RobotModel& model, const Config& config)
     : model_(&model),
       gravity_m_s2_(vector(config.gravity_m_s2)),
       joint_count_(model.joints.size()),
@@ -128,16 +183,10 @@ void Dynamics::update(std::span<const double> position_rad, std::span<const doub
   tree_->place(position_rad.first(joint_count_), velocity_rad_s.first(joint_count_), base);
   Eigen::VectorXd& acceleration = tree_->acceleration.data;
   const auto n = static_cast<Index>(size());
-  for (Index i = 0; i < whole_.cols(); ++i) {
-    acceleration.setZero();
-    acceleration[i] = 1;
-    tree_->solve(tree_->still);
-    whole_.col(i) = tree_->force.data;
-    whole_.row(i).head(i) = whole_.col(i).head(i);  // symmetric to the last bit
-  }
+  tree_->fill(whole_);
   acceleration.setZero();
   acceleration.head<3>() = -gravity_m_s2_;
-  tree_->solve(tree_->velocity);
+  tree_->solve();
   bias_ = tree_->force.data.tail(n);
   mass_ = whole_.bottomRightCorner(n, n);
   gravity_.noalias() = -whole_.topRows<3>().rightCols(n).transpose() * gravity_m_s2_;
@@ -149,7 +198,7 @@ void Dynamics::inverse_dynamics(const Eigen::Ref<const Eigen::VectorXd>& acceler
   tree_->acceleration.data.setZero();
   tree_->acceleration.data.tail(n) = acceleration;
   tree_->acceleration.data.head<3>() -= gravity_m_s2_;
-  tree_->solve(tree_->velocity);
+  tree_->solve();
   force = tree_->force.data.tail(n);
 }
 
