@@ -1,139 +1,253 @@
-// Bodies in motion: where the links are, what accelerates them, and what forces that takes.
+// The robot as a tree of KDL's, and what is asked of it.
+//
+// The base hangs on six massless joints, three that slide and three that turn, in a frame that stands still and, at
+// each update, coincides with the base's: all six are at zero. Then the sliding ones' accelerations are those of the
+// base's origin, with gravity taken off; its steady velocity has no effect. The turning ones, about x, y and z in this
+// order, have the angular velocity's parts for rates, but each carries the next ones' axes along, which gives products
+// of rates in the angular acceleration.
 #include "kadans/model/dynamics.h"
 
 #include <algorithm>
 #include <cassert>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include <Eigen/Geometry>
+#include <kdl/tree.hpp>
+#include <kdl/treeidsolver_recursive_newton_euler.hpp>
+#include <kdl/treejnttojacsolver.hpp>
 
 namespace kadans {
 namespace {
 
+using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Vector3d vector(const Vec3& v) noexcept { return {v[0], v[1], v[2]}; }
+constexpr Index virtual_joints = 6;
 
-Matrix3d rotation(const Quat& q) noexcept {
-  const double w = q[0], x = q[1], y = q[2], z = q[3];
-  Matrix3d r;
-  r << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
-      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),   //
-      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
-  return r;
+Vector3d vector(const Vec3& v) noexcept { return {v[0], v[1], v[2]}; }
+KDL::Vector kdl_vector(const Vec3& v) noexcept { return {v[0], v[1], v[2]}; }
+
+Matrix3d rotation(const Quat& q) noexcept { return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix(); }
+
+// Short enough that no std::string of it allocates.
+std::string segment(std::size_t link) { return std::to_string(link); }
+
+KDL::RigidBodyInertia kdl_inertia(const Inertia& i) {
+  return KDL::RigidBodyInertia(i.mass_kg, kdl_vector(i.com_m),
+                               KDL::RotationalInertia(i.xx, i.yy, i.zz, i.xy, i.xz, i.yz));
 }
 
-Matrix3d tensor(const Inertia& i) noexcept {
-  Matrix3d t;
-  t << i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz;
-  return t;
+KDL::Tree kdl_tree(const RobotModel& model, const std::vector<double>& rotors_kg_m2) {
+  using KDL::Joint;
+  KDL::Tree tree("still");
+  std::string carrier = "still";
+  for (const auto type : {Joint::TransX, Joint::TransY, Joint::TransZ, Joint::RotX, Joint::RotY, Joint::RotZ}) {
+    const bool last = type == Joint::RotZ;
+    const std::string name = last ? segment(0) : "virtual" + std::to_string(type);
+    const auto inertia = last ? kdl_inertia(model.links[0].inertia) : KDL::RigidBodyInertia::Zero();
+    tree.addSegment(KDL::Segment(name, Joint(type), KDL::Frame::Identity(), inertia), carrier);
+    carrier = name;
+  }
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const auto& [position_m, q] = model.joints[i].origin;
+    const KDL::Frame origin(KDL::Rotation::Quaternion(q[1], q[2], q[3], q[0]), kdl_vector(position_m));
+    const auto type = model.joints[i].type == JointType::prismatic ? Joint::TransAxis : Joint::RotAxis;
+    const Joint joint(origin.p, origin.M * kdl_vector(model.joints[i].axis), type, 1, 0,
+                      rotors_kg_m2.empty() ? 0.0 : rotors_kg_m2[i]);
+    tree.addSegment(KDL::Segment(segment(i + 1), joint, origin, kdl_inertia(model.links[i + 1].inertia)),
+                    segment(model.joints[i].parent));
+  }
+  return tree;
 }
 
 }  // namespace
 
-Dynamics::Dynamics(const RobotModel& model, Config config)
+struct Dynamics::Tree {
+  Tree(const RobotModel& model, const std::vector<double>& rotors_kg_m2) : tree(kdl_tree(model, rotors_kg_m2)) {
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      const KDL::TreeElement& element = tree.getSegment(segment(i))->second;
+      parts.push_back({&element, i > 0 ? model.joints[i - 1].parent : 0});
+    }
+  }
+
+  void place(std::span<const double> position_rad, std::span<const double> velocity_rad_s,
+             const BaseState& at) noexcept {
+    base = rotation(at.pose.orientation);
+    std::ranges::copy(position_rad, position.data.begin() + virtual_joints);
+    std::ranges::copy(velocity_rad_s, velocity.data.begin() + virtual_joints);
+    velocity.data.segment<3>(3) = base.transpose() * vector(at.angular_velocity_rad_s);
+  }
+
+  // `force` for `acceleration`, which is lost; the base's six first, both in world axes. No gravity.
+  void solve() noexcept {
+    auto linear = acceleration.data.head<3>(), angular = acceleration.data.segment<3>(3);
+    const Vector3d w = velocity.data.segment<3>(3);
+    linear = base.transpose() * Vector3d(linear);
+    angular = base.transpose() * Vector3d(angular) - Vector3d(w.y() * w.z(), -w.x() * w.z(), w.x() * w.y());
+    [[maybe_unused]] const int error = newton_euler.CartToJnt(position, velocity, acceleration, no_push, force);
+    assert(error == KDL::SolverI::E_NOERROR);
+    force.data.head<3>() = base * Vector3d(force.data.head<3>());
+    force.data.segment<3>(3) = base * Vector3d(force.data.segment<3>(3));
+  }
+
+  // The mass matrix with a floating base, as KDL::ChainDynParam has it for chains (Featherstone 2008, section 6.2):
+  // from composite bodies, each a link with all that hangs on it, the wrench that a unit acceleration takes is carried
+  // to all the joints on the way to the base.
+  void fill(Eigen::MatrixXd& mass) noexcept {
+    for (Part& part : parts) {
+      const KDL::Segment& segment = part.element->segment;
+      const double at = position(part.element->q_nr);
+      part.pose = segment.pose(at);
+      part.axis = part.pose.M.Inverse(segment.twist(at, 1));
+      part.composite = segment.getInertia();
+    }
+    for (std::size_t i = parts.size(); i-- > 1;) {
+      KDL::RigidBodyInertia& carrier = parts[parts[i].parent].composite;
+      carrier = carrier + parts[i].pose * parts[i].composite;
+    }
+    for (Index i = 0; i < virtual_joints; ++i) {
+      const KDL::Vector axis(base(i % 3, 0), base(i % 3, 1), base(i % 3, 2)), none = KDL::Vector::Zero();
+      mass.col(i).head<6>() = in_world(parts[0].composite * (i < 3 ? KDL::Twist(axis, none) : KDL::Twist(none, axis)));
+    }
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      const auto column = static_cast<Index>(parts[i].element->q_nr);
+      KDL::Wrench wrench = parts[i].composite * parts[i].axis;
+      mass(column, column) = dot(parts[i].axis, wrench) + parts[i].element->segment.getJoint().getInertia();
+      for (std::size_t k = i; k > 0;) {
+        wrench = parts[k].pose * wrench;
+        k = parts[k].parent;
+        if (k > 0) mass(static_cast<Index>(parts[k].element->q_nr), column) = dot(parts[k].axis, wrench);
+      }
+      mass.col(column).head<6>() = in_world(wrench);
+    }
+    mass.triangularView<Eigen::StrictlyLower>() = mass.transpose();  // symmetric to the last bit
+  }
+
+  Eigen::Vector<double, 6> in_world(const KDL::Wrench& wrench) const noexcept {
+    Eigen::Vector<double, 6> result;
+    result << base * Eigen::Map<const Vector3d>(wrench.force.data),
+        base * Eigen::Map<const Vector3d>(wrench.torque.data);
+    return result;
+  }
+
+  // A link, in its own axes.
+  struct Part {
+    const KDL::TreeElement* element;
+    std::size_t parent;
+    KDL::Frame pose{};  // in the parent
+    KDL::Twist axis{};  // of its joint
+    KDL::RigidBodyInertia composite = KDL::RigidBodyInertia::Zero();
+  };
+
+  KDL::Tree tree;
+  std::vector<Part> parts;  // one a link
+  KDL::TreeIdSolver_RNE newton_euler{tree, KDL::Vector::Zero()};
+  KDL::TreeJntToJacSolver jacobian_solver{tree};
+  KDL::JntArray position{tree.getNrOfJoints()}, velocity{position}, acceleration{position};
+  KDL::JntArray force{position};
+  KDL::Jacobian jacobian{tree.getNrOfJoints()};
+  const KDL::WrenchMap no_push;
+  Matrix3d base;  // its axes in the world
+};
+
+Dynamics::Dynamics(const RobotModel& model, const Config& config)
     : model_(&model),
-      config_(std::move(config)),
-      gravity_m_s2_(vector(config_.gravity_m_s2)),
+      gravity_m_s2_(vector(config.gravity_m_s2)),
       joint_count_(model.joints.size()),
-      base_size_(config_.base == Base::floating ? 6 : 0),
-      kinematics_(model),
-      velocity_rad_s_(joint_count_, 0.0),
-      bodies_(model.links.size()) {
-  if (!config_.rotor_inertia_kg_m2.empty() && config_.rotor_inertia_kg_m2.size() != joint_count_) {
-    throw std::invalid_argument("rotor_inertia_kg_m2 has " + std::to_string(config_.rotor_inertia_kg_m2.size()) +
+      base_size_(config.base == Base::floating ? virtual_joints : 0),
+      kinematics_(model) {
+  if (!config.rotor_inertia_kg_m2.empty() && config.rotor_inertia_kg_m2.size() != joint_count_) {
+    throw std::invalid_argument("rotor_inertia_kg_m2 has " + std::to_string(config.rotor_inertia_kg_m2.size()) +
                                 " values, the model has " + std::to_string(joint_count_) + " joints");
   }
-  const auto n = static_cast<Eigen::Index>(size());
+  tree_ = std::make_unique<Tree>(model, config.rotor_inertia_kg_m2);
+  const auto n = static_cast<Index>(size());
+  whole_.setZero(tree_->force.data.size(), tree_->force.data.size());
   mass_.setZero(n, n);
   bias_.setZero(n);
   gravity_.setZero(n);
-  acceleration_.setZero(n);
   const std::vector<double> zero(joint_count_, 0.0);
   update(zero, zero, {});
 }
+
+Dynamics::Dynamics(Dynamics&&) noexcept = default;
+Dynamics& Dynamics::operator=(Dynamics&&) noexcept = default;
+Dynamics::~Dynamics() = default;
 
 void Dynamics::update(std::span<const double> position_rad, std::span<const double> velocity_rad_s,
                       const BaseState& base) noexcept {
   assert(position_rad.size() >= joint_count_ && velocity_rad_s.size() >= joint_count_);
   kinematics_.update(position_rad, base.pose);
-  std::copy_n(velocity_rad_s.begin(), joint_count_, velocity_rad_s_.begin());
-  bodies_[0].angular_velocity = vector(base.angular_velocity_rad_s);
-  for (std::size_t i = 0; i < bodies_.size(); ++i) place(i);
-  newton_euler(nullptr, bias_);
-  gather_composites();
-  fill_mass();
-  fill_gravity();
-}
-
-void Dynamics::place(std::size_t link) noexcept {
-  const Pose& pose = kinematics_.link(link);
-  const Matrix3d r = rotation(pose.orientation);
-  const Inertia& inertia = model_->links[link].inertia;
-  Body& body = bodies_[link];
-  body.origin = vector(pose.position_m);
-  body.axis = link == 0 ? Vector3d::Zero() : Vector3d(r * vector(model_->joints[link - 1].axis));
-  body.com_arm = r * vector(inertia.com_m);
-  body.inertia = r * tensor(inertia) * r.transpose();
-}
-
-// Section 2.11's motion of a body carried by its parent and moved by its own joint, in plain vectors.
-void Dynamics::accelerate(std::size_t link, double velocity, double acceleration) noexcept {
-  Body& body = bodies_[link];
-  const Body& carrier = bodies_[parent(link)];
-  const Vector3d arm = body.origin - carrier.origin;
-  const Vector3d& w = carrier.angular_velocity;
-  body.acceleration = carrier.acceleration + carrier.angular_acceleration.cross(arm) + w.cross(w.cross(arm));
-  body.angular_velocity = w;
-  body.angular_acceleration = carrier.angular_acceleration;
-  if (prismatic(link)) {
-    body.acceleration += 2 * velocity * w.cross(body.axis) + acceleration * body.axis;
-  } else {
-    body.angular_velocity += velocity * body.axis;
-    body.angular_acceleration += velocity * w.cross(body.axis) + acceleration * body.axis;
-  }
-}
-
-void Dynamics::newton_euler(const Eigen::VectorXd* acceleration, Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  Body& base = bodies_[0];
-  base.acceleration = -gravity_m_s2_;
-  base.angular_acceleration.setZero();
-  if (acceleration != nullptr && base_size_ > 0) {
-    base.acceleration += acceleration->head<3>();
-    base.angular_acceleration = acceleration->segment<3>(3);
-  }
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (i > 0) accelerate(i, velocity_rad_s_[i - 1], acceleration == nullptr ? 0.0 : (*acceleration)[index(i)]);
-    Body& body = bodies_[i];
-    const Vector3d& w = body.angular_velocity;
-    const Vector3d at_com =
-        body.acceleration + body.angular_acceleration.cross(body.com_arm) + w.cross(w.cross(body.com_arm));
-    body.force = model_->links[i].inertia.mass_kg * at_com;
-    body.moment = body.inertia * body.angular_acceleration + w.cross(body.inertia * w) + body.com_arm.cross(body.force);
-  }
-  for (std::size_t i = bodies_.size(); i-- > 1;) {
-    const Body& body = bodies_[i];
-    Body& carrier = bodies_[parent(i)];
-    force[index(i)] = body.axis.dot(prismatic(i) ? body.force : body.moment);
-    carrier.force += body.force;
-    carrier.moment += body.moment + (body.origin - carrier.origin).cross(body.force);
-  }
-  if (base_size_ > 0) {
-    force.head<3>() = base.force;
-    force.segment<3>(3) = base.moment;
-  }
+  tree_->place(position_rad.first(joint_count_), velocity_rad_s.first(joint_count_), base);
+  Eigen::VectorXd& acceleration = tree_->acceleration.data;
+  const auto n = static_cast<Index>(size());
+  tree_->fill(whole_);
+  acceleration.setZero();
+  acceleration.head<3>() = -gravity_m_s2_;
+  tree_->solve();
+  bias_ = tree_->force.data.tail(n);
+  mass_ = whole_.bottomRightCorner(n, n);
+  gravity_.noalias() = -whole_.topRows<3>().rightCols(n).transpose() * gravity_m_s2_;
 }
 
 void Dynamics::inverse_dynamics(const Eigen::Ref<const Eigen::VectorXd>& acceleration,
                                 Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  acceleration_ = acceleration;
-  newton_euler(&acceleration_, force);
-  for (std::size_t i = 0; i < config_.rotor_inertia_kg_m2.size(); ++i) {
-    force[index(i + 1)] += config_.rotor_inertia_kg_m2[i] * acceleration_[index(i + 1)];
+  const auto n = static_cast<Index>(size());
+  tree_->acceleration.data.setZero();
+  tree_->acceleration.data.tail(n) = acceleration;
+  tree_->acceleration.data.head<3>() -= gravity_m_s2_;
+  tree_->solve();
+  force = tree_->force.data.tail(n);
+}
+
+// Turning joint k turns the lever of every joint that it carries; sliding it moves them without a change.
+void Dynamics::gravity_gradient(Eigen::Ref<Eigen::MatrixXd> gradient) const noexcept {
+  gradient.setZero();
+  for (std::size_t i = joint_count_; i > 0; --i) {
+    const auto row = static_cast<Index>(i - 1);
+    const Vector3d lever = whole_.block<3, 1>(0, virtual_joints + row);  // times mass
+    for (std::size_t k = i; k > 0; k = model_->joints[k - 1].parent) {
+      const Joint& joint = model_->joints[k - 1];
+      if (joint.type == JointType::prismatic) continue;
+      const Vector3d axis = vector(rotate(link(k).orientation, joint.axis));
+      const auto column = static_cast<Index>(k - 1);
+      gradient(row, column) = gradient(column, row) = -gravity_m_s2_.dot(axis.cross(lever));
+    }
   }
+}
+
+void Dynamics::link_jacobian(std::size_t link, const Vec3& point_in_link_m,
+                             Eigen::Ref<Eigen::MatrixXd> jacobian) const noexcept {
+  Tree& tree = *tree_;
+  tree.jacobian_solver.JntToJac(tree.position, tree.jacobian, segment(link));
+  const Matrix3d to_base = tree.base.transpose();
+  const Quat& q = kinematics_.link(link).orientation;
+  const Vector3d arm = to_base * vector(rotate(q, point_in_link_m));
+  tree.jacobian.changeRefPoint(KDL::Vector(arm.x(), arm.y(), arm.z()));
+  jacobian.topRows<3>().noalias() = tree.base * tree.jacobian.data.topRows<3>().rightCols(jacobian.cols());
+  jacobian.bottomRows<3>().noalias() = tree.base * tree.jacobian.data.bottomRows<3>().rightCols(jacobian.cols());
+  if (base_size_ == 0) return;
+  jacobian.block<6, 3>(0, 0) *= to_base;
+  jacobian.block<6, 3>(0, 3) *= to_base;
+}
+
+void Dynamics::com_jacobian(Eigen::Ref<Eigen::MatrixXd> jacobian) const noexcept {
+  jacobian = whole_.topRows<3>().rightCols(static_cast<Index>(size()));
+  if (mass_kg() > 0) jacobian /= mass_kg();
+}
+
+Vector3d Dynamics::mass_times_com_arm() const noexcept { return {whole_(5, 1), whole_(3, 2), whole_(4, 0)}; }
+
+Vec3 Dynamics::com_m() const noexcept {
+  Vector3d com = vector(link(0).position_m);
+  if (mass_kg() > 0) com += mass_times_com_arm() / mass_kg();
+  return {com.x(), com.y(), com.z()};
+}
+
+double Dynamics::potential_energy_J() const noexcept {
+  return -gravity_m_s2_.dot(mass_kg() * vector(link(0).position_m) + mass_times_com_arm());
 }
 
 }  // namespace kadans

@@ -20,6 +20,7 @@ const std::vector<Fence>& fences() {
   static const std::vector<Fence> all{
       {"Lua", {"lua.h", "lauxlib.h", "lualib.h", "luajit.h", "lua.hpp", "luajit-2.1/"}, {"script/"}},
       {"Bullet", {"bt", "Bullet", "LinearMath/", "bullet/"}, {"plant/bullet/", "model/"}},
+      {"KDL", {"kdl/"}, {"model/"}},
       {"JSON", {"nlohmann/"}, {"config/", "telemetry/", "scenario/", "campaign/", "remote/", "app/"}},
   };
   return all;

@@ -5,7 +5,7 @@
 //   u = limit((M(q) + J_rotor) a + h(q, qd) + viscous qd_ref + I, +-effort_max),   dI/dt = ki (q_ref - q)
 //
 // With the mass matrix M and the bias h (Coriolis, centrifugal and gravity forces) of the robot every joint's error
-// obeys e'' + kd e' + kp e = 0, whatever the pose. The high level computes M and h (model/dynamics.h), about 4 us for
+// obeys e'' + kd e' + kp e = 0, whatever the pose. The high level computes M and h (model/dynamics.h), about 14 us for
 // TULip, for half of its period ahead, the middle of the time in which they are used; the low level takes the newest
 // there are and never waits. They hold for the robot as it hangs from its base, the base carried evenly and pointing
 // where the estimator says: limbs in the air, or a robot on a stand. Where feet bear the robot the model is short of

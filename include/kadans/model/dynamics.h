@@ -8,19 +8,19 @@
 // joint torques in Nm, or N. dv is the plain time derivative of v, so that the origin's acceleration is what a camera
 // would see. Mimic joints count as joints of their own.
 //
-// Everything is worked out in world axes with three-dimensional vectors: the bias by the recursive Newton-Euler
-// algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 5.3; Luh, Walker and Paul 1980), the mass
-// matrix from composite bodies (section 6.2; Walker and Orin 1982). A drive's rotor, reflected to its joint, adds its
-// inertia to the diagonal (section 9.6); the rotors' gyroscopic torques are left out.
-//
-// Bullet's inverse dynamics would be the library for this, but Debian packages it without its headers; the tests hold
-// this code against Bullet's forward dynamics instead.
+// Orocos KDL works it out: the forces by its recursive Newton-Euler algorithm for trees, the mass matrix from its
+// inertias of composite bodies, as its own solver for chains does. Gravity and the centre of mass are read off the
+// rows that the mass matrix has for a floating base. An update takes about 14 us for TULip. A drive's rotor, reflected
+// to its joint, adds its inertia to the diagonal (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.6); the
+// rotors' gyroscopic torques are left out.
 //
 // One owner, any thread. Nothing but the constructor allocates or throws. Values that are not finite give results that
 // are not.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -47,8 +47,11 @@ class Dynamics {
 
   // Keeps a reference to the model, which must outlive it. Throws std::invalid_argument for rotors that are not one a
   // joint.
-  Dynamics(const RobotModel& model, Config config);
+  Dynamics(const RobotModel& model, const Config& config);
   explicit Dynamics(const RobotModel& model) : Dynamics(model, Config()) {}
+  Dynamics(Dynamics&&) noexcept;
+  Dynamics& operator=(Dynamics&&) noexcept;
+  ~Dynamics();
 
   // One position and one velocity a joint. All results below hold until the next update.
   void update(std::span<const double> position_rad, std::span<const double> velocity_rad_s,
@@ -76,44 +79,23 @@ class Dynamics {
   // 3 x n: velocity of the centre of mass, world axes.
   void com_jacobian(Eigen::Ref<Eigen::MatrixXd> jacobian) const noexcept;
   Vec3 com_m() const noexcept;
-  double mass_kg() const noexcept { return bodies_[0].mass_kg; }
+  double mass_kg() const noexcept { return whole_(0, 0); }
   double potential_energy_J() const noexcept;  // 0 with the centre of mass at the world's origin
   const Pose& link(std::size_t index) const noexcept { return kinematics_.link(index); }
 
  private:
-  // A link, in world axes, and with it everything that hangs on it. One a link.
-  struct Body {
-    Eigen::Vector3d origin, axis;                        // of the joint that moves it
-    Eigen::Vector3d angular_velocity, com_arm;           // com_arm: from origin to its own centre of mass
-    Eigen::Matrix3d inertia;                             // its own, about its centre of mass
-    Eigen::Vector3d angular_acceleration, acceleration;  // of the origin, gravity taken off
-    Eigen::Vector3d force, moment;                       // on it, moment about origin
-    double mass_kg;                                      // from here on: of it and all that hangs on it
-    Eigen::Vector3d com;
-    Eigen::Matrix3d composite_inertia;  // about com
-  };
-  bool prismatic(std::size_t link) const noexcept { return model_->joints[link - 1].type == JointType::prismatic; }
-  std::size_t parent(std::size_t link) const noexcept { return model_->joints[link - 1].parent; }
-  std::ptrdiff_t index(std::size_t link) const noexcept { return static_cast<std::ptrdiff_t>(base_size_ + link - 1); }
+  struct Tree;  // KDL's
 
-  void place(std::size_t link) noexcept;
-  void accelerate(std::size_t link, double velocity, double acceleration) noexcept;
-  // Newton-Euler, outwards and inwards. Without acceleration: none anywhere.
-  void newton_euler(const Eigen::VectorXd* acceleration, Eigen::Ref<Eigen::VectorXd> force) noexcept;
-  void gather_composites() noexcept;
-  void fill_mass() noexcept;
-  void fill_mass_column(std::size_t link) noexcept;
-  void fill_gravity() noexcept;
+  Eigen::Vector3d mass_times_com_arm() const noexcept;  // arm: from the base frame's origin
 
   const RobotModel* model_;
-  Config config_;
   Eigen::Vector3d gravity_m_s2_;
   std::size_t joint_count_, base_size_;
   Kinematics kinematics_;
-  std::vector<double> velocity_rad_s_;
-  std::vector<Body> bodies_;
+  std::unique_ptr<Tree> tree_;
+  Eigen::MatrixXd whole_;  // the mass matrix with a floating base, whether it floats or not
   Eigen::MatrixXd mass_;
-  Eigen::VectorXd bias_, gravity_, acceleration_;
+  Eigen::VectorXd bias_, gravity_;
 };
 
 }  // namespace kadans
