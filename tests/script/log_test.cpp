@@ -20,8 +20,9 @@ TEST_CASE("k.log tells its mistakes at the line") {
                                                 "behaviors/test.lua:3: kadans.log has no 'warn', did "
                                                 "you mean 'warning'?"},
                                       std::pair{"k.log.info('%d', 'x')", "behaviors/test.lua:3: "}}) {
-    CAPTURE(code);
-    Stage stage(on_enter(code));
+    const std::string line = code;  // clang captures no structured binding
+    CAPTURE(line);
+    Stage stage(on_enter(line));
     stage.tick();
     const std::string error = stage.behavior->error().text();
     CHECK_MESSAGE(error.starts_with(message), error);
