@@ -17,9 +17,9 @@ struct SimOptions {
   bool no_record = false;
   bool realtime = false;
   bool watch = false;
-  std::string play;    // a list in place of the scenario's; "" = the scenario's
+  std::string play;              // a list in place of the scenario's; "" = the scenario's
   std::vector<std::string> set;  // "ground.friction=0.3"
-  std::string record;  // "" = NAME.mcap in the working directory
+  std::string record;            // "" = NAME.mcap in the working directory
 };
 int run_sim(const SimOptions& options);
 

@@ -33,7 +33,8 @@ inline constexpr Broken broken_scenarios[] = {
     {"\"models/tulip/tulip.urdf\"", "\"behaviors/tulip/no_such_behavior.lua\"",
      "7:18: behavior: there is no file 'behaviors/tulip/no_such_behavior.lua' in ROOT"},
     {"\"models/tulip/tulip.urdf\"", "true",
-     "7:17: behaviors[0] must be a string, not true: what to play, one after the other: files, or \"squat{depth_m=0.08}, wave\""},
+     "7:17: behaviors[0] must be a string, not true: what to play, one after the other: files, or "
+     "\"squat{depth_m=0.08}, wave\""},
     {"\"kind\": \"always\"", "\"kind\": \"allways\"",
      "9:34: checks[0].kind: unknown value 'allways', did you mean 'always'?"},
     {"\"kind\": \"always\", ", "", "9:5: key 'kind' is missing in checks[0]: when it must (never: must not) hold"},
