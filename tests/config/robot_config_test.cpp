@@ -100,7 +100,7 @@ TEST_CASE("Sets number their control objects, and the initial one is found by na
   const RobotConfig config = read_with("\"initial_set\": \"posture\"", "\"initial_set\": \"wave\"");
   REQUIRE(config.sets.size() == 2);
   CHECK(config.sets[1].objects == std::vector<std::uint32_t>{1});
-  CHECK(config.initial_set == 1);
+  CHECK(config.initial_sets == 0b10);
 }
 
 TEST_CASE("Objects of one set may share a joint when all but one of them compose") {

@@ -118,6 +118,7 @@ class Scripts {
 // the next behavior tick, 10 ms later.
 class Engine {
  public:
+  Engine() { snapshot.control_sets = robot.catalog.initial_sets; }
   void step();
   // How many of the commands applied so far were of that kind.
   std::size_t commands(CommandKind kind) const;

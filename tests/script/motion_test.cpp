@@ -19,7 +19,7 @@ std::string in_run(const std::string& code) {
 TEST_CASE("what a tick asks for is one transaction, with the switch to the behavior's control set first") {
   Stage stage(in_run(
       "m.posture:set_gains('stiff') m.posture:move('stand', { time_s = 2 }) m.posture:set('l_knee.position_rad', 1)"));
-  stage.snapshot.control_set = 1;
+  stage.snapshot.control_sets = 0b10;
   stage.tick();
   REQUIRE(stage.applied.size() == 1 + 1 + 12 + 12 + 1);
   CHECK(stage.applied[0].kind == CommandKind::transaction);
