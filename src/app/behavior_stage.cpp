@@ -106,9 +106,8 @@ class IdealStage final : public TestStage {
   std::string error() const override { return behavior().failed() ? behavior().error().text() : ""; }
   std::string control_sets() const override {
     std::string all;
-    each_bit(seen_.control_sets, [&](std::uint32_t set) {
-      all += (all.empty() ? "" : " ") + assembly_.catalog().sets[set].name;
-    });
+    each_bit(seen_.control_sets,
+             [&](std::uint32_t set) { all += (all.empty() ? "" : " ") + assembly_.catalog().sets[set].name; });
     return all;
   }
   std::string said() const override {

@@ -80,8 +80,8 @@ Switchover::Foresight Switchover::foresee(std::size_t joint, const JointState& s
   return {soon_rad, soon_rad_s, soon_rad + dt_s * later_rad_s, later_rad_s};
 }
 
-void Switchover::begin(const JointStates& joints, double dt_s, const ActuationFrame& before, const ActuationFrame& after,
-                       std::uint64_t touched) noexcept {
+void Switchover::begin(const JointStates& joints, double dt_s, const ActuationFrame& before,
+                       const ActuationFrame& after, std::uint64_t touched) noexcept {
   const auto concerned = [&](std::size_t i) { return (touched >> i & 1U) != 0 && drives_[i].effort_max_Nm > 0; };
   absorbed_share_ = 0;
   for (std::size_t i = 0; i < drives_.size(); ++i) {

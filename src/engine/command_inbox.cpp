@@ -80,7 +80,7 @@ RefusalReason CommandInbox::held(const Command& command, const Safety& safety, S
       is_held = object_held(catalog_.parameters.owner(command.index));
       break;
     case CommandKind::switch_set: {
-      const SetMask changed = active ^ sets_.partition().after(active, command.index);
+      const SetMask changed = (active ^ sets_.partition().after(active, command.index)) | set_bit(command.index);
       each_bit(sets_.partition().joints(changed), [&](std::uint32_t at) { is_held = is_held || joint_held(at); });
       break;
     }
@@ -109,8 +109,7 @@ void CommandInbox::refuse(const Command& header, Refusal refusal, std::uint64_t 
   refusal.sequence = header.sequence;
   refusals_[transactions_refused_++ % refusals_shown] = refusal;
   state_.refused += header.count;
-  const FaultCode code =
-      refusal.reason == RefusalReason::too_old ? FaultCode::command_old : FaultCode::command_refused;
+  const FaultCode code = refusal.reason == RefusalReason::too_old ? FaultCode::command_old : FaultCode::command_refused;
   safety.raise({.code = code, .tick = tick, .value = static_cast<double>(header.sequence)});
 }
 
@@ -179,8 +178,7 @@ void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& 
     }
     if (header.count > share) return;
     const bool fresh = input.time_ns - header.time_ns <= age_max_ns_;
-    const Refusal refusal =
-        fresh ? judge_transaction(header.count, safety) : Refusal{.reason = RefusalReason::too_old};
+    const Refusal refusal = fresh ? judge_transaction(header.count, safety) : Refusal{.reason = RefusalReason::too_old};
     if (refusal.reason == RefusalReason::none) {
       for (std::uint32_t i = 1; i <= header.count; ++i) execute(queue_.peek(i), input, safety);
       notify_owners();

@@ -49,8 +49,8 @@ Behavior::Reload Behavior::refuse(std::int64_t time_ns, const std::string& why) 
   return Reload::refused;
 }
 
-Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& commands,
-                                  const std::filesystem::path& file, SetMask elsewhere) noexcept {
+Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file,
+                                  SetMask elsewhere) noexcept {
   const std::filesystem::path wanted = file.empty() ? parts_->settings.file : file;
   if (failed() || finished() || holds(wanted, parts_->lua->sources())) return Reload::unchanged;
   if (file.empty() && holds(wanted, past_->taken_back)) return Reload::unchanged;

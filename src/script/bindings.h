@@ -28,10 +28,10 @@ struct Bindings {
   bool refused = false;                            // a command of this tick found no place
   std::array<Motion*, max_transaction> motions{};  // asked for in this tick
   std::uint32_t motion_count = 0;
-  SetMask wanted = 0;                    // sets that came to be needed, and no transaction says so yet
-  std::array<std::uint32_t, 8> sent{};   // the newest transactions, by sent_count modulo their number
+  SetMask wanted = 0;                   // sets that came to be needed, and no transaction says so yet
+  std::array<std::uint32_t, 8> sent{};  // the newest transactions, by sent_count modulo their number
   std::uint32_t sent_count = 0;
-  std::uint32_t refusals_seen = 0;       // of the snapshot's transactions_refused
+  std::uint32_t refusals_seen = 0;  // of the snapshot's transactions_refused
 
   const ControlSetInfo* set_of(std::size_t machine) const noexcept {
     return machine < sets.size() ? sets[machine] : nullptr;

@@ -14,9 +14,9 @@ const ControlSetInfo* find_set(Behavior::Parts& parts, const Chart::Machine& mac
     if (set.name == machine.controls) return &set;
   }
   const Chart::State& root = parts.chart.states[machine.root];
-  parts.problems.push_back({root.chunk, parts.lua->line_of(root.chunk, root.line, machine.controls), 0,
-                            "unknown control set '" + machine.controls + "' in 'controls'" +
-                                hint_text(machine.controls, names)});
+  parts.problems.push_back(
+      {root.chunk, parts.lua->line_of(root.chunk, root.line, machine.controls), 0,
+       "unknown control set '" + machine.controls + "' in 'controls'" + hint_text(machine.controls, names)});
   return nullptr;
 }
 

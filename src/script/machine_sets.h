@@ -1,5 +1,5 @@
-// The control sets that the machines of a behavior run on: a called one's own, or its caller's. Those that can be active
-// at the same time are the same or have no joint in common.
+// The control sets that the machines of a behavior run on: a called one's own, or its caller's. Those that can be
+// active at the same time are the same or have no joint in common.
 #pragma once
 
 #include <string>

@@ -69,9 +69,8 @@ int read_field(lua_State* state) {
 void observe(Motion& motion, const Snapshot& snapshot, std::int64_t now_ns) noexcept {
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
   if (motion.state == MotionState::sent) {
-    const auto refused = std::find_if(snapshot.refusals.begin(), snapshot.refusals.end(), [&](const Refusal& refusal) {
-      return refusal.sequence == motion.sequence;
-    });
+    const auto refused = std::find_if(snapshot.refusals.begin(), snapshot.refusals.end(),
+                                      [&](const Refusal& refusal) { return refusal.sequence == motion.sequence; });
     if (refused != snapshot.refusals.end()) {
       motion.state = MotionState::refused;
       motion.refusal = *refused;

@@ -109,10 +109,8 @@ void push_object(lua_State* state, std::uint32_t object) {
 }
 
 void open_objects(lua_State* state) {
-  const luaL_Reg methods[] = {{"setpoint", setpoint},
-                              {"parameter", parameter},
-                              {"set_gains", set_gains},
-                              {"set_parameter", set_parameter}};
+  const luaL_Reg methods[] = {
+      {"setpoint", setpoint}, {"parameter", parameter}, {"set_gains", set_gains}, {"set_parameter", set_parameter}};
   lua_pushlightuserdata(state, const_cast<char*>(&object_key));
   lua_createtable(state, 0, 2);
   lua_createtable(state, 0, 8);

@@ -42,8 +42,8 @@ std::vector<PlayList::Entry> ScriptHost::load(const std::vector<PlayItem>& list,
     const SetMask beside = PlayList::sets_beside(loaded[i].lane, loaded);
     const std::string clash = clash_text(catalog_, loaded[i].behavior->control_sets(), beside);
     if (clash.empty()) continue;
-    problems.push_back({list[i].source, list[i].place.line, list[i].place.column,
-                        "behaviors that play at the same time: " + clash});
+    problems.push_back(
+        {list[i].source, list[i].place.line, list[i].place.column, "behaviors that play at the same time: " + clash});
   }
   return loaded;
 }

@@ -67,8 +67,7 @@ void ScriptHost::reload(const PlayOrder& order, const Snapshot& snapshot, Comman
   for (PlayList::Entry& entry : list_.entries()) {
     if (entry.over || entry.behavior->name() != order.behavior.name) continue;
     entry.behavior->hold_clock(pause_.held_ns());
-    (void)entry.behavior->reload(snapshot, commands, order.file,
-                                 PlayList::sets_beside(entry.lane, list_.entries()));
+    (void)entry.behavior->reload(snapshot, commands, order.file, PlayList::sets_beside(entry.lane, list_.entries()));
   }
 }
 

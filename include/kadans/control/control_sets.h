@@ -1,8 +1,8 @@
 // All control objects and the sets in which they work together. Sets are built and checked before the loop; those that
 // are active have no joint in common (set_partition.h). Objects of an active set compute in the order of the set, and
 // compose what they propose for a joint (composition.h); a joint that no active set holds does what the configuration
-// says (unheld_joints.h). A change of the active sets makes no step (switchover.h), concerns the joints of the sets that
-// come or leave alone, and costs the starting of the objects that come in, whatever the number of sets.
+// says (unheld_joints.h). A change of the active sets makes no step (switchover.h), concerns the joints of the sets
+// that come or leave alone, and costs the starting of the objects that come in, whatever the number of sets.
 //
 // Signals     composition.<joint>.writers     the objects that have a share in its actuation, a bit each
 //             composition.switch_share        the largest step that the last switch absorbed, as a share of the limit

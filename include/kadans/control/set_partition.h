@@ -1,6 +1,6 @@
-// Which control sets can be active together: those whose joints are disjoint. A set that comes in takes the place of all
-// active sets that it shares a joint with; they leave whole, since a law that lost some of its joints would be another
-// one. Sets that it does not touch go on and notice nothing.
+// Which control sets can be active together: those whose joints are disjoint. A set that comes in takes the place of
+// all active sets that it shares a joint with; they leave whole, since a law that lost some of its joints would be
+// another one. Sets that it does not touch go on and notice nothing.
 #pragma once
 
 #include <bit>

@@ -48,8 +48,8 @@ class Switchover {
 
   // In the tick that computes the new set for the first time: `before` is what the plant was told in this tick, `after`
   // what was computed for the next one. `touched`: the joints that the switch concerns, a bit each.
-  void begin(const JointStates& joints, double dt_s, const ActuationFrame& before,
-             const ActuationFrame& after, std::uint64_t touched = ~std::uint64_t{0}) noexcept;
+  void begin(const JointStates& joints, double dt_s, const ActuationFrame& before, const ActuationFrame& after,
+             std::uint64_t touched = ~std::uint64_t{0}) noexcept;
   // Each tick, last: adds what is left of the offset.
   void apply(const JointStates& joints, double dt_s, ActuationFrame& actuation) noexcept;
 

@@ -1,5 +1,5 @@
-// The joints that no active control set holds: each is drawn back to where it was when it was let go, as stiff and damped
-// as the configuration says. Without stiffness it damps, without both it is off.
+// The joints that no active control set holds: each is drawn back to where it was when it was let go, as stiff and
+// damped as the configuration says. Without stiffness it damps, without both it is off.
 //
 // One owner, the control thread; nothing here allocates after construction, locks or throws.
 #pragma once

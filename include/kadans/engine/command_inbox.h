@@ -5,8 +5,8 @@
 // While the robot is held, or worse, its set-points, parameters and control set stay what they are: commands that would
 // change them are refused, unless the same transaction clears the faults first. A motion under way goes on to its end.
 // So it is for a joint that is held alone: refused are its set-points, set-points without a joint and parameters of the
-// objects that drive it, and a change of control sets that concerns it. A joint that damps or is off refuses nothing, so
-// that the others can go on; when it comes back, it starts from where it is.
+// objects that drive it, and a switch of control sets that concerns it. A joint that damps or is off refuses nothing,
+// so that the others can go on; when it comes back, it starts from where it is.
 #pragma once
 
 #include <cstdint>

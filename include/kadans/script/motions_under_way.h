@@ -42,7 +42,7 @@ class MotionsUnderWay {
 
   const Catalog& catalog_;
   SetPartition partition_;
-  SetMask active_;  // as far as what was sent tells
+  SetMask active_;               // as far as what was sent tells
   std::vector<Motion> motions_;  // one a set-point
   std::vector<bool> velocity_;   // the set-point is one
 };
