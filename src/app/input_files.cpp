@@ -205,6 +205,25 @@ UnpackedInputs::~UnpackedInputs() {
   fs::remove_all(folder_, ignored);
 }
 
+void UnpackedInputs::add_behaviors(RunInputs& inputs) const {
+  const fs::path root = project_root(fs::current_path() / "x");
+  if (!fs::is_directory(root / "behaviors")) return;
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "behaviors")) {
+    if (entry.path().extension() == ".lua" && !entry.path().stem().string().ends_with("_test"))
+      files.push_back(entry.path().lexically_relative(root));
+  }
+  std::ranges::sort(files);
+  for (const fs::path& file : files) {
+    if (fs::exists(folder_ / file)) continue;
+    std::string text = read_all(root / file).value_or("");
+    std::string hash = content_hash(text);
+    inputs.files.push_back({file.generic_string(), std::move(hash), std::move(text)});
+    unpack(inputs.files.back(), "");
+  }
+  std::ranges::sort(inputs.files, {}, &InputFile::path);
+}
+
 // What the record knows by name alone is taken from where it lies, if it still does.
 void UnpackedInputs::unpack(const InputFile& file, const std::string& record) const {
   const fs::path path(file.path);

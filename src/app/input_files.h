@@ -43,6 +43,10 @@ class UnpackedInputs {
   UnpackedInputs(const UnpackedInputs&) = delete;
   UnpackedInputs& operator=(const UnpackedInputs&) = delete;
 
+  // Behaviors of the project around the working directory that the record has not, for who wants to play them; from
+  // then on they are among its inputs.
+  void add_behaviors(RunInputs& inputs) const;
+
   const std::filesystem::path& scenario() const noexcept { return scenario_; }
 
  private:

@@ -89,11 +89,12 @@ void BranchActions::read_setting(const NumberEntry& setting, const ParameterTabl
   const bool scale = setting.key.ends_with(scale_suffix) && matching(setting.key, names).empty();
   const std::string key = scale ? setting.key.substr(0, setting.key.rfind(scale_suffix)) : setting.key;
   const std::vector<std::size_t> chosen = matching(key, names);
-  if (chosen.empty()) {
+  if (!key.starts_with(control_prefix)) {
     throw InputError({.file = "--set",
-                      .message = unknown_name("parameter", setting.key, names) +
-                                 "; once a run is under way only control.* can be set"});
+                      .message = in_quotes(setting.key) + " stays as it is: once a run is under way only control.* "
+                                                          "can be set"});
   }
+  if (chosen.empty()) throw InputError({.file = "--set", .message = unknown_name("parameter", setting.key, names)});
   for (const std::size_t index : chosen) {
     const auto id = static_cast<ParameterId>(index);
     if (!scale && !parameters.accepts(id, setting.value)) {

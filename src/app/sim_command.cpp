@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
@@ -18,8 +20,10 @@ std::vector<RunBranch> branches_of(const SimOptions& options) {
 
 int go_on(const SimOptions& options) {
   SimContinuation continuation{.from = read_checkpoint(options.from), .branches = branches_of(options)};
-  const RunInputs& inputs = continuation.from.inputs;
+  RunInputs& inputs = continuation.from.inputs;
   const UnpackedInputs unpacked(inputs, options.from);
+  if (std::ranges::any_of(continuation.branches, [](const RunBranch& branch) { return !branch.play.empty(); }))
+    unpacked.add_behaviors(inputs);
   RunRequest request = request_of(inputs.run, options.from);
   request.scenario = unpacked.scenario().string();
   if (options.duration_s) request.duration_s = options.duration_s;
