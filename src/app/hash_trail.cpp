@@ -44,7 +44,7 @@ std::string where_parted(const std::vector<HashMark>& first, const std::vector<H
   const std::size_t both = std::min(first.size(), second.size());
   double same_s = 0;
   for (std::size_t i = 0; i < both; ++i) {
-    const double time_s = 1e-9 * static_cast<double>(first[i].time_ns);
+    const double time_s = static_cast<double>(first[i].time_ns) / 1e9;
     if (first[i].hash != second[i].hash)
       return "between " + number_text(same_s) + " s and " + number_text(time_s) + " s";
     same_s = time_s;

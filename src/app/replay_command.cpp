@@ -158,7 +158,7 @@ void print_json(const Findings& findings) {
                       {"by", d.replayed - d.recorded}});
     }
     json["parted"] = {
-        {"tick", comparison.tick()}, {"time_s", 1e-9 * static_cast<double>(comparison.time_ns())}, {"signals", list}};
+        {"tick", comparison.tick()}, {"time_s", static_cast<double>(comparison.time_ns()) / 1e9}, {"signals", list}};
   }
   json["gone"] = comparison.gone();
   json["files"] = change_json(findings.files);
@@ -194,9 +194,10 @@ void print_text(const Findings& findings) {
   }
   for (const std::string& note : findings.notes) std::printf("%s\n", note.c_str());
   const std::string files = change_text(findings.files), program = change_text(findings.program);
-  if (!files.empty()) std::printf("changed since: %s\n", files.c_str());
-  if (!program.empty()) std::printf("changed since: %s\n", program.c_str());
-  if (!replay.same() && files.empty() && program.empty()) std::puts("changed since: nothing; this run does not repeat");
+  if (!files.empty()) std::printf("since it was recorded: %s\n", files.c_str());
+  if (!program.empty()) std::printf("since it was recorded: %s\n", program.c_str());
+  if (!replay.same() && files.empty() && program.empty())
+    std::puts("since it was recorded: nothing changed; this run does not repeat");
 }
 
 std::vector<std::string> notes_of(const Replay& replay, const RunInputs& inputs) {
@@ -242,7 +243,7 @@ int run_replay(const ReplayOptions& options) {
     return replay.same() ? exit_passed : exit_failed;
   } catch (const InputError&) {
     const std::string changed = change_text(changed_files(inputs, request.scenario, {}));
-    if (!changed.empty()) print_error(options.record + " cannot be run again; changed since: " + changed);
+    if (!changed.empty()) print_error(options.record + " cannot be run again; since it was recorded: " + changed);
     throw;
   }
 }

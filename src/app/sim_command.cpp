@@ -27,7 +27,7 @@ int go_on(const SimOptions& options) {
   RunRequest request = request_of(inputs.run, options.from);
   request.scenario = unpacked.scenario().string();
   if (options.duration_s) request.duration_s = options.duration_s;
-  const double at_s = 1e-9 * static_cast<double>(continuation.from.at.time_ns);
+  const double at_s = static_cast<double>(continuation.from.at.time_ns) / 1e9;
   if (!(*request.duration_s > at_s))
     throw InputError(
         {.file = "--duration", .message = "must be more than the " + number_text(at_s) + " s of the checkpoint"});

@@ -158,7 +158,7 @@ int SimRun::tell_parting() const {
   const std::string what = change_text(changed_program(from.inputs));
   print_error(options_.from + ": this run is not the one of the checkpoint: they part " +
               (where.empty() ? "after its last hash" : where));
-  print_error(what.empty() ? "neither the program nor its libraries changed since" : "changed since: " + what);
+  print_error(what.empty() ? "neither the program nor its libraries changed since" : "since it was left: " + what);
   return exit_failed;
 }
 

@@ -81,7 +81,7 @@ void RecordComparison::compare_message(std::span<const double> row, std::int64_t
   if (!full && !read_cdr(message_.payload, topic.values, Precision::single)) return;
   if (message_.time_ns != time_ns) {
     found_.push_back(
-        {0, {"time", "s", 1e-9 * static_cast<double>(message_.time_ns), 1e-9 * static_cast<double>(time_ns)}});
+        {0, {"time", "s", static_cast<double>(message_.time_ns) / 1e9, static_cast<double>(time_ns) / 1e9}});
   }
   for (std::size_t i = 0; i < topic.signals.size(); ++i) {
     const SignalId id = topic.signals[i];

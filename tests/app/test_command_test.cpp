@@ -104,9 +104,9 @@ TEST_CASE("A run that takes too long is stopped and has failed, the others go on
   CHECK(has(outcome.out, "2 runs, 1 failed"));
 }
 
-TEST_CASE("The shipped suite passes") {
+TEST_CASE("The shipped suite passes and ends with its golden hashes") {
   const auto folder = project_copy("test_command_shipped");
-  const Outcome outcome = run_test(folder, "");
+  const Outcome outcome = run_test(folder, "--golden");
   CAPTURE(outcome.out);
   CAPTURE(outcome.err);
   CHECK(outcome.exit_code == 0);
