@@ -48,9 +48,9 @@ void add_test(CLI::App& app, TestOptions& options) {
   test->add_flag("--rerun-failed", options.rerun_failed, "Only what failed the last time");
   test->add_flag("--list", options.list, "Say what would run");
   CLI::Option* golden =
-      test->add_flag("--golden", options.golden, "Fail what ends in another state than FOLDER/golden.json says");
+      test->add_flag("--golden", options.golden, "Fail what ends in another state than FOLDER.golden.json says");
   CLI::Option* renew = test->add_flag("--renew-golden", options.renew_golden,
-                                      "Write the states into golden.json, and say what that changes");
+                                      "Write the states into that file, and say what that changes");
   renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
   test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
   test->add_flag("--json", options.json, "Print one JSON object a run instead of text");

@@ -208,7 +208,7 @@ int run_test(const TestOptions& options) {
     }
   }
   std::unique_ptr<GoldenHashes> golden;
-  if (options.golden || options.renew_golden) golden = std::make_unique<GoldenHashes>(folder / GoldenHashes::file_name);
+  if (options.golden || options.renew_golden) golden = std::make_unique<GoldenHashes>(golden_file(folder));
   catch_interrupts();
   return Suite(options, std::move(runs), golden.get()).run(failed_runs);
 }

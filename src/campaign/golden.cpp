@@ -62,6 +62,11 @@ GoldenRun golden_from(const Json& json) {
 
 }  // namespace
 
+fs::path golden_file(const fs::path& folder) {
+  const fs::path whole = (folder / "").lexically_normal().parent_path();
+  return whole.parent_path() / (whole.filename().string() + ".golden.json");
+}
+
 GoldenHashes::GoldenHashes(fs::path file) : file_(std::move(file)) {
   if (!fs::exists(file_)) return;
   std::string of;

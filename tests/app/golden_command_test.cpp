@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 fs::path project(const std::string& name) {
   const fs::path folder = project_copy(name);
   fs::remove_all(folder / "config/scenarios");
+  fs::remove(folder / "config/scenarios.golden.json");
   fs::create_directories(folder / "config/scenarios");
   const std::string head = R"({"$schema": "../schema/scenario.schema.json", "robot": "config/tulip/robot.json", )";
   for (const auto& [scenario, more] :

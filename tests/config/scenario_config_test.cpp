@@ -61,7 +61,7 @@ TEST_CASE("A signal that nobody records is refused where the scenario names it")
 
 TEST_CASE("The scenarios that come with Kadans can be read") {
   for (const auto& entry : std::filesystem::directory_iterator(KADANS_SOURCE_DIR "/config/scenarios")) {
-    if (entry.path().extension() != ".json" || entry.path().filename() == "golden.json") continue;
+    if (entry.path().extension() != ".json") continue;
     CAPTURE(entry.path().string());
     CHECK_FALSE(read_scenario_config(entry.path()).checks.empty());
   }

@@ -1,6 +1,6 @@
-// The state hashes that the runs of a suite are known to end with: a file in the tree, beside its scenarios. A change
-// that should make no difference is shown to make none; one that makes a difference renews the file, and the diff of
-// the tree tells which runs it touched. Hashes of each second tell where.
+// The state hashes that the runs of a suite are known to end with: a file in the tree, beside the folder of its scenarios
+// (config/scenarios.golden.json). A change that should make no difference is shown to make none; one that makes a
+// difference renews the file, and the diff of the tree tells which runs it touched. Hashes of each second tell where.
 //
 // The numbers are those of one machine: another architecture rounds otherwise and has to have its own.
 #pragma once
@@ -21,10 +21,11 @@ struct GoldenRun {
   std::vector<std::string> each_s;  // the first eight digits
 };
 
+// The file that goes with a folder of scenarios.
+std::filesystem::path golden_file(const std::filesystem::path& folder);
+
 class GoldenHashes {
  public:
-  static constexpr const char* file_name = "golden.json";
-
   // Reads what is there; nothing is an empty list. Throws InputError for a file that is none of these, or of another
   // machine.
   explicit GoldenHashes(std::filesystem::path file);
