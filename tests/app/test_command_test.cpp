@@ -123,9 +123,9 @@ TEST_CASE("A control object that crashes the process is one failed row, the suit
   CHECK(has(read(folder / "results.xml"), "errors=\"1\""));
 }
 
-TEST_CASE("The shipped suite passes") {
+TEST_CASE("The shipped suite passes and ends with its golden hashes") {
   const auto folder = project_copy("test_command_shipped");
-  const Outcome outcome = run_test(folder, "");
+  const Outcome outcome = run_test(folder, "--golden");
   CAPTURE(outcome.out);
   CAPTURE(outcome.err);
   CHECK(outcome.exit_code == 0);
