@@ -129,7 +129,7 @@ TEST_CASE("Wrong wishes for checkpoints and branches are refused before anything
   struct Wrong {
     const char *arguments, *says;
   };
-  for (const auto& [arguments, says] :
+  for (const Wrong& wrong :
        {Wrong{"config/scenarios/pushed.json --checkpoint 0.2", "must be SECONDS=FILE"},
         Wrong{"config/scenarios/pushed.json --push torso=0,1,0", "goes with --from"},
         Wrong{"config/scenarios/pushed.json --from here.mcap", "has its own scenario"}, Wrong{"", "name a scenario"},
@@ -143,10 +143,10 @@ TEST_CASE("Wrong wishes for checkpoints and branches are refused before anything
         Wrong{"--from here.mcap --play wawe", "did you mean 'wave'?"},
         Wrong{"--from here.mcap --branch 'a: jump high'", "must be set"},
         Wrong{"--from here.mcap --branch 'a:' --set control.x=1", "says itself"}}) {
-    CAPTURE(std::string(arguments));
-    const Outcome outcome = run(std::string("sim --no-record ") + arguments, folder);
+    CAPTURE(std::string(wrong.arguments));
+    const Outcome outcome = run(std::string("sim --no-record ") + wrong.arguments, folder);
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.out.empty());
-    CHECK(has(outcome.err, says));
+    CHECK(has(outcome.err, wrong.says));
   }
 }

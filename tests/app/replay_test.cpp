@@ -48,11 +48,12 @@ TEST_CASE("After a change of script, configuration or model the replay says wher
   struct Change {
     const char *file, *from, *to;
   };
-  for (const auto& [file, from, to] : {Change{"behaviors/tulip/squat.lua", "0.10", "0.11"},
-                                       Change{"config/tulip/robot.json", "\"*_knee\": 0.3", "\"*_knee\": 0.301"},
-                                       Change{"models/tulip/tulip.urdf", "mass value=\"", "mass value=\"1"},
-                                       Change{"config/scenarios/squat_varied.json", "[0.5, 1.0]", "[0.5, 1.1]"}}) {
-    CAPTURE(file);
+  for (const Change& change : {Change{"behaviors/tulip/squat.lua", "0.10", "0.11"},
+                               Change{"config/tulip/robot.json", "\"*_knee\": 0.3", "\"*_knee\": 0.301"},
+                               Change{"models/tulip/tulip.urdf", "mass value=\"", "mass value=\"1"},
+                               Change{"config/scenarios/squat_varied.json", "[0.5, 1.0]", "[0.5, 1.1]"}}) {
+    const auto [file, from, to] = change;
+    CAPTURE(change.file);
     const std::string before = read(project / file);
     REQUIRE(edit(project / file, from, to));
     const Outcome parted = run("replay run.mcap", project);

@@ -1,6 +1,7 @@
-// The state hashes that the runs of a suite are known to end with: a file in the tree, beside the folder of its scenarios
-// (config/scenarios.golden.json). A change that should make no difference is shown to make none; one that makes a
-// difference renews the file, and the diff of the tree tells which runs it touched. Hashes of each second tell where.
+// The state hashes that the runs of a suite are known to end with: a file in the tree, beside the folder of its
+// scenarios (config/scenarios.golden.json). A change that should make no difference is shown to make none; one that
+// makes a difference renews the file, and the diff of the tree tells which runs it touched. Hashes of each second tell
+// where.
 //
 // The numbers are those of one machine: another architecture rounds otherwise and has to have its own.
 #pragma once
