@@ -4,6 +4,7 @@
 
 #include "behavior_parts.h"
 #include "kadans/engine/clock.h"
+#include "kadans/engine/refusal_text.h"
 #include "lua_core.h"
 
 namespace kadans {
@@ -48,6 +49,22 @@ void Behavior::Parts::tell_dropped(bool at_once) noexcept {
               std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
 }
 
+void Behavior::Parts::tell_refused() noexcept {
+  while (const Refusal* refusal = bindings.next_refusal()) {
+    ++transactions_refused;
+    log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
+                "refused by the control engine, all commands of that tick: " + refusal_text(*refusal, catalog));
+  }
+}
+
+void Behavior::Parts::want_sets(const Snapshot& snapshot) noexcept {
+  for (std::size_t i = 0; i < chart.machines.size(); ++i) {
+    const ControlSetInfo* set = bindings.set_of(i);
+    if (set == nullptr || !runner->active(chart.machines[i].root)) continue;
+    bindings.wanted |= set_bit(static_cast<std::uint32_t>(set - catalog.sets.data())) & ~snapshot.control_sets;
+  }
+}
+
 void Behavior::Parts::transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept {
   transition.time_ns = bindings.engine_ns();
   transition.behavior = chart.name;
@@ -75,11 +92,8 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
-  if (!parts.set_asked_for && bindings.set != nullptr) {
-    parts.set_asked_for = true;
-    const auto wanted = static_cast<std::uint32_t>(bindings.set - parts.catalog.sets.data());
-    if (wanted != snapshot.control_set) (void)bindings.send({.kind = CommandKind::switch_set, .index = wanted});
-  }
+  parts.tell_refused();
+  bindings.bring_in_again();
   if (!parts.run(tick_chart)) {
     commands.discard();
     if (take_back(snapshot, commands)) return true;
@@ -162,7 +176,16 @@ std::string Behavior::outcome() const {
 
 std::string Behavior::state() const { return parts_->chart.states[parts_->runner->innermost()].path; }
 
-const ControlSetInfo* Behavior::control_set() const noexcept { return parts_->bindings.set; }
+SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets(); }
+
+ObjectMask Behavior::objects() const noexcept {
+  ObjectMask all = 0;
+  for (const ControlSetInfo* set : parts_->bindings.sets) {
+    if (set == nullptr) return ~ObjectMask{0};
+    for (const std::uint32_t object : set->objects) all |= ObjectMask{1} << object;
+  }
+  return all;
+}
 
 std::vector<ScriptParameter> Behavior::parameters() const {
   const auto& all = parts_->lua->core().parameters;

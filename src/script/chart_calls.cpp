@@ -62,10 +62,12 @@ bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread, int&
     if (!run.motion->over()) return false;
     const char* why = failure(*run.motion);
     lua_settop(thread, 0);
-    arguments = why == nullptr ? 1 : 2;
+    const bool refused = run.motion->state == MotionState::refused;
+    arguments = why == nullptr ? 1 : refused ? 3 : 2;
     if (why == nullptr) return lua_pushboolean(thread, 1), true;
     lua_pushnil(thread);
     lua_pushstring(thread, why);
+    if (refused) push_reason(thread, *run.motion);
     return true;
   }
   if (now_ns_ < run.wake_ns) return false;

@@ -131,6 +131,7 @@ void ChartRunner::enter(lua_State* state, StateIndex index) {
   run.outcome = no_event;
   run.entered_ns = now_ns_;
   if (entered.machine_root) {  // a call begins anew: nothing is left of the one before
+    bindings_of(state).bring_in(entered.machine);
     renew_machine(state, chart_, tables_, entered.machine);
     for (StateIndex i = index; i < entered.end; ++i) remembered_[i] = false;
   }
