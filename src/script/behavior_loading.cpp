@@ -4,6 +4,7 @@
 #include "hint.h"
 #include "lua_core.h"
 #include "sandbox.h"
+#include "tick_code.h"
 #include "transition_lines.h"
 
 namespace kadans {
@@ -47,6 +48,18 @@ void find_control_set(Behavior::Parts& parts) {
                             "unknown control set '" + wanted + "' in 'controls'" + hint_text(wanted, names)});
 }
 
+void list_what_ticks_need(Behavior::Parts& parts) {
+  WarmUp& list = parts.warm_up;
+  list.add(tick_code());
+  parts.lua->add_to(list);
+  list.add_object(parts.bindings);
+  list.add_object(parts.settings.limits);
+  list.add_object(parts.runner);
+  list.add_object(parts.failed);
+  parts.snapshot_tables.add_to(list);
+  parts.runner->add_to(list);
+}
+
 }  // namespace
 
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
@@ -74,6 +87,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);
   parts.bindings.runner = parts.runner.get();
   parts.lua->core().loading = false;
+  list_what_ticks_need(parts);
 }
 
 }  // namespace kadans

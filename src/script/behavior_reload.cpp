@@ -5,6 +5,7 @@
 #include "behavior_parts.h"
 #include "chart_map.h"
 #include "kadans/signal/input_error.h"
+#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -110,7 +111,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
   return true;
 }
 
-void Behavior::forget_past(std::int64_t now_ns) noexcept {
+KADANS_TICK_CODE void Behavior::forget_past(std::int64_t now_ns) noexcept {
   if (past_->parts != nullptr && now_ns - past_->swapped_ns >= probation_ns) past_->parts.reset();
 }
 

@@ -2,19 +2,21 @@
 
 #include <algorithm>
 
+#include "tick_code.h"
+
 namespace kadans {
 
 bool Bindings::has_object(std::uint32_t object) const noexcept {
   return set == nullptr || std::find(set->objects.begin(), set->objects.end(), object) != set->objects.end();
 }
 
-bool Bindings::send(const Command& command) noexcept {
+KADANS_TICK_CODE bool Bindings::send(const Command& command) noexcept {
   if (sender->add(command)) return true;
   refused = true;
   return false;
 }
 
-void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept {
+KADANS_TICK_CODE void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept {
   sender = &to;
   snapshot = &seen;
   now_ns = time_ns - held_ns;
@@ -23,7 +25,7 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
   to.begin(time_ns);
 }
 
-bool Bindings::commit() noexcept {
+KADANS_TICK_CODE bool Bindings::commit() noexcept {
   const std::uint32_t sequence = sender->commit();
   const bool sent = !refused && (sequence != 0 || sender->last_sequence() == 0);
   for (std::uint32_t i = 0; i < motion_count; ++i) {

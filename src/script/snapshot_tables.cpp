@@ -4,7 +4,9 @@
 #include <initializer_list>
 #include <utility>
 
+#include "lua_core.h"
 #include "sandbox.h"
+#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -58,7 +60,7 @@ constexpr const char* key_names[] = {"",
                                      "tick"};
 
 // What `keys` holds at this number becomes a field of the table.
-void put(lua_State* state, int table, int keys, Key key, double value) {
+KADANS_TICK_CODE void put(lua_State* state, int table, int keys, Key key, double value) {
   lua_rawgeti(state, keys, key);
   lua_pushnumber(state, value);
   lua_rawset(state, table);
@@ -80,7 +82,9 @@ int first_read(lua_State* state) {
 
 // [-0 +1] An empty table, content of a part.
 void SnapshotTables::push_part(lua_State* state, Kind kind, std::size_t index) {
+  core_of(state).heap.for_ticks(true);
   lua_createtable(state, 0, kind == Kind::joint ? 3 : 8);
+  core_of(state).heap.for_ticks(false);
   lua_pushvalue(state, -1);
   parts_.push_back({kind, static_cast<std::uint32_t>(index), luaL_ref(state, LUA_REGISTRYINDEX)});
 }
@@ -116,7 +120,9 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
   on_demand_ = on_demand;
   push_names(state);
   push_part(state, Kind::root, 0);
-  lua_newtable(state);
+  core_of(state).heap.for_ticks(true);
+  lua_createtable(state, 0, static_cast<int>(model.joints.size()));
+  core_of(state).heap.for_ticks(false);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     push_whole_part(state, Kind::joint, i, "a joint");
     lua_setfield(state, -2, model.joints[i].name.c_str());
@@ -161,7 +167,7 @@ void SnapshotTables::push_names(lua_State* state) {
   levels_ = luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
-void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
+KADANS_TICK_CODE void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
   snapshot_ = &snapshot;
   now_ns_ = now_ns;
   if (read_.empty()) return;
@@ -169,6 +175,11 @@ void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int
   lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
   for (const std::uint16_t number : read_) fill(state, parts_[number]);
   lua_pop(state, 1);
+}
+
+void SnapshotTables::add_to(WarmUp& warm_up) const noexcept {
+  warm_up.add(std::as_bytes(std::span(parts_)));
+  warm_up.add(std::as_bytes(std::span(read_.data(), read_.capacity())));
 }
 
 void SnapshotTables::read_first(lua_State* state, std::size_t number) {
@@ -183,7 +194,7 @@ void SnapshotTables::read_first(lua_State* state, std::size_t number) {
 }
 
 // The names are at the top.
-void SnapshotTables::fill(lua_State* state, const Part& part) const {
+KADANS_TICK_CODE void SnapshotTables::fill(lua_State* state, const Part& part) const {
   const int keys = lua_gettop(state), table = keys + 1;
   lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
   const auto set = [=](std::initializer_list<std::pair<Key, double>> fields) {

@@ -10,6 +10,7 @@
 
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/status.h"
+#include "warm_up.h"
 
 namespace kadans {
 
@@ -23,6 +24,8 @@ class SnapshotTables {
   void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
   // Fills a part from now on.
   void read_first(lua_State* state, std::size_t part);
+  // What refill() goes through beside the tables.
+  void add_to(WarmUp& warm_up) const noexcept;
 
  private:
   enum class Kind : std::uint8_t { root, joint, base, rate, foot, support, safety };

@@ -21,6 +21,7 @@ struct lua_State;
 namespace kadans {
 
 struct LuaCore;
+class WarmUp;
 
 // Takes what scripts print.
 class ScriptVoice {
@@ -76,6 +77,8 @@ class LuaState {
   // Steps the collector, in proportion to what was allocated since the last call.
   void collect() noexcept;
   std::size_t used_bytes() const noexcept;
+  // What every call() needs, of the state and of the interpreter.
+  void add_to(WarmUp& list) const noexcept;
 
  private:
   Settings settings_;
