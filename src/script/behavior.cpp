@@ -77,6 +77,7 @@ KADANS_TICK_CODE bool Behavior::tick(const Snapshot& snapshot, CommandSender& co
   Parts& parts = *parts_;
   WarmUp::read(std::as_bytes(std::span(&snapshot, 1)).first<warm_snapshot_bytes>());
   parts.warm_up.go();
+  parts.snapshot_tables.warm_up();
   if (failed() || finished()) return false;
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;

@@ -56,7 +56,6 @@ void list_what_ticks_need(Behavior::Parts& parts) {
   list.add_object(parts.settings.limits);
   list.add_object(parts.runner);
   list.add_object(parts.failed);
-  parts.snapshot_tables.add_to(list);
   parts.runner->add_to(list);
 }
 

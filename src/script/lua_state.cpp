@@ -63,6 +63,7 @@ LuaState::LuaState(Settings settings)
   if (lua_ == nullptr) throw std::bad_alloc();
   core_->main = lua_;
   core_->heap.for_ticks(false);
+  foundation_ = core_->heap.tick_memory();
   luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   lua_gc(lua_, LUA_GCSTOP, 0);
   lua_pushcfunction(lua_, keep_error);
@@ -180,7 +181,7 @@ KADANS_TICK_CODE void LuaState::collect() noexcept {
 }
 
 void LuaState::add_to(WarmUp& list) const noexcept {
-  list.add(core_->heap.tick_memory());
+  list.add(foundation_);
   list.add_object(core_->heap);
   list.add_object(core_->budget);
   list.add_object(core_->error.line);

@@ -111,8 +111,11 @@ void SnapshotTables::finish_part(lua_State* state, std::size_t number, const cha
 
 // [-0 +1]
 void SnapshotTables::push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown) {
+  const LuaHeap& heap = core_of(state).heap;
+  const std::byte* const first = heap.tick_end();
   push_part(state, kind, index);
   finish_part(state, parts_.size() - 1, shown);
+  parts_.back().memory = {first, heap.tick_end()};
 }
 
 int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet,
@@ -120,9 +123,12 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
   on_demand_ = on_demand;
   push_names(state);
   push_part(state, Kind::root, 0);
-  core_of(state).heap.for_ticks(true);
+  LuaHeap& heap = core_of(state).heap;
+  const std::byte* const first = heap.tick_end();
+  heap.for_ticks(true);
   lua_createtable(state, 0, static_cast<int>(model.joints.size()));
-  core_of(state).heap.for_ticks(false);
+  heap.for_ticks(false);
+  joints_ = {first, heap.tick_end()};
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     push_whole_part(state, Kind::joint, i, "a joint");
     lua_setfield(state, -2, model.joints[i].name.c_str());
@@ -177,9 +183,9 @@ KADANS_TICK_CODE void SnapshotTables::refill(lua_State* state, const Snapshot& s
   lua_pop(state, 1);
 }
 
-void SnapshotTables::add_to(WarmUp& warm_up) const noexcept {
-  warm_up.add(std::as_bytes(std::span(parts_)));
-  warm_up.add(std::as_bytes(std::span(read_.data(), read_.capacity())));
+KADANS_TICK_CODE void SnapshotTables::warm_up() const noexcept {
+  if (!read_.empty()) WarmUp::read(joints_);
+  for (const std::uint16_t number : read_) WarmUp::read(parts_[number].memory);
 }
 
 void SnapshotTables::read_first(lua_State* state, std::size_t number) {

@@ -2,7 +2,9 @@
 // those of parts (a joint, a foot, the base ...) that this script has ever read: the first read of a part fills it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,8 +26,8 @@ class SnapshotTables {
   void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
   // Fills a part from now on.
   void read_first(lua_State* state, std::size_t part);
-  // What refill() goes through beside the tables.
-  void add_to(WarmUp& warm_up) const noexcept;
+  // Reads what refill() and the script are going to need. Before each refill().
+  void warm_up() const noexcept;
 
  private:
   enum class Kind : std::uint8_t { root, joint, base, rate, foot, support, safety };
@@ -34,6 +36,7 @@ class SnapshotTables {
     std::uint32_t index;
     int content;  // registry reference
     bool read = false;
+    std::span<const std::byte> memory{};  // its tables
   };
   void push_names(lua_State* state);
   void push_part(lua_State* state, Kind kind, std::size_t index);
@@ -49,6 +52,7 @@ class SnapshotTables {
   Snapshot nothing_{};
   const Snapshot* snapshot_ = &nothing_;
   std::int64_t now_ns_ = 0;
+  std::span<const std::byte> joints_;  // the table that names them
   int keys_ = 0, levels_ = 0;
 };
 

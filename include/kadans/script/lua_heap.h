@@ -33,6 +33,7 @@ class LuaHeap {
   // Whether what is allocated from now on is for every tick. Such blocks stand side by side, in tick_memory().
   void for_ticks(bool yes) noexcept { for_ticks_ = yes; }
   std::span<const std::byte> tick_memory() const noexcept { return {tick_first_, tick_.next}; }
+  const std::byte* tick_end() const noexcept { return tick_.next; }
 
   bool exceeded() const noexcept { return exceeded_; }
   void forgive() noexcept { exceeded_ = false; }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,6 +85,7 @@ class LuaState {
   Settings settings_;
   std::unique_ptr<LuaCore> core_;
   lua_State* lua_ = nullptr;
+  std::span<const std::byte> foundation_;  // what the interpreter keeps of itself
   std::vector<Source> sources_;
   std::uint64_t collected_at_ = 0;
 };
