@@ -118,11 +118,8 @@ void SnapshotTables::push_whole_part(lua_State* state, Kind kind, std::size_t in
   parts_.back().memory = {first, heap.tick_end()};
 }
 
-int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet,
-                         bool on_demand) {
-  on_demand_ = on_demand;
-  push_names(state);
-  push_part(state, Kind::root, 0);
+// [-0 +1]
+void SnapshotTables::push_joints(lua_State* state, const RobotModel& model) {
   LuaHeap& heap = core_of(state).heap;
   const std::byte* const first = heap.tick_end();
   heap.for_ticks(true);
@@ -134,6 +131,14 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
     lua_setfield(state, -2, model.joints[i].name.c_str());
   }
   make_read_only(state, "s.joints");
+}
+
+int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet,
+                         bool on_demand) {
+  on_demand_ = on_demand;
+  push_names(state);
+  push_part(state, Kind::root, 0);
+  push_joints(state, model);
   lua_setfield(state, -2, "joints");
   push_part(state, Kind::base, 0);
   const std::size_t base = parts_.size() - 1;

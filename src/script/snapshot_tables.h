@@ -42,6 +42,7 @@ class SnapshotTables {
   void push_part(lua_State* state, Kind kind, std::size_t index);
   void finish_part(lua_State* state, std::size_t number, const char* shown);
   void push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown);
+  void push_joints(lua_State* state, const RobotModel& model);
   void fill(lua_State* state, const Part& part) const;
   void fill_foot(lua_State* state, int keys, const FootStatus& foot) const;
   void fill_safety(lua_State* state, int keys, const SafetyStatus& status) const;
