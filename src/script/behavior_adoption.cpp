@@ -117,8 +117,9 @@ bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vec
   if (!old.runner->started()) return true;
   Adoption adoption{fresh, old, map};
   fresh.bindings.begin(commands, snapshot, snapshot.time_ns);
+  const int top = lua_gettop(old.lua->get());
   const bool adopted = fresh.lua->call(adopt, &adoption, fresh.settings.limits.reload_instructions, 0);
-  lua_settop(old.lua->get(), 0);
+  lua_settop(old.lua->get(), top);
   commands.discard();  // a guard that commands
   if (adopted) fresh.want_sets(snapshot);
   return adopted;

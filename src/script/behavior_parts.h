@@ -11,6 +11,7 @@
 #include "kadans/script/lua_state.h"
 #include "log_bound.h"
 #include "snapshot_tables.h"
+#include "warm_up.h"
 
 namespace kadans {
 
@@ -30,6 +31,7 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
 
+  WarmUp warm_up;  // of a tick
   Settings settings;
   const Catalog& catalog;
   BehaviorLog& log;

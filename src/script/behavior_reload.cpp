@@ -6,6 +6,7 @@
 #include "chart_map.h"
 #include "kadans/signal/input_error.h"
 #include "machine_sets.h"
+#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -115,7 +116,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
   return true;
 }
 
-void Behavior::forget_past(std::int64_t now_ns) noexcept {
+KADANS_TICK_CODE void Behavior::forget_past(std::int64_t now_ns) noexcept {
   if (past_->parts != nullptr && now_ns - past_->swapped_ns >= probation_ns) past_->parts.reset();
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tick_code.h"
+
 namespace kadans {
 
 bool Bindings::has_object(std::size_t machine, std::uint32_t object) const noexcept {
@@ -43,13 +45,13 @@ const Refusal* Bindings::next_refusal() noexcept {
   return nullptr;
 }
 
-bool Bindings::send(const Command& command) noexcept {
+KADANS_TICK_CODE bool Bindings::send(const Command& command) noexcept {
   if (sender->add(command)) return true;
   refused = true;
   return false;
 }
 
-void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept {
+KADANS_TICK_CODE void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept {
   sender = &to;
   snapshot = &seen;
   now_ns = time_ns - held_ns;
@@ -58,7 +60,7 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
   to.begin(time_ns);
 }
 
-bool Bindings::commit() noexcept {
+KADANS_TICK_CODE bool Bindings::commit() noexcept {
   const std::uint32_t sequence = sender->commit();
   const bool taken = !refused && (sequence != 0 || sender->last_sequence() == 0);
   if (taken) wanted = 0;

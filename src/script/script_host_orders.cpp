@@ -5,6 +5,36 @@
 #include "kadans/signal/input_error.h"
 
 namespace kadans {
+namespace {
+
+class Silence final : public BehaviorLog {
+ public:
+  void transition(const Transition&) override {}
+  void message(std::int64_t, Severity, const std::string&, const std::string&) override {}
+};
+
+}  // namespace
+
+std::vector<std::filesystem::path> ScriptHost::files() const {
+  std::vector<std::filesystem::path> all;
+  const auto add = [&all](const Behavior& behavior) {
+    for (std::filesystem::path& file : behavior.files()) all.push_back(std::move(file));
+  };
+  for (const PlayList::Entry& entry : list_.entries()) add(*entry.behavior);
+  Silence silence;
+  for (const Due& due : events_) {
+    for (const PlayList::Entry& entry : due.loaded) add(*entry.behavior);
+    if (due.order.file.empty()) continue;
+    all.push_back(due.order.file);
+    try {
+      const Behavior::Settings settings{
+          .root = settings_.root, .file = due.order.file, .seed = settings_.seed, .limits = settings_.limits};
+      add(Behavior(settings, catalog_, silence));
+    } catch (const InputError&) {  // the reload will be refused
+    }
+  }
+  return all;
+}
 
 void ScriptHost::order(const PlayOrder& order) {
   std::vector<InputProblem> problems;

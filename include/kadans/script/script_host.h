@@ -60,6 +60,8 @@ class ScriptHost final : public BehaviorHost {
   bool finished() const noexcept { return list_.over(); }  // every lane is at its end, or stopped
   const PlayStatus& status() const noexcept { return list_.status(); }
   std::vector<std::string> names() const;  // of what was loaded and is not forgotten
+  // All that it may read: behaviors with their modules, those of events and what events reload too. Before the loop.
+  std::vector<std::filesystem::path> files() const;
 
   // What plays, waits or played, in order; what events bring is there from then on.
   std::size_t size() const noexcept { return list_.entries().size(); }
