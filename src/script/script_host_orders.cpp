@@ -40,6 +40,9 @@ void ScriptHost::order(const PlayOrder& order) {
   std::vector<InputProblem> problems;
   Due due{0, order, load(order.list, false, problems)};
   if (!problems.empty()) throw InputError(problems);
+  if (order.kind == PlayOrder::Kind::play) {
+    if (const std::string why = clash(due.loaded); !why.empty()) throw InputError({.message = why});
+  }
   const std::vector<std::string> known = names();
   if (order.kind == PlayOrder::Kind::reload && std::ranges::find(known, order.behavior.name) == known.end())
     throw InputError({.message = unknown_name("behavior", order.behavior.name, known)});
@@ -64,6 +67,10 @@ void ScriptHost::carry_out(Due& due, const Snapshot& snapshot, CommandSender& co
   if (kind == Kind::pause) pause_.begin();
   if (kind == Kind::resume) pause_.end();
   if (kind == Kind::stop || kind == Kind::replace) leave_all(snapshot, commands);
+  if (const std::string why = clash(due.loaded); !why.empty()) {
+    log_.message(snapshot.time_ns, BehaviorLog::Severity::error, "supervisor", why);
+    return;
+  }
   begin(due.loaded);
 }
 
@@ -90,7 +97,7 @@ void ScriptHost::reload(const PlayOrder& order, const Snapshot& snapshot, Comman
   for (PlayList::Entry& entry : list_.entries()) {
     if (entry.over || entry.behavior->name() != order.behavior.name) continue;
     entry.behavior->hold_clock(pause_.held_ns());
-    (void)entry.behavior->reload(snapshot, commands, order.file);
+    (void)entry.behavior->reload(snapshot, commands, order.file, PlayList::sets_beside(entry.lane, list_.entries()));
   }
 }
 
@@ -99,7 +106,7 @@ void ScriptHost::reload_saved(const Snapshot& snapshot, CommandSender& commands)
   for (PlayList::Entry& entry : list_.entries()) {
     if (entry.over) continue;
     entry.behavior->hold_clock(pause_.held_ns());
-    (void)entry.behavior->reload(snapshot, commands);
+    (void)entry.behavior->reload(snapshot, commands, {}, PlayList::sets_beside(entry.lane, list_.entries()));
   }
   watch_folders();  // of modules that are new
 }

