@@ -19,6 +19,7 @@ struct SimOptions {
   bool watch = false;
   std::string play;              // a list in place of the scenario's; "" = the scenario's
   std::vector<std::string> set;  // "ground.friction=0.3"
+  std::string metrics;           // plan whose metrics are reported; "" = none
   std::string record;            // "" = NAME.mcap in the working directory
 };
 int run_sim(const SimOptions& options);

@@ -9,6 +9,7 @@
 #include "kadans/signal/nearest_name.h"
 #include "repl_command.h"
 #include "stubs_command.h"
+#include "sweep_command.h"
 #include "terminal.h"
 #include "version.h"
 
@@ -42,6 +43,8 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->type_name("LIST");
   sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
       ->type_name("NAME=NUMBER");
+  sim->add_option("--metrics", options.metrics, "A plan of a sweep or tuning whose metrics are reported")
+      ->type_name("FILE");
   CLI::Option* record =
       sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
   sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
@@ -109,6 +112,10 @@ int run(int argc, char** argv) {
   TestOptions test;
   add_test(app, test);
   add_check(app, check);
+  SweepOptions sweep;
+  add_sweep(app, sweep);
+  MergeOptions merge;
+  add_merge(app, merge);
   BehaviorOptions behavior;
   add_behavior(app, behavior);
   ReplOptions repl;
@@ -129,6 +136,8 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   if (app.got_subcommand("test")) return run_test(test);
+  if (app.got_subcommand("sweep")) return run_sweep(sweep);
+  if (app.got_subcommand("merge")) return run_merge(merge);
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
   if (app.got_subcommand("repl")) return run_repl(repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);

@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "kadans/app/assembly.h"
+#include "kadans/config/experiment_config.h"
 #include "kadans/scenario/report.h"
 #include "kadans/telemetry/recorder.h"
 #include "observers.h"
@@ -21,7 +22,7 @@ constexpr const char* height_signal = "plant.base.height_m";
 std::string repeat_command(const ScenarioConfig& scenario, const SimOptions& options, std::uint64_t seed) {
   std::string command = "kadans sim " + scenario.file + " --seed " + std::to_string(seed);
   if (!options.play.empty()) command += " --play '" + options.play + "'";
-  for (const std::string& setting : options.set) command += " --set " + setting;
+  for (const std::string& setting : options.set) command += " --set '" + setting + "'";
   if (options.duration_s) command += " --duration " + number_text(*options.duration_s);
   return command;
 }
@@ -91,7 +92,10 @@ class Sim {
         seed_(options.seed.value_or(scenario_.seed)),
         duration_s_(options.duration_s.value_or(scenario_.duration_s)),
         assembly_(scenario_, seed_, log_),
-        checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file) {}
+        checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file),
+        metrics_(assembly_.catalog().signals,
+                 options.metrics.empty() ? std::vector<MetricConfig>() : read_metrics(options.metrics),
+                 options.metrics) {}
 
   int run() {
     const std::string record = start_record();
@@ -100,6 +104,7 @@ class Sim {
     TraceObserver height("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_);
     observers.push_back(&height);
     observers.push_back(&evidence_);
+    observers.push_back(&metrics_);
     Pace pace;
     if (options_.realtime) observers.push_back(&pace);
     if (options_.watch) {
@@ -152,6 +157,7 @@ class Sim {
       const ReportContext context{.log = log_,
                                   .model = assembly_.robot().model,
                                   .quantities = assembly_.quantities(),
+                                  .metrics = metrics_.values(),
                                   .evidence = evidence_.around(result.checks),
                                   .record = record};
       std::puts(json_report(result, context).c_str());
@@ -171,6 +177,7 @@ class Sim {
     const std::string text =
         text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
     std::fputs(text.c_str(), stdout);
+    for (const MetricValue& metric : metrics_.values()) std::printf("  %s = %.6g\n", metric.name.c_str(), metric.value);
   }
 
   const SimOptions& options_;
@@ -182,6 +189,7 @@ class Sim {
   Assembly assembly_;
   Checks checks_;
   Evidence evidence_{checks_, assembly_.catalog().signals};
+  Metrics metrics_;
   std::unique_ptr<Recorder> recorder_;
 };
 

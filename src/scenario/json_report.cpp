@@ -73,6 +73,8 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   json["record"] = context.record;
   json["quantities"] = Json::object();
   for (const QuantityValue& quantity : context.quantities) json["quantities"][quantity.name] = quantity.value;
+  if (!context.metrics.empty()) json["metrics"] = Json::object();
+  for (const MetricValue& metric : context.metrics) json["metrics"][metric.name] = metric.value;
   if (!result.passed) {
     constexpr std::ptrdiff_t last = 20;
     const std::vector<Transition>& all = context.log.transitions();
