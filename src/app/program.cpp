@@ -11,6 +11,7 @@
 #include "stubs_command.h"
 #include "sweep_command.h"
 #include "terminal.h"
+#include "tune_command.h"
 #include "version.h"
 
 namespace kadans {
@@ -116,6 +117,8 @@ int run(int argc, char** argv) {
   add_sweep(app, sweep);
   MergeOptions merge;
   add_merge(app, merge);
+  TuneOptions tune;
+  add_tune(app, tune);
   BehaviorOptions behavior;
   add_behavior(app, behavior);
   ReplOptions repl;
@@ -138,6 +141,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("test")) return run_test(test);
   if (app.got_subcommand("sweep")) return run_sweep(sweep);
   if (app.got_subcommand("merge")) return run_merge(merge);
+  if (app.got_subcommand("tune")) return start_tune_program(argv);
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
   if (app.got_subcommand("repl")) return run_repl(repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);

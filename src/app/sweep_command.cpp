@@ -7,11 +7,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "job_progress.h"
-#include "kadans/campaign/job_pool.h"
 #include "kadans/campaign/shard.h"
 #include "kadans/campaign/sweep_results.h"
 #include "kadans/campaign/sweep_summary.h"
+#include "sweep_run.h"
 #include "sweep_subjects.h"
 #include "terminal.h"
 
@@ -19,64 +18,6 @@ namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The part of a sweep that this process makes.
-class SweepRun final : public JobWatcher {
- public:
-  SweepRun(const SweepPlan& plan, const std::vector<SweepSubject>& subjects, const SweepResults& results,
-           std::vector<SweepCase> cases, bool json)
-      : plan_(plan),
-        subjects_(subjects),
-        results_(results),
-        cases_(std::move(cases)),
-        json_(json),
-        progress_(std::max<std::size_t>(cases_.size(), 1), !json, JobProgress::Log::tenths) {}
-
-  void run(std::size_t at_once) {
-    const std::string program = fs::read_symlink("/proc/self/exe").string();
-    std::vector<Job> jobs;
-    for (const SweepCase& one : cases_) {
-      const SweepSubject& subject = subjects_[one.subject];
-      Job job{{program}, subject.wall_limit_s};
-      std::ranges::move(run_arguments(one, subject.scenario.file), std::back_inserter(job.arguments));
-      for (const char* option : {"--json", "--no-record"}) job.arguments.emplace_back(option);
-      if (!plan_.metrics.empty()) {
-        job.arguments.emplace_back("--metrics");
-        job.arguments.push_back(plan_.file);
-      }
-      jobs.push_back(std::move(job));
-    }
-    run_jobs(jobs, at_once, *this);
-    progress_.clear();
-  }
-
-  void ended(const JobOutcome& outcome) override {
-    const SweepCase& one = cases_[outcome.job];
-    const SweepSubject& subject = subjects_[one.subject];
-    RunOutcome run = read_run_outcome(outcome);
-    if (run.status == RunStatus::cancelled) return;
-    run.scenario = subject.name;
-    run.file = subject.scenario.written;
-    run.seed = one.seed;
-    run.repeat = repeat_command(one, subject);
-    const std::string line = case_json(results_.manifest(), one, run);
-    results_.store(one, line);
-    progress_.ended();
-    if (!json_) return;
-    std::fputs(line.c_str(), stdout);
-    std::fflush(stdout);
-  }
-  void passed_time(std::size_t running) override { progress_.draw(running); }
-  bool stop_asked() const override { return interrupted(); }
-
- private:
-  const SweepPlan& plan_;
-  const std::vector<SweepSubject>& subjects_;
-  const SweepResults& results_;
-  std::vector<SweepCase> cases_;
-  bool json_;
-  JobProgress progress_;
-};
 
 SweepPlan read_plan(const SweepOptions& options) {
   SweepPlan plan = read_sweep_plan(options.plan);

@@ -31,7 +31,7 @@ std::vector<double> ends_of(const Distribution& distribution) {
   return {distribution.at(0), distribution.at(1)};
 }
 
-void verify_ranges(const SweepPlan& plan, const Robot& robot, Problems& problems) {
+void verify_ranges(const ExperimentConfig& plan, const Robot& robot, Problems& problems) {
   const auto system = make_control_system(robot);
   PlantVariant variant{.model = robot.config.model, .plant = robot.config.plant};
   Quantities quantities(variant, system->catalog);
@@ -45,7 +45,7 @@ void verify_ranges(const SweepPlan& plan, const Robot& robot, Problems& problems
   }
 }
 
-SweepSubject subject_of(const ExperimentScenario& named, const SweepPlan& plan, Problems& problems) {
+SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig& plan, Problems& problems) {
   const ScenarioConfig scenario = read_scenario_config(named.file);
   const Robot robot = read_robot(scenario.robot);
   verify_ranges(plan, robot, problems);
@@ -65,7 +65,7 @@ SweepSubject subject_of(const ExperimentScenario& named, const SweepPlan& plan, 
 
 }  // namespace
 
-std::vector<SweepSubject> read_sweep_subjects(const SweepPlan& plan) {
+std::vector<SweepSubject> read_sweep_subjects(const ExperimentConfig& plan) {
   Problems problems(plan.file);
   std::vector<SweepSubject> subjects;
   for (const ExperimentScenario& scenario : plan.scenarios) {
@@ -79,9 +79,14 @@ std::vector<SweepSubject> read_sweep_subjects(const SweepPlan& plan) {
   return subjects;
 }
 
+std::string run_program_path() {
+  const fs::path own = fs::read_symlink("/proc/self/exe");
+  return own.filename() == "kadans-tune" ? (own.parent_path() / "kadans").string() : own.string();
+}
+
 std::string build_version() {
   ContentHash hash;
-  hash.add_file("/proc/self/exe");
+  hash.add_file(run_program_path());
   return std::string(version) + "+" + hash.hex().substr(0, 8);
 }
 

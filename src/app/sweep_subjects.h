@@ -11,9 +11,11 @@ namespace kadans {
 
 // Throws InputError with everything that is wrong in the scenarios' files, in the plan's metrics, and in the ranges of
 // what it varies.
-std::vector<SweepSubject> read_sweep_subjects(const SweepPlan& plan);
+std::vector<SweepSubject> read_sweep_subjects(const ExperimentConfig& plan);
 
-// The program's version with a hash of the program itself: results of two builds are not mixed.
+// The program that runs scenarios: this one, or that beside it.
+std::string run_program_path();
+// Its version with a hash of the program itself: results of two builds are not mixed.
 std::string build_version();
 
 }  // namespace kadans

@@ -33,6 +33,19 @@ double& friction_of(PlantSettings& plant, const std::string& link) {
   return plant.surfaces.back().friction;
 }
 
+// Where the presets of the control objects keep a parameter, and what they have there.
+std::vector<std::pair<double*, double>> values_in_presets(Catalog& catalog, ParameterId id) {
+  std::vector<std::pair<double*, double>> found;
+  for (ObjectInfo& object : catalog.objects) {
+    for (Preset& preset : object.presets) {
+      for (auto& [parameter, value] : preset.values) {
+        if (parameter == id) found.emplace_back(&value, value);
+      }
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 Quantities::Quantities(PlantVariant& variant, Catalog& catalog) {
@@ -129,9 +142,13 @@ void Quantities::add_parameters(Catalog& catalog) {
       scaled->value = value;
       store();
     });
-    add("control." + info.name + "_scale", scale_range, [scaled, store](double factor) {
+    // A gain that is off by a factor is so whatever preset a behavior chooses.
+    const std::vector<std::pair<double*, double>> presets = values_in_presets(catalog, id);
+    add("control." + info.name + "_scale", scale_range, [scaled, store, presets, &catalog, id](double factor) {
       scaled->factor = factor;
       store();
+      const Parameter& range = catalog.parameters.info(id);
+      for (const auto& [value, whole] : presets) *value = std::clamp(whole * factor, range.min, range.max);
     });
   }
 }

@@ -68,6 +68,7 @@ TEST_CASE("The shipped schemas are what the readers' field lists say") {
   check_shipped(robot_schema(), "robot.schema.json");
   check_shipped(scenario_schema(), "scenario.schema.json");
   check_shipped(sweep_schema(), "sweep.schema.json");
+  check_shipped(tune_schema(), "tune.schema.json");
 }
 
 TEST_CASE("What the readers accept fits the schemas, what the schemas refuse is no shipped file") {
@@ -79,6 +80,9 @@ TEST_CASE("What the readers accept fits the schemas, what the schemas refuse is 
   }
   for (const auto& entry : fs::directory_iterator(source / "config" / "sweeps")) {
     if (entry.path().extension() == ".json") check_file(sweep_schema(), entry.path());
+  }
+  for (const auto& entry : fs::directory_iterator(source / "config" / "tuning")) {
+    if (entry.path().extension() == ".json") check_file(tune_schema(), entry.path());
   }
 }
 

@@ -119,3 +119,15 @@ TEST_CASE("What is set again replaces what was set before, a scale is of the rob
   REQUIRE(robot.done.size() == 7);          // each once, with its last value
   CHECK(robot.done[0].value == 0.9);
 }
+
+TEST_CASE("The scale of a parameter is of its presets too, its value is not") {
+  Robot robot;
+  robot.catalog.objects.push_back(
+      {.name = "posture", .presets = {{"stiff", {{0, 150.0}}}, {"stiffest", {{0, 480.0}}}}});
+  robot.set("control.posture.l_knee.kp", 90);
+  CHECK(robot.catalog.objects[0].presets[0].values[0].second == 150);
+  robot.set("control.posture.l_knee.kp_scale", 1.2);
+  CHECK(robot.catalog.objects[0].presets[0].values[0].second == doctest::Approx(180));
+  CHECK(robot.catalog.objects[0].presets[1].values[0].second == 500);  // the parameter's own limit
+  CHECK(robot.kp == doctest::Approx(108));
+}
