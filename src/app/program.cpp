@@ -10,7 +10,9 @@
 #include "repl_command.h"
 #include "replay_command.h"
 #include "stubs_command.h"
+#include "sweep_command.h"
 #include "terminal.h"
+#include "tune_command.h"
 #include "version.h"
 
 namespace kadans {
@@ -99,6 +101,12 @@ int run(int argc, char** argv) {
   ReplayOptions replay;
   add_replay(app, replay);
   add_check(app, check);
+  SweepOptions sweep;
+  add_sweep(app, sweep);
+  MergeOptions merge;
+  add_merge(app, merge);
+  TuneOptions tune;
+  add_tune(app, tune);
   BehaviorOptions behavior;
   add_behavior(app, behavior);
   ReplOptions repl;
@@ -120,6 +128,9 @@ int run(int argc, char** argv) {
   }
   if (app.got_subcommand("test")) return run_test(test);
   if (app.got_subcommand("replay")) return run_replay(replay);
+  if (app.got_subcommand("sweep")) return run_sweep(sweep);
+  if (app.got_subcommand("merge")) return run_merge(merge);
+  if (app.got_subcommand("tune")) return start_tune_program(argv);
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
   if (app.got_subcommand("repl")) return run_repl(repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);
