@@ -22,7 +22,7 @@ PlantSettings checked(const RobotModel& model, const PlantSettings& settings) {
 
 ContactWorld::Options world_options(const PlantSettings& settings) {
   return {to_bullet(settings.gravity_m_s2), settings.solver_iterations, settings.ground_friction,
-          to_bullet(ground_pose(settings.world))};
+          to_bullet(ground_pose(settings.world)), settings.solver};
 }
 
 bool finite(const JointActuation& actuation) noexcept {

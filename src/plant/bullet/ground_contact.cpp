@@ -26,7 +26,7 @@ struct Corner {
 
 // What the solver starts from at a corner that touched in the last step already.
 struct Impulse {
-  double normal = 0, rhs = 0;
+  double normal = 0, lateral1 = 0, lateral2 = 0, rhs = 0;
 };
 using Impulses = std::array<Impulse, corners_per_shape>;
 
@@ -34,7 +34,8 @@ Impulses impulses_of(const btPersistentManifold& manifold) {
   Impulses impulses{};
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
     const btManifoldPoint& point = manifold.getContactPoint(i);
-    impulses[static_cast<std::size_t>(point.m_index0)] = {point.m_appliedImpulse, point.m_prevRHS};
+    impulses[static_cast<std::size_t>(point.m_index0)] = {point.m_appliedImpulse, point.m_appliedImpulseLateral1,
+                                                          point.m_appliedImpulseLateral2, point.m_prevRHS};
   }
   return impulses;
 }
@@ -151,6 +152,8 @@ class GroundContact final : public btCollisionAlgorithm {
     surface_.give(contact);
     contact.m_index0 = corner.number;
     contact.m_appliedImpulse = last.normal;
+    contact.m_appliedImpulseLateral1 = last.lateral1;
+    contact.m_appliedImpulseLateral2 = last.lateral2;
     contact.m_prevRHS = last.rhs;
     manifold.addManifoldPoint(contact);
   }
