@@ -121,7 +121,11 @@ void Tree::accelerate() {
   factor_.second_half(z());
 }
 
-void Tree::end_step() { body_->applyDeltaVeeMultiDof(z(), 1); }
+// What is infinite becomes not a number: Bullet would cut it down to its greatest velocity, and hide it.
+void Tree::end_step() {
+  for (double& change : z_) change += 0 * change;
+  body_->applyDeltaVeeMultiDof(z(), 1);
+}
 
 void Tree::response(int link, const std::array<Wrench, 3>& wrenches, std::array<double, 4>* y) const {
   const Path path = shape_.link_path(link);
