@@ -1,0 +1,170 @@
+// One step of TULip in our plant, in the same plant with Bullet's own solver, and in MuJoCo: the same robot, the same
+// rigid drives (reflected inertia, damping), the same torques by the same rule from each engine's own state, 1 ms. The
+// engines take turns, a few steps each, so that whatever the machine does beside meets all alike; compare ratios, not
+// figures. Our step includes what a plant does beyond mechanics: encoders, IMU and foot sensors with noise, truth.
+#include <cmath>
+#include <cstdio>
+
+#include "../report.h"
+#include "engines.h"
+#include "kadans/model/urdf.h"
+#include "kadans/plant/bullet/bullet_plant.h"
+
+namespace kadans::bench {
+namespace {
+
+constexpr int steps_per_turn = 20, settle_steps = 1000, timed_steps = 3000;
+
+enum class Scene : std::uint8_t { standing, squatting, fallen, ball };
+
+struct SceneInfo {
+  Scene scene;
+  const char* key;
+  const char* text;
+};
+constexpr SceneInfo scenes[] = {{Scene::standing, "standing", "standing"},
+                                {Scene::squatting, "squatting", "squatting"},
+                                {Scene::fallen, "fallen", "lying"},
+                                {Scene::ball, "ball", "standing, ball on its foot"}};
+
+double stand_rad(const std::string& joint) {
+  if (joint.ends_with("hip_pitch") || joint.ends_with("ankle_pitch")) return -0.15;
+  if (joint.ends_with("knee")) return 0.3;
+  return joint.ends_with("shoulder_pitch") ? -0.2 : 0;
+}
+
+// Bends by `depth` of the way from stand to a squat.
+double squat_rad(const std::string& joint, double depth) {
+  if (joint.ends_with("hip_pitch") || joint.ends_with("ankle_pitch")) return -0.15 - 0.48 * depth;
+  return joint.ends_with("knee") ? 0.3 + 0.96 * depth : stand_rad(joint);
+}
+
+DriveSettings rigid_drive(const Joint& joint) {
+  if (joint.passive()) return {.parallel_spring_Nm_per_rad = 25, .parallel_damping_Nms_per_rad = 0.6};
+  return {.torque_max_Nm = joint.effort_max_Nm, .rotor_inertia_kg_m2 = 0.02, .viscous_Nms_per_rad = 0.2};
+}
+
+PlantSettings settings_of(const RobotModel& model, Scene scene) {
+  PlantSettings settings;
+  for (const Joint& joint : model.joints) {
+    settings.drives.push_back(rigid_drive(joint));
+    settings.position_rad.push_back(stand_rad(joint.name));
+    settings.encoders.push_back({9.587379924285257e-05, 2e-05});
+  }
+  settings.imu.gyro_noise_rad_s = 0.005;
+  settings.imu.accelerometer_noise_m_s2 = 0.05;
+  for (const std::string link : {"l_ankle_roll_link", "r_ankle_roll_link"}) {
+    const double inner = link.starts_with("l") ? -0.05 : 0.05;
+    settings.feet.push_back(
+        {.link = link,
+         .sensors_m = {{{-0.08, inner, -0.06}, {-0.08, -inner, -0.06}, {0.14, inner, -0.06}, {0.14, -inner, -0.06}}},
+         .noise_N = 0.5});
+  }
+  for (const Link& link : model.links) settings.surfaces.push_back({link.name, 0.8});
+  if (scene == Scene::fallen) settings.base.orientation = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};
+  if (scene == Scene::ball) {
+    settings.world.objects.push_back({.name = "ball",
+                                      .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4, .velocity_m_s = {-0.2, 0, 0}},
+                                      .pose = {.position_m = {0.4, 0.1, 0.1}}});
+  }
+  // Our plant finds where the base is when the robot touches the ground; MuJoCo starts there too.
+  settings.base = BulletPlant(model, settings, 1).truth().base;
+  settings.stand_on_ground = false;
+  return settings;
+}
+
+struct Runner {
+  std::string key, text;
+  std::unique_ptr<Engine> engine;
+  std::vector<double> times_us;
+  EngineState settled;
+};
+
+class SceneRun {
+ public:
+  SceneRun(const RobotModel& model, Scene scene) : model_(model), scene_(scene) {
+    const PlantSettings settings = settings_of(model, scene);
+    add("kadans", "Kadans", kadans_engine(model, settings, ContactSolver::tree));
+    add("bullet", "Bullet's solver", kadans_engine(model, settings, ContactSolver::stock));
+    add("mujoco_cg", "MuJoCo CG", mujoco_engine(model, settings, "CG"));
+    add("mujoco_newton", "MuJoCo Newton", mujoco_engine(model, settings, "Newton"));
+  }
+
+  void run() {
+    for (int k = 0; k < settle_steps + timed_steps; k += steps_per_turn) {
+      for (Runner& runner : runners_) {
+        if (k == settle_steps) runner.settled = runner.engine->state();
+        for (int i = 0; i < steps_per_turn; ++i) step(runner, k + i);
+      }
+    }
+  }
+  const std::vector<Runner>& runners() const { return runners_; }
+
+ private:
+  void add(std::string key, std::string text, std::unique_ptr<Engine> engine) {
+    runners_.push_back({std::move(key), std::move(text), std::move(engine), {}, {}});
+  }
+
+  void step(Runner& runner, int number) {
+    runner.engine->set_torques(torques(runner.engine->state(), 1e-3 * number));
+    const double began = now_ns();
+    runner.engine->step();
+    if (number >= settle_steps) runner.times_us.push_back(1e-3 * (now_ns() - began));
+  }
+
+  std::vector<double> torques(const EngineState& state, double time_s) const {
+    std::vector<double> torques;
+    const double depth = scene_ == Scene::squatting ? (1 - std::cos(2 * 3.141592653589793 * time_s / 2)) / 2 : 0;
+    for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+      const Joint& joint = model_.joints[i];
+      const double error = squat_rad(joint.name, depth) - state.position_rad[i];
+      const double torque =
+          std::clamp(300 * error - 4 * state.velocity_rad_s[i], -joint.effort_max_Nm, joint.effort_max_Nm);
+      torques.push_back(joint.passive() ? 0 : torque);
+    }
+    return torques;
+  }
+
+  const RobotModel& model_;
+  Scene scene_;
+  std::vector<Runner> runners_;
+};
+
+double drift_mm(const Runner& runner) {
+  const EngineState now = runner.engine->state();
+  double worst_m = 0;
+  for (std::size_t i = 0; i < now.feet_m.size(); ++i) {
+    const Vec3 &a = now.feet_m[i], &b = runner.settled.feet_m[i];
+    worst_m = std::max(worst_m, std::hypot(a[0] - b[0], a[1] - b[1]));
+  }
+  return 1e3 * worst_m;
+}
+
+void report_scene(Report& report, const SceneInfo& info, const SceneRun& run) {
+  const bool main = info.scene == Scene::standing;
+  const double ours_us = median(run.runners()[0].times_us);
+  for (const Runner& runner : run.runners()) {
+    const double step_us = median(runner.times_us);
+    const std::string text = std::string(info.text) + ", " + runner.text, end = info.key + ("." + runner.key);
+    report.add(main ? "plant_step_us." + runner.key : "plant_scenes_us." + end, "step, " + text, step_us, "us");
+    if (&runner != &run.runners()[0]) {
+      report.add("plant_ratio." + end, "  Kadans to that", ours_us / step_us, "x");
+    }
+    report.add("plant_contacts." + end, "  points of contact", runner.engine->contact_count(), "");
+    if (main) report.add("plant_drift_mm." + runner.key, "  drift of the feet in 3 s", drift_mm(runner), "mm");
+  }
+}
+
+}  // namespace
+
+void bench_plant(Report& report) {
+  const RobotModel model = read_urdf(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
+  for (const SceneInfo& info : scenes) {
+    SceneRun run(model, info.scene);
+    run.run();
+    report_scene(report, info, run);
+  }
+  bench_simulation(report);
+}
+
+}  // namespace kadans::bench
