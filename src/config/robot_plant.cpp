@@ -114,7 +114,7 @@ void RobotReader::plant(Fields& f) {
   f.numbers("gravity_m_s2", plant.gravity_m_s2, {-100, 100, "m/s2"}, "gravity in world axes");
   static const std::vector<std::string> solvers{"tree", "stock"};
   f.choice("solver", plant.solver, solvers, "of contacts and joint laws: our own, or Bullet's");
-  f.integer("solver_iterations", plant.solver_iterations, {1, 1000}, "iterations of the contact solver in a step, at most");
+  f.integer("solver_iterations", plant.solver_iterations, {1, 1000}, "iterations of the contact solver in a step");
   f.boolean("fixed_base", plant.fixed_base, "the base link is bolted to the world");
   f.boolean("self_collision", plant.self_collision, "the robot's links collide with each other");
   for (std::size_t i = 0; i < plant.drives.size(); ++i) {

@@ -104,13 +104,28 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   std::vector<JointRows*> rows_;
 };
 
+namespace {
+
+// Bullet's own pools hold 4096 of each and cost 8 MB, and milliseconds at every start.
+btDefaultCollisionConstructionInfo small_pools() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 512;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 512;
+  return info;
+}
+
+}  // namespace
+
 ContactWorld::ContactWorld(const Options& options, PairMask& mask)
-    : object_contact_(
+    : configuration_(small_pools()),
+      object_contact_(
           *configuration_.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE)),
-      dispatcher_(&configuration_) {
+      dispatcher_(&configuration_),
+      tree_solver_({.friction = options.solver == ContactSolver::tree_square_friction ? FrictionLaw::pyramid
+                                                                                      : FrictionLaw::cone}) {
   ground_contact_.register_with(dispatcher_);
   object_contact_.register_with(dispatcher_);
-  const bool own = options.solver == ContactSolver::tree;
+  const bool own = options.solver != ContactSolver::stock;
   btMultiBodyConstraintSolver& solver = own ? tree_solver_ : stock_solver_;
   world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver, &configuration_);
   if (own) world_->use(tree_solver_);

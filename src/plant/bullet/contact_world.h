@@ -76,7 +76,7 @@ class ContactWorld {
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
   btMultiBodyConstraintSolver stock_solver_;
-  TreeSolver tree_solver_{{}};
+  TreeSolver tree_solver_;
   std::unique_ptr<SteppedWorld> world_;
   btStaticPlaneShape ground_shape_{btVector3(0, 0, 1), 0};
   btRigidBody ground_{0, nullptr, &ground_shape_};

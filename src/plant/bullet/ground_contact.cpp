@@ -101,6 +101,14 @@ LowestPoints lowest_points(const btCollisionShape& shape, const btTransform& pos
   return points;
 }
 
+// No point of the shape is further from its centre.
+double reach_m(const btCollisionShape& shape) {
+  btVector3 center;
+  btScalar radius = 0;
+  shape.getBoundingSphere(center, radius);
+  return radius;
+}
+
 class GroundContact final : public btCollisionAlgorithm {
  public:
   GroundContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject& link,
@@ -108,7 +116,11 @@ class GroundContact final : public btCollisionAlgorithm {
       : btCollisionAlgorithm(info), link_(&link), ground_(&ground), surface_(link, ground) {
     const int parts = compound().getNumChildShapes();
     manifolds_.reserve(parts);
-    for (int i = 0; i < parts; ++i) manifolds_.push_back(info.m_dispatcher1->getNewManifold(&link, &ground));
+    reaches_m_.reserve(parts);
+    for (int i = 0; i < parts; ++i) {
+      manifolds_.push_back(info.m_dispatcher1->getNewManifold(&link, &ground));
+      reaches_m_.push_back(reach_m(*compound().getChildShape(i)));
+    }
   }
   ~GroundContact() override {
     for (int i = 0; i < manifolds_.size(); ++i) m_dispatcher->releaseManifold(manifolds_[i]);
@@ -116,11 +128,14 @@ class GroundContact final : public btCollisionAlgorithm {
 
   void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
                         btManifoldResult*) override {
-    const btTransform link_in_ground = ground_->getWorldTransform().inverse() * link_->getWorldTransform();
+    const btVector3 up = ground_->getWorldTransform().getBasis().getColumn(2);
     for (int i = 0; i < manifolds_.size(); ++i) {
       const Impulses last = impulses_of(*manifolds_[i]);
       manifolds_[i]->clearManifold();
-      const btTransform part = link_in_ground * compound().getChildTransform(i);
+      const btVector3 center = link_->getWorldTransform() * compound().getChildTransform(i).getOrigin();
+      if (up.dot(center - ground_->getWorldTransform().getOrigin()) > reaches_m_[i] + contact_distance_m) continue;
+      const btTransform part =
+          ground_->getWorldTransform().inverseTimes(link_->getWorldTransform()) * compound().getChildTransform(i);
       for (const Corner& corner : lowest_points(*compound().getChildShape(i), part)) {
         add(*manifolds_[i], corner, last[static_cast<std::size_t>(corner.number)]);
       }
@@ -161,7 +176,8 @@ class GroundContact final : public btCollisionAlgorithm {
   const btCollisionObject* link_;
   const btCollisionObject* ground_;
   ContactSurface surface_;
-  btManifoldArray manifolds_;  // one a part
+  btManifoldArray manifolds_;                 // one a part
+  btAlignedObjectArray<btScalar> reaches_m_;  // likewise
 };
 
 }  // namespace

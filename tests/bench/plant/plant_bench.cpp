@@ -3,12 +3,12 @@
 // engines take turns, a few steps each, so that whatever the machine does beside meets all alike; compare ratios, not
 // figures. Our step includes what a plant does beyond mechanics: encoders, IMU and foot sensors with noise, truth.
 #include <cmath>
-#include <cstdio>
+#include <numbers>
 
 #include "../report.h"
 #include "engines.h"
 #include "kadans/model/urdf.h"
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "standing.h"
 
 namespace kadans::bench {
 namespace {
@@ -27,49 +27,15 @@ constexpr SceneInfo scenes[] = {{Scene::standing, "standing", "standing"},
                                 {Scene::fallen, "fallen", "lying"},
                                 {Scene::ball, "ball", "standing, ball on its foot"}};
 
-double stand_rad(const std::string& joint) {
-  if (joint.ends_with("hip_pitch") || joint.ends_with("ankle_pitch")) return -0.15;
-  if (joint.ends_with("knee")) return 0.3;
-  return joint.ends_with("shoulder_pitch") ? -0.2 : 0;
-}
-
-// Bends by `depth` of the way from stand to a squat.
-double squat_rad(const std::string& joint, double depth) {
-  if (joint.ends_with("hip_pitch") || joint.ends_with("ankle_pitch")) return -0.15 - 0.48 * depth;
-  return joint.ends_with("knee") ? 0.3 + 0.96 * depth : stand_rad(joint);
-}
-
-DriveSettings rigid_drive(const Joint& joint) {
-  if (joint.passive()) return {.parallel_spring_Nm_per_rad = 25, .parallel_damping_Nms_per_rad = 0.6};
-  return {.torque_max_Nm = joint.effort_max_Nm, .rotor_inertia_kg_m2 = 0.02, .viscous_Nms_per_rad = 0.2};
-}
-
 PlantSettings settings_of(const RobotModel& model, Scene scene) {
-  PlantSettings settings;
-  for (const Joint& joint : model.joints) {
-    settings.drives.push_back(rigid_drive(joint));
-    settings.position_rad.push_back(stand_rad(joint.name));
-    settings.encoders.push_back({9.587379924285257e-05, 2e-05});
-  }
-  settings.imu.gyro_noise_rad_s = 0.005;
-  settings.imu.accelerometer_noise_m_s2 = 0.05;
-  for (const std::string link : {"l_ankle_roll_link", "r_ankle_roll_link"}) {
-    const double inner = link.starts_with("l") ? -0.05 : 0.05;
-    settings.feet.push_back(
-        {.link = link,
-         .sensors_m = {{{-0.08, inner, -0.06}, {-0.08, -inner, -0.06}, {0.14, inner, -0.06}, {0.14, -inner, -0.06}}},
-         .noise_N = 0.5});
-  }
-  for (const Link& link : model.links) settings.surfaces.push_back({link.name, 0.8});
+  PlantSettings settings = standing_settings(model);
   if (scene == Scene::fallen) settings.base.orientation = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};
   if (scene == Scene::ball) {
     settings.world.objects.push_back({.name = "ball",
                                       .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4, .velocity_m_s = {-0.2, 0, 0}},
                                       .pose = {.position_m = {0.4, 0.1, 0.1}}});
   }
-  // Our plant finds where the base is when the robot touches the ground; MuJoCo starts there too.
-  settings.base = BulletPlant(model, settings, 1).truth().base;
-  settings.stand_on_ground = false;
+  put_on_ground(model, settings);
   return settings;
 }
 
@@ -113,16 +79,8 @@ class SceneRun {
   }
 
   std::vector<double> torques(const EngineState& state, double time_s) const {
-    std::vector<double> torques;
-    const double depth = scene_ == Scene::squatting ? (1 - std::cos(2 * 3.141592653589793 * time_s / 2)) / 2 : 0;
-    for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-      const Joint& joint = model_.joints[i];
-      const double error = squat_rad(joint.name, depth) - state.position_rad[i];
-      const double torque =
-          std::clamp(300 * error - 4 * state.velocity_rad_s[i], -joint.effort_max_Nm, joint.effort_max_Nm);
-      torques.push_back(joint.passive() ? 0 : torque);
-    }
-    return torques;
+    const double depth = scene_ == Scene::squatting ? (1 - std::cos(std::numbers::pi * time_s)) / 2 : 0;
+    return hold_torques(model_, state, depth);
   }
 
   const RobotModel& model_;

@@ -8,6 +8,14 @@ namespace {
 
 constexpr double smallest_response = 1e-12;  // 1/kg; less cannot move
 
+using Three = std::array<double, 4>;
+
+void add_product(const Three& a, const Three& b, std::array<Three, 3>& sum) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) sum[i][j] += a[i] * b[j];
+  }
+}
+
 }  // namespace
 
 ContactRow::ContactRow(btManifoldPoint& point, const ContactBody& first, const ContactBody& second,
@@ -44,20 +52,17 @@ void ContactRow::add_side(const ContactBody& body, const btVector3& at, double s
 }
 
 void ContactRow::add_own_response(const Side& side) {
-  for (int p = 0; p < side.path.length; ++p) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 4; ++j) response_[i][j] += side.y[p][i] * side.y[p][j];
-    }
-  }
+  std::array<Three, 3> sum = response_;
+  for (int p = 0; p < side.path.length; ++p) add_product(side.y[p], side.y[p], sum);
+  response_ = sum;
 }
 
 // Two links of one tree: what pushes one moves the other by the joints that carry both.
 void ContactRow::add_shared_response() {
   const Side &a = sides_[0], &b = sides_[1];
   for (int p = 0; p < std::min(a.path.length, b.path.length) && a.path.dofs[p] == b.path.dofs[p]; ++p) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 4; ++j) response_[i][j] += a.y[p][i] * b.y[p][j] + b.y[p][i] * a.y[p][j];
-    }
+    add_product(a.y[p], b.y[p], response_);
+    add_product(b.y[p], a.y[p], response_);
   }
 }
 

@@ -28,7 +28,7 @@ enum class FrictionLaw : std::uint8_t { cone, pyramid };
 struct ContactBody {
   Tree* tree = nullptr;  // or null
   int link = -1;
-  btVector3 velocity_m_s{0, 0, 0};  // of what is no tree
+  btVector3 velocity_m_s{0, 0, 0};  // of what is no tree; nothing driven turns
 };
 
 struct ContactTiming {

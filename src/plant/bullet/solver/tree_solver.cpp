@@ -119,23 +119,22 @@ void TreeSolver::add_rolling_rows() {
   }
 }
 
-ContactBody TreeSolver::contact_body(const btCollisionObject& collider, const btVector3& at) {
+ContactBody TreeSolver::contact_body(const btCollisionObject& collider) {
   if (const auto* link = btMultiBodyLinkCollider::upcast(&collider); link != nullptr) {
     return {.tree = tree_of(link->m_multiBody), .link = link->m_link};
   }
-  const btRigidBody* rigid = btRigidBody::upcast(&collider);
-  if (rigid == nullptr) return {};
-  return {.velocity_m_s = rigid->getVelocityInLocalPoint(at - rigid->getWorldTransform().getOrigin())};
+  const btRigidBody* driven = btRigidBody::upcast(&collider);
+  return {.velocity_m_s = driven == nullptr ? btVector3(0, 0, 0) : driven->getLinearVelocity()};
 }
 
 void TreeSolver::add_contacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) {
   const ContactTiming timing{info.m_timeStep, info.m_erp2, info.m_restitutionVelocityThreshold};
   for (int i = 0; i < count; ++i) {
     btPersistentManifold& manifold = *manifolds[i];
+    if (manifold.getNumContacts() == 0) continue;
+    const ContactBody first = contact_body(*manifold.getBody0()), second = contact_body(*manifold.getBody1());
     for (int j = 0; j < manifold.getNumContacts(); ++j) {
-      btManifoldPoint& point = manifold.getContactPoint(j);
-      contacts_.emplace_back(point, contact_body(*manifold.getBody0(), point.getPositionWorldOnA()),
-                             contact_body(*manifold.getBody1(), point.getPositionWorldOnB()), timing, memory_);
+      contacts_.emplace_back(manifold.getContactPoint(j), first, second, timing, memory_);
     }
   }
 }

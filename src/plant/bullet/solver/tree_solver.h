@@ -43,7 +43,6 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   void add(btMultiBody& body);
   void add(JointRows& rows);
   void add(RollingRows& rows);
-  void add_unknown() { covers_ = false; }  // a constraint of another kind
   bool covers() const { return covers_; }
 
   // Contacts, joint laws and free motion at once; the new velocities are in the bodies afterwards.
@@ -67,7 +66,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   };
 
   Tree* tree_of(const btMultiBody* body);
-  ContactBody contact_body(const btCollisionObject& collider, const btVector3& at);
+  ContactBody contact_body(const btCollisionObject& collider);
   void solve(btPersistentManifold** manifolds, int manifold_count, const btContactSolverInfo& info, bool servo_rows);
   void begin(double dt_s, bool servo_rows);
   void add_linear_laws(Joint& joint, bool servo_rows);
