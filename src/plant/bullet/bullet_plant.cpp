@@ -159,7 +159,9 @@ class BulletPlant::World {
         const btManifoldPoint& point = manifold.getContactPoint(j);
         for (int k = 0; k < 3; ++k) hash.add(point.m_localPointA[k]);
         hash.add(point.m_distance1);
-        hash.add(point.m_appliedImpulse);  // the solver starts from it
+        hash.add(point.m_appliedImpulse);  // the solver starts from these
+        hash.add(point.m_appliedImpulseLateral1);
+        hash.add(point.m_appliedImpulseLateral2);
         hash.add(point.m_prevRHS);
       }
     }

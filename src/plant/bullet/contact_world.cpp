@@ -163,6 +163,7 @@ void ContactWorld::add(btMultiBody& body) {
 }
 
 void ContactWorld::add(btCollisionObject& collider, bool fixed) {
+  tree_solver_.add(collider);
   const int everything = btBroadphaseProxy::DefaultFilter | btBroadphaseProxy::StaticFilter;
   world_->addCollisionObject(&collider, fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
                              fixed ? btBroadphaseProxy::DefaultFilter : everything);

@@ -51,6 +51,9 @@ class JointRows final : public btMultiBodyConstraint {
   const JointLaw& law(Kind kind) const { return laws_[kind]; }
   double last_impulse(Kind kind) const { return impulses_at(kind); }
   void set_impulse(Kind kind, double impulse) { internalSetAppliedImpulse(kind, impulse); }
+  // Whether the servo gave all it could in the last step.
+  bool servo_at_limit() const { return servo_at_limit_; }
+  void set_servo_at_limit(bool at_limit) { servo_at_limit_ = at_limit; }
 
   // Runs into its limit, or stands beyond it, so that the solver should look closer. Before the solver, after the
   // accelerations.
@@ -75,6 +78,7 @@ class JointRows final : public btMultiBodyConstraint {
   double lower_rad_, upper_rad_;
   std::array<bool, 4> active_{};
   std::array<JointLaw, 4> laws_{};
+  bool servo_at_limit_ = false;
 };
 
 }  // namespace kadans::bullet

@@ -13,7 +13,7 @@
 namespace kadans::bench {
 namespace {
 
-constexpr int steps_per_turn = 20, settle_steps = 1000, timed_steps = 3000;
+constexpr int steps_per_turn = 20, settle_steps = 1000;
 
 enum class Scene : std::uint8_t { standing, squatting, fallen, ball };
 
@@ -21,11 +21,12 @@ struct SceneInfo {
   Scene scene;
   const char* key;
   const char* text;
+  int timed_steps;
 };
-constexpr SceneInfo scenes[] = {{Scene::standing, "standing", "standing"},
-                                {Scene::squatting, "squatting", "squatting"},
-                                {Scene::fallen, "fallen", "lying"},
-                                {Scene::ball, "ball", "standing, ball on its foot"}};
+constexpr SceneInfo scenes[] = {{Scene::standing, "standing", "standing", 10000},
+                                {Scene::squatting, "squatting", "squatting", 4000},
+                                {Scene::fallen, "fallen", "lying", 3000},
+                                {Scene::ball, "ball", "standing, ball on its foot", 3000}};
 
 PlantSettings settings_of(const RobotModel& model, Scene scene) {
   PlantSettings settings = standing_settings(model);
@@ -56,7 +57,7 @@ class SceneRun {
     add("mujoco_newton", "MuJoCo Newton", mujoco_engine(model, settings, "Newton"));
   }
 
-  void run() {
+  void run(int timed_steps) {
     for (int k = 0; k < settle_steps + timed_steps; k += steps_per_turn) {
       for (Runner& runner : runners_) {
         if (k == settle_steps) runner.settled = runner.engine->state();
@@ -109,7 +110,7 @@ void report_scene(Report& report, const SceneInfo& info, const SceneRun& run) {
       report.add("plant_ratio." + end, "  Kadans to that", ours_us / step_us, "x");
     }
     report.add("plant_contacts." + end, "  points of contact", runner.engine->contact_count(), "");
-    if (main) report.add("plant_drift_mm." + runner.key, "  drift of the feet in 3 s", drift_mm(runner), "mm");
+    if (main) report.add("plant_drift_mm." + runner.key, "  drift of the feet in 10 s", drift_mm(runner), "mm");
   }
 }
 
@@ -119,7 +120,7 @@ void bench_plant(Report& report) {
   const RobotModel model = read_urdf(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
   for (const SceneInfo& info : scenes) {
     SceneRun run(model, info.scene);
-    run.run();
+    run.run(info.timed_steps);
     report_scene(report, info, run);
   }
   bench_simulation(report);

@@ -26,6 +26,11 @@ void TreeSolver::add(btMultiBody& body) {
   contacts_.reserve(contacts_.capacity() + contacts_per_link * static_cast<std::size_t>(body.getNumLinks() + 1));
 }
 
+void TreeSolver::add(const btCollisionObject& collider) {
+  const btRigidBody* rigid = btRigidBody::upcast(&collider);
+  if (rigid != nullptr && rigid->getInvMass() > 0) covers_ = false;
+}
+
 void TreeSolver::add(JointRows& rows) {
   Tree* const tree = tree_of(&rows.body());
   if (tree == nullptr) {
@@ -96,7 +101,7 @@ void TreeSolver::add_linear_laws(Joint& joint, bool servo_rows) {
     joint.tree->add_implicit(joint.dof, law.at_rest, law.slope);
   }
   const JointLaw& servo = rows.law(JointRows::servo);
-  joint.servo_is_linear = rows.active(JointRows::servo) && !servo_rows && !joint.servo_was_at_limit;
+  joint.servo_is_linear = rows.active(JointRows::servo) && !servo_rows && !rows.servo_at_limit();
   if (joint.servo_is_linear) joint.tree->add_implicit(joint.dof, servo.at_rest, servo.slope);
 }
 

@@ -41,6 +41,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
 
   // All that takes part must be added before the first step, and only that may be in the world.
   void add(btMultiBody& body);
+  void add(const btCollisionObject& collider);
   void add(JointRows& rows);
   void add(RollingRows& rows);
   bool covers() const { return covers_; }
@@ -57,8 +58,8 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
     JointRows* rows;
     Tree* tree;
     int dof;
-    std::size_t first_row = 0;  // of this step, in joint_rows_; in the order of the kinds
-    bool servo_is_linear = true, servo_was_at_limit = false;
+    std::size_t first_row = 0;    // of this step, in joint_rows_; in the order of the kinds
+    bool servo_is_linear = true;  // in this step
   };
   struct Rolling {
     RollingRows* rows;
