@@ -78,7 +78,7 @@ void TreeSolver::solve(btPersistentManifold** manifolds, int manifold_count, con
   for (Joint& joint : joints_) add_joint_rows(joint);
   add_rolling_rows();
   add_contacts(manifolds, manifold_count, info);
-  iterations_ = iterate(info.m_numIterations);
+  iterate(info.m_numIterations);
   for (const auto& tree : trees_) tree->accelerate();
 }
 
@@ -144,14 +144,13 @@ void TreeSolver::add_contacts(btPersistentManifold** manifolds, int count, const
   }
 }
 
-int TreeSolver::iterate(int iterations_max) {
+void TreeSolver::iterate(int iterations_max) {
   for (int i = 0; i < iterations_max; ++i) {
     double largest = 0;
     for (JointRow& row : joint_rows_) largest = std::max(largest, row.iterate());
     for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction));
-    if (largest <= options_.tolerance) return i + 1;
+    if (largest <= options_.tolerance) return;
   }
-  return iterations_max;
 }
 
 bool TreeSolver::servo_beyond_limit() const {

@@ -13,8 +13,9 @@
 // last step's impulses, until an iteration changes no velocity by more than `tolerance` or the iterations are used up.
 //
 // It covers what the plant's worlds are made of: any number of multibodies with joints of one degree of freedom,
-// against each other, themselves and what is static or driven. covers() is false for anything else - rigid bodies that
-// move, other kinds of joints or constraints, loops - and the stock solver and articulated-body pass serve then.
+// against each other, themselves and what is static or driven. Once anything else was added - a rigid body that moves
+// freely, a joint of several degrees of freedom and the rows on it - covers() is false, and the stock solver serves
+// after an articulated-body pass.
 #pragma once
 
 #include <memory>
@@ -51,7 +52,6 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
                            int manifold_count, btTypedConstraint** constraints, int constraint_count,
                            btMultiBodyConstraint** rows, int row_count, const btContactSolverInfo& info,
                            btIDebugDraw* draw, btDispatcher* dispatcher) override;
-  int iterations() const { return iterations_; }  // of the last step
 
  private:
   struct Joint {
@@ -74,7 +74,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   void add_joint_rows(Joint& joint);
   void add_rolling_rows();
   void add_contacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info);
-  int iterate(int iterations_max);
+  void iterate(int iterations_max);
   bool servo_beyond_limit() const;
   void finish();
   void finish_joint(Joint& joint);
@@ -87,7 +87,6 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   RowMemory memory_;
   std::vector<JointRow> joint_rows_;
   std::vector<ContactRow> contacts_;
-  int iterations_ = 0;
 };
 
 }  // namespace kadans::bullet
