@@ -179,8 +179,9 @@ void TreeSolver::finish_joint(Joint& joint) {
     if (rows.active(kind)) impulse = linear ? law.at_rest - law.slope * velocity : joint_rows_[row++].impulse();
     rows.set_impulse(kind, impulse);
   }
-  joint.servo_was_at_limit =
+  const bool limited =
       rows.active(JointRows::servo) && at_limit(rows.law(JointRows::servo), rows.last_impulse(JointRows::servo));
+  rows.set_servo_at_limit(limited);
 }
 
 }  // namespace kadans::bullet
