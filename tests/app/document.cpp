@@ -57,18 +57,19 @@ void check_shown(const Block& block, const std::string& printed) {
 }
 
 void write_file(const Block& block, const std::filesystem::path& project) {
-  std::string file = block.rest, text = block.text;
-  if (file.empty()) {  // its first line names it, as a comment; JSON knows none
-    const std::string first = text.substr(0, text.find('\n'));
-    REQUIRE(first.size() > 3);
-    file = first.substr(3);
-    if (block.kind == "json") text = text.substr(text.find('\n') + 1);
+  if (has(block.rest, "/")) {
+    write(project / block.rest, block.text);
+    const Outcome checked = run("check " + block.rest, project);
+    CAPTURE(checked.err);
+    CHECK(checked.exit_code == 0);
+    return;
   }
-  write(project / file, text);
-  if (file.ends_with("_test.lua") || (block.kind == "json" && block.rest.empty())) return;
-  const Outcome checked = run(block.kind == "lua" ? "behavior check " + file : "check " + file, project);
-  CAPTURE(checked.err);
-  CHECK(checked.exit_code == 0);
+  const std::size_t first = block.text.find('\n') + 1;
+  REQUIRE(first > 4);
+  const std::string file = block.text.substr(3, first - 4);
+  write(project / file, block.kind == "json" ? block.text.substr(first) : block.text);  // JSON knows no comments
+  if (block.kind != "lua" || !block.rest.empty() || file.ends_with("_test.lua")) return;
+  CHECK(run("behavior check " + file, project).exit_code == 0);
 }
 
 void check_page(const std::string& page, const std::string& folder) {

@@ -1,6 +1,8 @@
 // A page of docs/ as something that can be run: its fenced blocks are files, commands and what these print.
 //   ```json config/scenarios/mine.json   a file, written into a copy of the project; `kadans check` must accept it
-//   ```lua                                a file named by the first line, "-- behaviors/mine.lua"
+//   ```lua                                a file named by its first line, "-- behaviors/mine.lua"; `kadans behavior
+//   check`
+//                                         must accept it, unless another word stands behind the fence
 //   ```sh                                 commands of kadans, a line each; "# exits N" is the exit code wanted
 //   ```sh long                            the same, with KADANS_SOAK=1 in the environment only
 //   ```text                               lines that the commands before printed

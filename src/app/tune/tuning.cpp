@@ -8,9 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "../sweep_run.h"
-#include "../sweep_subjects.h"
-#include "../terminal.h"
+#include "sweep_run.h"
+#include "sweep_subjects.h"
+#include "terminal.h"
 #include "kadans/campaign/content_hash.h"
 #include "kadans/campaign/durable_file.h"
 #include "kadans/campaign/merged_sweep.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../tune_command.h"
+#include "tune_command.h"
 #include "kadans/campaign/shard.h"
 #include "kadans/campaign/tuning/cma_es.h"
 
