@@ -43,6 +43,25 @@ struct CheckOptions {
 };
 int run_check(const CheckOptions& options);
 
+struct JitterOptions {
+  double seconds = 60;  // of our own samples; cyclictest takes as long again
+  bool load = false;
+  bool sleep_only = false;
+  bool keep_awake = true;
+  bool json = false;
+  int cpu = -1;  // -1: the one that `kadans run` would take
+  int priority = 90;
+  double spin_us = 0;  // 0: as `kadans run`
+  std::string svg;     // "" = none
+};
+int run_jitter(const JitterOptions& options);
+
+struct DoctorOptions {
+  std::string root = "/";  // of the machine that is examined
+  bool json = false;
+};
+int run_doctor(const DoctorOptions& options);
+
 struct NewControlObjectOptions {
   std::string name;
   std::string folder = ".";  // in which its own folder is made

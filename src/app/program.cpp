@@ -77,6 +77,34 @@ void add_check(CLI::App& app, CheckOptions& options) {
       ->type_name("FILE");
 }
 
+void add_jitter(CLI::App& app, JitterOptions& options) {
+  CLI::App* jitter = app.add_subcommand("jitter", "Measure how punctual this machine is, beside cyclictest");
+  jitter->add_option("--seconds", options.seconds, "Seconds of samples at 1 kHz (default: 60)")
+      ->type_name("S")
+      ->check(CLI::Range(0.1, 1000.0));
+  jitter->add_flag("--load", options.load, "While other processes compute, fill memory, write, switch, set timers");
+  CLI::Option* sleep = jitter->add_flag("--sleep-only", options.sleep_only, "Sleep to the end, without spinning");
+  jitter->add_option("--spin-us", options.spin_us, "How long to spin after sleeping")
+      ->type_name("US")
+      ->check(CLI::Range(1.0, 900.0))
+      ->excludes(sleep);
+  jitter->add_flag("!--no-keep-awake", options.keep_awake, "Let the CPU idle between the beats");
+  jitter->add_option("--cpu", options.cpu, "CPU to measure on (default: an isolated one, else the last)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1023));
+  jitter->add_option("--priority", options.priority, "Of SCHED_FIFO (default: 90)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 99));
+  jitter->add_option("--svg", options.svg, "Draw the histogram into a file")->type_name("FILE");
+  jitter->add_flag("--json", options.json, "End with one JSON object on a line of its own");
+}
+
+void add_doctor(CLI::App& app, DoctorOptions& options) {
+  CLI::App* doctor = app.add_subcommand("doctor", "Say what of this machine is in the way of real time");
+  doctor->add_option("--root", options.root, "Folder that stands for / (default: /)")->type_name("FOLDER");
+  doctor->add_flag("--json", options.json, "Print one JSON object instead of text");
+}
+
 void add_new(CLI::App& app, NewControlObjectOptions& options) {
   CLI::App* made = app.add_subcommand("new", "Write a first version of something of your own");
   made->require_subcommand(1);
@@ -117,6 +145,10 @@ int run(int argc, char** argv) {
   add_stubs(app, stubs);
   ParamsOptions params;
   add_params(app, params);
+  JitterOptions jitter;
+  add_jitter(app, jitter);
+  DoctorOptions doctor;
+  add_doctor(app, doctor);
   NewControlObjectOptions new_object;
   add_new(app, new_object);
   try {
@@ -129,6 +161,8 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   if (app.got_subcommand("test")) return run_test(test);
+  if (app.got_subcommand("jitter")) return run_jitter(jitter);
+  if (app.got_subcommand("doctor")) return run_doctor(doctor);
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
   if (app.got_subcommand("repl")) return run_repl(repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);

@@ -1,0 +1,129 @@
+#include "kadans/realtime/task_thread.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <system_error>
+#include <utility>
+
+#include <sched.h>
+#include <sys/resource.h>
+
+namespace kadans {
+namespace {
+
+// The deepest that a task is expected to go; so much of its stack is in memory before the first beat.
+void touch_stack(std::size_t stack_bytes) noexcept {
+  constexpr std::size_t page = 4096, reserve = 32 * 1024;
+  if (stack_bytes <= 2 * reserve) return;
+  auto* const deep = static_cast<volatile char*>(__builtin_alloca(stack_bytes - 2 * reserve));
+  for (std::size_t i = 0; i < stack_bytes - 2 * reserve; i += page) deep[i] = 0;
+}
+
+std::uint64_t faults_of_this_thread() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return static_cast<std::uint64_t>(usage.ru_minflt + usage.ru_majflt);
+}
+
+std::int64_t cpu_time_of(clockid_t clock) noexcept {
+  timespec used{};
+  if (clock_gettime(clock, &used) != 0) return 0;
+  return std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec;
+}
+
+}  // namespace
+
+TaskThread::TaskThread(TaskSettings settings, Task& task, Wait& wait)
+    : settings_(std::move(settings)),
+      task_(task),
+      wait_(wait),
+      periodic_(wait, settings_.period_ns, settings_.first_ns) {}
+
+TaskThread::~TaskThread() {
+  stop();
+  join();
+}
+
+void TaskThread::start() {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, settings_.stack_bytes);
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // inherited by the thread
+  const int error = pthread_create(&thread_, &attributes, enter, this);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  pthread_attr_destroy(&attributes);
+  if (error != 0) throw std::system_error(error, std::generic_category(), "no thread for task " + settings_.name);
+  joinable_ = true;
+  pthread_setname_np(thread_, settings_.name.substr(0, 15).c_str());
+}
+
+void TaskThread::join() noexcept {
+  if (!std::exchange(joinable_, false)) return;
+  pthread_join(thread_, nullptr);
+}
+
+void* TaskThread::enter(void* self) {
+  static_cast<TaskThread*>(self)->run();
+  return nullptr;
+}
+
+void TaskThread::schedule() noexcept {
+  if (settings_.cpu >= 0) {
+    cpu_set_t cpus;
+    CPU_ZERO(&cpus);
+    CPU_SET(static_cast<std::size_t>(settings_.cpu), &cpus);
+    refused_cpu_.store(pthread_setaffinity_np(pthread_self(), sizeof cpus, &cpus), std::memory_order_relaxed);
+  }
+  if (settings_.priority > 0) {
+    sched_param parameter{};
+    parameter.sched_priority = settings_.priority;
+    refused_priority_.store(pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter), std::memory_order_relaxed);
+  }
+}
+
+void TaskThread::run() noexcept {
+  touch_stack(settings_.stack_bytes);
+  schedule();
+  wait_.begin();
+  try {
+    loop();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  wait_.end();
+  cpu_time_at_end_ns_.store(cpu_time_of(CLOCK_THREAD_CPUTIME_ID), std::memory_order_relaxed);
+  over_.store(true, std::memory_order_release);
+}
+
+void TaskThread::loop() {
+  std::uint64_t beats = 0, faults_before = 0;
+  int standing = 0;
+  while (!stop_.load(std::memory_order_relaxed)) {
+    const Beat beat = periodic_.next();
+    standing = beat.stands ? standing + 1 : 0;
+    if (standing == standing_max) fail("the clock stands still");
+    if (standing == standing_max) break;
+    if (beat.stands) continue;
+    const bool goes_on = task_.beat(beat);
+    periodic_.done();
+    if (++beats == warm_up_beats) faults_before = faults_of_this_thread();
+    if (!goes_on) break;
+  }
+  page_faults_ = beats >= warm_up_beats ? faults_of_this_thread() - faults_before : 0;
+}
+
+void TaskThread::fail(const char* why) noexcept { std::snprintf(failure_.data(), failure_.size(), "%s", why); }
+
+std::int64_t TaskThread::cpu_time_ns() const noexcept {
+  if (over() || !joinable_) return cpu_time_at_end_ns_.load(std::memory_order_relaxed);
+  clockid_t clock{};
+  return pthread_getcpuclockid(thread_, &clock) == 0 ? cpu_time_of(clock) : 0;
+}
+
+}  // namespace kadans
