@@ -43,6 +43,24 @@ struct CheckOptions {
 };
 int run_check(const CheckOptions& options);
 
+struct RunOptions {
+  std::string robot;
+  std::string plant = "bullet";
+  std::string play;    // a list; "" = nothing, the robot holds
+  std::string record;  // "" = none
+  std::optional<double> duration_s;
+  std::optional<std::uint64_t> seed;
+  bool soft = false;          // also without the rights to be punctual
+  bool virtual_time = false;  // the same threads, while time stands still for all who are not done
+  bool sleep_only = false;
+  bool keep_awake = true;
+  double spin_us = 0;  // 0: the default
+  int cpu = -1;        // of the control thread; -1: an isolated one, else the last
+  bool verbose = false;
+  bool json = false;
+};
+int run_live(const RunOptions& options);
+
 struct JitterOptions {
   double seconds = 60;  // of our own samples; cyclictest takes as long again
   bool load = false;

@@ -22,7 +22,11 @@ KeepAwake::KeepAwake(int cpu) : cpu_(cpu) {
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  const int error = pthread_create(&thread_, nullptr, spin, this);
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, std::size_t{64} * 1024);  // all of it may be locked
+  const int error = pthread_create(&thread_, &attributes, spin, this);
+  pthread_attr_destroy(&attributes);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (error == 0) return;
   if (latency_ >= 0) close(latency_);

@@ -13,19 +13,21 @@ void Periodic::leave_out(std::int64_t periods) noexcept {
   missed_ += static_cast<std::uint32_t>(std::min<std::int64_t>(periods, UINT32_MAX - missed_));
 }
 
-Beat Periodic::next() noexcept {
-  Beat beat;
-  if (running_) {
-    due_ns_ += period_ns_;
-    ++number_;
-    const std::int64_t now_ns = wait_.now_ns();
-    if (now_ns >= due_ns_) {
-      statistics_.overruns.add(1);
-      leave_out((now_ns - due_ns_) / period_ns_ + 1);
-    }
+std::int64_t Periodic::plan() noexcept {
+  if (!running_) return due_ns_;
+  due_ns_ += period_ns_;
+  ++number_;
+  const std::int64_t now_ns = wait_.now_ns();
+  if (now_ns >= due_ns_) {
+    statistics_.overruns.add(1);
+    leave_out((now_ns - due_ns_) / period_ns_ + 1);
   }
+  return due_ns_;
+}
+
+Beat Periodic::wake() noexcept {
   wait_.until(due_ns_);
-  beat.woke_ns = wait_.now_ns();
+  Beat beat{.woke_ns = wait_.now_ns()};
   const std::int64_t lateness_ns = beat.woke_ns - due_ns_;
   if (lateness_ns >= period_ns_) {
     statistics_.late_wakes.add(1);

@@ -105,7 +105,12 @@ void TaskThread::loop() {
   std::uint64_t beats = 0, faults_before = 0;
   int standing = 0;
   while (!stop_.load(std::memory_order_relaxed)) {
-    const Beat beat = periodic_.next();
+    const std::int64_t due_ns = periodic_.plan();
+    if (settings_.prepare_ns > 0) {
+      wait_.until(due_ns - settings_.prepare_ns);
+      task_.prepare();
+    }
+    const Beat beat = periodic_.wake();
     standing = beat.stands ? standing + 1 : 0;
     if (standing == standing_max) fail("the clock stands still");
     if (standing == standing_max) break;

@@ -31,8 +31,14 @@ class Periodic {
   Periodic(Wait& wait, std::int64_t period_ns, std::int64_t first_ns) noexcept
       : wait_(wait), period_ns_(period_ns), due_ns_(first_ns) {}
 
-  // Waits for the next grid point.
-  Beat next() noexcept;
+  // Plans the next beat, waits for it.
+  Beat next() noexcept {
+    (void)plan();
+    return wake();
+  }
+  // The same in two steps: when the next beat is due, what was worked past left out; then the waiting.
+  std::int64_t plan() noexcept;
+  Beat wake() noexcept;
   // The work of the beat is done. Before the next next().
   void done() noexcept;
 

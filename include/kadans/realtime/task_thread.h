@@ -25,12 +25,15 @@ class Task {
   virtual ~Task() = default;
   // The task's thread. False: the task is over. An exception ends it too.
   virtual bool beat(const Beat& beat) = 0;
+  // The task's thread, prepare_ns before a beat is due.
+  virtual void prepare() noexcept {}
 };
 
 struct TaskSettings {
   std::string name;  // at most 15 characters, shown by ps and top
   std::int64_t period_ns = 1'000'000;
   std::int64_t first_ns = 0;  // the first beat, on the clock of its wait
+  std::int64_t prepare_ns = 0;  // 0: not at all
   int priority = 0;           // of SCHED_FIFO, 1..99; 0: not a real-time thread
   int cpu = -1;               // -1: any
   std::size_t stack_bytes = std::size_t{256} * 1024;
