@@ -25,6 +25,7 @@ constexpr const char* examples =
     "  kadans sim config/scenarios/squat.json --json      the same as one JSON object\n"
     "  kadans test push --jobs 2                          run all scenarios tagged push, two at a time\n"
     "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
+    "  kadans run config/tulip/robot.json --play squat    drive the robot, or its model, on the wall clock\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
     "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
     "\n"

@@ -49,18 +49,36 @@ TaskThread::~TaskThread() {
 }
 
 void TaskThread::start() {
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, settings_.stack_bytes);
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);  // inherited by the thread
-  const int error = pthread_create(&thread_, &attributes, enter, this);
+  int error = create(settings_.priority);
+  if (error != 0 && settings_.priority > 0) {
+    refused_priority_.store(error, std::memory_order_relaxed);
+    error = create(0);
+  }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  pthread_attr_destroy(&attributes);
   if (error != 0) throw std::system_error(error, std::generic_category(), "no thread for task " + settings_.name);
   joinable_ = true;
   pthread_setname_np(thread_, settings_.name.substr(0, 15).c_str());
+}
+
+// With its priority from the first instruction on: on a busy machine it would wait long to give it to itself.
+int TaskThread::create(int priority) noexcept {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, settings_.stack_bytes);
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  int error = 0;
+  if (priority > 0) {
+    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+    pthread_attr_setschedpolicy(&attributes, SCHED_FIFO);
+    error = pthread_attr_setschedparam(&attributes, &parameter);
+  }
+  if (error == 0) error = pthread_create(&thread_, &attributes, enter, this);
+  pthread_attr_destroy(&attributes);
+  return error;
 }
 
 void TaskThread::join() noexcept {
@@ -73,23 +91,17 @@ void* TaskThread::enter(void* self) {
   return nullptr;
 }
 
-void TaskThread::schedule() noexcept {
-  if (settings_.cpu >= 0) {
-    cpu_set_t cpus;
-    CPU_ZERO(&cpus);
-    CPU_SET(static_cast<std::size_t>(settings_.cpu), &cpus);
-    refused_cpu_.store(pthread_setaffinity_np(pthread_self(), sizeof cpus, &cpus), std::memory_order_relaxed);
-  }
-  if (settings_.priority > 0) {
-    sched_param parameter{};
-    parameter.sched_priority = settings_.priority;
-    refused_priority_.store(pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter), std::memory_order_relaxed);
-  }
+void TaskThread::move_to_cpu() noexcept {
+  if (settings_.cpu < 0) return;
+  cpu_set_t cpus;
+  CPU_ZERO(&cpus);
+  CPU_SET(static_cast<std::size_t>(settings_.cpu), &cpus);
+  refused_cpu_.store(pthread_setaffinity_np(pthread_self(), sizeof cpus, &cpus), std::memory_order_relaxed);
 }
 
 void TaskThread::run() noexcept {
+  move_to_cpu();
   touch_stack(settings_.stack_bytes);
-  schedule();
   wait_.begin();
   try {
     loop();

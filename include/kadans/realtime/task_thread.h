@@ -1,8 +1,9 @@
 // A periodic task on a thread of its own: its period, priority, CPU and stack, and what became of it.
 //
 // The thread blocks all signals, so that they disturb only the thread that started it, touches its whole stack before
-// the first beat, and gives itself its scheduling: SCHED_FIFO above 0, the usual one at 0. What the system refuses of
-// that is kept and may be asked for; the task runs all the same, whoever must not go on without looks at refused().
+// the first beat, and has its scheduling from the start: SCHED_FIFO above 0, the usual one at 0. What the system
+// refuses of that is kept and may be asked for; the task runs all the same, whoever must not go on without looks at
+// refused().
 //
 // pthreads, not std::thread: Xenomai replaces the pthread calls when the program is linked, not those inside libstdc++.
 // Threads: start, stop, join by the owner; the others by any.
@@ -32,10 +33,10 @@ class Task {
 struct TaskSettings {
   std::string name;  // at most 15 characters, shown by ps and top
   std::int64_t period_ns = 1'000'000;
-  std::int64_t first_ns = 0;  // the first beat, on the clock of its wait
+  std::int64_t first_ns = 0;    // the first beat, on the clock of its wait
   std::int64_t prepare_ns = 0;  // 0: not at all
-  int priority = 0;           // of SCHED_FIFO, 1..99; 0: not a real-time thread
-  int cpu = -1;               // -1: any
+  int priority = 0;             // of SCHED_FIFO, 1..99; 0: not a real-time thread
+  int cpu = -1;                 // -1: any
   std::size_t stack_bytes = std::size_t{256} * 1024;
 };
 
@@ -74,7 +75,8 @@ class TaskThread {
   static void* enter(void* self);
   void run() noexcept;
   void loop();
-  void schedule() noexcept;
+  int create(int priority) noexcept;
+  void move_to_cpu() noexcept;
   void fail(const char* why) noexcept;
 
   TaskSettings settings_;
