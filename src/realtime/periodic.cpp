@@ -22,6 +22,7 @@ std::int64_t Periodic::plan() noexcept {
     statistics_.overruns.add(1);
     leave_out((now_ns - due_ns_) / period_ns_ + 1);
   }
+  if (due_ns_ - woke_ns_ < period_ns_ / 2) leave_out(1);
   return due_ns_;
 }
 

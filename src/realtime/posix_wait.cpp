@@ -25,7 +25,8 @@ void PosixWait::until(std::int64_t time_ns) noexcept {
   timespec wake{};
   wake.tv_sec = static_cast<std::time_t>(wake_ns / second_ns);
   wake.tv_nsec = static_cast<long>(wake_ns % second_ns);
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) == EINTR) {
+  const bool far = now_ns() < time_ns - spin_ns_;
+  while (far && clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) == EINTR) {
   }
   for (int i = 0; i < looks_max && now_ns() < time_ns; ++i) relax();
 }

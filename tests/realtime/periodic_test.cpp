@@ -52,6 +52,17 @@ TEST_CASE("A wake-up that is late within its period is handed on as it is and le
   CHECK(task.periodic.statistics().jitter.min_ns() == 300'000);
 }
 
+TEST_CASE("After a wake-up late by more than half a period the next grid point is too close and left out") {
+  Task task;
+  (void)task.beat();
+  task.wait.late_ns = 600'000;
+  CHECK(task.beat().missed == 0);
+  const Beat next = task.beat();
+  CHECK(next.missed == 1);
+  CHECK(next.woke_ns == 8'000'000);
+  CHECK(next.dt_s == doctest::Approx(0.0014));
+}
+
 TEST_CASE("Work longer than the period costs the beats it covers, and there is a wait before the next") {
   Task task;
   (void)task.beat(2'400'000);  // over the points 1 and 2

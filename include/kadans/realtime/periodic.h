@@ -2,8 +2,9 @@
 //
 // A beat is never caught up with. When the work of a beat is not done at the next grid point, or the system wakes the
 // task a whole period late, the points that have passed are left out and counted, and the task goes on on the grid:
-// there is always a wait between two beats, and a task that is too slow leaves time to the others. What it is told is
-// true: how many were left out, and how long ago the last beat was.
+// there is always a wait between two beats, and a task that is too slow leaves time to the others. Nor does a beat
+// follow one that woke late in less than half a period: what changed in a whole one would look as if it had changed in
+// a moment. What the task is told is true: how many were left out, and how long ago the last beat was.
 //
 // A clock that does not advance over a wait gives a beat that `stands`: there is nothing to be done in it.
 // One owner, the task's thread; the statistics may be read by any.
