@@ -183,7 +183,8 @@ class LiveRun {
   void leave(LiveThreads& threads) {
     const SafetySettings& safety = parts_.control.safety().settings();
     const bool held = parts_.control.exchange().snapshot.read(1).status.safety.level >= SafetyLevel::hold;
-    if (!failed_ && !held) {
+    failed_ = failed_ || held;
+    if (!failed_) {
       leaving_.ask();
       pass(threads, assembly_.robot().safe.time_s + 0.2);
     }

@@ -14,11 +14,13 @@ LinkedPlant::LinkedPlant(PlantExchange& exchange, ModelPlant& model) : exchange_
 bool PlantTask::beat(const Beat& beat) {
   model_.write(exchange_.actuation.read());
   const std::uint32_t steps = std::min(1 + beat.missed, catch_up_max);
-  for (std::uint32_t i = 0; i < steps; ++i) model_.step(period_ns_);
   lost_periods_.add(1 + std::uint64_t{beat.missed} - steps);
-  model_.read(sensors_);
-  exchange_.sensors.publish(sensors_);
-  exchange_.truth.publish(model_.truth());
+  for (std::uint32_t i = 0; i < steps; ++i) {  // a control tick may come between any two
+    model_.step(period_ns_);
+    model_.read(sensors_);
+    exchange_.sensors.publish(sensors_);
+    exchange_.truth.publish(model_.truth());
+  }
   return true;
 }
 
