@@ -15,12 +15,21 @@
 namespace kadans {
 namespace {
 
-// The deepest that a task is expected to go; so much of its stack is in memory before the first beat.
-void touch_stack(std::size_t stack_bytes) noexcept {
-  constexpr std::size_t page = 4096, reserve = 32 * 1024;
-  if (stack_bytes <= 2 * reserve) return;
-  auto* const deep = static_cast<volatile char*>(__builtin_alloca(stack_bytes - 2 * reserve));
-  for (std::size_t i = 0; i < stack_bytes - 2 * reserve; i += page) deep[i] = 0;
+// All that is left of this thread's stack, but for a reserve at its end, is in memory before the first beat. What the
+// thread's own variables take of it differs: a sanitizer's are large.
+void touch_stack() noexcept {
+  constexpr std::size_t page = 4096, reserve = 16 * 1024;
+  pthread_attr_t attributes;
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  pthread_attr_getstack(&attributes, &lowest, &size);
+  pthread_attr_destroy(&attributes);
+  const auto* const here = static_cast<const char*>(__builtin_frame_address(0));
+  const auto left = static_cast<std::size_t>(here - static_cast<const char*>(lowest));
+  if (left <= 2 * reserve) return;
+  auto* const deep = static_cast<volatile char*>(__builtin_alloca(left - 2 * reserve));
+  for (std::size_t i = 0; i < left - 2 * reserve; i += page) deep[i] = 0;
 }
 
 std::uint64_t faults_of_this_thread() noexcept {
@@ -101,7 +110,7 @@ void TaskThread::move_to_cpu() noexcept {
 
 void TaskThread::run() noexcept {
   move_to_cpu();
-  touch_stack(settings_.stack_bytes);
+  touch_stack();
   wait_.begin();
   try {
     loop();
