@@ -1,7 +1,9 @@
 // Rows of the failure contract that take real threads; on virtual time, so that nothing depends on the machine's speed.
+#include <csignal>
 #include <filesystem>
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include "kadans/telemetry/recorder.h"
 #include "realtime/live_robot.h"
@@ -43,6 +45,30 @@ struct RecordedRobot : LiveRobot {
   }
 };
 
+// No file grows beyond a few blocks.
+class FullDisk {
+ public:
+  FullDisk() {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{65536, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    std::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+std::string record_file(const char* name) {
+  return (std::filesystem::temp_directory_path() / ("kadans_" + std::string(name) + ".mcap")).string();
+}
+
 }  // namespace
 
 TEST_SUITE_BEGIN("contract");
@@ -64,7 +90,7 @@ TEST_CASE("rows that do not fit the ring are dropped and counted, no tick is lat
   RecordedRobot robot;
   robot.drain.hangs = true;
   const std::int64_t ms = 15'000;  // longer than the ring holds
-  robot.run((std::filesystem::temp_directory_path() / "kadans_hung_record.mcap").string(), ms);
+  robot.run(record_file("hung"), ms);
   CHECK(robot.control_task.ticks() >= static_cast<std::uint64_t>(ms));
   CHECK(robot.control_thread.statistics().missed.get() == 0);
   CHECK(robot.recorder.dropped() > 0);
@@ -73,13 +99,14 @@ TEST_CASE("rows that do not fit the ring are dropped and counted, no tick is lat
 }
 
 TEST_CASE("rows are lost and counted, the record says why, no tick is late" * description("the disk is full")) {
+  const FullDisk disk;
   RecordedRobot robot;
-  robot.run("/dev/full", 3000);
+  robot.run(record_file("full"), 3000);
   CHECK(robot.control_task.ticks() >= 3000);
   CHECK(robot.control_thread.statistics().missed.get() == 0);
   CHECK(robot.recorder.lost() > 0);
   CHECK_FALSE(robot.recorder.close());
-  CHECK(robot.recorder.error().find("No space left") != std::string::npos);
+  CHECK(robot.recorder.error().find("File too large") != std::string::npos);
 }
 
 TEST_CASE("the task gives up after 100 wake-ups without time passing, the run ends, the watchdog is not fed" *
