@@ -104,7 +104,12 @@ class IdealStage final : public TestStage {
   std::string state() const override { return behavior().state(); }
   std::string outcome() const override { return behavior().outcome(); }
   std::string error() const override { return behavior().failed() ? behavior().error().text() : ""; }
-  std::string control_set() const override { return assembly_.catalog().sets[seen_.control_set].name; }
+  std::string control_sets() const override {
+    std::string all;
+    each_bit(seen_.control_sets,
+             [&](std::uint32_t set) { all += (all.empty() ? "" : " ") + assembly_.catalog().sets[set].name; });
+    return all;
+  }
   std::string said() const override {
     std::string all;
     for (const LogLine& line : log_.lines()) all += line.text + "\n";

@@ -6,21 +6,28 @@
 #include <string>
 #include <vector>
 
+#include "run_request.h"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): its name
+class App;
+}
+
 namespace kadans {
 
-struct SimOptions {
-  std::string scenario;
-  std::optional<std::uint64_t> seed;
-  std::optional<double> duration_s;
+struct SimOptions : RunRequest {
   bool json = false;
   bool verbose = false;
   bool no_record = false;
   bool realtime = false;
   bool watch = false;
-  std::string play;              // a list in place of the scenario's; "" = the scenario's
-  std::vector<std::string> set;  // "ground.friction=0.3"
-  std::string record;            // "" = NAME.mcap in the working directory
+  std::string record;                    // "" = NAME.mcap in the working directory
+  std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
+  std::string from;                      // a checkpoint; then what is set and played counts from there
+  std::vector<std::string> push;         // with it
+  std::vector<std::string> branches;     // "hard: push torso=0,3,0"
+  std::optional<double> hash_every_s;
 };
+void add_sim(CLI::App& app, SimOptions& options);
 int run_sim(const SimOptions& options);
 
 struct TestOptions {
@@ -33,6 +40,8 @@ struct TestOptions {
   bool rerun_failed = false;
   bool list = false;
   bool json = false;
+  bool golden = false;        // state hashes must be those of the golden file
+  bool renew_golden = false;  // write them there instead
   std::string junit;
 };
 int run_test(const TestOptions& options);

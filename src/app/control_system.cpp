@@ -98,9 +98,10 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
   catalog.model = &config.model;
   catalog.sets = config.sets;
   catalog.poses = config.poses;
-  catalog.initial_set = config.initial_set;
+  catalog.initial_sets = config.initial_sets;
   catalog.drives = drive_laws(config);
   catalog.switching = config.switching;
+  catalog.unheld = config.unheld;
   for (const ObjectConfig& object : config.objects) {
     const auto index = static_cast<std::uint32_t>(system->objects.size());
     system->objects.push_back(make_object(robot, object));

@@ -9,10 +9,10 @@ void Leaving::beside_tick(std::int64_t time_ns) {
     step_ = Step::leave;
     return;
   }
-  if (step_ == Step::leave) posture_.failed(time_ns, nullptr);
+  if (step_ == Step::leave) posture_.failed(time_ns, ~ObjectMask{0});
   step_ = Step::move;
   if (posture_.due(time_ns)) {
-    posture_.move(exchange_.snapshot.read(0), behaviors_.sender(), [](std::uint32_t) { return false; });
+    posture_.move(exchange_.snapshot.read(0), behaviors_.sender(), 0);
   }
 }
 

@@ -1,4 +1,4 @@
-// Who looks on while a scenario runs: the progress bar, the drawn signals, the recorder.
+// Who looks on while a scenario runs: the progress bar, the pace, the drawn signals.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,6 @@
 
 #include "kadans/scenario/report.h"
 #include "kadans/scenario/run.h"
-#include "kadans/telemetry/recorder.h"
 
 namespace kadans {
 
@@ -50,16 +49,6 @@ class TraceObserver final : public RunObserver {
   double every_s_;
   double next_s_ = 0;
   ReportTrace trace_;
-};
-
-// Lets the recorder write what the tick left in its ring.
-class RecordDrain final : public RunObserver {
- public:
-  explicit RecordDrain(Recorder& recorder) : recorder_(recorder) {}
-  void tick(double time_s, std::span<const double> row) override;
-
- private:
-  Recorder& recorder_;
 };
 
 }  // namespace kadans

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "kadans/signal/nearest_name.h"
 #include "repl_command.h"
+#include "replay_command.h"
 #include "stubs_command.h"
 #include "terminal.h"
 #include "version.h"
@@ -24,6 +25,8 @@ constexpr const char* examples =
     "  kadans sim config/scenarios/squat.json             run a scenario, read what happened\n"
     "  kadans sim config/scenarios/squat.json --json      the same as one JSON object\n"
     "  kadans test push --jobs 2                          run all scenarios tagged push, two at a time\n"
+    "  kadans replay squat.mcap                           run a record again; where does it part, and since what "
+    "change\n"
     "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
     "  kadans run config/tulip/robot.json --play squat    drive the robot, or its model, on the wall clock\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
@@ -31,26 +34,6 @@ constexpr const char* examples =
     "\n"
     "Results go to stdout, progress and errors to stderr.\n"
     "Exit codes: 0 passed, 1 failed, 2 wrong usage or input, 3 internal error, 130 interrupted.\n";
-
-void add_sim(CLI::App& app, SimOptions& options) {
-  CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
-  sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->required()->type_name("FILE");
-  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")->type_name("N");
-  sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
-      ->type_name("S")
-      ->check(CLI::Range(0.001, 1e6));
-  sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
-      ->type_name("LIST");
-  sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
-      ->type_name("NAME=NUMBER");
-  CLI::Option* record =
-      sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
-  sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
-  CLI::Option* realtime = sim->add_flag("--realtime", options.realtime, "Run at the pace of the wall clock");
-  sim->add_flag("--watch", options.watch, "Reload behaviors when their files are saved")->needs(realtime);
-  sim->add_flag("--json", options.json, "Print one JSON object instead of text");
-  sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
-}
 
 void add_test(CLI::App& app, TestOptions& options) {
   CLI::App* test = app.add_subcommand("test", "Run scenarios side by side and say which failed, and how");
@@ -65,6 +48,11 @@ void add_test(CLI::App& app, TestOptions& options) {
   test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
   test->add_flag("--rerun-failed", options.rerun_failed, "Only what failed the last time");
   test->add_flag("--list", options.list, "Say what would run");
+  CLI::Option* golden =
+      test->add_flag("--golden", options.golden, "Fail what ends in another state than FOLDER.golden.json says");
+  CLI::Option* renew = test->add_flag("--renew-golden", options.renew_golden,
+                                      "Write the states into that file, and say what that changes");
+  renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
   test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
   test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
 }
@@ -166,6 +154,8 @@ int run(int argc, char** argv) {
   add_sim(app, sim);
   TestOptions test;
   add_test(app, test);
+  ReplayOptions replay;
+  add_replay(app, replay);
   add_check(app, check);
   BehaviorOptions behavior;
   add_behavior(app, behavior);
@@ -196,6 +186,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("run")) return run_live(live);
   if (app.got_subcommand("jitter")) return run_jitter(jitter);
   if (app.got_subcommand("doctor")) return run_doctor(doctor);
+  if (app.got_subcommand("replay")) return run_replay(replay);
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
   if (app.got_subcommand("repl")) return run_repl(repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);

@@ -152,8 +152,8 @@ class LiveRun {
     if (options_.record.empty()) return;
     recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
     if (!recorder_->open(options_.record)) throw InputError({.message = recorder_->error()});
-    (void)recorder_->describe_run(
-        {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}});
+    (void)recorder_->describe(
+        "run", {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}});
     live_log_.record_to(&recorder_->events());
     assembly_.record_to(recorder_.get());
     record_ = std::make_unique<RecordTask>(*recorder_);

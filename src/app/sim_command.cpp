@@ -1,194 +1,103 @@
-#include <charconv>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <memory>
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
 
 #include "commands.h"
-#include "kadans/app/assembly.h"
-#include "kadans/scenario/report.h"
-#include "kadans/telemetry/recorder.h"
-#include "observers.h"
+#include "input_files.h"
+#include "sim_run.h"
 #include "terminal.h"
-#include "version.h"
 
 namespace kadans {
 namespace {
 
-constexpr const char* height_signal = "plant.base.height_m";
-
-std::string repeat_command(const ScenarioConfig& scenario, const SimOptions& options, std::uint64_t seed) {
-  std::string command = "kadans sim " + scenario.file + " --seed " + std::to_string(seed);
-  if (!options.play.empty()) command += " --play '" + options.play + "'";
-  for (const std::string& setting : options.set) command += " --set " + setting;
-  if (options.duration_s) command += " --duration " + number_text(*options.duration_s);
-  return command;
+std::vector<RunBranch> branches_of(const SimOptions& options) {
+  std::vector<RunBranch> branches;
+  for (const std::string& text : options.branches) branches.push_back(parse_branch(text));
+  if (branches.empty())
+    branches.push_back({.name = "", .set = options.set, .play = options.play, .push = options.push});
+  return branches;
 }
 
-// "ground.friction=0.3"
-NumberEntry parse_setting(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  NumberEntry setting{.key = text.substr(0, equals)};
-  const char* const end = text.data() + text.size();
-  const char* const begin = equals == std::string::npos ? end : text.data() + equals + 1;
-  const auto [stop, error] = std::from_chars(begin, end, setting.value);
-  if (error != std::errc{} || stop != end)
-    throw InputError({.file = "--set", .message = "'" + text + "' must be NAME=NUMBER, such as ground.friction=0.3"});
-  return setting;
+int go_on(const SimOptions& options) {
+  SimContinuation continuation{.from = read_checkpoint(options.from), .branches = branches_of(options)};
+  RunInputs& inputs = continuation.from.inputs;
+  const UnpackedInputs unpacked(inputs, options.from);
+  if (std::ranges::any_of(continuation.branches, [](const RunBranch& branch) { return !branch.play.empty(); }))
+    unpacked.add_behaviors(inputs);
+  RunRequest request = request_of(inputs.run, options.from);
+  request.scenario = unpacked.scenario().string();
+  if (options.duration_s) request.duration_s = options.duration_s;
+  const double at_s = static_cast<double>(continuation.from.at.time_ns) / 1e9;
+  if (!(*request.duration_s > at_s))
+    throw InputError(
+        {.file = "--duration", .message = "must be more than the " + number_text(at_s) + " s of the checkpoint"});
+  SimRun sim(options, request, std::move(continuation));
+  catch_interrupts();
+  return sim.run();
 }
 
-ScenarioConfig read_scenario(const SimOptions& options) {
-  ScenarioConfig scenario = read_scenario_config(options.scenario);
-  if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
-  for (const std::string& setting : options.set) scenario.set_last.push_back(parse_setting(setting));
-  return scenario;
+void refuse_wrong_mixtures(const SimOptions& options) {
+  const auto refuse_option = [](const char* option, const std::string& why) {
+    throw InputError(InputProblem{.file = option, .message = why});
+  };
+  if (options.from.empty() && options.scenario.empty())
+    throw InputError({.message = "name a scenario, or a checkpoint with --from"});
+  if (!options.from.empty() && !options.scenario.empty())
+    refuse_option("--from", "a checkpoint has its own scenario: name one of the two");
+  if (options.from.empty()) {
+    if (!options.branches.empty()) refuse_option("--branch", "parts from a checkpoint: it goes with --from");
+    if (!options.push.empty()) refuse_option("--push", "parts from a checkpoint: it goes with --from");
+    return;
+  }
+  if (options.seed) refuse_option("--seed", "a checkpoint goes on with the seed that it began with");
+  if (!options.checkpoints.empty()) refuse_option("--checkpoint", "does not go with --from");
+  if (options.watch) refuse_option("--watch", "does not go with --from");
+  if (!options.branches.empty() && !(options.set.empty() && options.play.empty() && options.push.empty()))
+    refuse_option("--branch", "says itself what to set, play and push");
 }
-
-std::string read_all(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-// Events go to the recorder only when it exists, and it exists only when the signals are known: this lets the log be
-// made first.
-class LateLog final : public BehaviorLog {
- public:
-  void set(BehaviorLog* log) noexcept { log_ = log; }
-  void show() noexcept { shown_ = true; }  // messages at once on stderr, for somebody who edits while it runs
-  void transition(const Transition& transition) override {
-    if (log_ != nullptr) log_->transition(transition);
-  }
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
-    if (log_ != nullptr) log_->message(time_ns, severity, behavior, text);
-    if (shown_)
-      std::fprintf(stderr, "\r\033[K%8.2f s  %s: %s\n", 1e-9 * static_cast<double>(time_ns), behavior.c_str(),
-                   text.c_str());
-  }
-
- private:
-  BehaviorLog* log_ = nullptr;
-  bool shown_ = false;
-};
-
-// A run that was asked to be short says nothing about what was to come later: such checks are not judged.
-std::vector<ScenarioCheck> reached_checks(const ScenarioConfig& scenario, double duration_s) {
-  std::vector<ScenarioCheck> checks = scenario.checks;
-  if (duration_s >= scenario.duration_s) return checks;
-  std::erase_if(checks, [&](const ScenarioCheck& c) {
-    const bool about_later = c.kind == CheckKind::at_end || c.kind == CheckKind::settles ||
-                             (c.kind == CheckKind::eventually && c.until_s > duration_s);
-    return c.from_s >= duration_s || about_later;
-  });
-  return checks;
-}
-
-class Sim {
- public:
-  explicit Sim(const SimOptions& options)
-      : options_(options),
-        scenario_(read_scenario(options)),
-        seed_(options.seed.value_or(scenario_.seed)),
-        duration_s_(options.duration_s.value_or(scenario_.duration_s)),
-        assembly_(scenario_, seed_, log_),
-        checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file) {}
-
-  int run() {
-    const std::string record = start_record();
-    ProgressBar progress(duration_s_, stderr_is_terminal() && !options_.json);
-    std::vector<RunObserver*> observers{&progress};
-    TraceObserver height("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_);
-    observers.push_back(&height);
-    observers.push_back(&evidence_);
-    Pace pace;
-    if (options_.realtime) observers.push_back(&pace);
-    if (options_.watch) {
-      assembly_.watch_behaviors();
-      late_log_.show();
-    }
-    std::unique_ptr<RecordDrain> drain;
-    if (recorder_) observers.push_back((drain = std::make_unique<RecordDrain>(*recorder_)).get());
-    RunResult result = [&] {
-      const RunParts parts = assembly_.parts();
-      return run_scenario(parts, duration_s_, checks_, observers);
-    }();
-    result.scenario = scenario_.name;
-    result.seed = seed_;
-    finish_record();
-    print(result, height.trace(), record);
-    if (result.interrupted) return exit_interrupted;
-    return result.passed ? exit_passed : exit_failed;
-  }
-
- private:
-  // The file that is written, or "". A file that was asked for and cannot be written is an error; the usual one is not.
-  std::string start_record() {
-    if (options_.no_record) return {};
-    std::string file = options_.record.empty() ? scenario_.name + ".mcap" : options_.record;
-    recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
-    if (!recorder_->open(file)) {
-      const std::string why = recorder_->error();
-      recorder_.reset();
-      if (!options_.record.empty()) throw InputError({.message = why});
-      print_error(why + "; this run leaves no record");
-      return {};
-    }
-    const RobotModel& model = assembly_.robot().model;
-    (void)recorder_->describe_run({{"scenario", scenario_.file}, {"seed", std::to_string(seed_)}, {"kadans", version}});
-    (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
-    late_log_.set(&recorder_->events());
-    assembly_.record_to(recorder_.get());
-    return file;
-  }
-
-  void finish_record() {
-    if (!recorder_) return;
-    if (!recorder_->close()) print_error("the record is not complete: " + recorder_->error());
-    if (recorder_->dropped() > 0) print_error(std::to_string(recorder_->dropped()) + " rows are missing in the record");
-  }
-
-  void print(const RunResult& result, const ReportTrace& height, const std::string& record) const {
-    if (options_.json) {
-      const ReportContext context{.log = log_,
-                                  .model = assembly_.robot().model,
-                                  .quantities = assembly_.quantities(),
-                                  .evidence = evidence_.around(result.checks),
-                                  .record = record};
-      std::puts(json_report(result, context).c_str());
-      return;
-    }
-    std::vector<ScenarioCheck> wanted;
-    for (std::size_t i = 0; i < checks_.size(); ++i) wanted.push_back(checks_.config(i));
-    const std::vector<ReportTrace> traces{height};
-    const ReportSubject subject{.result = result,
-                                .log = log_,
-                                .model = assembly_.robot().model,
-                                .checks = wanted,
-                                .traces = traces,
-                                .title = scenario_.name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
-                                .record = record,
-                                .repeat = repeat_command(scenario_, options_, seed_)};
-    const std::string text =
-        text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
-    std::fputs(text.c_str(), stdout);
-  }
-
-  const SimOptions& options_;
-  ScenarioConfig scenario_;
-  std::uint64_t seed_;
-  double duration_s_;
-  LateLog late_log_;
-  RunLog log_{&late_log_};
-  Assembly assembly_;
-  Checks checks_;
-  Evidence evidence_{checks_, assembly_.catalog().signals};
-  std::unique_ptr<Recorder> recorder_;
-};
 
 }  // namespace
 
+void add_sim(CLI::App& app, SimOptions& options) {
+  CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
+  sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->type_name("FILE");
+  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")->type_name("N");
+  sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
+      ->type_name("S")
+      ->check(CLI::Range(0.001, 1e6));
+  sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
+      ->type_name("LIST");
+  sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
+      ->type_name("NAME=NUMBER")
+      ->allow_extra_args(false);
+  CLI::Option* record =
+      sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
+  sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
+  CLI::Option* realtime = sim->add_flag("--realtime", options.realtime, "Run at the pace of the wall clock");
+  sim->add_flag("--watch", options.watch, "Reload behaviors when their files are saved")->needs(realtime);
+  sim->add_option("--checkpoint", options.checkpoints, "Leave a checkpoint at a time, to go on from with --from")
+      ->type_name("S=FILE")
+      ->allow_extra_args(false);
+  sim->add_option("--from", options.from, "Go on from a checkpoint; --set, --play and --push count from there")
+      ->type_name("FILE");
+  sim->add_option("--push", options.push, "With --from: an impulse in Ns on a link, such as torso=0,2,0")
+      ->type_name("LINK=X,Y,Z")
+      ->allow_extra_args(false);
+  sim->add_option("--branch", options.branches,
+                  "With --from, once or more: \"NAME: push LINK=X,Y,Z; set NAME=NUMBER; play LIST\"")
+      ->type_name("BRANCH")
+      ->allow_extra_args(false);
+  sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
+      ->type_name("S")
+      ->check(CLI::Range(0.001, 1e6));
+  sim->add_flag("--json", options.json, "Print one JSON object instead of text");
+  sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
+}
+
 int run_sim(const SimOptions& options) {
-  Sim sim(options);
+  refuse_wrong_mixtures(options);
+  if (!options.from.empty()) return go_on(options);
+  SimRun sim(options, options);
   catch_interrupts();
   return sim.run();
 }

@@ -3,9 +3,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <thread>
 
 #include "commands.h"
+#include "kadans/campaign/golden.h"
 #include "kadans/campaign/scenario_search.h"
 #include "kadans/campaign/suite_report.h"
 #include "kadans/config/project_root.h"
@@ -56,8 +58,11 @@ class FailedRuns {
 
 class Suite final : public JobWatcher {
  public:
-  Suite(const TestOptions& options, std::vector<PlannedRun> runs)
-      : options_(options), runs_(std::move(runs)), style_{.color = stdout_takes_color(), .unicode = true} {}
+  Suite(const TestOptions& options, std::vector<PlannedRun> runs, GoldenHashes* golden)
+      : options_(options),
+        runs_(std::move(runs)),
+        golden_(golden),
+        style_{.color = stdout_takes_color(), .unicode = true} {}
 
   int run(const FailedRuns& failed_runs) {
     std::vector<Job> jobs;
@@ -65,6 +70,7 @@ class Suite final : public JobWatcher {
       jobs.push_back({{fs::read_symlink("/proc/self/exe").string(), "sim", run.scenario.file.string(), "--seed",
                        std::to_string(run.seed), "--json", "--no-record"},
                       run.scenario.wall_limit_s});
+      if (golden_ != nullptr) jobs.back().arguments.insert(jobs.back().arguments.end(), {"--hash-every", "1"});
     }
     began_ = std::chrono::steady_clock::now();
     const std::size_t at_once = options_.jobs > 0 ? options_.jobs : std::max(1U, std::thread::hardware_concurrency());
@@ -82,6 +88,7 @@ class Suite final : public JobWatcher {
     run.file = planned.scenario.file.string();
     run.seed = planned.seed;
     run.repeat = repeat_command(planned);
+    if (options_.golden) check_golden(run);
     clear_progress();
     if (options_.json) {
       std::puts(run_json(run).c_str());
@@ -106,6 +113,24 @@ class Suite final : public JobWatcher {
   bool stop_asked() const override { return stop_ || interrupted(); }
 
  private:
+  // Another state is a failure of a run that passes otherwise.
+  void check_golden(RunOutcome& run) const {
+    if (run.status != RunStatus::passed && run.status != RunStatus::failed) return;
+    const std::string difference = golden_->difference(run);
+    if (difference.empty()) return;
+    run.errors.push_back(difference);
+    run.status = RunStatus::failed;
+  }
+
+  void renew_golden(const std::vector<RunOutcome>& runs) const {
+    const bool all = options_.selectors.empty() && !options_.rerun_failed && ended_.size() == runs_.size();
+    const std::vector<std::string> changes = golden_->take(runs, all);
+    golden_->write();
+    std::FILE* const to = options_.json ? stderr : stdout;
+    std::fprintf(to, "%s: %zu runs, %zu changes\n", golden_->file().c_str(), golden_->size(), changes.size());
+    for (const std::string& change : changes) std::fprintf(to, "  %s\n", change.c_str());
+  }
+
   double elapsed_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
   bool failed() const {
     return ended_.size() < runs_.size() ||
@@ -126,6 +151,7 @@ class Suite final : public JobWatcher {
     }
     if (!interrupted()) failed_runs.write(failures);
     if (!options_.json) std::fputs(suite_summary(outcomes, elapsed_s(), style_).c_str(), stdout);
+    if (options_.renew_golden && !interrupted()) renew_golden(outcomes);
     if (options_.junit.empty()) return;
     std::ofstream file(options_.junit);
     file << junit_xml(outcomes, elapsed_s());
@@ -135,6 +161,7 @@ class Suite final : public JobWatcher {
 
   const TestOptions& options_;
   std::vector<PlannedRun> runs_;
+  GoldenHashes* golden_;  // or nullptr
   SuiteStyle style_;
   std::chrono::steady_clock::time_point began_;
   double drawn_s_ = 0;
@@ -180,8 +207,10 @@ int run_test(const TestOptions& options) {
       return exit_passed;
     }
   }
+  std::unique_ptr<GoldenHashes> golden;
+  if (options.golden || options.renew_golden) golden = std::make_unique<GoldenHashes>(golden_file(folder));
   catch_interrupts();
-  return Suite(options, std::move(runs)).run(failed_runs);
+  return Suite(options, std::move(runs), golden.get()).run(failed_runs);
 }
 
 }  // namespace kadans

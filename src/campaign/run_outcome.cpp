@@ -41,6 +41,7 @@ void read_report(const Json& json, RunOutcome& run) {
   run.seed = json.at("seed");
   run.simulated_s = number(json.at("duration_s"));
   run.state_hash = json.at("state_hash");
+  for (const Json& hash : json.value("hashes", Json::array())) run.hashes.push_back(hash);
   for (const Json& check : json.at("checks")) run.checks.push_back(check_of(check));
   for (const Json& trace : json.value("evidence", Json::array())) run.traces.push_back(trace_of(trace));
   for (const Json& line : json.value("transitions", Json::array())) run.transitions.push_back(line);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "kadans/config/name_pattern.h"
+#include "kadans/control/set_partition.h"
 #include "robot_reader.h"
 
 namespace kadans {
@@ -31,12 +32,54 @@ void RobotReader::control(Fields& f) {
            "largest change of a drive's torque from tick to tick by a switch of sets, as a share of the joint's limit");
   f.number("switch_fade_s", config_.switching.fade_s, {1e-3, 10, "s"},
            "in which what is left of the old set's torque fades, or longer where switch_step_max wants it");
-  std::string initial;
-  if (!f.string("initial_set", initial, "the control set that is active first; else the first one")) return;
+  unheld(f);
+  initial_sets(f);
+}
+
+void RobotReader::unheld(Fields& f) {
+  for (const Joint& joint : config_.model.joints) {
+    config_.unheld.push_back({0, joint.passive() ? 0 : config_.safety.damping_Nms_per_rad});
+  }
+  f.map("unheld", "what joints do that no active control set holds, by joint pattern; else they damp as in safety",
+        [&](Fields& entry) {
+          each_joint(entry, config_.unheld, [&](UnheldLaw& law) {
+            entry.number("stiffness_Nm_per_rad", law.stiffness_Nm_per_rad, {0, 1e4, "Nm/rad"},
+                         "towards where it was when it was let go; 0: it only damps");
+            entry.number("damping_Nms_per_rad", law.damping_Nms_per_rad, {0, 100, "Nms/rad"}, "of its motion");
+          });
+        });
+  for (std::size_t i = 0; i < config_.unheld.size(); ++i) {
+    if (config_.model.joints[i].passive()) config_.unheld[i] = {};
+  }
+}
+
+void RobotReader::initial_sets(Fields& f) {
+  std::string one;
+  std::vector<PlacedName> several;
+  const bool given = f.string("initial_set", one, "the control set that is active first; else the first one");
+  if (given) several.push_back({one, f.place("initial_set")});
+  f.strings("initial_sets", several, {1, max_control_sets}, "in its place, several that share no joint");
   const std::vector<std::string> names = names_of(config_.sets);
-  const auto found = std::find(names.begin(), names.end(), initial);
-  if (found == names.end()) problems_.add_unknown(f.place("initial_set"), "control set", initial, names);
-  config_.initial_set = static_cast<std::uint32_t>(found == names.end() ? 0 : found - names.begin());
+  if (f.reading() && names.size() > max_control_sets) {
+    problems_.add(f.place("sets"), f.path("sets") + ": at most " + std::to_string(max_control_sets) + " control sets");
+    return;
+  }
+  SetMask initial = 0;
+  for (const PlacedName& name : several) {
+    const auto found = std::find(names.begin(), names.end(), name.name);
+    if (found == names.end()) {
+      problems_.add_unknown(name.place, "control set", name.name, names);
+    } else {
+      initial |= set_bit(static_cast<std::uint32_t>(found - names.begin()));
+    }
+  }
+  if (initial != 0) config_.initial_sets = initial;
+  Catalog layout;
+  layout.sets = config_.sets;
+  for (const ObjectConfig& object : config_.objects) layout.objects.push_back({.joints = object.joints});
+  if (SetPartition(layout).clash(initial, initial)) {
+    problems_.add(several.back().place, "control sets that are active first share a joint");
+  }
 }
 
 void RobotReader::object(Fields& f) {

@@ -39,6 +39,8 @@ class RobotReader {
 
   // robot_control.cpp
   void control(Fields& f);
+  void initial_sets(Fields& f);
+  void unheld(Fields& f);
   void object(Fields& f);
   void object_joints(const std::vector<PlacedName>& patterns, ObjectConfig& object);
   void control_set(Fields& entry);

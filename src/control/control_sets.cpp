@@ -6,6 +6,8 @@
 namespace kadans {
 namespace {
 
+constexpr JointMask all_joints = ~JointMask{0};
+
 void check_set(const Catalog& catalog, const ControlSetInfo& set) {
   std::vector<char> driven(max_joints, 0);
   std::vector<char> listed(catalog.objects.size(), 0);
@@ -33,15 +35,20 @@ void check_set(const Catalog& catalog, const ControlSetInfo& set) {
 ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects)
     : catalog_(catalog),
       objects_(std::move(objects)),
+      partition_(catalog),
       switchover_(catalog.drives, catalog.switching),
-      active_(catalog.initial_set) {
+      unheld_(catalog.unheld),
+      active_(catalog.initial_sets) {
   if (objects_.size() > max_objects) {
     throw std::invalid_argument(std::to_string(objects_.size()) + " control objects, at most " +
                                 std::to_string(max_objects) + " are possible");
   }
   if (objects_.size() != catalog.objects.size()) throw std::invalid_argument("the catalog lists other control objects");
-  if (catalog.initial_set >= catalog.sets.size()) throw std::invalid_argument("there is no initial control set");
   for (const ControlSetInfo& set : catalog.sets) check_set(catalog, set);
+  if (active_ == 0 || std::bit_width(active_) > catalog.sets.size()) {
+    throw std::invalid_argument("there is no initial control set");
+  }
+  if (partition_.clash(active_, active_)) throw std::invalid_argument("the initial control sets share a joint");
   for (std::size_t i = 0; i < objects_.size(); ++i) proposals_.push_back(std::make_unique<ActuationFrame>());
   plans_.reserve(catalog.sets.size());  // parameters point into the members
   for (const ControlSetInfo& set : catalog.sets) make_plan(catalog, set);
@@ -50,17 +57,16 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
 
 void ControlSets::make_plan(Catalog& catalog, const ControlSetInfo& set) {
   Plan& plan = plans_.emplace_back();
-  plan.members.reserve(set.objects.size());
+  plan.reserve(set.objects.size());
   for (std::size_t i = 0; i < set.objects.size(); ++i) {
     const std::uint32_t index = set.objects[i];
     const ObjectInfo& object = catalog.objects[index];
     const Composition composition = set.compositions.empty() ? Composition::set : set.compositions[i];
-    plan.members.push_back({index, object.divisor, composition, 1});
-    plan.objects |= 1U << index;
+    plan.push_back({index, object.divisor, composition, 1});
     if (composition != Composition::blend) continue;
     catalog.parameters.add(
         {set.name + "." + object.name + ".weight", "", 0, 1, 1, "Its share in the joints it blends."},
-        &plan.members.back().weight, max_objects);
+        &plan.back().weight, max_objects);
   }
 }
 
@@ -77,21 +83,26 @@ void ControlSets::declare(Catalog& catalog) {
 }
 
 void ControlSets::start_newcomers(const ControlInput& input) noexcept {
-  const Plan& plan = plans_[active_];
-  for (const Member& member : plan.members) {
-    if ((running_ >> member.object & 1U) == 0) objects_[member.object]->start(input);
-  }
-  running_ = plan.objects;
+  each_bit(active_, [&](std::uint32_t set) {
+    for (const Member& member : plans_[set]) {
+      const ObjectMask bit = ObjectMask{1} << member.object;
+      if ((running_ & bit) != 0) continue;
+      objects_[member.object]->start(input);
+      fresh_ |= bit;
+    }
+  });
+  running_ = partition_.objects(active_);
 }
 
 void ControlSets::switch_to(std::uint32_t set) noexcept {
-  switched_ = switched_ || set != active_;
-  active_ = set;
+  const SetMask before = std::exchange(active_, partition_.after(active_, set));
+  touched_ |= partition_.joints(before ^ active_);
 }
 
 void ControlSets::restart(const ControlInput& input) noexcept {
   running_ = 0;
-  switched_ = true;
+  touched_ = all_joints;
+  unheld_.forget();
   start_newcomers(input);
 }
 
@@ -107,37 +118,47 @@ void ControlSets::compose_joints(const Member& member, ActuationFrame& actuation
 
 void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept {
   const bool first = !std::exchange(computed_, true);
-  const bool changed = std::exchange(switched_, false) || first;
+  const JointMask touched = std::exchange(touched_, 0) | (first ? all_joints : 0);
   switchover_.observe(input.joints, input.dt_s);
-  if (changed) start_newcomers(input);
+  if (touched != 0) {
+    start_newcomers(input);
+    unheld_.let_go(partition_.joints(active_), input.joints);
+  }
   for (std::uint32_t joint = 0; joint < actuation.joint_count; ++joint) {
     actuation.joints[joint] = {};
     writers_[joint] = 0;
   }
-  for (const Member& member : plans_[active_].members) {
-    if (tick % member.divisor == 0 || changed) {
-      const ControlInput slower{input.joints, input.status, input.last, input.time_ns, input.dt_s * member.divisor};
-      objects_[member.object]->step(slower, *proposals_[member.object]);
+  each_bit(active_, [&](std::uint32_t set) {
+    for (const Member& member : plans_[set]) {
+      if (tick % member.divisor == 0 || (fresh_ >> member.object & 1U) != 0) {
+        const ControlInput slower{input.joints, input.status, input.last, input.time_ns, input.dt_s * member.divisor};
+        objects_[member.object]->step(slower, *proposals_[member.object]);
+      }
+      compose_joints(member, actuation);
     }
-    compose_joints(member, actuation);
-  }
-  if (changed && !first) switchover_.begin(input.joints, input.dt_s, input.last, actuation);
+  });
+  fresh_ = 0;
+  unheld_.step(input.joints, actuation);
+  if (touched != 0 && !first) switchover_.begin(input.joints, input.dt_s, input.last, actuation, touched);
   switchover_.apply(input.joints, input.dt_s, actuation);
 }
 
-void ControlSets::fill(std::uint32_t& active_set, std::uint32_t& count,
-                       std::array<ObjectStatus, max_objects>& status) const noexcept {
-  active_set = active_;
-  count = static_cast<std::uint32_t>(objects_.size());
+void ControlSets::fill(Snapshot& snapshot) const noexcept {
+  snapshot.control_sets = active_;
+  snapshot.object_count = static_cast<std::uint32_t>(objects_.size());
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    status[i] = {.active = (running_ >> i & 1U) != 0, .motion_remaining_s = objects_[i]->motion_remaining_s()};
+    snapshot.objects[i] = {.active = runs(static_cast<std::uint32_t>(i)),
+                           .motion_remaining_s = objects_[i]->motion_remaining_s()};
   }
 }
 
 void ControlSets::update(std::uint64_t behavior_tick, const Snapshot& snapshot) {
-  for (const std::uint32_t index : catalog_.sets.at(snapshot.control_set).objects) {
-    if (behavior_tick % catalog_.objects[index].high_level_divisor == 0) objects_[index]->update(snapshot);
-  }
+  each_bit(snapshot.control_sets, [&](std::uint32_t set) {
+    for (const Member& member : plans_.at(set)) {
+      if (behavior_tick % catalog_.objects[member.object].high_level_divisor == 0)
+        objects_[member.object]->update(snapshot);
+    }
+  });
 }
 
 }  // namespace kadans

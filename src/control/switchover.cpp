@@ -11,7 +11,7 @@ double limited(const DriveLaw& drive, double torque_Nm) noexcept {
   return std::clamp(torque_Nm, -drive.effort_max_Nm, drive.effort_max_Nm);
 }
 
-double fade(double share) noexcept {  // 1 at the beginning, 0 at the end
+double faded(double share) noexcept {  // 1 at the beginning, 0 at the end
   const double t = 1 - share;
   return 1 - t * t * t * (10 + t * (-15 + 6 * t));
 }
@@ -81,31 +81,42 @@ Switchover::Foresight Switchover::foresee(std::size_t joint, const JointState& s
 }
 
 void Switchover::begin(const JointStates& joints, double dt_s, const ActuationFrame& before,
-                       const ActuationFrame& after) noexcept {
+                       const ActuationFrame& after, std::uint64_t touched) noexcept {
+  const auto concerned = [&](std::size_t i) { return (touched >> i & 1U) != 0 && drives_[i].effort_max_Nm > 0; };
   absorbed_share_ = 0;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (!concerned(i)) continue;
     const DriveLaw& drive = drives_[i];
-    if (drive.effort_max_Nm <= 0) continue;
     const Foresight at = foresee(i, joints.joints[i], dt_s);
     const double was_Nm = drive_torque_Nm(drive, before.joints[i], at.soon_rad, at.soon_rad_s);
     const double will_be_Nm = drive_torque_Nm(drive, after.joints[i], at.later_rad, at.later_rad_s);
     const double difference_Nm = limited(drive, was_Nm) - limited(drive, will_be_Nm);
-    offset_Nm_[i] = std::isfinite(difference_Nm) ? difference_Nm : 0;  // what is not finite is for the safety layer
-    absorbed_share_ = std::max(absorbed_share_, std::abs(offset_Nm_[i]) / drive.effort_max_Nm);
+    // What is not finite is for the safety layer.
+    fades_[i].offset_Nm = std::isfinite(difference_Nm) ? difference_Nm : 0;
+    absorbed_share_ = std::max(absorbed_share_, std::abs(fades_[i].offset_Nm) / drive.effort_max_Nm);
   }
-  duration_s_ = std::max(settings_.fade_s, fade_slope_max * absorbed_share_ / settings_.step_max * dt_s);
-  remaining_s_ = duration_s_;
+  const double duration_s = std::max(settings_.fade_s, fade_slope_max * absorbed_share_ / settings_.step_max * dt_s);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (concerned(i)) fades_[i].duration_s = fades_[i].remaining_s = duration_s;
+  }
+  remaining_s_ = std::max(remaining_s_, duration_s);
 }
 
 void Switchover::apply(const JointStates& joints, double dt_s, ActuationFrame& actuation) noexcept {
   if (!fading()) return;
-  const double left = fade(remaining_s_ / duration_s_);
+  const auto shorter = [dt_s](double remaining_s) { return remaining_s <= 1.5 * dt_s ? 0 : remaining_s - dt_s; };
+  double share = 0, left = 0;  // of the joint before: most are alike
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    if (drives_[i].effort_max_Nm <= 0) continue;
+    Fade& fade = fades_[i];
+    if (!(fade.remaining_s > 0)) continue;
+    const double share_left = fade.remaining_s / fade.duration_s;
+    if (share_left != share) left = faded(share_left);
+    share = share_left;
     const Foresight at = foresee(i, joints.joints[i], dt_s);
-    shift(drives_[i], left * offset_Nm_[i], at.later_rad, at.later_rad_s, actuation.joints[i]);
+    shift(drives_[i], left * fade.offset_Nm, at.later_rad, at.later_rad_s, actuation.joints[i]);
+    fade.remaining_s = shorter(fade.remaining_s);
   }
-  remaining_s_ = remaining_s_ <= 1.5 * dt_s ? 0 : remaining_s_ - dt_s;
+  remaining_s_ = shorter(remaining_s_);
 }
 
 }  // namespace kadans

@@ -22,63 +22,103 @@ CommandInbox::CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& s
   }
 }
 
-bool CommandInbox::acceptable(const Command& command) const noexcept {
+RefusalReason CommandInbox::judge(const Command& command) const noexcept {
+  using enum RefusalReason;
+  const auto known = [&](std::size_t size, bool accepted) {
+    return command.index >= size ? unknown : accepted ? none : out_of_range;
+  };
+  const auto of_setpoint = [&] {
+    return known(catalog_.setpoints.size(), catalog_.setpoints.accepts(command.index, command.value));
+  };
   switch (command.kind) {
     case CommandKind::transaction:
-      return false;  // a header inside a transaction
+      return malformed;  // a header inside a transaction
     case CommandKind::set_parameter:
-      return catalog_.parameters.accepts(command.index, command.value);
-    case CommandKind::set_point:
-      return catalog_.setpoints.accepts(command.index, command.value) && command.duration_s >= 0 &&
-             command.duration_s <= motion_duration_max_s;
+      return known(catalog_.parameters.size(), catalog_.parameters.accepts(command.index, command.value));
+    case CommandKind::set_point: {
+      const bool timely = command.duration_s >= 0 && command.duration_s <= motion_duration_max_s;
+      return of_setpoint() != none ? of_setpoint() : timely ? none : motion;
+    }
     case CommandKind::cancel_motion:
-      return command.index < catalog_.setpoints.size();
+      return known(catalog_.setpoints.size(), true);
     case CommandKind::switch_set:
-      return command.index < catalog_.sets.size();
+      return known(catalog_.sets.size(), true);
     case CommandKind::clear_faults:
-      return true;
+      return none;
     case CommandKind::trapezoid:
     case CommandKind::via_point:
-      return SetpointMotions::acceptable(command, catalog_.setpoints);
+      if (of_setpoint() != none) return of_setpoint();
+      return SetpointMotions::acceptable(command, catalog_.setpoints) ? none : motion;
   }
-  return false;
+  return malformed;
 }
 
-bool CommandInbox::held(const Command& command, const Catalog& catalog, const Safety& safety) noexcept {
-  if (command.kind == CommandKind::clear_faults || command.kind == CommandKind::cancel_motion) return false;
-  if (safety.robot_level() >= SafetyLevel::hold) return true;
-  const auto joint_held = [&](std::size_t joint) { return safety.joint_level(joint) == SafetyLevel::hold; };
-  const auto object_held = [&](std::uint32_t object) {
-    return object < catalog.objects.size() && std::ranges::any_of(catalog.objects[object].joints, joint_held);
+RefusalReason CommandInbox::held(const Command& command, const Safety& safety, SetMask active,
+                                 std::uint16_t& joint) const noexcept {
+  if (command.kind == CommandKind::clear_faults || command.kind == CommandKind::cancel_motion)
+    return RefusalReason::none;
+  if (safety.robot_level() >= SafetyLevel::hold) return RefusalReason::robot_held;
+  const auto joint_held = [&](std::size_t at) {
+    if (safety.joint_level(at) != SafetyLevel::hold) return false;
+    joint = static_cast<std::uint16_t>(at);
+    return true;
   };
+  const auto object_held = [&](std::uint32_t object) {
+    return object < catalog_.objects.size() && std::ranges::any_of(catalog_.objects[object].joints, joint_held);
+  };
+  bool is_held = false;
   switch (command.kind) {
     case CommandKind::set_point:
     case CommandKind::trapezoid:
     case CommandKind::via_point: {
-      const Setpoint& setpoint = catalog.setpoints[command.index];
-      return setpoint.joint < catalog.model->joints.size() ? joint_held(setpoint.joint) : object_held(setpoint.owner);
+      const Setpoint& setpoint = catalog_.setpoints[command.index];
+      is_held =
+          setpoint.joint < catalog_.model->joints.size() ? joint_held(setpoint.joint) : object_held(setpoint.owner);
+      break;
     }
     case CommandKind::set_parameter:
-      return object_held(catalog.parameters.owner(command.index));
-    case CommandKind::switch_set:
-      for (std::size_t joint = 0; joint < catalog.model->joints.size(); ++joint) {
-        if (joint_held(joint)) return true;
-      }
-      return false;
+      is_held = object_held(catalog_.parameters.owner(command.index));
+      break;
+    case CommandKind::switch_set: {
+      const SetMask changed = (active ^ sets_.partition().after(active, command.index)) | set_bit(command.index);
+      each_bit(sets_.partition().joints(changed), [&](std::uint32_t at) { is_held = is_held || joint_held(at); });
+      break;
+    }
     default:
-      return false;
+      break;
   }
+  return is_held ? RefusalReason::joint_held : RefusalReason::none;
 }
 
-bool CommandInbox::transaction_acceptable(std::uint32_t count, const Safety& safety) const noexcept {
+Refusal CommandInbox::judge_transaction(std::uint32_t count, const Safety& safety) const noexcept {
   bool cleared = false;
+  SetMask active = sets_.active();
   for (std::uint32_t i = 1; i <= count; ++i) {
     const Command& command = queue_.peek(i);
-    if (!acceptable(command)) return false;
+    Refusal refusal{.kind = command.kind, .reason = judge(command), .index = command.index, .value = command.value};
     cleared = cleared || command.kind == CommandKind::clear_faults;
-    if (!cleared && held(command, catalog_, safety)) return false;
+    if (refusal.reason == RefusalReason::none && !cleared)
+      refusal.reason = held(command, safety, active, refusal.joint);
+    if (refusal.reason != RefusalReason::none) return refusal;
+    if (command.kind == CommandKind::switch_set) active = sets_.partition().after(active, command.index);
   }
-  return true;
+  return {};
+}
+
+void CommandInbox::refuse(const Command& header, Refusal refusal, std::uint64_t tick, Safety& safety) noexcept {
+  refusal.sequence = header.sequence;
+  refusals_[transactions_refused_++ % refusals_shown] = refusal;
+  state_.refused += header.count;
+  const FaultCode code = refusal.reason == RefusalReason::too_old ? FaultCode::command_old : FaultCode::command_refused;
+  safety.raise({.code = code, .tick = tick, .value = static_cast<double>(header.sequence)});
+}
+
+void CommandInbox::fill(Snapshot& snapshot) const noexcept {
+  snapshot.transactions_applied = state_.last_transaction;
+  snapshot.commands_refused = state_.refused;
+  if (snapshot.transactions_refused == transactions_refused_) return;
+  snapshot.transactions_refused = transactions_refused_;
+  snapshot.refusals = refusals_;
 }
 
 void CommandInbox::execute(const Command& command, const ControlInput& input, Safety& safety) noexcept {
@@ -138,15 +178,14 @@ void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& 
     }
     if (header.count > share) return;
     const bool fresh = input.time_ns - header.time_ns <= age_max_ns_;
-    if (fresh && transaction_acceptable(header.count, safety)) {
+    const Refusal refusal = fresh ? judge_transaction(header.count, safety) : Refusal{.reason = RefusalReason::too_old};
+    if (refusal.reason == RefusalReason::none) {
       for (std::uint32_t i = 1; i <= header.count; ++i) execute(queue_.peek(i), input, safety);
       notify_owners();
       state_.applied += header.count;
       state_.last_transaction = header.sequence;
     } else {
-      state_.refused += header.count;
-      const FaultCode code = fresh ? FaultCode::command_refused : FaultCode::command_old;
-      safety.raise({.code = code, .tick = tick, .value = static_cast<double>(header.sequence)});
+      refuse(header, refusal, tick, safety);
     }
     share -= header.count;
     queue_.drop(header.count + 1);

@@ -47,9 +47,8 @@ void ControlEngine::warm() noexcept {
 void ControlEngine::publish(std::int64_t time_ns) noexcept {
   snapshot_.tick = tick_;
   snapshot_.time_ns = time_ns;
-  snapshot_.transactions_applied = inbox_.state().last_transaction;
-  snapshot_.commands_refused = inbox_.state().refused;
-  sets_.fill(snapshot_.control_set, snapshot_.object_count, snapshot_.objects);
+  inbox_.fill(snapshot_);
+  sets_.fill(snapshot_);
   inbox_.motions().fill(snapshot_);
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);

@@ -12,7 +12,8 @@ void ControlEngine::declare_signals(Catalog& catalog) {
   }
   table.add({"engine.commands.applied", "", "Commands applied since the start."}, &inbox_.state().applied);
   table.add({"engine.commands.refused", "", "Commands refused since the start."}, &inbox_.state().refused);
-  table.add({"engine.control_set", "", "Number of the active control set."}, &snapshot_.control_set);
+  table.add({"engine.control_sets", "", "Active control sets, a bit each, in the order of the configuration."},
+            &snapshot_.control_sets);
   safety_.declare_signals(table, *catalog.model);
 }
 

@@ -73,6 +73,8 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   json["record"] = context.record;
   json["quantities"] = Json::object();
   for (const QuantityValue& quantity : context.quantities) json["quantities"][quantity.name] = quantity.value;
+  if (!context.branch.empty()) json["branch"] = context.branch;
+  for (const std::uint64_t hash : context.hashes) json["hashes"].push_back(hex(hash));
   if (!result.passed) {
     constexpr std::ptrdiff_t last = 20;
     const std::vector<Transition>& all = context.log.transitions();

@@ -58,6 +58,8 @@ class Run {
     parts_.plant.hash(hash_);
     checks_.update(time_s, row);
     for (RunObserver* observer : observers_) observer->tick(time_s, row);
+    const RunMark mark{parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()};
+    for (RunObserver* observer : observers_) observer->between_ticks(mark);
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) result_.faults.push_back(fault);
   }

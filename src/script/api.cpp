@@ -31,6 +31,8 @@ constexpr ApiEntry table[] = {
     {"m", "args", "table", "What the caller gave"},
     {"m", "wait(seconds)", "nil", "Goes on so many seconds later; in `run` only"},
     {"m", "emit(event)", "boolean?, string?", "Posts an event; seen from the next tick on; nil, \"queue_full\""},
+    {"m", "clear_faults()", "boolean?, string?",
+     "Lets the safety layer forget its faults; what follows in the same tick counts already; nil, \"queue_full\""},
 
     {"object", "move(pose, options)", "kadans.Motion?, string?",
      "Moves to a pose, by name or as joint = rad, in { time_s = }; nil, \"queue_full\""},
@@ -41,11 +43,15 @@ constexpr ApiEntry table[] = {
     {"object", "set(setpoint, value, options)", "kadans.Motion?, string?",
      "Sets one set-point, at once or in { time_s = }; nil, \"queue_full\""},
     {"object", "setpoint(name)", "number", "Where a set-point is on its way, in its unit"},
+    {"object", "parameter(name)", "number", "The value of a parameter, in its unit"},
     {"object", "set_gains(preset)", "boolean?, string?", "Sets the parameters of a preset; nil, \"queue_full\""},
     {"object", "set_parameter(name, value)", "boolean?, string?", "Sets one parameter; nil, \"queue_full\""},
 
     {"motion", "done", "boolean", "Whether it arrived, was cancelled or refused"},
-    {"motion", "wait()", "boolean?, string?", "Goes on when it is over; in `run` only; nil and why it did not arrive"},
+    {"motion", "outcome", "'moving'|'done'|'cancelled'|'queue_full'|'refused'|'expired'", "How it ended"},
+    {"motion", "reason", "string?", "Why the control engine refused it: which set-point or parameter, and its range"},
+    {"motion", "wait()", "boolean?, string?, string?",
+     "Goes on when it is over; in `run` only; nil, outcome and reason when it did not arrive"},
     {"motion", "cancel()", "boolean?, string?", "Comes to rest where it is; nil, \"queue_full\""},
 
     {"s", "time_s", "number", "Time on the engine's clock, in s"},
@@ -156,6 +162,7 @@ void add_object(std::string& text, const Catalog& catalog, const ObjectInfo& obj
   text += "---@field set fun(self, setpoint: " + type +
           ".setpoint, value: number, options: kadans.SetOptions?): " + "kadans.Motion?, string?\n";
   text += "---@field setpoint fun(self, name: " + type + ".setpoint): number\n";
+  text += "---@field parameter fun(self, name: " + type + ".parameter): number\n";
   text += "---@field set_gains fun(self, preset: " + type + ".preset): boolean?, string?\n";
   text += "---@field set_parameter fun(self, name: " + type + ".parameter, value: number): boolean?, string?\n\n";
 }

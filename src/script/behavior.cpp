@@ -1,15 +1,20 @@
 #include "kadans/script/behavior.h"
 
 #include <algorithm>
+#include <span>
 
 #include "behavior_parts.h"
 #include "kadans/engine/clock.h"
+#include "kadans/engine/refusal_text.h"
 #include "lua_core.h"
+#include "tick_code.h"
 
 namespace kadans {
 namespace {
 
-int tick_chart(lua_State* state) {
+constexpr std::size_t warm_snapshot_bytes = 512;  // its head and the joints
+
+KADANS_TICK_CODE int tick_chart(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
   parts.runner->tick(state, parts.bindings.now_ns);
@@ -40,12 +45,28 @@ void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text)
               "says more than " + std::to_string(LogBound::lines_max) + " lines in a second; the rest is dropped");
 }
 
-void Behavior::Parts::tell_dropped(bool at_once) noexcept {
+KADANS_TICK_CODE void Behavior::Parts::tell_dropped(bool at_once) noexcept {
   const std::int64_t now_ns = bindings.engine_ns();
   const std::uint64_t dropped = bound.take_dropped(now_ns, at_once);
   if (dropped == 0) return;
   log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
               std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
+}
+
+void Behavior::Parts::tell_refused() noexcept {
+  while (const Refusal* refusal = bindings.next_refusal()) {
+    ++transactions_refused;
+    log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
+                "refused by the control engine, all commands of that tick: " + refusal_text(*refusal, catalog));
+  }
+}
+
+void Behavior::Parts::want_sets(const Snapshot& snapshot) noexcept {
+  for (std::size_t i = 0; i < chart.machines.size(); ++i) {
+    const ControlSetInfo* set = bindings.set_of(i);
+    if (set == nullptr || !runner->active(chart.machines[i].root)) continue;
+    bindings.wanted |= set_bit(static_cast<std::uint32_t>(set - catalog.sets.data())) & ~snapshot.control_sets;
+  }
 }
 
 void Behavior::Parts::transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept {
@@ -57,7 +78,7 @@ void Behavior::Parts::transitioned(const std::string& from, const std::string& t
   log.transition(transition);
 }
 
-bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
+KADANS_TICK_CODE bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
   return lua->call(function, this, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
 }
 
@@ -69,17 +90,17 @@ Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog
 
 Behavior::~Behavior() = default;
 
-bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
+KADANS_TICK_CODE bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
   Parts& parts = *parts_;
+  WarmUp::read(std::as_bytes(std::span(&snapshot, 1)).first<warm_snapshot_bytes>());
+  parts.warm_up.go();
+  parts.snapshot_tables.warm_up();
   if (failed() || finished()) return false;
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
-  if (!parts.set_asked_for && bindings.set != nullptr) {
-    parts.set_asked_for = true;
-    const auto wanted = static_cast<std::uint32_t>(bindings.set - parts.catalog.sets.data());
-    if (wanted != snapshot.control_set) (void)bindings.send({.kind = CommandKind::switch_set, .index = wanted});
-  }
+  parts.tell_refused();
+  bindings.bring_in_again();
   if (!parts.run(tick_chart)) {
     commands.discard();
     if (take_back(snapshot, commands)) return true;
@@ -99,7 +120,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   return !finished();
 }
 
-void Behavior::publish_status() noexcept {
+KADANS_TICK_CODE void Behavior::publish_status() noexcept {
   Parts& parts = *parts_;
   const auto store = [](std::atomic<std::uint32_t>& to, std::uint64_t value) {
     to.store(static_cast<std::uint32_t>(value), std::memory_order_relaxed);
@@ -131,12 +152,12 @@ void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept 
   }
 }
 
-void Behavior::hold_clock(std::int64_t held_ns) noexcept {
+KADANS_TICK_CODE void Behavior::hold_clock(std::int64_t held_ns) noexcept {
   parts_->bindings.held_ns = held_ns;
   if (past_->parts != nullptr) past_->parts->bindings.held_ns = held_ns;
 }
 
-std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
+KADANS_TICK_CODE std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
   return snapshot.time_ns - parts_->bindings.held_ns;
 }
 
@@ -147,8 +168,8 @@ bool Behavior::post(const std::string& event) noexcept {
 
 const std::string& Behavior::name() const noexcept { return parts_->chart.name; }
 const Chart& Behavior::chart() const noexcept { return parts_->chart; }
-bool Behavior::finished() const noexcept { return parts_->runner->finished(); }
-bool Behavior::failed() const noexcept { return parts_->failed; }
+KADANS_TICK_CODE bool Behavior::finished() const noexcept { return parts_->runner->finished(); }
+KADANS_TICK_CODE bool Behavior::failed() const noexcept { return parts_->failed; }
 const ScriptError& Behavior::error() const noexcept { return parts_->error; }
 std::uint64_t Behavior::transactions_refused() const noexcept { return parts_->transactions_refused; }
 std::uint64_t Behavior::events_unhandled() const noexcept { return parts_->runner->events_unhandled(); }
@@ -162,7 +183,16 @@ std::string Behavior::outcome() const {
 
 std::string Behavior::state() const { return parts_->chart.states[parts_->runner->innermost()].path; }
 
-const ControlSetInfo* Behavior::control_set() const noexcept { return parts_->bindings.set; }
+SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets(); }
+
+ObjectMask Behavior::objects() const noexcept {
+  ObjectMask all = 0;
+  for (const ControlSetInfo* set : parts_->bindings.sets) {
+    if (set == nullptr) return ~ObjectMask{0};
+    for (const std::uint32_t object : set->objects) all |= ObjectMask{1} << object;
+  }
+  return all;
+}
 
 std::vector<ScriptParameter> Behavior::parameters() const {
   const auto& all = parts_->lua->core().parameters;

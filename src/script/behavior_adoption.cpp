@@ -110,13 +110,18 @@ bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vec
                     const Snapshot& snapshot, CommandSender& commands) noexcept {
   carry_parameters(fresh, old);
   fresh.transactions_refused = old.transactions_refused;
-  fresh.set_asked_for = old.set_asked_for && fresh.bindings.set == old.bindings.set;
+  fresh.bindings.wanted = old.bindings.wanted & fresh.bindings.all_sets();
+  fresh.bindings.sent = old.bindings.sent;
+  fresh.bindings.sent_count = old.bindings.sent_count;
+  fresh.bindings.refusals_seen = old.bindings.refusals_seen;
   if (!old.runner->started()) return true;
   Adoption adoption{fresh, old, map};
   fresh.bindings.begin(commands, snapshot, snapshot.time_ns);
+  const int top = lua_gettop(old.lua->get());
   const bool adopted = fresh.lua->call(adopt, &adoption, fresh.settings.limits.reload_instructions, 0);
-  lua_settop(old.lua->get(), 0);
+  lua_settop(old.lua->get(), top);
   commands.discard();  // a guard that commands
+  if (adopted) fresh.want_sets(snapshot);
   return adopted;
 }
 

@@ -1,9 +1,10 @@
 #include "behavior_parts.h"
 #include "chart_nodes.h"
 #include "chart_reader.h"
-#include "hint.h"
 #include "lua_core.h"
+#include "machine_sets.h"
 #include "sandbox.h"
+#include "tick_code.h"
 #include "transition_lines.h"
 
 namespace kadans {
@@ -33,18 +34,15 @@ int open_bindings(lua_State* state) {
 
 InputProblem problem_of(const ScriptError& error) { return {error.file.data(), error.line, 0, error.message.data()}; }
 
-void find_control_set(Behavior::Parts& parts) {
-  const std::string& wanted = parts.chart.machines.front().controls;
-  if (wanted.empty()) return;
-  std::vector<std::string> names;
-  for (const ControlSetInfo& set : parts.catalog.sets) {
-    names.push_back(set.name);
-    if (set.name == wanted) parts.bindings.set = &set;
-  }
-  if (parts.bindings.set != nullptr) return;
-  const Chart::State& root = parts.chart.states.front();
-  parts.problems.push_back({root.chunk, parts.lua->line_of(root.chunk, root.line, wanted), 0,
-                            "unknown control set '" + wanted + "' in 'controls'" + hint_text(wanted, names)});
+void list_what_ticks_need(Behavior::Parts& parts) {
+  WarmUp& list = parts.warm_up;
+  list.add(tick_code());
+  parts.lua->add_to(list);
+  list.add_object(parts.bindings);
+  list.add_object(parts.settings.limits);
+  list.add_object(parts.runner);
+  list.add_object(parts.failed);
+  parts.runner->add_to(list);
 }
 
 }  // namespace
@@ -65,7 +63,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   }
   find_transition_lines(parts.lua->sources(), parts.chart);
   parts.chart.resolve(parts.problems);
-  find_control_set(parts);
+  find_control_sets(parts);
   if (!parts.problems.empty()) throw InputError(parts.problems);
   give_arguments(parts, instructions);
   if (!parts.lua->call(open_bindings, &parts, instructions, 0)) {
@@ -74,6 +72,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);
   parts.bindings.runner = parts.runner.get();
   parts.lua->core().loading = false;
+  list_what_ticks_need(parts);
 }
 
 }  // namespace kadans

@@ -11,6 +11,7 @@
 #include "kadans/script/lua_state.h"
 #include "log_bound.h"
 #include "snapshot_tables.h"
+#include "warm_up.h"
 
 namespace kadans {
 
@@ -24,9 +25,13 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
   void tell_dropped(bool at_once) noexcept;  // how many lines were too many
   void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;
+  void tell_refused() noexcept;  // what the control engine refused since the last time
+  // The sets of all active machines that the snapshot does not show are asked for in the next tick.
+  void want_sets(const Snapshot& snapshot) noexcept;
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
 
+  WarmUp warm_up;  // of a tick
   Settings settings;
   const Catalog& catalog;
   BehaviorLog& log;
@@ -40,7 +45,6 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   Transition transition;  // reused, so that its strings keep their room
   ScriptError error;
   bool failed = false;
-  bool set_asked_for = false;  // the switch to the behavior's control set was sent
   std::uint64_t transactions_refused = 0;
   std::vector<InputProblem> problems;
 };

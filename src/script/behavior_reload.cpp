@@ -5,6 +5,8 @@
 #include "behavior_parts.h"
 #include "chart_map.h"
 #include "kadans/signal/input_error.h"
+#include "machine_sets.h"
+#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -48,8 +50,8 @@ Behavior::Reload Behavior::refuse(std::int64_t time_ns, const std::string& why) 
   return Reload::refused;
 }
 
-Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& commands,
-                                  const std::filesystem::path& file) noexcept {
+Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file,
+                                  SetMask elsewhere) noexcept {
   const std::filesystem::path wanted = file.empty() ? parts_->settings.file : file;
   if (failed() || finished() || holds(wanted, parts_->lua->sources())) return Reload::unchanged;
   if (file.empty() && holds(wanted, past_->taken_back)) return Reload::unchanged;
@@ -65,6 +67,9 @@ Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& comma
     return refuse(snapshot.time_ns, error.what());
   }
   if (!holds(wanted, fresh->lua->sources())) return refuse(snapshot.time_ns, "the file changed while it was read");
+  if (const std::string clash = clash_text(fresh->catalog, fresh->bindings.all_sets(), elsewhere); !clash.empty()) {
+    return refuse(snapshot.time_ns, clash + ", and the other set's behavior plays at the same time");
+  }
   if (!adopt_behavior(*fresh, *parts_, map_states(parts_->chart, fresh->chart), snapshot, commands)) {
     return refuse(snapshot.time_ns, fresh->lua->error().text());
   }
@@ -104,13 +109,14 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
     (void)leave_states(failing, marks(*failing.runner, map), snapshot, commands);
   }
   old.runner->enter_again(past_->left);
+  old.want_sets(snapshot);
   parts_ = std::move(past_->parts);
   parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "new version taken back, the old one goes on: " + error.text());
   return true;
 }
 
-void Behavior::forget_past(std::int64_t now_ns) noexcept {
+KADANS_TICK_CODE void Behavior::forget_past(std::int64_t now_ns) noexcept {
   if (past_->parts != nullptr && now_ns - past_->swapped_ns >= probation_ns) past_->parts.reset();
 }
 

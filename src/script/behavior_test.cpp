@@ -102,7 +102,7 @@ bool read_text(Testing& testing, const TestStage& stage, const char* key) noexce
   if (is("state")) return testing.text = stage.state(), true;
   if (is("outcome")) return testing.text = stage.outcome(), true;
   if (is("error")) return testing.text = stage.error(), true;
-  if (is("control_set")) return testing.text = stage.control_set(), true;
+  if (is("control_sets")) return testing.text = stage.control_sets(), true;
   if (is("log")) return testing.text = stage.said(), true;
   if (is("states")) return testing.text = stage.went(), true;
   return false;

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include <lua.hpp>
 
 #include "kadans/control/catalog.h"
+#include "kadans/control/set_partition.h"
 #include "kadans/engine/transaction.h"
 #include "kadans/script/chart.h"
 #include "kadans/script/chart_runner.h"
@@ -17,7 +19,7 @@ namespace kadans {
 
 struct Bindings {
   const Catalog* catalog = nullptr;
-  const ControlSetInfo* set = nullptr;  // nullptr: every object
+  std::vector<const ControlSetInfo*> sets;  // by machine, its own or its caller's; nullptr: every object
   const Snapshot* snapshot = nullptr;
   CommandSender* sender = nullptr;
   std::int64_t held_ns = 0;  // how far the behaviors' clock is behind the engine's: pauses
@@ -26,8 +28,22 @@ struct Bindings {
   bool refused = false;                            // a command of this tick found no place
   std::array<Motion*, max_transaction> motions{};  // asked for in this tick
   std::uint32_t motion_count = 0;
+  SetMask wanted = 0;                   // sets that came to be needed, and no transaction says so yet
+  std::array<std::uint32_t, 8> sent{};  // the newest transactions, by sent_count modulo their number
+  std::uint32_t sent_count = 0;
+  std::uint32_t refusals_seen = 0;  // of the snapshot's transactions_refused
 
-  bool has_object(std::uint32_t object) const noexcept;
+  const ControlSetInfo* set_of(std::size_t machine) const noexcept {
+    return machine < sets.size() ? sets[machine] : nullptr;
+  }
+  bool has_object(std::size_t machine, std::uint32_t object) const noexcept;
+  SetMask all_sets() const noexcept;
+  // A machine is entered: asks for its control set, unless that is active.
+  void bring_in(std::size_t machine) noexcept;
+  // Behind begin(): what could not be sent before.
+  void bring_in_again() noexcept;
+  // The next refusal of a transaction of this behavior's in the snapshot; nullptr when all were told.
+  const Refusal* next_refusal() noexcept;
   // False when the queue has no place: the whole transaction will be refused.
   bool send(const Command& command) noexcept;
   void begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lua_core.h"
+#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -42,7 +43,7 @@ void note_place(lua_State* state, ScriptError& error) noexcept {
   }
 }
 
-void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept {
+KADANS_TICK_CODE void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept {
   limit_ = instructions;
   spent_ = 0;
   wall_ns_ = wall_ns;
@@ -54,9 +55,9 @@ void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wa
   lua_sethook(state, hook, LUA_MASKCOUNT, interval);
 }
 
-void Budget::hook(lua_State* state, lua_Debug* /*activation*/) { core_of(state).budget.look(state); }
+KADANS_TICK_CODE void Budget::hook(lua_State* state, lua_Debug* /*activation*/) { core_of(state).budget.look(state); }
 
-void Budget::look(lua_State* state) {
+KADANS_TICK_CODE void Budget::look(lua_State* state) {
   if (!breached()) {
     spent_ += interval;
     if (heap_.exceeded()) {

@@ -5,11 +5,12 @@
 #include "kadans/script/chart_runner.h"
 #include "lua_core.h"
 #include "motion.h"
+#include "tick_code.h"
 
 namespace kadans {
 
 // m.time_s is the time in the state whose function is called.
-void ChartRunner::set_time(lua_State* state, StateIndex index) {
+KADANS_TICK_CODE void ChartRunner::set_time(lua_State* state, StateIndex index) {
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].content);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.time_key);
   lua_pushnumber(state, state_time_s(index));
@@ -17,7 +18,7 @@ void ChartRunner::set_time(lua_State* state, StateIndex index) {
   lua_pop(state, 1);
 }
 
-void ChartRunner::call(lua_State* state, int function, StateIndex index) {
+KADANS_TICK_CODE void ChartRunner::call(lua_State* state, int function, StateIndex index) {
   set_time(state, index);
   core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, function);
@@ -54,7 +55,8 @@ void ChartRunner::cancel_run(lua_State* state, StateIndex index) {
 }
 
 // Whether what the coroutine waits for is over; pushes what its wait() returns.
-bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread, int& arguments) const noexcept {
+KADANS_TICK_CODE bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread,
+                                         int& arguments) const noexcept {
   if (!run.thread_started) return arguments = 2, true;
   if (run.motion != nullptr) {
     const Bindings& bindings = bindings_of(state);
@@ -62,10 +64,12 @@ bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread, int&
     if (!run.motion->over()) return false;
     const char* why = failure(*run.motion);
     lua_settop(thread, 0);
-    arguments = why == nullptr ? 1 : 2;
+    const bool refused = run.motion->state == MotionState::refused;
+    arguments = why == nullptr ? 1 : refused ? 3 : 2;
     if (why == nullptr) return lua_pushboolean(thread, 1), true;
     lua_pushnil(thread);
     lua_pushstring(thread, why);
+    if (refused) push_reason(thread, *run.motion);
     return true;
   }
   if (now_ns_ < run.wake_ns) return false;
@@ -73,7 +77,7 @@ bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread, int&
   return arguments = 0, true;
 }
 
-void ChartRunner::resume_run(lua_State* state, StateIndex index) {
+KADANS_TICK_CODE void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   StateRun& run = run_[index];
   lua_State* thread = run.thread;
   int arguments = 0;

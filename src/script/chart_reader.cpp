@@ -165,8 +165,10 @@ struct Reader {
     push_node_body(state, node);
     check_arguments(behavior, lua_gettop(state), name, place);
     const int given = luaL_ref(state, LUA_REGISTRYINDEX);
+    const std::size_t number = chart.machines.size();
     read_machine(behavior, parent, given, depth + 1);
-    check_controls(place, name, parent);
+    chart.machines[number].call_chunk = place.chunk;
+    chart.machines[number].call_line = place.line;
   }
 
   void check_arguments(int behavior, int given, const char* name, const Place& place) const {
@@ -183,18 +185,6 @@ struct Reader {
       if (!known) raise_at(state, place, key, "behavior '%s' takes no argument '%s'", name, key);
     }
     lua_settop(state, given);
-  }
-
-  void check_controls(const Place& place, const char* name, StateIndex parent) {
-    const char* wanted = chart.machines.back().controls.c_str();
-    const char* has = chart.machines[chart.states[parent].machine].controls.c_str();
-    for (std::size_t i = 0; i < chart.machines.size(); ++i) {
-      if (chart.machines[i].name == name) wanted = chart.machines[i].controls.c_str();
-    }
-    if (*wanted != '\0' && *has != '\0' &&
-        std::char_traits<char>::compare(wanted, has, std::char_traits<char>::length(wanted) + 1) != 0) {
-      raise_at(state, place, name, "behavior '%s' runs on control set '%s', its caller on '%s'", name, wanted, has);
-    }
   }
 
   StateIndex read_machine(int behavior, StateIndex parent, int given, int depth) {

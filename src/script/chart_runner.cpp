@@ -5,6 +5,8 @@
 #include <lua.hpp>
 
 #include "bindings.h"
+#include "tick_code.h"
+#include "warm_up.h"
 
 namespace kadans {
 
@@ -23,13 +25,21 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
   }
 }
 
+void ChartRunner::add_to(WarmUp& list) const noexcept {
+  list.add_object(*this);
+  list.add(std::as_bytes(std::span(run_)));
+  list.add(std::as_bytes(std::span(active_.data(), active_.capacity())));
+  list.add(std::as_bytes(std::span(guards_)));
+  list.add(std::as_bytes(std::span(tables_.machines)));
+}
+
 bool ChartRunner::post(EventId event) noexcept {
   if (event_count_ == events_.size()) return ++refused_, false;
   events_[(event_first_ + event_count_++) % events_.size()] = event;
   return true;
 }
 
-void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
+KADANS_TICK_CODE void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   now_ns_ = now_ns;
   if (finished_) return;
   selected_.clear();
@@ -53,7 +63,7 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
 }
 
 // Among the events that waited when the tick began: what a guard emits is for the next one.
-void ChartRunner::look_for_transitions(lua_State* state) {
+KADANS_TICK_CODE void ChartRunner::look_for_transitions(lua_State* state) {
   std::uint32_t waiting = event_count_;
   const auto oldest = [&] { return waiting > 0 ? events_[event_first_] : no_event; };
   select(state, oldest(), false);
@@ -80,7 +90,7 @@ void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
   }
 }
 
-void ChartRunner::take_step(lua_State* state) {
+KADANS_TICK_CODE void ChartRunner::take_step(lua_State* state) {
   if (selected_.empty() && !entering_) return;
   for (const std::uint16_t number : selected_) report(number);
   for (const StateIndex index : active_) {
@@ -131,6 +141,7 @@ void ChartRunner::enter(lua_State* state, StateIndex index) {
   run.outcome = no_event;
   run.entered_ns = now_ns_;
   if (entered.machine_root) {  // a call begins anew: nothing is left of the one before
+    bindings_of(state).bring_in(entered.machine);
     renew_machine(state, chart_, tables_, entered.machine);
     for (StateIndex i = index; i < entered.end; ++i) remembered_[i] = false;
   }

@@ -5,6 +5,7 @@
 #include "bindings.h"
 #include "kadans/script/chart_runner.h"
 #include "lua_core.h"
+#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -13,11 +14,11 @@ constexpr std::uint16_t none = 0xffff;
 
 }  // namespace
 
-double ChartRunner::state_time_s(StateIndex state) const noexcept {
+KADANS_TICK_CODE double ChartRunner::state_time_s(StateIndex state) const noexcept {
   return static_cast<double>(now_ns_ - run_[state].entered_ns) / 1e9;
 }
 
-bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
+KADANS_TICK_CODE bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
   const Chart::Transition& transition = chart_.transitions[number];
   if (transition.when == Chart::no_function) return true;
   if (guards_[number] == Guard::unknown) {  // several innermost states may ask
@@ -33,7 +34,7 @@ bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
   return guards_[number] == Guard::yes;
 }
 
-bool ChartRunner::enabled(lua_State* state, std::uint16_t number, EventId event, bool events_only) {
+KADANS_TICK_CODE bool ChartRunner::enabled(lua_State* state, std::uint16_t number, EventId event, bool events_only) {
   const Chart::Transition& transition = chart_.transitions[number];
   const StateRun& source = run_[transition.source];
   if (transition.on != no_event) {
@@ -52,7 +53,8 @@ bool ChartRunner::enabled(lua_State* state, std::uint16_t number, EventId event,
   return guard(state, number);
 }
 
-std::uint16_t ChartRunner::select_always(lua_State* state, StateIndex leaf, EventId event, bool events_only) {
+KADANS_TICK_CODE std::uint16_t ChartRunner::select_always(lua_State* state, StateIndex leaf, EventId event,
+                                                          bool events_only) {
   for (const StateIndex around : active_) {  // from the outside in
     if (around > leaf) break;
     const Chart::State& outer = chart_.states[around];
@@ -66,7 +68,8 @@ std::uint16_t ChartRunner::select_always(lua_State* state, StateIndex leaf, Even
   return none;
 }
 
-std::uint16_t ChartRunner::select_ordinary(lua_State* state, StateIndex leaf, EventId event, bool events_only) {
+KADANS_TICK_CODE std::uint16_t ChartRunner::select_ordinary(lua_State* state, StateIndex leaf, EventId event,
+                                                            bool events_only) {
   for (StateIndex inner = leaf; inner != no_state; inner = chart_.states[inner].parent) {
     const Chart::State& at = chart_.states[inner];
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
@@ -95,11 +98,11 @@ void ChartRunner::add_selected(std::uint16_t added) noexcept {
   selected_.push_back(added);
 }
 
-bool ChartRunner::is_leaf(std::size_t position) const noexcept {
+KADANS_TICK_CODE bool ChartRunner::is_leaf(std::size_t position) const noexcept {
   return position + 1 == active_.size() || !chart_.inside(active_[position + 1], active_[position]);
 }
 
-void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
+KADANS_TICK_CODE void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
   selected_.clear();
   for (std::size_t i = 0; i < active_.size(); ++i) {
     if (!is_leaf(i)) continue;
@@ -114,7 +117,7 @@ void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
   }
 }
 
-bool ChartRunner::took(EventId event) const noexcept {
+KADANS_TICK_CODE bool ChartRunner::took(EventId event) const noexcept {
   return std::any_of(selected_.begin(), selected_.end(),
                      [&](std::uint16_t number) { return chart_.transitions[number].on == event; });
 }

@@ -222,7 +222,8 @@ Mistakes ArgumentCheck::of_method(const ObjectInfo& object, const std::string& m
                                   std::size_t at) const {
   if (method == "set_gains") return preset(object, tokens, at);
   if (method == "setpoint") return named_value(object, setpoints(object), "set-point", tokens, at);
-  if (method == "set_parameter") return named_value(object, parameters(object), "parameter", tokens, at);
+  if (method == "set_parameter" || method == "parameter")
+    return named_value(object, parameters(object), "parameter", tokens, at);
   for (const MotionMethod& known : motion_methods()) {
     if (method == known.name) return of_motion(object, known, tokens, at);
   }

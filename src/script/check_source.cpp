@@ -28,9 +28,10 @@ class SourceCheck final : public SourceListener {
  public:
   SourceCheck(const Behavior::Parts& parts, const KnownNames& known, const LuaState::Source& source,
               std::vector<InputProblem>& problems)
-      : parts_(parts), known_(known), source_(source), problems_(problems), arguments_(parts) {
+      : parts_(parts), known_(known), source_(source), problems_(problems), machine_(known.machine), arguments_(parts) {
     const auto vars = known.vars.find(source.chunk);
     has_behavior_ = vars != known.vars.end();
+    if (const auto own = known.machines.find(source.chunk); own != known.machines.end()) machine_ = own->second;
     if (has_behavior_) vars_ = vars->second;
   }
 
@@ -114,14 +115,14 @@ class SourceCheck final : public SourceListener {
   void machine(const SourceUse& use, const std::vector<SourceToken>& tokens) {
     const auto& path = use.meaning.path;
     if (path.empty()) {
-      if (!use.method.empty() && !known_.machine.fields.contains(use.method)) {
-        problem(use.line, "m has no '" + use.method + "'" + hint_text(use.method, known_.machine.names()));
+      if (!use.method.empty() && !machine_.fields.contains(use.method)) {
+        problem(use.line, "m has no '" + use.method + "'" + hint_text(use.method, machine_.names()));
       }
       if (use.method == "emit") event(tokens, use.arguments);
       return;
     }
     const ObjectInfo* object = arguments_.object(path.front());
-    if (object == nullptr || !known_.machine.fields.contains(path.front())) return machine_field(use, object);
+    if (object == nullptr || !machine_.fields.contains(path.front())) return machine_field(use, object);
     if (use.assigned) return problem(use.line, "m is read-only: '" + path.front() + "' cannot be set");
     const std::string method = path.size() > 1 ? path[1] : use.method;
     if (method.empty() || method == "*") return;
@@ -135,17 +136,28 @@ class SourceCheck final : public SourceListener {
     if (use.arguments != 0) tell(arguments_.of_method(*object, method, tokens, use.arguments));
   }
 
+  // Of the behavior in this file, else of the one that is played.
+  std::string set_name() const {
+    const auto& machines = parts_.chart.machines;
+    for (std::size_t i = machines.size(); i-- > 0;) {
+      const bool here = i == 0 || parts_.chart.states[machines[i].root].chunk == source_.chunk;
+      const ControlSetInfo* set = parts_.bindings.set_of(i);
+      if (here && set != nullptr) return set->name;
+    }
+    return "";
+  }
+
   void machine_field(const SourceUse& use, const ObjectInfo* object) {
     const auto& path = use.meaning.path;
     if (object != nullptr) {
       return problem(place(use), "control object '" + path.front() + "' is not in this behavior's control set, '" +
-                                     parts_.chart.machines.front().controls + "'");
+                                     set_name() + "'");
     }
     const bool free = std::find(always_there.begin(), always_there.end(), path.front()) != always_there.end();
     if (use.assigned && (!free || path.size() == 1)) {
       return problem(place(use), "m is read-only: '" + path.front() + "' cannot be set; keep it in m.vars");
     }
-    fields(use, known_.machine, "m");
+    fields(use, machine_, "m");
     if (!has_behavior_ || path.front() != "vars" || path.size() < 2 || path[1] == "*" || use.assigned) return;
     if (std::binary_search(vars_.begin(), vars_.end(), path[1])) return;
     problem(place(use), "m.vars has no '" + path[1] + "'" + hint_text(path[1], vars_) + ": declare it in vars = { }");
@@ -175,6 +187,7 @@ class SourceCheck final : public SourceListener {
   const KnownNames& known_;
   const LuaState::Source& source_;
   std::vector<InputProblem>& problems_;
+  KnownNames::Shape machine_;
   ArgumentCheck arguments_;
   std::vector<std::string> vars_;
   bool has_behavior_ = false;

@@ -117,8 +117,11 @@ Console::Reply Console::evaluate(std::string_view line, const View& view) noexce
   const std::size_t first = line.find_first_not_of(" \t\r");
   if (parts.pending.empty()) {
     if (first == std::string_view::npos) return {};
-    if (line[first] == ':') return command(std::string(line));
     parts.pending_line = parts.line_number;
+    if (line[first] == ':') {
+      const Reply reply = command(std::string(line));
+      return parts.pending.empty() ? reply : run_lua(view);
+    }
   } else {
     parts.pending += '\n';
   }

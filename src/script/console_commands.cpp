@@ -28,6 +28,7 @@ constexpr CommandInfo commands[] = {
     {":stop", "", "ends what plays"},
     {":run", " SECONDS", "simulates so long"},
     {":write", "", "lets lines command control objects: m.posture:move(\"stand\", { time_s = 1 })"},
+    {":clear_faults", "", "lets the safety layer forget its faults, after :write"},
     {":read", "", "lets them read only, as at the beginning"},
     {":quit", "", "ends the console"},
 };
@@ -116,6 +117,10 @@ Console::Reply Console::command(const std::string& line) noexcept {
   if (name == ":help") return {.text = help()};
   if (name == ":status") return {.text = status()};
   if (name == ":quit") return {.text = {}, .quit = true};
+  if (name == ":clear_faults") {
+    parts_->pending = "local asked = m:clear_faults()";
+    return {};
+  }
   if (name == ":run") return run_for(argument);
   if (name == ":write" || name == ":read") {
     parts_->writes = name == ":write";

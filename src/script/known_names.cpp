@@ -54,10 +54,15 @@ int read(lua_State* state) {
   const auto& reading = *static_cast<Reading*>(lua_touserdata(state, 1));
   const Behavior::Parts& parts = *reading.parts;
   KnownNames& known = *reading.known;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.machines.front().content);
-  read_shape(state, lua_gettop(state), known.machine, 0);
-  known.machine.fields["vars"].open = true;
-  known.machine.fields["args"].open = true;
+  for (std::size_t i = 0; i < parts.chart.machines.size(); ++i) {
+    const std::string& chunk = parts.chart.states[parts.chart.machines[i].root].chunk;
+    for (KnownNames::Shape* machine : {&known.machine, &known.machines[chunk]}) {
+      lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.machines[i].content);
+      read_shape(state, lua_gettop(state), *machine, 0);
+      lua_pop(state, 1);
+      machine->fields["vars"].open = machine->fields["args"].open = true;
+    }
+  }
   lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.snapshot);
   read_shape(state, lua_gettop(state), known.snapshot, 0);
   lua_getfield(state, LUA_REGISTRYINDEX, "kadans.modules");
@@ -87,7 +92,7 @@ KnownNames read_known_names(Behavior::Parts& parts) {
     const ScriptError& error = parts.lua->error();
     throw InputError({error.file.data(), error.line, 0, error.message.data()});
   }
-  known.motion_fields = {"cancel", "done", "wait"};
+  known.motion_fields = {"cancel", "done", "outcome", "reason", "wait"};
   for (const ScriptParameter& parameter : parts.lua->core().parameters) {
     known.parameters[parameter.chunk].push_back(parameter.name);
   }

@@ -17,7 +17,8 @@ struct KnownNames {
     bool open = false;  // holds what an author puts there: vars, args
     std::vector<std::string> names() const;
   };
-  Shape machine, snapshot, module, globals;
+  Shape machine, snapshot, module, globals;  // m: of all machines together
+  std::map<std::string, Shape> machines;     // m of those in a file of a behavior
   std::vector<std::string> object_methods, motion_fields;
   std::map<std::string, std::vector<std::string>> parameters;  // by the file that declares them
   std::map<std::string, std::vector<std::string>> vars;        // by the file of the behavior

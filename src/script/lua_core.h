@@ -23,9 +23,10 @@ struct LuaCore {
   std::deque<ScriptParameter> parameters{};
   LuaState* owner = nullptr;
   lua_State* main = nullptr;
-  lua_State* running = nullptr;  // the coroutine of a `run` while it runs, else nullptr
-  void* bindings = nullptr;      // of the behavior that owns the state
-  int called = LUA_NOREF;        // registry: the function of a state that was called last
+  lua_State* running = nullptr;        // the coroutine of a `run` while it runs, else nullptr
+  void* bindings = nullptr;            // of the behavior that owns the state
+  int (*entry)(lua_State*) = nullptr;  // what LuaState::call() runs
+  int called = LUA_NOREF;              // registry: the function of a state that was called last
   bool loading = true;
   int depth = 0;  // of library functions that call back
 };

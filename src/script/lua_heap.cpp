@@ -11,7 +11,6 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t text_bytes_max = std::size_t{64} << 10;
-constexpr std::size_t chunk_bytes = 4096, line_bytes = 64;
 
 bool long_text(std::size_t old_bytes, std::size_t new_bytes) noexcept {
   return old_bytes > 0 && new_bytes > text_bytes_max && std::has_single_bit(new_bytes);
@@ -19,37 +18,60 @@ bool long_text(std::size_t old_bytes, std::size_t new_bytes) noexcept {
 
 }  // namespace
 
-struct LuaHeap::Chunk {
-  Chunk* next;
+struct LuaHeap::Arena {
+  Arena* before;
 };
 
 LuaHeap::~LuaHeap() {
-  while (chunks_ != nullptr) std::free(std::exchange(chunks_, chunks_->next));
+  while (arenas_ != nullptr) std::free(std::exchange(arenas_, arenas_->before));
 }
 
-// All blocks of a new chunk become free, the first in memory first.
-bool LuaHeap::cut_chunk(std::size_t block_bytes, Free*& to) noexcept {
-  void* memory = std::aligned_alloc(line_bytes, chunk_bytes);
+void LuaHeap::put_back(std::byte* block, std::size_t bytes) noexcept {
+  Free*& first = free_[size_class(bytes)];
+  first = new (block) Free{first};
+}
+
+// What is left of the arena before becomes free blocks.
+bool LuaHeap::open_arena(Fresh& fresh) noexcept {
+  void* memory = std::aligned_alloc(page_bytes, arena_bytes);
   if (memory == nullptr) return false;
-  chunks_ = new (memory) Chunk{chunks_};
-  auto* first = static_cast<std::byte*>(memory) + line_bytes;
-  for (std::size_t i = (chunk_bytes - line_bytes) / block_bytes; i > 0; --i) {
-    to = new (first + (i - 1) * block_bytes) Free{to};
+  while (fresh.next != fresh.end) {
+    const std::size_t left = std::min(static_cast<std::size_t>(fresh.end - fresh.next), small_bytes_max);
+    put_back(std::exchange(fresh.next, fresh.next + left), left);
   }
+  arenas_ = new (memory) Arena{arenas_};
+  auto* const first = static_cast<std::byte*>(memory);
+  fresh = {first + line_bytes, first + arena_bytes};
   return true;
 }
 
+void* LuaHeap::cut(Fresh& fresh, std::size_t bytes) noexcept {
+  bytes = (bytes + small_step_bytes - 1) / small_step_bytes * small_step_bytes;
+  const auto past_line = static_cast<std::size_t>(reinterpret_cast<std::uintptr_t>(fresh.next) % line_bytes);
+  const std::size_t gap = bytes % line_bytes == 0 && past_line > 0 ? line_bytes - past_line : 0;
+  if (static_cast<std::size_t>(fresh.end - fresh.next) < gap + bytes) return nullptr;
+  if (gap > 0) put_back(std::exchange(fresh.next, fresh.next + gap), gap);
+  return std::exchange(fresh.next, fresh.next + bytes);
+}
+
 void* LuaHeap::take(std::size_t bytes) noexcept {
+  if (tick_first_ == nullptr && open_arena(tick_)) {
+    tick_first_ = tick_.next;
+    return cut(tick_, bytes);
+  }
   if (!small(bytes)) return std::malloc(bytes);
-  const std::size_t which = size_class(bytes);
-  if (free_[which] == nullptr && !cut_chunk((which + 1) * small_step_bytes, free_[which])) return nullptr;
-  return std::exchange(free_[which], free_[which]->next);
+  void* block = for_ticks_ ? cut(tick_, bytes) : nullptr;
+  if (block != nullptr) return block;
+  Free*& first = free_[size_class(bytes)];
+  if (first != nullptr) return std::exchange(first, first->next);
+  block = cut(fresh_, bytes);
+  return block == nullptr && open_arena(fresh_) ? cut(fresh_, bytes) : block;
 }
 
 void LuaHeap::give(void* block, std::size_t bytes) noexcept {
+  if (block == tick_first_) return;
   if (!small(bytes)) return std::free(block);
-  Free*& first = free_[size_class(bytes)];
-  first = new (block) Free{first};
+  put_back(static_cast<std::byte*>(block), bytes);
 }
 
 void* LuaHeap::move(void* block, std::size_t old_bytes, std::size_t new_bytes) noexcept {

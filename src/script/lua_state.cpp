@@ -8,6 +8,8 @@
 
 #include "lua_core.h"
 #include "sandbox.h"
+#include "tick_code.h"
+#include "warm_up.h"
 
 namespace kadans {
 namespace {
@@ -40,19 +42,10 @@ int keep_error(lua_State* state) {
   return 1;
 }
 
-// [-0 +1] Made once and kept, so that a tick allocates nothing.
-void push_function(lua_State* state, lua_CFunction function) {
-  void* key = reinterpret_cast<void*>(function);
-  lua_pushlightuserdata(state, key);
-  lua_rawget(state, LUA_REGISTRYINDEX);
-  if (!lua_isnil(state, -1)) return;
-  lua_pop(state, 1);
-  lua_pushlightuserdata(state, key);
-  lua_pushcfunction(state, function);
-  lua_rawset(state, LUA_REGISTRYINDEX);
-  lua_pushlightuserdata(state, key);
-  lua_rawget(state, LUA_REGISTRYINDEX);
-}
+KADANS_TICK_CODE int enter(lua_State* state) { return core_of(state).entry(state); }
+
+// At the foot of the stack for good, so that a call allocates nothing and looks nothing up.
+enum Foot : int { handler = 1, entrance = 2 };
 
 int open(lua_State* state) {
   open_sandbox(state);
@@ -69,8 +62,12 @@ LuaState::LuaState(Settings settings)
   lua_ = lua_newstate(allocate, core_.get());
   if (lua_ == nullptr) throw std::bad_alloc();
   core_->main = lua_;
+  core_->heap.for_ticks(false);
+  foundation_ = core_->heap.tick_memory();
   luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   lua_gc(lua_, LUA_GCSTOP, 0);
+  lua_pushcfunction(lua_, keep_error);
+  lua_pushcfunction(lua_, enter);
   if (!call(open, nullptr, settings_.limits.load_instructions, 0)) {
     lua_close(lua_);
     throw std::bad_alloc();
@@ -84,24 +81,24 @@ LuaState::~LuaState() {
 }
 
 const ScriptError& LuaState::error() const noexcept { return core_->error; }
-std::size_t LuaState::used_bytes() const noexcept { return core_->heap.used_bytes(); }
+KADANS_TICK_CODE std::size_t LuaState::used_bytes() const noexcept { return core_->heap.used_bytes(); }
 
-bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
-                    std::int64_t wall_ns) noexcept {
+KADANS_TICK_CODE bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
+                                     std::int64_t wall_ns) noexcept {
   core_->depth = 0;
   core_->running = nullptr;
   core_->budget.begin(lua_, instructions, wall_ns);
-  lua_settop(lua_, 0);
-  push_function(lua_, keep_error);
-  push_function(lua_, function);
+  core_->entry = function;
+  lua_settop(lua_, entrance);
+  lua_pushvalue(lua_, entrance);
   lua_pushlightuserdata(lua_, argument);
-  const int status = lua_pcall(lua_, 1, 0, 1);
+  const int status = lua_pcall(lua_, 1, 0, handler);
   core_->running = nullptr;
   if (status != 0 && !core_->error.set) {
     const char* text = lua_tostring(lua_, -1);
     core_->error.set_message(text != nullptr ? text : "stopped");
   }
-  lua_settop(lua_, 0);
+  lua_settop(lua_, entrance);
   return status == 0 && !core_->budget.breached();
 }
 
@@ -171,7 +168,7 @@ int LuaState::line_of(std::string_view chunk, int from, std::string_view text) c
   return from;
 }
 
-void LuaState::collect() noexcept {
+KADANS_TICK_CODE void LuaState::collect() noexcept {
   const std::uint64_t fresh = core_->heap.allocated_bytes() - collected_at_;
   if (fresh < collect_bytes_min) return;  // it adds up over the ticks
   collected_at_ = core_->heap.allocated_bytes();
@@ -181,6 +178,27 @@ void LuaState::collect() noexcept {
     lua_gc(lua_, LUA_GCSTEP, static_cast<int>(fresh / 256));
   }
   lua_gc(lua_, LUA_GCSTOP, 0);  // a step starts the collector again
+}
+
+void LuaState::add_to(WarmUp& list) const noexcept {
+  list.add(foundation_);
+  list.add_object(core_->heap);
+  list.add_object(core_->budget);
+  list.add_object(core_->error.line);
+  list.add_object(core_->entry);
+  list.add_function(lua_call);
+  list.add_function(lua_checkstack);
+  list.add_function(lua_getallocf);
+  list.add_function(lua_gettop);
+  list.add_function(lua_pcall);
+  list.add_function(lua_pushlightuserdata);
+  list.add_function(lua_pushnumber);
+  list.add_function(lua_pushvalue);
+  list.add_function(lua_rawgeti);
+  list.add_function(lua_rawset);
+  list.add_function(lua_sethook);
+  list.add_function(lua_settop);
+  list.add_function(lua_touserdata);
 }
 
 }  // namespace kadans

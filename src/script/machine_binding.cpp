@@ -23,15 +23,22 @@ int wait(lua_State* state) {
 // m:emit(event) -> true | nil, "queue_full". The behavior sees it from its next tick on.
 int emit(lua_State* state);  // upvalue: the chart
 
-// Reading what m does not have; upvalue: its content.
+// Reading what m does not have; upvalues: its content, its number.
 int refuse_read(lua_State* state) {
   const Bindings& bindings = bindings_of(state);
+  const ControlSetInfo* set = bindings.set_of(static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(2))));
   for (const ObjectInfo& object : bindings.catalog->objects) {
-    if (lua_type(state, 2) != LUA_TSTRING || object.name != lua_tostring(state, 2) || bindings.set == nullptr) continue;
+    if (lua_type(state, 2) != LUA_TSTRING || object.name != lua_tostring(state, 2) || set == nullptr) continue;
     return luaL_error(state, "control object '%s' is not in this behavior's control set, '%s'", object.name.c_str(),
-                      bindings.set->name.c_str());
+                      set->name.c_str());
   }
   return raise_unknown_field(state, "m", lua_upvalueindex(1), 2);
+}
+
+// m:clear_faults() -> true | nil, "queue_full". What is asked for behind it in the same tick counts already.
+int clear_faults(lua_State* state) {
+  if (bindings_of(state).send({.kind = CommandKind::clear_faults})) return lua_pushboolean(state, 1), 1;
+  return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
 }
 
 // [-0 +1] A deep copy of the value at `index`: plain data only.
@@ -70,15 +77,14 @@ int emit(lua_State* state) {
   return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
 }
 
-void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings,
-                          const Chart::Machine& machine) {
+void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, std::size_t number) {
   lua_newtable(state);
   for (std::uint32_t object = 0; object < bindings.catalog->objects.size(); ++object) {
-    if (!bindings.has_object(object)) continue;
+    if (!bindings.has_object(number, object)) continue;
     push_object(state, object);
     lua_setfield(state, -2, bindings.catalog->objects[object].name.c_str());
   }
-  lua_pushstring(state, machine.name.c_str());
+  lua_pushstring(state, chart.machines[number].name.c_str());
   lua_setfield(state, -2, "name");
   lua_pushnumber(state, 0);
   lua_setfield(state, -2, "time_s");
@@ -88,6 +94,8 @@ void push_machine_content(lua_State* state, const Chart& chart, const Bindings& 
   lua_setfield(state, -2, "args");
   lua_pushcfunction(state, wait);
   lua_setfield(state, -2, "wait");
+  lua_pushcfunction(state, clear_faults);
+  lua_setfield(state, -2, "clear_faults");
   lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
   lua_pushcclosure(state, emit, 1);
   lua_setfield(state, -2, "emit");
@@ -100,12 +108,13 @@ void open_machines(lua_State* state, const Chart& chart, const Bindings& binding
   open_motions(state);
   tables.machines.resize(chart.machines.size());
   for (std::size_t i = 0; i < chart.machines.size(); ++i) {
-    push_machine_content(state, chart, bindings, chart.machines[i]);
+    push_machine_content(state, chart, bindings, i);
     lua_pushvalue(state, -1);
     tables.machines[i].content = luaL_ref(state, LUA_REGISTRYINDEX);
     lua_createtable(state, 0, 1);
     lua_pushvalue(state, -2);
-    lua_pushcclosure(state, refuse_read, 1);
+    lua_pushinteger(state, static_cast<lua_Integer>(i));
+    lua_pushcclosure(state, refuse_read, 2);
     lua_setfield(state, -2, "__index");
     lua_setmetatable(state, -2);
     make_read_only(state, "m", false);

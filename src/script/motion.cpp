@@ -1,6 +1,9 @@
 #include "motion.h"
 
+#include <algorithm>
+
 #include "bindings.h"
+#include "kadans/engine/refusal_text.h"
 #include "sandbox.h"
 
 namespace kadans {
@@ -15,7 +18,7 @@ Motion* check_motion(lua_State* state, const char* method) {
   return motion;
 }
 
-// motion:wait() -> true | nil, reason. Inside `run` only: goes on when the motion is over.
+// motion:wait() -> true | nil, outcome, reason. Inside `run` only: goes on when the motion is over.
 int wait(lua_State* state) {
   Motion* motion = check_motion(state, "wait");
   LuaCore& core = core_of(state);
@@ -42,14 +45,17 @@ int cancel(lua_State* state) {
   return lua_pushboolean(state, 1), 1;
 }
 
-// motion.done, motion.wait, motion.cancel; upvalue: the methods.
+// motion.done, .outcome, .reason, .wait, .cancel; upvalue: the methods.
 int read_field(lua_State* state) {
   Motion* motion = check_motion(state, "wait");
-  lua_pushliteral(state, "done");
-  if (lua_rawequal(state, 2, -1) != 0) {
+  const std::string_view name = lua_type(state, 2) == LUA_TSTRING ? lua_tostring(state, 2) : "";
+  if (name == "done" || name == "outcome" || name == "reason") {
     const Bindings& bindings = bindings_of(state);
     observe(*motion, *bindings.snapshot, bindings.now_ns);
-    return lua_pushboolean(state, motion->over() ? 1 : 0), 1;
+    if (name == "done") return lua_pushboolean(state, motion->over() ? 1 : 0), 1;
+    if (name == "reason") return push_reason(state, *motion), 1;
+    const char* why = failure(*motion);
+    return lua_pushstring(state, why != nullptr ? why : motion->over() ? "done" : "moving"), 1;
   }
   lua_settop(state, 2);
   lua_pushvalue(state, 2);
@@ -63,7 +69,12 @@ int read_field(lua_State* state) {
 void observe(Motion& motion, const Snapshot& snapshot, std::int64_t now_ns) noexcept {
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
   if (motion.state == MotionState::sent) {
-    if (snapshot.transactions_applied >= motion.sequence) {
+    const auto refused = std::find_if(snapshot.refusals.begin(), snapshot.refusals.end(),
+                                      [&](const Refusal& refusal) { return refusal.sequence == motion.sequence; });
+    if (refused != snapshot.refusals.end()) {
+      motion.state = MotionState::refused;
+      motion.refusal = *refused;
+    } else if (snapshot.transactions_applied >= motion.sequence) {
       motion.state = MotionState::applied;
       motion.applied_ns = now_ns;
     } else if (seconds(now_ns - motion.asked_ns - patience_ns) > motion.duration_s) {
@@ -77,8 +88,10 @@ void observe(Motion& motion, const Snapshot& snapshot, std::int64_t now_ns) noex
 
 const char* failure(const Motion& motion) noexcept {
   switch (motion.state) {
-    case MotionState::refused:
+    case MotionState::queue_full:
       return "queue_full";
+    case MotionState::refused:
+      return "refused";
     case MotionState::cancelled:
       return "cancelled";
     case MotionState::expired:
@@ -86,6 +99,13 @@ const char* failure(const Motion& motion) noexcept {
     default:
       return nullptr;
   }
+}
+
+void push_reason(lua_State* state, const Motion& motion) {
+  if (motion.state != MotionState::refused) return lua_pushnil(state);
+  char text[200];
+  copy_refusal_text(motion.refusal, *bindings_of(state).catalog, text);
+  lua_pushstring(state, text);
 }
 
 Motion* push_motion(lua_State* state, std::uint32_t count) {

@@ -13,7 +13,11 @@ constexpr double going_on_min_s = 0.1;  // from rest, so that a motion almost th
 }  // namespace
 
 MotionsUnderWay::MotionsUnderWay(const Catalog& catalog)
-    : catalog_(catalog), motions_(catalog.setpoints.size()), velocity_(catalog.setpoints.size()) {
+    : catalog_(catalog),
+      partition_(catalog),
+      active_(catalog.initial_sets),
+      motions_(catalog.setpoints.size()),
+      velocity_(catalog.setpoints.size()) {
   for (SetpointId id = 0; id < motions_.size(); ++id) velocity_[id] = catalog.setpoints[id].unit.ends_with("/s");
 }
 
@@ -29,7 +33,7 @@ void MotionsUnderWay::note(std::span<const Command> transaction, std::int64_t no
         motions_[command.index].clear();
         break;
       case CommandKind::switch_set:
-        keep_set(catalog_.sets[command.index]);
+        switch_to(command.index);
         break;
       default:
         break;
@@ -47,11 +51,12 @@ void MotionsUnderWay::begin(const Command& command, std::int64_t now_ns) {
   motion.push_back({command, lasts ? forever_ns : from_ns + std::llround(command.duration_s * 1e9)});
 }
 
-// What is not in the set stands still.
-void MotionsUnderWay::keep_set(const ControlSetInfo& set) noexcept {
+// What leaves with its set stands still.
+void MotionsUnderWay::switch_to(std::uint32_t set) noexcept {
+  active_ = partition_.after(active_, set);
+  const ObjectMask running = partition_.objects(active_);
   for (SetpointId id = 0; id < motions_.size(); ++id) {
-    const std::uint32_t owner = catalog_.setpoints[id].owner;
-    if (std::ranges::find(set.objects, owner) == set.objects.end()) motions_[id].clear();
+    if ((running >> catalog_.setpoints[id].owner & 1U) == 0) motions_[id].clear();
   }
 }
 

@@ -21,30 +21,38 @@ int setpoint(lua_State* state) {
   return lua_pushnumber(state, present_setpoint(state, read_setpoint(state, 2, object)).value), 1;
 }
 
-int send_parameter(lua_State* state, const ObjectInfo& object, const char* name, double value, bool check_only) {
-  Bindings& bindings = bindings_of(state);
-  const Catalog& catalog = *bindings.catalog;
+ParameterId read_parameter(lua_State* state, int index, const ObjectInfo& object) {
+  const Catalog& catalog = *bindings_of(state).catalog;
+  const char* name = luaL_checkstring(state, index);
   for (const ParameterId id : object.parameters) {
-    const Parameter& parameter = catalog.parameters.info(id);
-    if (std::strcmp(short_name(object, parameter.name), name) != 0) continue;
-    check_range(state, parameter.name.c_str(), parameter.unit.c_str(), value, parameter.min, parameter.max);
-    if (check_only) return 1;
-    return bindings.send({.kind = CommandKind::set_parameter, .index = id, .value = value}) ? 1 : 0;
+    if (std::strcmp(short_name(object, catalog.parameters.info(id).name), name) == 0) return id;
   }
   const Hint hint = make_hint(name, [&](auto& names) {
     for (const ParameterId id : object.parameters)
       names.emplace_back(short_name(object, catalog.parameters.info(id).name));
   });
-  return luaL_error(state, "'%s' has no parameter '%s'%s", object.name.c_str(), name, hint.data());
+  luaL_error(state, "'%s' has no parameter '%s'%s", object.name.c_str(), name, hint.data());
+  return 0;
+}
+
+// object:parameter(name) -> number: its value now.
+int parameter(lua_State* state) {
+  std::uint32_t number = 0;
+  const ObjectInfo& object = check_object(state, number);
+  const ParameterId id = read_parameter(state, 2, object);
+  return lua_pushnumber(state, bindings_of(state).catalog->parameters.get(id)), 1;
 }
 
 // object:set_parameter(name, value) -> true | nil, "queue_full".
 int set_parameter(lua_State* state) {
   std::uint32_t number = 0;
   const ObjectInfo& object = check_object(state, number);
-  const char* name = luaL_checkstring(state, 2);
+  Bindings& bindings = bindings_of(state);
+  const ParameterId id = read_parameter(state, 2, object);
   const double value = luaL_checknumber(state, 3);
-  if (send_parameter(state, object, name, value, false) == 0) return queue_full(state);
+  const Parameter& info = bindings.catalog->parameters.info(id);
+  check_range(state, info.name.c_str(), info.unit.c_str(), value, info.min, info.max);
+  if (!bindings.send({.kind = CommandKind::set_parameter, .index = id, .value = value})) return queue_full(state);
   return lua_pushboolean(state, 1), 1;
 }
 
@@ -101,10 +109,11 @@ void push_object(lua_State* state, std::uint32_t object) {
 }
 
 void open_objects(lua_State* state) {
-  const luaL_Reg methods[] = {{"setpoint", setpoint}, {"set_gains", set_gains}, {"set_parameter", set_parameter}};
+  const luaL_Reg methods[] = {
+      {"setpoint", setpoint}, {"parameter", parameter}, {"set_gains", set_gains}, {"set_parameter", set_parameter}};
   lua_pushlightuserdata(state, const_cast<char*>(&object_key));
   lua_createtable(state, 0, 2);
-  lua_createtable(state, 0, 7);
+  lua_createtable(state, 0, 8);
   for (const luaL_Reg& method : methods) {
     lua_pushcfunction(state, method.func);
     lua_setfield(state, -2, method.name);

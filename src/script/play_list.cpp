@@ -25,6 +25,14 @@ bool PlayList::has_turn(std::size_t number) const noexcept {
                                      [&](const Entry& other) { return other.lane == entry.lane && !other.over; });
 }
 
+SetMask PlayList::sets_beside(std::uint32_t lane, const std::vector<Entry>& entries) noexcept {
+  SetMask all = 0;
+  for (const Entry& entry : entries) {
+    if (!entry.over && entry.lane != lane) all |= entry.behavior->control_sets();
+  }
+  return all;
+}
+
 void PlayList::end(Entry& entry) noexcept {
   entry.over = true;
   const bool done = entry.behavior->outcome() == "done";

@@ -19,15 +19,20 @@ SafePosture::SafePosture(Settings settings, const Catalog& catalog)
   throw InputError({.message = "unknown pose '" + settings_.pose + "' in 'safe'" + hint_text(settings_.pose, names)});
 }
 
-void SafePosture::failed(std::int64_t now_ns, const ControlSetInfo* set) noexcept {
+void SafePosture::failed(std::int64_t now_ns, ObjectMask objects) noexcept {
   if (pose_ == nullptr) return;
-  for (std::uint32_t object = 0; set == nullptr && object < catalog_.objects.size(); ++object)
-    concerned_[object] = true;
-  if (set != nullptr) {
-    for (const std::uint32_t object : set->objects) concerned_[object] = true;
-  }
+  concerned_ |= objects;
   waiting_ = true;
   due_ns_ = now_ns + std::llround(settings_.after_s * 1e9);
+}
+
+void SafePosture::move(const Snapshot& snapshot, CommandSender& commands, ObjectMask kept) noexcept {
+  commands.begin(snapshot.time_ns);
+  for (std::uint32_t object = 0; object < catalog_.objects.size(); ++object) {
+    const bool meant = ((concerned_ & ~kept) >> object & 1U) != 0;
+    if (meant && snapshot.objects[object].active) add(object, commands);
+  }
+  finish(commands);
 }
 
 void SafePosture::add(std::uint32_t object, CommandSender& commands) noexcept {

@@ -263,8 +263,10 @@ void make_read_only(lua_State* state, const char* name, bool strict) {
     lua_setfield(state, -2, "__index");
     lua_setmetatable(state, content);
   }
+  core_of(state).heap.for_ticks(true);
   lua_newtable(state);
   lua_createtable(state, 0, 4);
+  core_of(state).heap.for_ticks(false);
   lua_pushvalue(state, content);
   lua_setfield(state, -2, "__index");
   lua_pushstring(state, name);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kadans/signal/input_error.h"
+#include "machine_sets.h"
 
 namespace kadans {
 
@@ -37,7 +38,23 @@ std::vector<PlayList::Entry> ScriptHost::load(const std::vector<PlayItem>& list,
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }
   }
+  for (std::size_t i = 0; problems.empty() && i < loaded.size(); ++i) {
+    const SetMask beside = PlayList::sets_beside(loaded[i].lane, loaded);
+    const std::string clash = clash_text(catalog_, loaded[i].behavior->control_sets(), beside);
+    if (clash.empty()) continue;
+    problems.push_back(
+        {list[i].source, list[i].place.line, list[i].place.column, "behaviors that play at the same time: " + clash});
+  }
   return loaded;
+}
+
+std::string ScriptHost::clash(const std::vector<PlayList::Entry>& loaded) const {
+  for (const PlayList::Entry& entry : loaded) {
+    const SetMask beside = PlayList::sets_beside(entry.lane, list_.entries());
+    const std::string clash = clash_text(catalog_, entry.behavior->control_sets(), beside);
+    if (!clash.empty()) return "'" + entry.behavior->name() + "' cannot play beside what plays: " + clash;
+  }
+  return "";
 }
 
 void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -46,7 +63,7 @@ void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcep
   if (!pause_.holds(snapshot, commands)) {
     list_.each_in_turn([&](PlayList::Entry& entry) { step(entry, snapshot, commands); });
     if (safe_.due(snapshot.time_ns)) {
-      safe_.move(snapshot, commands, [this](std::uint32_t object) { return plays_with(object); });
+      safe_.move(snapshot, commands, objects_played_with());
       pause_.note(snapshot, commands);
     }
   }
@@ -62,7 +79,7 @@ void ScriptHost::step(PlayList::Entry& entry, const Snapshot& snapshot, CommandS
   list_.end(entry);
   if (!behavior.failed()) return;
   report_failure(behavior, snapshot.time_ns);
-  safe_.failed(snapshot.time_ns, behavior.control_set());
+  safe_.failed(snapshot.time_ns, behavior.objects());
 }
 
 void ScriptHost::report_failure(const Behavior& behavior, std::int64_t time_ns) noexcept {
@@ -72,12 +89,12 @@ void ScriptHost::report_failure(const Behavior& behavior, std::int64_t time_ns) 
   log_.message(time_ns, BehaviorLog::Severity::error, behavior.name(), text);
 }
 
-bool ScriptHost::plays_with(std::uint32_t object) const noexcept {
-  return std::ranges::any_of(list_.entries(), [object](const PlayList::Entry& entry) {
-    if (entry.over) return false;
-    const ControlSetInfo* set = entry.behavior->control_set();
-    return set == nullptr || std::ranges::find(set->objects, object) != set->objects.end();
-  });
+ObjectMask ScriptHost::objects_played_with() const noexcept {
+  ObjectMask all = 0;
+  for (const PlayList::Entry& entry : list_.entries()) {
+    if (!entry.over) all |= entry.behavior->objects();
+  }
+  return all;
 }
 
 std::vector<std::string> ScriptHost::names() const {

@@ -5,11 +5,44 @@
 #include "kadans/signal/input_error.h"
 
 namespace kadans {
+namespace {
+
+class Silence final : public BehaviorLog {
+ public:
+  void transition(const Transition&) override {}
+  void message(std::int64_t, Severity, const std::string&, const std::string&) override {}
+};
+
+}  // namespace
+
+std::vector<std::filesystem::path> ScriptHost::files() const {
+  std::vector<std::filesystem::path> all;
+  const auto add = [&all](const Behavior& behavior) {
+    for (std::filesystem::path& file : behavior.files()) all.push_back(std::move(file));
+  };
+  for (const PlayList::Entry& entry : list_.entries()) add(*entry.behavior);
+  Silence silence;
+  for (const Due& due : events_) {
+    for (const PlayList::Entry& entry : due.loaded) add(*entry.behavior);
+    if (due.order.file.empty()) continue;
+    all.push_back(due.order.file);
+    try {
+      const Behavior::Settings settings{
+          .root = settings_.root, .file = due.order.file, .seed = settings_.seed, .limits = settings_.limits};
+      add(Behavior(settings, catalog_, silence));
+    } catch (const InputError&) {  // the reload will be refused
+    }
+  }
+  return all;
+}
 
 void ScriptHost::order(const PlayOrder& order) {
   std::vector<InputProblem> problems;
   Due due{0, order, load(order.list, false, problems)};
   if (!problems.empty()) throw InputError(problems);
+  if (order.kind == PlayOrder::Kind::play) {
+    if (const std::string why = clash(due.loaded); !why.empty()) throw InputError({.message = why});
+  }
   const std::vector<std::string> known = names();
   if (order.kind == PlayOrder::Kind::reload && std::ranges::find(known, order.behavior.name) == known.end())
     throw InputError({.message = unknown_name("behavior", order.behavior.name, known)});
@@ -34,6 +67,10 @@ void ScriptHost::carry_out(Due& due, const Snapshot& snapshot, CommandSender& co
   if (kind == Kind::pause) pause_.begin();
   if (kind == Kind::resume) pause_.end();
   if (kind == Kind::stop || kind == Kind::replace) leave_all(snapshot, commands);
+  if (const std::string why = clash(due.loaded); !why.empty()) {
+    log_.message(snapshot.time_ns, BehaviorLog::Severity::error, "supervisor", why);
+    return;
+  }
   begin(due.loaded);
 }
 
@@ -60,7 +97,7 @@ void ScriptHost::reload(const PlayOrder& order, const Snapshot& snapshot, Comman
   for (PlayList::Entry& entry : list_.entries()) {
     if (entry.over || entry.behavior->name() != order.behavior.name) continue;
     entry.behavior->hold_clock(pause_.held_ns());
-    (void)entry.behavior->reload(snapshot, commands, order.file);
+    (void)entry.behavior->reload(snapshot, commands, order.file, PlayList::sets_beside(entry.lane, list_.entries()));
   }
 }
 
@@ -69,7 +106,7 @@ void ScriptHost::reload_saved(const Snapshot& snapshot, CommandSender& commands)
   for (PlayList::Entry& entry : list_.entries()) {
     if (entry.over) continue;
     entry.behavior->hold_clock(pause_.held_ns());
-    (void)entry.behavior->reload(snapshot, commands);
+    (void)entry.behavior->reload(snapshot, commands, {}, PlayList::sets_beside(entry.lane, list_.entries()));
   }
   watch_folders();  // of modules that are new
 }

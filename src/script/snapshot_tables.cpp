@@ -4,7 +4,9 @@
 #include <initializer_list>
 #include <utility>
 
+#include "lua_core.h"
 #include "sandbox.h"
+#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -58,7 +60,7 @@ constexpr const char* key_names[] = {"",
                                      "tick"};
 
 // What `keys` holds at this number becomes a field of the table.
-void put(lua_State* state, int table, int keys, Key key, double value) {
+KADANS_TICK_CODE void put(lua_State* state, int table, int keys, Key key, double value) {
   lua_rawgeti(state, keys, key);
   lua_pushnumber(state, value);
   lua_rawset(state, table);
@@ -80,7 +82,9 @@ int first_read(lua_State* state) {
 
 // [-0 +1] An empty table, content of a part.
 void SnapshotTables::push_part(lua_State* state, Kind kind, std::size_t index) {
+  core_of(state).heap.for_ticks(true);
   lua_createtable(state, 0, kind == Kind::joint ? 3 : 8);
+  core_of(state).heap.for_ticks(false);
   lua_pushvalue(state, -1);
   parts_.push_back({kind, static_cast<std::uint32_t>(index), luaL_ref(state, LUA_REGISTRYINDEX)});
 }
@@ -107,8 +111,26 @@ void SnapshotTables::finish_part(lua_State* state, std::size_t number, const cha
 
 // [-0 +1]
 void SnapshotTables::push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown) {
+  const LuaHeap& heap = core_of(state).heap;
+  const std::byte* const first = heap.tick_end();
   push_part(state, kind, index);
   finish_part(state, parts_.size() - 1, shown);
+  parts_.back().memory = {first, heap.tick_end()};
+}
+
+// [-0 +1]
+void SnapshotTables::push_joints(lua_State* state, const RobotModel& model) {
+  LuaHeap& heap = core_of(state).heap;
+  const std::byte* const first = heap.tick_end();
+  heap.for_ticks(true);
+  lua_createtable(state, 0, static_cast<int>(model.joints.size()));
+  heap.for_ticks(false);
+  joints_ = {first, heap.tick_end()};
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    push_whole_part(state, Kind::joint, i, "a joint");
+    lua_setfield(state, -2, model.joints[i].name.c_str());
+  }
+  make_read_only(state, "s.joints");
 }
 
 int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet,
@@ -116,12 +138,7 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
   on_demand_ = on_demand;
   push_names(state);
   push_part(state, Kind::root, 0);
-  lua_newtable(state);
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    push_whole_part(state, Kind::joint, i, "a joint");
-    lua_setfield(state, -2, model.joints[i].name.c_str());
-  }
-  make_read_only(state, "s.joints");
+  push_joints(state, model);
   lua_setfield(state, -2, "joints");
   push_part(state, Kind::base, 0);
   const std::size_t base = parts_.size() - 1;
@@ -161,7 +178,7 @@ void SnapshotTables::push_names(lua_State* state) {
   levels_ = luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
-void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
+KADANS_TICK_CODE void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
   snapshot_ = &snapshot;
   now_ns_ = now_ns;
   if (read_.empty()) return;
@@ -169,6 +186,11 @@ void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int
   lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
   for (const std::uint16_t number : read_) fill(state, parts_[number]);
   lua_pop(state, 1);
+}
+
+KADANS_TICK_CODE void SnapshotTables::warm_up() const noexcept {
+  if (!read_.empty()) WarmUp::read(joints_);
+  for (const std::uint16_t number : read_) WarmUp::read(parts_[number].memory);
 }
 
 void SnapshotTables::read_first(lua_State* state, std::size_t number) {
@@ -183,7 +205,7 @@ void SnapshotTables::read_first(lua_State* state, std::size_t number) {
 }
 
 // The names are at the top.
-void SnapshotTables::fill(lua_State* state, const Part& part) const {
+KADANS_TICK_CODE void SnapshotTables::fill(lua_State* state, const Part& part) const {
   const int keys = lua_gettop(state), table = keys + 1;
   lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
   const auto set = [=](std::initializer_list<std::pair<Key, double>> fields) {

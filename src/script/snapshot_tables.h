@@ -2,7 +2,9 @@
 // those of parts (a joint, a foot, the base ...) that this script has ever read: the first read of a part fills it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/status.h"
+#include "warm_up.h"
 
 namespace kadans {
 
@@ -23,6 +26,8 @@ class SnapshotTables {
   void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
   // Fills a part from now on.
   void read_first(lua_State* state, std::size_t part);
+  // Reads what refill() and the script are going to need. Before each refill().
+  void warm_up() const noexcept;
 
  private:
   enum class Kind : std::uint8_t { root, joint, base, rate, foot, support, safety };
@@ -31,11 +36,13 @@ class SnapshotTables {
     std::uint32_t index;
     int content;  // registry reference
     bool read = false;
+    std::span<const std::byte> memory{};  // its tables
   };
   void push_names(lua_State* state);
   void push_part(lua_State* state, Kind kind, std::size_t index);
   void finish_part(lua_State* state, std::size_t number, const char* shown);
   void push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown);
+  void push_joints(lua_State* state, const RobotModel& model);
   void fill(lua_State* state, const Part& part) const;
   void fill_foot(lua_State* state, int keys, const FootStatus& foot) const;
   void fill_safety(lua_State* state, int keys, const SafetyStatus& status) const;
@@ -46,6 +53,7 @@ class SnapshotTables {
   Snapshot nothing_{};
   const Snapshot* snapshot_ = &nothing_;
   std::int64_t now_ns_ = 0;
+  std::span<const std::byte> joints_;  // the table that names them
   int keys_ = 0, levels_ = 0;
 };
 

@@ -54,7 +54,9 @@ bool Recorder::open(const std::string& path) {
   return true;
 }
 
-bool Recorder::describe_run(const TextMap& facts) { return file_.add_metadata("run", facts); }
+bool Recorder::describe_run(const RunInputs& inputs) { return write_inputs(file_, inputs); }
+
+bool Recorder::describe(const std::string& name, const TextMap& facts) { return file_.add_metadata(name, facts); }
 
 bool Recorder::describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns) {
   if (!file_.attach(name + ".urdf", "application/xml", time_ns, bytes_of(urdf))) return false;

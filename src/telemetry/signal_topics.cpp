@@ -105,7 +105,7 @@ class Definition {
     topic_.type = "kadans_msgs/msg/" + type;
     topic_.definition = body(root, type);
     for (const std::string& nested : nested_) {
-      topic_.definition += std::string(80, '=') + "\nMSG: " + nested;
+      topic_.definition.append(80, '=').append("\nMSG: ").append(nested);
     }
   }
 

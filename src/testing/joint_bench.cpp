@@ -107,7 +107,7 @@ double JointBench::get(std::string_view parameter) const {
 }
 
 SetpointId JointBench::find_setpoint(std::string_view name) const {
-  const std::string active = catalog_.objects[sets_->active()].name + ".";
+  const std::string active = catalog_.objects[active_object()].name + ".";
   return static_cast<SetpointId>(find_by_ending("set-point", name, catalog_.setpoints.names(), active));
 }
 
@@ -165,7 +165,7 @@ void JointBench::update_high_level() {
   snapshot_.time_ns = sensors_.time_ns;
   snapshot_.joints = joints_;
   snapshot_.status = status_;
-  sets_->fill(snapshot_.control_set, snapshot_.object_count, snapshot_.objects);
+  sets_->fill(snapshot_);
   sets_->update(tick_ / behavior_divisor, snapshot_);
 }
 

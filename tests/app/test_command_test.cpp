@@ -104,9 +104,28 @@ TEST_CASE("A run that takes too long is stopped and has failed, the others go on
   CHECK(has(outcome.out, "2 runs, 1 failed"));
 }
 
-TEST_CASE("The shipped suite passes") {
+TEST_CASE("A control object that crashes the process is one failed row, the suite goes on") {
+  const auto folder = project();
+  const std::string plugin = KADANS_BINARY_DIR "/tests/plugins/crashing_step_plugin.so";
+  std::filesystem::copy(folder / "config/tulip/robot.json", folder / "config/tulip/crashing.json");
+  const auto robot = folder / "config/tulip/crashing.json";
+  REQUIRE(edit(robot, "\"name\": \"tulip\",", "\"name\": \"tulip\", \"plugins\": [\"" + plugin + "\"],"));
+  REQUIRE(edit(robot, "\"objects\": [", R"("objects": [{ "name": "bomb", "type": "hostile", "joints": ["l_knee"] },)"));
+  REQUIRE(edit(robot, "\"sets\": {", R"("sets": { "bomb": { "objects": ["bomb"] },)"));
+  REQUIRE(edit(robot, "\"initial_set\": \"posture\"", "\"initial_set\": \"bomb\""));
+  write(folder / "config/scenarios/crashing.json", R"({"name": "crashing", "robot": "config/tulip/crashing.json",
+    "plant": "ideal", "duration_s": 0.5, "checks": [{"name": "runs", "kind": "at_end", "that": "true"}]})");
+  const Outcome outcome = run_test(folder, "bent crashing --jobs 1 --repeat 1 --junit results.xml");
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 1);
+  CHECK(has(outcome.out, "crashing (seed 1): crashed"));
+  CHECK(has(outcome.out, "2 runs, 1 failed"));
+  CHECK(has(read(folder / "results.xml"), "errors=\"1\""));
+}
+
+TEST_CASE("The shipped suite passes and ends with its golden hashes") {
   const auto folder = project_copy("test_command_shipped");
-  const Outcome outcome = run_test(folder, "");
+  const Outcome outcome = run_test(folder, "--golden");
   CAPTURE(outcome.out);
   CAPTURE(outcome.err);
   CHECK(outcome.exit_code == 0);

@@ -100,7 +100,38 @@ TEST_CASE("Sets number their control objects, and the initial one is found by na
   const RobotConfig config = read_with("\"initial_set\": \"posture\"", "\"initial_set\": \"wave\"");
   REQUIRE(config.sets.size() == 2);
   CHECK(config.sets[1].objects == std::vector<std::uint32_t>{1});
-  CHECK(config.initial_set == 1);
+  CHECK(config.initial_sets == 0b10);
+}
+
+TEST_CASE("Several sets may be active first when they share no joint") {
+  const auto first = [](const char* sets) {
+    std::string text = right_robot;
+    const auto put = [&](const std::string& from, const std::string& to) {
+      text.replace(text.find(from), from.size(), to);
+    };
+    put("{ \"name\": \"arms\"",
+        "{ \"name\": \"knee\", \"type\": \"joint_pid\", \"joints\": [\"l_knee\"] }, { \"name\": \"arms\"");
+    put("\"wave\":", "\"step\": { \"objects\": [\"knee\"] }, \"wave\":");
+    put("\"initial_set\": \"posture\"", std::string("\"initial_sets\": ") + sets);
+    return text;
+  };
+  CHECK(read(first("[\"step\", \"wave\"]")).initial_sets == 0b110);
+  CHECK_THROWS_WITH(read(first("[\"posture\", \"wave\"]")),
+                    doctest::Contains("control sets that are active first share a joint"));
+  CHECK_THROWS_WITH(read(first("[\"posture\", \"wav\"]")),
+                    doctest::Contains("unknown control set 'wav', did you mean 'wave'?"));
+}
+
+TEST_CASE("A joint that no set holds damps as in safety, or does what its pattern says; one without a motor is off") {
+  const RobotConfig plain = read(right_robot);
+  CHECK(plain.unheld[joint(plain, "l_knee")].damping_Nms_per_rad == plain.safety.damping_Nms_per_rad);
+  CHECK(plain.unheld[joint(plain, "l_knee")].stiffness_Nm_per_rad == 0);
+  const RobotConfig held =
+      read_with("\"initial_set\":", "\"unheld\": { \"*\": { \"stiffness_Nm_per_rad\": 80 } }, \"initial_set\":");
+  CHECK(held.unheld[joint(held, "l_knee")].stiffness_Nm_per_rad == 80);
+  CHECK(held.unheld[joint(held, "l_knee")].damping_Nms_per_rad == held.safety.damping_Nms_per_rad);
+  CHECK(held.unheld[joint(held, "l_ankle_roll")].stiffness_Nm_per_rad == 0);
+  CHECK(held.unheld[joint(held, "l_ankle_roll")].damping_Nms_per_rad == 0);
 }
 
 TEST_CASE("Objects of one set may share a joint when all but one of them compose") {

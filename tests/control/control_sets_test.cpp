@@ -142,6 +142,7 @@ TEST_CASE("A slower object computes every n-th tick with its own dt, and its act
 TEST_CASE("The high level runs every n-th behavior tick, for the active set alone") {
   Bench bench;
   Snapshot snapshot;
+  bench.sets->fill(snapshot);
   for (std::uint64_t tick = 0; tick < 4; ++tick) bench.sets->update(tick, snapshot);
   CHECK(bench.hip->updates == 4);
   CHECK(bench.knee->updates == 2);

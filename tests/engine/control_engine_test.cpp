@@ -94,7 +94,7 @@ TEST_CASE("The snapshot carries tick, time, joints and the active set") {
   CHECK(snapshot.tick == 1);
   CHECK(snapshot.time_ns == 1'000'000);
   CHECK(snapshot.joints.joints[1].position_rad == doctest::Approx(0.7));
-  CHECK(snapshot.control_set == 0);
+  CHECK(snapshot.control_sets == 0b1);
   CHECK(snapshot.objects[0].active);
   CHECK_FALSE(snapshot.objects[1].active);
 }
@@ -117,6 +117,6 @@ TEST_CASE("Switching sets by command makes the other object compute") {
   bench.tick();
   bench.command({.kind = CommandKind::switch_set, .index = 1});
   bench.tick();
-  CHECK(bench.exchange->snapshot.read(1).control_set == 1);
+  CHECK(bench.exchange->snapshot.read(1).control_sets == 0b10);
   CHECK(bench.exchange->snapshot.read(1).objects[1].active);
 }

@@ -75,7 +75,7 @@ struct Stand {
     inbox->apply(0, input, safety);
     inbox->motions().step(dt_s);
     sets->step(0, input, actuation);
-    sets->fill(snapshot.control_set, snapshot.object_count, snapshot.objects);
+    sets->fill(snapshot);
     inbox->motions().fill(snapshot);
     time_ns += 1'000'000;
   }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# same_state.sh SCENARIO: three seconds of it end with the same state_hash in the release, clang and sanitizer builds.
+# same_state.sh SCENARIO: three seconds of it end with the same state_hash in the release, clang and sanitizer builds,
+# and two scenarios of the suite end with their golden hashes in them.
 set -euo pipefail
 scenario="$KADANS_SOURCE_DIR/$1"
 [ -e "$scenario" ] || { echo "no $1 yet"; exit 0; }
@@ -15,4 +16,8 @@ for variant in clang asan; do
   found=$(hash_of "$KADANS_BINARY_DIR/$variant/kadans")
   echo "$variant: $found"
   [ "$found" = "$expected" ]
+done
+cd "$KADANS_SOURCE_DIR"
+for variant in clang asan; do
+  "$KADANS_BINARY_DIR/$variant/kadans" test --golden push_left ticks_missed
 done

@@ -127,6 +127,18 @@ TEST_CASE("a console only reads until :write, then each line is one transaction"
   CHECK(desk.says("m:wait(1)").find("error: ") == 0);
 }
 
+TEST_CASE("faults are cleared by a command with a colon, or in Lua, after :write only") {
+  Desk desk;
+  CHECK(desk.says(":clear_faults").find("this console only reads: ':write' lets it command") != std::string::npos);
+  CHECK(desk.queue.size() == 0);
+  desk.type(":write");
+  CHECK(desk.says(":clear_faults").empty());
+  CHECK(desk.queue.size() == 2);
+  CHECK(desk.says("m:clear_faults()") == "true");
+  desk.tick(1);
+  CHECK(desk.commands(CommandKind::clear_faults) == 2);
+}
+
 TEST_CASE("a pause halts what the console moves too") {
   Desk desk;
   desk.type(":write");

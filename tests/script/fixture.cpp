@@ -79,8 +79,10 @@ void Engine::step() {
   snapshot.tick += 10;
   snapshot.time_ns += 10'000'000;
   snapshot.object_count = static_cast<std::uint32_t>(robot.catalog.objects.size());
+  const ObjectMask running = SetPartition(robot.catalog).objects(snapshot.control_sets);
   for (std::uint32_t object = 0; object < snapshot.object_count; ++object) {
     const double remaining_s = moving_until_s_[object] - static_cast<double>(snapshot.time_ns) * 1e-9;
+    snapshot.objects[object].active = (running >> object & 1U) != 0;
     snapshot.objects[object].motion_remaining_s = remaining_s > 1e-9 ? remaining_s : 0;
   }
 }
@@ -90,7 +92,8 @@ void Engine::apply() {
   while (queue.try_pop(command)) {
     applied.push_back(command);
     if (command.kind == CommandKind::transaction) snapshot.transactions_applied = command.sequence;
-    if (command.kind == CommandKind::switch_set) snapshot.control_set = command.index;
+    if (command.kind == CommandKind::switch_set)
+      snapshot.control_sets = SetPartition(robot.catalog).after(snapshot.control_sets, command.index);
     if (command.kind == CommandKind::cancel_motion)
       moving_until_s_[robot.catalog.setpoints[command.index].owner] =
           static_cast<double>(snapshot.time_ns) * 1e-9 + 0.1;

@@ -50,6 +50,14 @@ class Robot {
     catalog.poses = {stand, lean};
   }
 
+  // Object "legs" in set "legs": all driven joints but those of "arms".
+  void add_legs() {
+    add_object("legs", [](const std::string& name) {
+      return !name.ends_with("ankle_roll") && !name.ends_with("shoulder_pitch");
+    });
+    catalog.sets.push_back({"legs", {2}});
+  }
+
   RobotModel model;
   Catalog catalog;
   std::vector<double> values;
@@ -118,6 +126,7 @@ class Scripts {
 // the next behavior tick, 10 ms later.
 class Engine {
  public:
+  Engine() { snapshot.control_sets = robot.catalog.initial_sets; }
   void step();
   // How many of the commands applied so far were of that kind.
   std::size_t commands(CommandKind kind) const;

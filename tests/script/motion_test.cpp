@@ -19,7 +19,7 @@ std::string in_run(const std::string& code) {
 TEST_CASE("what a tick asks for is one transaction, with the switch to the behavior's control set first") {
   Stage stage(in_run(
       "m.posture:set_gains('stiff') m.posture:move('stand', { time_s = 2 }) m.posture:set('l_knee.position_rad', 1)"));
-  stage.snapshot.control_set = 1;
+  stage.snapshot.control_sets = 0b10;
   stage.tick();
   REQUIRE(stage.applied.size() == 1 + 1 + 12 + 12 + 1);
   CHECK(stage.applied[0].kind == CommandKind::transaction);
@@ -99,6 +99,60 @@ TEST_CASE("a control engine that takes nothing: the queue fills up, refuses, and
   CHECK_FALSE(stage.behavior->failed());
   CHECK(stage.queue.size() == 78 * 13);
   CHECK(stage.behavior->transactions_refused() == 200 - 78);
+}
+
+TEST_CASE("a motion that the control engine refuses is over at once: its outcome, its reason and the log say why") {
+  Stage stage(
+      in_run("local motion = m.posture:move('lean', { time_s = 0.5 }) print(motion.outcome, motion.reason)\n"
+             "print(motion:wait()) print(s.time_s, motion.outcome, motion.reason, motion.done)"));
+  stage.applying = false;
+  stage.tick();
+  const std::uint32_t sequence = stage.sender.last_sequence();
+  const SetpointId knee = stage.robot.catalog.setpoints.find("posture.l_knee.position_rad").value();
+  stage.snapshot.refusals[0] = {.sequence = sequence + 1, .reason = RefusalReason::too_old};  // of somebody else
+  stage.snapshot.refusals[1] = {.sequence = sequence,
+                                .kind = CommandKind::set_point,
+                                .reason = RefusalReason::out_of_range,
+                                .index = knee,
+                                .value = 3};
+  stage.snapshot.transactions_refused = 2;
+  stage.snapshot.transactions_applied = sequence + 2;  // later ones were applied
+  stage.play(3);
+  const std::string why = "posture.l_knee.position_rad = 3 is outside its range 0..2.35 rad";
+  CHECK(stage.said() == "moving nil\nrefused by the control engine, all commands of that tick: " + why +
+                            "\nnil refused " + why + "\n0.01 refused " + why + " true\n");
+  CHECK(stage.behavior->transactions_refused() == 1);
+}
+
+TEST_CASE("the outcome of a motion tells how it ended") {
+  Stage stage(
+      in_run("local a, b = m.posture:move('lean', { time_s = 0.05 }), m.posture:move('stand', { time_s = 1 })\n"
+             "print(a.outcome) a:wait() print(a.outcome, b.outcome, a.reason) b:cancel() print(b.outcome)"));
+  stage.play(20);
+  CHECK(stage.said() == "moving\ndone moving nil\ncancelled\n");
+}
+
+TEST_CASE("a parameter is read back as it is, by its name") {
+  Stage stage(
+      in_run("print(m.posture:parameter 'l_knee.kp_Nm_per_rad') m.posture:set_parameter('l_knee.kp_Nm_per_rad', 70)\n"
+             "m:wait(0.01) print(m.posture:parameter 'l_knee.kp_Nm_per_rad')\n"
+             "print(pcall(m.posture.parameter, m.posture, 'l_knee.kp_Nm'))"));
+  stage.tick();
+  const ParameterId kp = stage.robot.catalog.parameters.find("posture.l_knee.kp_Nm_per_rad").value();
+  CHECK(stage.robot.catalog.parameters.set(kp, 70));
+  stage.play(3);
+  CHECK(stage.said().find("100\n70\nfalse ") == 0);
+  CHECK(stage.said().find("'posture' has no parameter 'l_knee.kp_Nm', did you mean 'l_knee.kp_Nm_per_rad'?") !=
+        std::string::npos);
+}
+
+TEST_CASE("m:clear_faults() is a command among the others of its tick, in their order") {
+  Stage stage(in_run("print(m:clear_faults()) m.posture:move({ l_knee = 1 }, { time_s = 1 })"));
+  stage.play(2);
+  CHECK(stage.said() == "true\n");
+  REQUIRE(stage.applied.size() == 3);
+  CHECK(stage.applied[1].kind == CommandKind::clear_faults);
+  CHECK(stage.applied[2].kind == CommandKind::set_point);
 }
 
 TEST_CASE("a motion whose transaction is never applied expires") {

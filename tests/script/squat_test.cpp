@@ -14,7 +14,7 @@ TEST_CASE("the squat goes down 0.10 m three times and ends standing within 20 s"
   INFO(stage.behavior->error().text());
   CHECK(stage.behavior->outcome() == "done");
   CHECK(stage.snapshot.time_ns < 20'000'000'000);
-  CHECK(stage.snapshot.control_set == 0);
+  CHECK(stage.snapshot.control_sets == 0b1);
   int crouches = 0;
   double hip_rad = 0, ankle_rad = 0;
   for (const Command& command : stage.applied) {

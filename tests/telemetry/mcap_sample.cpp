@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
   table.add({"tick_overruns", "", "Ticks that came late."}, &zero);
 
   kadans::Recorder recorder(table, {.topics = {{.name = "base", .every_ticks = 10}}});
-  if (!recorder.open(argv[1]) || !recorder.describe_run({{"scenario", "sample"}, {"seed", "1"}}) ||
+  if (!recorder.open(argv[1]) || !recorder.describe_run({.run = {{"scenario", "sample"}, {"seed", "1"}}}) ||
       !recorder.describe_robot("sample", "<robot name=\"sample\"/>", 0)) {
     std::fprintf(stderr, "%s\n", recorder.error().c_str());
     return 1;

@@ -187,7 +187,7 @@ TEST_CASE("Recorder describes run and robot: metadata, attachment, and the URDF 
   const ScratchFile file;
   Recorder recorder(small_table());
   REQUIRE(recorder.open(file.path()));
-  REQUIRE(recorder.describe_run({{"scenario", "squat"}, {"seed", "7"}}));
+  REQUIRE(recorder.describe_run({.run = {{"scenario", "squat"}, {"seed", "7"}}}));
   REQUIRE(recorder.describe_robot("tulip", "<robot/>", 0));
   REQUIRE(recorder.close());
   McapReader reader(file.path());

@@ -21,6 +21,7 @@ struct RunOutcome {
   RunStatus status = RunStatus::crashed;
   double wall_s = 0, simulated_s = 0;
   std::string state_hash;
+  std::vector<std::string> hashes;  // each second, when they were asked for
   std::vector<CheckResult> checks;
   std::vector<EvidenceTrace> traces;     // of the checks that failed
   std::vector<std::string> transitions;  // the last ones, a line each

@@ -57,8 +57,9 @@ struct RobotConfig {
   SafetySettings safety;
   std::vector<ObjectConfig> objects;
   std::vector<ControlSetInfo> sets;
-  std::uint32_t initial_set = 0;
+  SetMask initial_sets = 1;
   SwitchSettings switching;
+  std::vector<UnheldLaw> unheld;  // one a joint
   std::vector<PoseInfo> poses;
   std::string start_pose;
   SafeConfig safe;

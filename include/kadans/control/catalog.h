@@ -13,6 +13,7 @@
 #include "kadans/signal/parameter.h"
 #include "kadans/signal/setpoint.h"
 #include "kadans/signal/signal.h"
+#include "kadans/signal/status.h"
 
 namespace kadans {
 
@@ -45,6 +46,12 @@ struct PoseInfo {
   std::vector<std::pair<std::size_t, double>> position_rad;  // joint index, position
 };
 
+// What a joint does that no active control set holds: back to where it was let go, with this stiffness. 0 and 0: off.
+struct UnheldLaw {
+  double stiffness_Nm_per_rad = 0;
+  double damping_Nms_per_rad = 0;
+};
+
 struct Catalog {
   const RobotModel* model = nullptr;
   ParameterTable parameters;
@@ -53,9 +60,10 @@ struct Catalog {
   std::vector<ObjectInfo> objects;
   std::vector<ControlSetInfo> sets;
   std::vector<PoseInfo> poses;
-  std::uint32_t initial_set = 0;
+  SetMask initial_sets = 1;
   std::vector<DriveLaw> drives;  // one a joint; empty: switching is not smoothed
   SwitchSettings switching;
+  std::vector<UnheldLaw> unheld;  // one a joint; empty: off
 };
 
 }  // namespace kadans

@@ -1,7 +1,8 @@
-// All control objects and the sets in which they work together. Sets are built and checked before the loop; one of them
-// is active. Objects of the active set compute in the order of the set, and compose what they propose for a joint
-// (composition.h); a joint that none of them drives is off. A change of the active set makes no step (switchover.h) and
-// costs the starting of the objects that come in, whatever the number of sets.
+// All control objects and the sets in which they work together. Sets are built and checked before the loop; those that
+// are active have no joint in common (set_partition.h). Objects of an active set compute in the order of the set, and
+// compose what they propose for a joint (composition.h); a joint that no active set holds does what the configuration
+// says (unheld_joints.h). A change of the active sets makes no step (switchover.h), concerns the joints of the sets
+// that come or leave alone, and costs the starting of the objects that come in, whatever the number of sets.
 //
 // Signals     composition.<joint>.writers     the objects that have a share in its actuation, a bit each
 //             composition.switch_share        the largest step that the last switch absorbed, as a share of the limit
@@ -14,7 +15,9 @@
 
 #include "kadans/control/catalog.h"
 #include "kadans/control/control_object.h"
+#include "kadans/control/set_partition.h"
 #include "kadans/control/switchover.h"
+#include "kadans/control/unheld_joints.h"
 
 namespace kadans {
 
@@ -22,26 +25,27 @@ class ControlSets {
  public:
   // Keeps a reference to the catalog and declares signals and parameters in it. `objects` as numbered there. Throws
   // std::invalid_argument on a set that names no object or an object twice, on an object that sets a joint which an
-  // earlier one of the set drives, and on too many objects.
+  // earlier one of the set drives, on initial sets that share a joint, and on too many objects or sets.
   ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects);
 
   // Control thread. Computes the actuation of all joints.
   void step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept;
-  // Control thread, before step. The set computes from the next step on; objects that were not active start from the
-  // present state: in that step, or earlier by start_newcomers, so that they can be given set-points before it.
+  // Control thread, before step. The set computes from the next step on, in place of the active ones that it shares a
+  // joint with; objects that were not active start from the present state: in that step, or earlier by start_newcomers,
+  // so that they can be given set-points before it. Nothing changes when it is active.
   void switch_to(std::uint32_t set) noexcept;
   void start_newcomers(const ControlInput& input) noexcept;
-  // Control thread, before step. All objects of the active set start anew, as if it had just been switched to.
+  // Control thread, before step. All objects of the active sets start anew, as if they had just been switched to.
   void restart(const ControlInput& input) noexcept;
   // Control thread, before step. `object` is an index in the catalog.
   ControlObject& object(std::uint32_t index) noexcept { return *objects_[index]; }
-  void fill(std::uint32_t& active_set, std::uint32_t& count,
-            std::array<ObjectStatus, max_objects>& status) const noexcept;
+  void fill(Snapshot& snapshot) const noexcept;  // which sets and objects are active
 
-  // Behavior thread: the high level of all objects of the set that the snapshot calls active.
+  // Behavior thread: the high level of all objects of the sets that the snapshot calls active.
   void update(std::uint64_t behavior_tick, const Snapshot& snapshot);
 
-  std::uint32_t active() const noexcept { return active_; }
+  SetMask active() const noexcept { return active_; }
+  const SetPartition& partition() const noexcept { return partition_; }
   bool runs(std::uint32_t object) const noexcept { return (running_ >> object & 1U) != 0; }
   std::size_t size() const noexcept { return objects_.size(); }
 
@@ -52,10 +56,7 @@ class ControlSets {
     Composition composition;
     double weight;
   };
-  struct Plan {  // a set, laid out for the tick
-    std::vector<Member> members;
-    std::uint32_t objects = 0;  // a bit an object
-  };
+  using Plan = std::vector<Member>;  // a set, laid out for the tick
   void make_plan(Catalog& catalog, const ControlSetInfo& set);
   void declare(Catalog& catalog);
   void compose_joints(const Member& member, ActuationFrame& actuation) noexcept;
@@ -65,11 +66,14 @@ class ControlSets {
   std::vector<std::unique_ptr<ActuationFrame>> proposals_;  // by object; stand while a slower object rests
   std::vector<Plan> plans_;                                 // by set
   std::array<std::uint32_t, max_joints> writers_{};
+  SetPartition partition_;
   Switchover switchover_;
-  std::uint32_t running_ = 0;  // a bit an object
-  std::uint32_t active_;
+  UnheldJoints unheld_;
+  ObjectMask running_ = 0;
+  ObjectMask fresh_ = 0;  // started since the last step
+  SetMask active_;
+  JointMask touched_ = 0;  // of sets that came or left since the last step
   bool computed_ = false;  // at least one step
-  bool switched_ = false;  // since the last step
 };
 
 }  // namespace kadans

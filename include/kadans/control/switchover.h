@@ -6,7 +6,8 @@
 // minimum-jerk curve: bumpless transfer by an output offset (Astrom and Hagglund, Advanced PID Control, ISA 2006, sec.
 // 13.5), applied to the drive's torque so that it holds across modes. The fade takes fade_s, or as long as it must so
 // that it changes no drive's torque by more than step_max from tick to tick; at the default values, with which a torque
-// limit may be crossed from end to end in 0.19 s, that is never longer.
+// limit may be crossed from end to end in 0.19 s, that is never longer. A switch concerns the joints of the sets that
+// come or leave; the others keep what they have, a fade that is under way included.
 //
 // The torque of a drive in position or velocity mode follows from its own gains and limit, and from where the joint
 // will be by then: measured velocity lags behind by the filter's delay, so acceleration carries it on. In these modes
@@ -17,6 +18,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "kadans/signal/frames.h"
@@ -45,9 +47,9 @@ class Switchover {
   void observe(const JointStates& joints, double dt_s) noexcept;
 
   // In the tick that computes the new set for the first time: `before` is what the plant was told in this tick, `after`
-  // what was computed for the next one.
-  void begin(const JointStates& joints, double dt_s, const ActuationFrame& before,
-             const ActuationFrame& after) noexcept;
+  // what was computed for the next one. `touched`: the joints that the switch concerns, a bit each.
+  void begin(const JointStates& joints, double dt_s, const ActuationFrame& before, const ActuationFrame& after,
+             std::uint64_t touched = ~std::uint64_t{0}) noexcept;
   // Each tick, last: adds what is left of the offset.
   void apply(const JointStates& joints, double dt_s, ActuationFrame& actuation) noexcept;
 
@@ -63,10 +65,14 @@ class Switchover {
 
   std::vector<DriveLaw> drives_;
   SwitchSettings settings_;
-  double duration_s_ = 0, remaining_s_ = 0;  // of the fade under way
+  struct Fade {
+    double offset_Nm = 0;
+    double duration_s = 0, remaining_s = 0;
+  };
+  double remaining_s_ = 0;  // of the longest fade under way
   double absorbed_share_ = 0;
   std::array<double, max_joints> velocity_rad_s_{}, acceleration_rad_s2_{};  // measured; its change, smoothed
-  std::array<double, max_joints> offset_Nm_{};
+  std::array<Fade, max_joints> fades_{};
 };
 
 // The torque that a drive gives in effort, position or velocity mode, not limited, when the joint will be at

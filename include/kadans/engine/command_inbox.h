@@ -1,11 +1,12 @@
 // The control engine's end of the command queue: whole transactions only, checked before the first effect, at most a
-// fixed number of commands a tick. A transaction with one bad command is refused whole and counted.
+// fixed number of commands a tick. A transaction with one bad command is refused whole and counted; the snapshot says
+// why (refusal.h).
 //
 // While the robot is held, or worse, its set-points, parameters and control set stay what they are: commands that would
 // change them are refused, unless the same transaction clears the faults first. A motion under way goes on to its end.
 // So it is for a joint that is held alone: refused are its set-points, set-points without a joint and parameters of the
-// objects that drive it, and any change of the control set. A joint that damps or is off refuses nothing, so that the
-// others can go on; when it comes back, it starts from where it is.
+// objects that drive it, and a switch of control sets that concerns it. A joint that damps or is off refuses nothing,
+// so that the others can go on; when it comes back, it starts from where it is.
 #pragma once
 
 #include <cstdint>
@@ -33,12 +34,17 @@ class CommandInbox {
     std::uint32_t refused = 0;           // commands of refused transactions
   };
   const State& state() const noexcept { return state_; }
+  // Which transactions were refused, into the snapshot.
+  void fill(Snapshot& snapshot) const noexcept;
   SetpointMotions& motions() noexcept { return motions_; }
 
  private:
-  bool acceptable(const Command& command) const noexcept;
-  static bool held(const Command& command, const Catalog& catalog, const Safety& safety) noexcept;
-  bool transaction_acceptable(std::uint32_t count, const Safety& safety) const noexcept;
+  RefusalReason judge(const Command& command) const noexcept;
+  // Whether the safety layer holds what the command would change, and which joint. `active`: control sets before it.
+  RefusalReason held(const Command& command, const Safety& safety, SetMask active, std::uint16_t& joint) const noexcept;
+  // The first of `count` commands that is refused.
+  Refusal judge_transaction(std::uint32_t count, const Safety& safety) const noexcept;
+  void refuse(const Command& header, Refusal refusal, std::uint64_t tick, Safety& safety) noexcept;
   void execute(const Command& command, const ControlInput& input, Safety& safety) noexcept;
   void notify_owners() noexcept;
 
@@ -49,6 +55,8 @@ class CommandInbox {
   std::int64_t age_max_ns_;
   SetpointMotions motions_;
   State state_;
+  std::uint32_t transactions_refused_ = 0;
+  std::array<Refusal, refusals_shown> refusals_{};
   std::array<bool, max_objects + 1> retuned_{};  // by owner; the last one: parameters of control sets
 };
 

@@ -28,11 +28,20 @@ struct RunParts {
   std::size_t upkeep_count = 0;
 };
 
+// Where a run stands between two ticks.
+struct RunMark {
+  std::uint64_t ticks = 0;       // that are over
+  std::int64_t time_ns = 0;      // when the next one begins
+  std::uint64_t state_hash = 0;  // over all that is over
+};
+
 // Looks on while a run goes. The row holds all signals of the tick.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void tick(double time_s, std::span<const double> row) = 0;
+  // After each tick and its step of the plant; what it changes holds from the next tick on.
+  virtual void between_ticks(const RunMark& mark) { (void)mark; }
   virtual bool stop_asked() const { return false; }
 };
 

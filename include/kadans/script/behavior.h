@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "kadans/config/play_item.h"
-#include "kadans/control/catalog.h"
+#include "kadans/control/set_partition.h"
 #include "kadans/engine/behavior_host.h"
 #include "kadans/script/behavior_status.h"
 #include "kadans/script/chart.h"
@@ -53,9 +53,11 @@ class Behavior {
   // Behavior thread: leaves all states, in a transaction of its own.
   void stop(const Snapshot& snapshot, CommandSender& commands) noexcept;
   // Behavior thread, between ticks. Reads the files again, the behavior's from `file` when one is given; says in the
-  // log what came of it. chart() and name() are of the new version then.
+  // log what came of it. chart() and name() are of the new version then. `elsewhere`: control sets of others that play
+  // at the same time.
   enum class Reload : std::uint8_t { unchanged, taken, refused };
-  Reload reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file = {}) noexcept;
+  Reload reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file = {},
+                SetMask elsewhere = 0) noexcept;
   std::vector<std::filesystem::path> files() const;
   // Behavior thread, between ticks. The clock of the chart, that `after`, m.time_s and motions go by, is from now on so
   // far behind the engine's.
@@ -75,7 +77,9 @@ class Behavior {
   std::uint64_t events_unhandled() const noexcept;
   std::size_t heap_bytes() const noexcept;
   const BehaviorStatus& status() const noexcept { return status_; }
-  const ControlSetInfo* control_set() const noexcept;  // nullptr: it takes any
+  // That it and the behaviors it calls run on; objects that they may move: all when one of them has no set.
+  SetMask control_sets() const noexcept;
+  ObjectMask objects() const noexcept;
   std::vector<ScriptParameter> parameters() const;
   // Behavior thread, between ticks. False, and nothing changes, on an unknown name or a value outside its range.
   [[nodiscard]] bool set_parameter(const std::string& name, double value) noexcept;

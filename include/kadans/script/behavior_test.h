@@ -27,9 +27,9 @@ class TestStage {
   virtual std::string state() const = 0;
   virtual std::string outcome() const = 0;
   virtual std::string error() const = 0;
-  virtual std::string control_set() const = 0;
-  virtual std::string said() const = 0;  // what the behavior logged, line by line
-  virtual std::string went() const = 0;  // its states in order, "settle squat rest"
+  virtual std::string control_sets() const = 0;  // names of the active ones
+  virtual std::string said() const = 0;          // what the behavior logged, line by line
+  virtual std::string went() const = 0;          // its states in order, "settle squat rest"
   // Each false, and nothing changes, when the name is unknown or the value out of range.
   virtual bool emit(const std::string& event) = 0;
   virtual bool set_parameter(const std::string& name, double value) = 0;

@@ -62,7 +62,9 @@ struct Chart {
     int vars = no_function, arguments = no_function;  // registry: what is declared
     int given = no_function;                          // registry: what the caller gives
     int migrate = no_function;                        // registry: makes vars of those of another version
-    std::string controls;
+    std::string controls;                             // "": its caller's
+    std::string call_chunk;                           // where it is called
+    int call_line = 0;
     int version = 0;
   };
 

@@ -1,9 +1,9 @@
 // The memory of one Lua state, counted and limited. Over the limit a reserve of an eighth still serves, so that the
 // script can be stopped at its next instruction, with its line, rather than somewhere inside the interpreter.
 //
-// Small blocks are cut from chunks, each chunk for one size, so that what is made one after the other stands side by
-// side and a table's head fills one cache line: a cold tick waits for memory, not for instructions. Chunks are kept
-// until the state ends.
+// Small blocks are cut one after the other from arenas of whole pages, kept until the state ends. What every tick
+// needs, the interpreter's own state first, has an arena of its own: a tick at 100 Hz finds nothing in the caches, and
+// waits for memory and page tables, not for instructions. Blocks of whole cache lines begin at one.
 //
 // Strings have a bound of their own, since one instruction (.., <, + on digits) may go through a whole string. Lua
 // builds them in a buffer that doubles: a block that grows to a power of two is that buffer, no stack or table (these
@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace kadans {
 
@@ -29,25 +30,40 @@ class LuaHeap {
   std::size_t used_bytes() const noexcept { return used_; }
   std::size_t limit_bytes() const noexcept { return limit_; }
   std::uint64_t allocated_bytes() const noexcept { return allocated_; }  // ever
+  // Whether what is allocated from now on is for every tick. Such blocks stand side by side, in tick_memory().
+  void for_ticks(bool yes) noexcept { for_ticks_ = yes; }
+  std::span<const std::byte> tick_memory() const noexcept { return {tick_first_, tick_.next}; }
+  const std::byte* tick_end() const noexcept { return tick_.next; }
+
   bool exceeded() const noexcept { return exceeded_; }
   void forgive() noexcept { exceeded_ = false; }
 
  private:
-  static constexpr std::size_t small_step_bytes = 16, small_bytes_max = 256;
+  static constexpr std::size_t small_step_bytes = 16, small_bytes_max = 1024;
+  static constexpr std::size_t line_bytes = 64, page_bytes = 4096, arena_bytes = 16 * page_bytes;
   struct Free {
     Free* next;
   };
-  struct Chunk;  // of small blocks
+  struct Arena;   // a list, to free them
+  struct Fresh {  // what is left of an arena
+    std::byte* next = nullptr;
+    std::byte* end = nullptr;
+  };
 
   static bool small(std::size_t bytes) noexcept { return bytes <= small_bytes_max; }
   static std::size_t size_class(std::size_t bytes) noexcept { return (bytes - 1) / small_step_bytes; }
   void* take(std::size_t bytes) noexcept;
   void give(void* block, std::size_t bytes) noexcept;
   void* move(void* block, std::size_t old_bytes, std::size_t new_bytes) noexcept;
-  bool cut_chunk(std::size_t block_bytes, Free*& to) noexcept;
+  void put_back(std::byte* block, std::size_t bytes) noexcept;
+  bool open_arena(Fresh& fresh) noexcept;
+  void* cut(Fresh& fresh, std::size_t bytes) noexcept;  // nullptr: not enough left
 
   std::array<Free*, small_bytes_max / small_step_bytes> free_{};  // by size class
-  Chunk* chunks_ = nullptr;
+  Arena* arenas_ = nullptr;
+  Fresh fresh_, tick_;
+  std::byte* tick_first_ = nullptr;  // also the first block of all, the interpreter's state
+  bool for_ticks_ = true;            // at first: what a state begins with
   std::size_t limit_, block_;
   std::size_t used_ = 0;
   std::uint64_t allocated_ = 0;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,7 @@ struct lua_State;
 namespace kadans {
 
 struct LuaCore;
+class WarmUp;
 
 // Takes what scripts print.
 class ScriptVoice {
@@ -76,11 +78,14 @@ class LuaState {
   // Steps the collector, in proportion to what was allocated since the last call.
   void collect() noexcept;
   std::size_t used_bytes() const noexcept;
+  // What every call() needs, of the state and of the interpreter.
+  void add_to(WarmUp& list) const noexcept;
 
  private:
   Settings settings_;
   std::unique_ptr<LuaCore> core_;
   lua_State* lua_ = nullptr;
+  std::span<const std::byte> foundation_;  // what the interpreter keeps of itself
   std::vector<Source> sources_;
   std::uint64_t collected_at_ = 0;
 };

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "kadans/control/catalog.h"
+#include "kadans/control/set_partition.h"
 #include "kadans/engine/transaction.h"
 #include "kadans/signal/command.h"
 
@@ -37,10 +37,12 @@ class MotionsUnderWay {
     return !motion.empty() && motion.back().end_ns > now_ns;
   }
   void begin(const Command& command, std::int64_t now_ns);
-  void keep_set(const ControlSetInfo& set) noexcept;
+  void switch_to(std::uint32_t set) noexcept;
   static bool go_on(const Motion& motion, std::int64_t now_ns, CommandSender& commands) noexcept;
 
   const Catalog& catalog_;
+  SetPartition partition_;
+  SetMask active_;               // as far as what was sent tells
   std::vector<Motion> motions_;  // one a set-point
   std::vector<bool> velocity_;   // the set-point is one
 };

@@ -41,6 +41,8 @@ class PlayList {
       if (has_turn(i)) step(entries_[i]);
     }
   }
+  // Control sets of the entries that are not over, outside of this lane.
+  static SetMask sets_beside(std::uint32_t lane, const std::vector<Entry>& entries) noexcept;
   // `entry` came to its end. Unless it is done, nothing follows in its lane.
   void end(Entry& entry) noexcept;
   void end_all() noexcept;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "kadans/control/catalog.h"
+#include "kadans/control/set_partition.h"
 #include "kadans/engine/transaction.h"
 #include "kadans/signal/status.h"
 
@@ -21,19 +21,12 @@ class SafePosture {
   // Throws InputError on an unknown pose. The catalog must outlive it.
   SafePosture(Settings settings, const Catalog& catalog);
 
-  // Behavior thread. A behavior on this control set failed; nullptr: it may have moved everything.
-  void failed(std::int64_t now_ns, const ControlSetInfo* set) noexcept;
+  // Behavior thread. A behavior failed that may have moved these objects.
+  void failed(std::int64_t now_ns, ObjectMask objects) noexcept;
   bool due(std::int64_t now_ns) const noexcept { return waiting_ && now_ns >= due_ns_; }
-  // Sends the motion for the objects of the failed sets that are in the active one and not kept. Tries again in the
-  // next tick when the queue is full. `kept`: one an object.
-  template <typename Kept>
-  void move(const Snapshot& snapshot, CommandSender& commands, Kept kept) noexcept {
-    commands.begin(snapshot.time_ns);
-    for (const std::uint32_t object : catalog_.sets[snapshot.control_set].objects) {
-      if (concerned_[object] && !kept(object)) add(object, commands);
-    }
-    finish(commands);
-  }
+  // Sends the motion for those of them that are active and not `kept`. Tries again in the next tick when the queue is
+  // full.
+  void move(const Snapshot& snapshot, CommandSender& commands, ObjectMask kept) noexcept;
   bool moved() const noexcept { return moved_; }
 
  private:
@@ -43,7 +36,7 @@ class SafePosture {
   Settings settings_;
   const Catalog& catalog_;
   const PoseInfo* pose_ = nullptr;
-  bool concerned_[max_objects]{};
+  ObjectMask concerned_ = 0;
   bool waiting_ = false, moved_ = false, full_ = false, any_ = false;
   std::int64_t due_ns_ = 0;
 };

@@ -3,7 +3,8 @@
 //
 // Orders take effect at the beginning of a tick: those given beforehand, with a time, so that a run repeats, and those
 // that somebody gives meanwhile. What an order names is loaded before it counts, so a wrong list is refused whole and
-// nothing moves. Files are read again when an order says so, or when somebody saved them.
+// nothing moves; so is one whose control sets share a joint with those of another lane. Files are read again when an
+// order says so, or when somebody saved them.
 #pragma once
 
 #include <cstdint>
@@ -59,6 +60,8 @@ class ScriptHost final : public BehaviorHost {
   bool finished() const noexcept { return list_.over(); }  // every lane is at its end, or stopped
   const PlayStatus& status() const noexcept { return list_.status(); }
   std::vector<std::string> names() const;  // of what was loaded and is not forgotten
+  // All that it may read: behaviors with their modules, those of events and what events reload too. Before the loop.
+  std::vector<std::filesystem::path> files() const;
 
   // What plays, waits or played, in order; what events bring is there from then on.
   std::size_t size() const noexcept { return list_.entries().size(); }
@@ -77,7 +80,9 @@ class ScriptHost final : public BehaviorHost {
 
   void step(PlayList::Entry& entry, const Snapshot& snapshot, CommandSender& commands) noexcept;
   void report_failure(const Behavior& behavior, std::int64_t time_ns) noexcept;
-  bool plays_with(std::uint32_t object) const noexcept;
+  ObjectMask objects_played_with() const noexcept;
+  // Why the loaded ones cannot play beside what is there: "" when they can.
+  std::string clash(const std::vector<PlayList::Entry>& loaded) const;
 
   // script_host_orders.cpp
   void take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept;

@@ -39,7 +39,7 @@ class ParameterTable {
   // Control thread. False, and nothing changes, on an unknown id or a value that is not finite or outside
   // [min, max].
   [[nodiscard]] bool set(ParameterId id, double value) noexcept;
-  // Control thread; id < size().
+  // Control thread, or one that runs in lockstep with it; id < size().
   double get(ParameterId id) const noexcept { return *entries_[id].value; }
   std::uint32_t owner(ParameterId id) const noexcept { return entries_[id].owner; }
 

@@ -10,6 +10,7 @@
 
 #include "kadans/signal/fault.h"
 #include "kadans/signal/frames.h"
+#include "kadans/signal/refusal.h"
 
 namespace kadans {
 
@@ -64,18 +65,24 @@ struct SetpointStatus {
   double velocity = std::numeric_limits<double>::quiet_NaN();
 };
 
+// Control sets, a bit each, in the order of the configuration.
+using SetMask = std::uint32_t;
+static_assert(max_control_sets <= 32);
+
 // One tick of the control engine as the other threads see it.
 struct alignas(8) Snapshot {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
   std::uint32_t transactions_applied = 0;  // number of the last transaction applied; they are numbered from 1
   std::uint32_t commands_refused = 0;      // not finite, out of range, unknown or too old
-  std::uint32_t control_set = 0;           // the active one
+  SetMask control_sets = 0;                // those that are active
+  std::uint32_t transactions_refused = 0;  // since the start
   JointStates joints;
   RobotStatus status;
   std::uint32_t object_count = 0;
   std::array<ObjectStatus, max_objects> objects{};
   std::array<SetpointStatus, max_setpoints_shown> setpoints{};  // by SetpointId
+  std::array<Refusal, refusals_shown> refusals{};               // the newest ones, by count modulo their number
 };
 
 static_assert(std::is_trivially_copyable_v<Snapshot>);

@@ -21,6 +21,7 @@
 #include "kadans/exchange/ring.h"
 #include "kadans/telemetry/event_log.h"
 #include "kadans/telemetry/mcap_writer.h"
+#include "kadans/telemetry/run_inputs.h"
 #include "kadans/telemetry/signal_topics.h"
 
 namespace kadans {
@@ -43,8 +44,10 @@ class Recorder final : public RecordSink {
 
   // False: error() says why. Replaces a file of that name.
   [[nodiscard]] bool open(const std::string& path);
-  // After open(). Facts of the run: scenario, seed, version.
-  [[nodiscard]] bool describe_run(const TextMap& facts);
+  // After open(), before the first row: what is needed to make this run again.
+  [[nodiscard]] bool describe_run(const RunInputs& inputs);
+  // After open(). Facts under a name of their own: how the run ended.
+  [[nodiscard]] bool describe(const std::string& name, const TextMap& facts);
   // After open(). Attaches the URDF and publishes it on /robot_description, where viewers look for it.
   [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns);
 

@@ -16,6 +16,7 @@
 // One thread. Building it and naming things allocate; tick() does not, as long as the objects do not.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -70,7 +71,7 @@ class JointBench {
   double position_rad() const noexcept { return plant_.state().position_rad; }  // true, now
   double velocity_rad_s() const noexcept { return plant_.state().velocity_rad_s; }
   double torque_Nm() const noexcept { return plant_.state().torque_Nm; }  // of the drive, in the last tick
-  double motion_remaining_s() const noexcept { return sets_->object(sets_->active()).motion_remaining_s(); }
+  double motion_remaining_s() const noexcept { return sets_->object(active_object()).motion_remaining_s(); }
   std::uint64_t limited_ticks() const noexcept { return limited_ticks_; }
   std::uint64_t not_finite_ticks() const noexcept { return not_finite_ticks_; }
 
@@ -82,6 +83,8 @@ class JointBench {
   double effort_max_Nm() const noexcept { return model_.joints[0].effort_max_Nm; }
 
  private:
+  // Each object is a set of its own, and all drive the one joint.
+  std::uint32_t active_object() const noexcept { return static_cast<std::uint32_t>(std::countr_zero(sets_->active())); }
   void add_objects(const std::vector<BenchObject>& objects);
   void estimate(const SensorFrame& sensors) noexcept;
   void update_high_level();

@@ -1,5 +1,6 @@
 // Plug-ins that do not keep to the seam, one a library: HOSTILE says which.
 #include <cmath>
+#include <csignal>
 #include <stdexcept>
 
 #include "kadans/control/plugin_glue.h"
@@ -105,6 +106,14 @@ EXPORT {
   type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame* actuation) {
     actuation->joints[1] = {.effort_Nm = 1, .mode = ActuationMode::effort};
     if (input->time_ns >= 5'000'000) throw std::runtime_error("boo");
+  };
+  return plugin;
+}
+#elif defined(HOSTILE_crashing_step)
+EXPORT {
+  Plugin* plugin = good();
+  type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame*) {
+    if (input->time_ns >= 100'000'000) std::raise(SIGSEGV);
   };
   return plugin;
 }

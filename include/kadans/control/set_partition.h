@@ -1,0 +1,52 @@
+// Which control sets can be active together: those whose joints are disjoint. A set that comes in takes the place of
+// all active sets that it shares a joint with; they leave whole, since a law that lost some of its joints would be
+// another one. Sets that it does not touch go on and notice nothing.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "kadans/control/catalog.h"
+
+namespace kadans {
+
+using JointMask = std::uint64_t;  // a bit a joint
+using ObjectMask = std::uint32_t;
+static_assert(max_joints <= 64 && max_objects <= 32);
+
+constexpr SetMask set_bit(std::uint32_t set) noexcept { return SetMask{1} << set; }
+constexpr JointMask joint_bit(std::size_t joint) noexcept { return JointMask{1} << joint; }
+
+// Calls call(number) for each bit of a mask, from the lowest.
+template <typename Mask, typename Call>
+void each_bit(Mask mask, Call call) {
+  for (; mask != 0; mask &= mask - 1) call(static_cast<std::uint32_t>(std::countr_zero(mask)));
+}
+
+class SetPartition {
+ public:
+  // Throws std::invalid_argument on more than max_control_sets sets.
+  explicit SetPartition(const Catalog& catalog);
+
+  // What is active after `set` came in to `active`.
+  SetMask after(SetMask active, std::uint32_t set) const noexcept {
+    if ((active & set_bit(set)) != 0) return active;
+    return (active & ~sets_[set].touched) | set_bit(set);
+  }
+  // Whether one of `a` and a different one of `b` share a joint (or an object).
+  bool clash(SetMask a, SetMask b) const noexcept;
+  JointMask joints(SetMask sets) const noexcept;
+  ObjectMask objects(SetMask sets) const noexcept;
+  std::size_t size() const noexcept { return sets_.size(); }
+
+ private:
+  struct Set {
+    JointMask joints = 0;
+    ObjectMask objects = 0;
+    SetMask touched = 0;  // others that cannot be active with it
+  };
+  std::vector<Set> sets_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,36 @@
+// Why the control engine refused a transaction: the command that was wrong, and what was wrong with it. The newest few
+// stand in the snapshot, so that who sent one learns of it.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "kadans/signal/command.h"
+#include "kadans/signal/fault.h"
+
+namespace kadans {
+
+enum class RefusalReason : std::uint8_t {
+  none,
+  malformed,     // no command that there is
+  unknown,       // a parameter, set-point or control set that there is not
+  out_of_range,  // of the parameter or set-point, or not finite
+  motion,        // its duration or limits, or the set-point cannot be led along one
+  too_old,       // the whole transaction
+  robot_held,
+  joint_held,
+};
+
+struct alignas(8) Refusal {
+  std::uint32_t sequence = 0;  // the transaction's number; 0: none
+  CommandKind kind = CommandKind::transaction;
+  RefusalReason reason = RefusalReason::none;
+  std::uint16_t joint = no_joint;  // the one that is held
+  std::uint32_t index = 0;         // as in the command
+  alignas(8) double value = 0;     // likewise
+};
+static_assert(std::is_trivially_copyable_v<Refusal> && sizeof(Refusal) == 24);
+
+inline constexpr std::uint32_t refusals_shown = 8;
+
+}  // namespace kadans

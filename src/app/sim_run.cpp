@@ -1,0 +1,246 @@
+#include "sim_run.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "input_files.h"
+#include "terminal.h"
+
+namespace kadans {
+namespace {
+
+constexpr const char* height_signal = "plant.base.height_m";
+
+std::string read_all(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// A run that was asked to be short says nothing about what was to come later: such checks are not judged.
+std::vector<ScenarioCheck> reached_checks(const ScenarioConfig& scenario, double duration_s) {
+  std::vector<ScenarioCheck> checks = scenario.checks;
+  if (duration_s >= scenario.duration_s) return checks;
+  std::erase_if(checks, [&](const ScenarioCheck& c) {
+    const bool about_later = c.kind == CheckKind::at_end || c.kind == CheckKind::settles ||
+                             (c.kind == CheckKind::eventually && c.until_s > duration_s);
+    return c.from_s >= duration_s || about_later;
+  });
+  return checks;
+}
+
+RunInputs inputs_for(RunRequest request, const ScenarioConfig& scenario, const Assembly& assembly, std::uint64_t seed,
+                     double duration_s, bool watched) {
+  request.seed = seed;
+  request.duration_s = duration_s;
+  RunInputs inputs = inputs_of(request, scenario, assembly);
+  if (watched) inputs.run["watched"] = "yes";
+  return inputs;
+}
+
+std::vector<CheckpointOrder> checkpoints_of(const SimOptions& options) {
+  std::vector<CheckpointOrder> orders;
+  for (const std::string& text : options.checkpoints) orders.push_back(parse_checkpoint(text));
+  return orders;
+}
+
+}  // namespace
+
+void LateLog::transition(const Transition& transition) {
+  if (log_ != nullptr) log_->transition(transition);
+}
+
+void LateLog::message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) {
+  if (log_ != nullptr) log_->message(time_ns, severity, behavior, text);
+  if (!shown_) return;
+  const double time_s = 1e-9 * static_cast<double>(time_ns);
+  std::fprintf(stderr, "\r\033[K%8.2f s  %s: %s\n", time_s, behavior.c_str(), text.c_str());
+}
+
+SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::optional<SimContinuation> continuation)
+    : options_(options),
+      request_(request),
+      scenario_(read_scenario(request)),
+      seed_(request.seed.value_or(scenario_.seed)),
+      duration_s_(request.duration_s.value_or(scenario_.duration_s)),
+      assembly_(scenario_, seed_, log_),
+      checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file),
+      height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
+      continuation_(std::move(continuation)) {
+  if (continuation_) {
+    inputs_ = continuation_->from.inputs;
+    const double at_s = 1e-9 * static_cast<double>(continuation_->from.at.time_ns);
+    actions_.reserve(continuation_->branches.size());
+    for (const RunBranch& branch : continuation_->branches) actions_.emplace_back(branch, scenario_, assembly_, at_s);
+  } else {
+    inputs_ = inputs_for(request_, scenario_, assembly_, seed_, duration_s_, options_.watch);
+  }
+  if (options_.hash_every_s) trail_ = std::make_unique<HashTrail>(*options_.hash_every_s);
+  if (!options_.checkpoints.empty())
+    checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_));
+}
+
+int SimRun::run() {
+  if (!continuation_) start_record();
+  const bool alone = !continuation_ || continuation_->branches.size() == 1;
+  ProgressBar progress(duration_s_, stderr_is_terminal() && !options_.json && alone);
+  std::vector<RunObserver*> observers{&progress, &height_, &evidence_, this};
+  Pace pace;
+  if (options_.realtime) observers.push_back(&pace);
+  if (trail_) observers.push_back(trail_.get());
+  if (checkpoints_) observers.push_back(checkpoints_.get());
+  if (options_.watch) {
+    assembly_.watch_behaviors();
+    late_log_.show();
+  }
+  RunResult result = run_scenario(assembly_.parts(), duration_s_, checks_, observers);
+  if (split_) return processes_.finish();
+  if (parted_) return tell_parting();
+  return report(result);
+}
+
+int SimRun::report(RunResult& result) {
+  result.scenario = scenario_.name;
+  result.seed = seed_;
+  finish_record(result);
+  print(result);
+  if (checkpoints_) {
+    for (const CheckpointOrder& order : checkpoints_->missed())
+      print_error("the run was over before the checkpoint at " + number_text(order.at_s) + " s");
+  }
+  if (result.interrupted) return exit_interrupted;
+  return result.passed ? exit_passed : exit_failed;
+}
+
+void SimRun::tick(double, std::span<const double>) {
+  // A failing disk is reported when the record is closed; the run goes on.
+  if (recorder_) (void)recorder_->drain();
+}
+
+void SimRun::between_ticks(const RunMark& mark) {
+  if (!continuation_) return;
+  if (taken_ != nullptr) return taken_->between_ticks(mark);
+  if (reached_) return;
+  way_.between_ticks(mark);
+  if (mark.ticks >= continuation_->from.at.ticks) reach_branch(mark);
+}
+
+void SimRun::reach_branch(const RunMark& mark) {
+  reached_ = true;
+  const RunMark& wanted = continuation_->from.at;
+  parted_ = mark.state_hash != wanted.state_hash || mark.time_ns != wanted.time_ns;
+  if (parted_) return;
+  const std::size_t count = continuation_->branches.size();
+  for (std::size_t i = 0; count > 1 && i < count; ++i) {
+    if (processes_.split(std::max(1U, std::thread::hardware_concurrency()))) return take_branch(i, mark);
+  }
+  split_ = count > 1;
+  if (!split_) take_branch(0, mark);
+}
+
+void SimRun::take_branch(std::size_t index, const RunMark& mark) {
+  branch_ = continuation_->branches[index];
+  taken_ = &actions_[index];
+  inputs_.run["branch_tick"] = std::to_string(mark.ticks);
+  inputs_.run["duration_s"] = exact_text(duration_s_);
+  put_facts(branch_, inputs_.run);
+  start_record();
+  actions_[index].begin(mark);
+  taken_->between_ticks(mark);
+}
+
+int SimRun::tell_parting() const {
+  const Checkpoint& from = continuation_->from;
+  const std::string where = where_parted(from.trail, way_.marks());
+  const std::string what = change_text(changed_program(from.inputs));
+  print_error(options_.from + ": this run is not the one of the checkpoint: they part " +
+              (where.empty() ? "after its last hash" : where));
+  print_error(what.empty() ? "neither the program nor its libraries changed since" : "since it was left: " + what);
+  return exit_failed;
+}
+
+std::string SimRun::record_name() const {
+  namespace fs = std::filesystem;
+  const fs::path asked = options_.record.empty() ? fs::path(scenario_.name + ".mcap") : fs::path(options_.record);
+  const bool several = continuation_ && continuation_->branches.size() > 1;
+  if (!continuation_ || (!options_.record.empty() && !several)) return asked.string();
+  const std::string branch = branch_.name.empty() ? "continued" : branch_.name;
+  return (asked.parent_path() / (asked.stem().string() + "." + branch + asked.extension().string())).string();
+}
+
+// A file that was asked for and cannot be written is an error; the usual one is not.
+void SimRun::start_record() {
+  if (options_.no_record) return;
+  record_ = record_name();
+  recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
+  if (!recorder_->open(record_)) {
+    const std::string why = recorder_->error();
+    recorder_.reset();
+    record_.clear();
+    if (!options_.record.empty()) throw InputError({.message = why});
+    return print_error(why + "; this run leaves no record");
+  }
+  const RobotModel& model = assembly_.robot().model;
+  (void)recorder_->describe_run(inputs_);
+  (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
+  late_log_.set(&recorder_->events());
+  assembly_.record_to(recorder_.get());
+}
+
+void SimRun::finish_record(const RunResult& result) {
+  if (!recorder_) return;
+  (void)recorder_->drain();
+  (void)recorder_->describe("result", {{"state_hash", hash_text(result.state_hash)},
+                                       {"control_ticks", std::to_string(result.control_ticks)},
+                                       {"passed", result.passed ? "yes" : "no"}});
+  if (!recorder_->close()) print_error("the record is not complete: " + recorder_->error());
+  if (recorder_->dropped() > 0) print_error(std::to_string(recorder_->dropped()) + " rows are missing in the record");
+}
+
+std::string SimRun::repeat() const {
+  if (!continuation_) return repeat_command(request_, seed_);
+  std::string command = "kadans sim --from " + options_.from;
+  if (options_.duration_s) command += " --duration " + number_text(*options_.duration_s);
+  if (!branch_.name.empty()) return command + " --branch '" + branch_text(branch_) + "'";
+  if (!branch_.play.empty()) command += " --play '" + branch_.play + "'";
+  for (const std::string& setting : branch_.set) command += " --set '" + setting + "'";
+  for (const std::string& push : branch_.push) command += " --push " + push;
+  return command;
+}
+
+void SimRun::print(const RunResult& result) const {
+  if (options_.json) {
+    ReportContext context{.log = log_,
+                          .model = assembly_.robot().model,
+                          .quantities = assembly_.quantities(),
+                          .evidence = evidence_.around(result.checks),
+                          .record = record_,
+                          .hashes = {},
+                          .branch = branch_.name};
+    if (trail_) {
+      for (const HashMark& mark : trail_->marks()) context.hashes.push_back(mark.hash);
+    }
+    std::puts(json_report(result, context).c_str());
+    return;
+  }
+  std::vector<ScenarioCheck> wanted;
+  for (std::size_t i = 0; i < checks_.size(); ++i) wanted.push_back(checks_.config(i));
+  const std::vector<ReportTrace> traces{height_.trace()};
+  const std::string name = scenario_.name + (branch_.name.empty() ? "" : " (" + branch_.name + ")");
+  const ReportSubject subject{.result = result,
+                              .log = log_,
+                              .model = assembly_.robot().model,
+                              .checks = wanted,
+                              .traces = traces,
+                              .title = name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
+                              .record = record_,
+                              .repeat = repeat()};
+  const std::string text =
+      text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
+  std::fputs(text.c_str(), stdout);
+}
+
+}  // namespace kadans

@@ -1,0 +1,91 @@
+// One run of `kadans sim`: from the start, or on from a checkpoint.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "checkpoint.h"
+#include "commands.h"
+#include "hash_trail.h"
+#include "kadans/app/assembly.h"
+#include "kadans/scenario/report.h"
+#include "kadans/telemetry/recorder.h"
+#include "observers.h"
+#include "process_split.h"
+#include "run_branches.h"
+
+namespace kadans {
+
+// Events go to the recorder only when it exists, and it exists only when the signals are known: this lets the log be
+// made first.
+class LateLog final : public BehaviorLog {
+ public:
+  void set(BehaviorLog* log) noexcept { log_ = log; }
+  void show() noexcept { shown_ = true; }  // messages at once on stderr, for somebody who edits while it runs
+  void transition(const Transition& transition) override;
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
+
+ private:
+  BehaviorLog* log_ = nullptr;
+  bool shown_ = false;
+};
+
+// Where a run goes on from, and as what.
+struct SimContinuation {
+  Checkpoint from;
+  std::vector<RunBranch> branches;  // at least one, which may do nothing
+};
+
+class SimRun final : public RunObserver {
+ public:
+  // The request's scenario is the file to read; without a continuation the run is recorded from its first tick.
+  SimRun(const SimOptions& options, const RunRequest& request, std::optional<SimContinuation> continuation = {});
+
+  // Prints the report, or those of all branches. The program's exit code.
+  int run();
+
+  void tick(double time_s, std::span<const double> row) override;
+  void between_ticks(const RunMark& mark) override;
+  bool stop_asked() const override { return parted_ || split_; }
+
+ private:
+  void start_record();
+  void finish_record(const RunResult& result);
+  std::string record_name() const;
+  int report(RunResult& result);
+  void print(const RunResult& result) const;
+  std::string repeat() const;
+  void reach_branch(const RunMark& mark);
+  void take_branch(std::size_t index, const RunMark& mark);
+  int tell_parting() const;
+
+  const SimOptions& options_;
+  RunRequest request_;
+  ScenarioConfig scenario_;
+  std::uint64_t seed_;
+  double duration_s_;
+  LateLog late_log_;
+  RunLog log_{&late_log_};
+  Assembly assembly_;
+  Checks checks_;
+  Evidence evidence_{checks_, assembly_.catalog().signals};
+  RunInputs inputs_;
+  TraceObserver height_;
+  std::unique_ptr<HashTrail> trail_;
+  std::unique_ptr<CheckpointWriter> checkpoints_;
+  std::unique_ptr<Recorder> recorder_;
+  std::string record_;
+
+  std::optional<SimContinuation> continuation_;
+  std::vector<BranchActions> actions_;  // of the branches
+  RunBranch branch_;                    // that this process takes
+  const BranchActions* taken_ = nullptr;
+  bool reached_ = false, parted_ = false;
+  bool split_ = false;  // this process has split into the branches and is done
+  ProcessSplit processes_;
+  HashTrail way_{checkpoint_trail_s};
+};
+
+}  // namespace kadans

@@ -1,0 +1,75 @@
+#include "kadans/engine/refusal_text.h"
+
+#include <cstdio>
+
+namespace kadans {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+// What the command addresses; "" when there is no such thing.
+std::string target(const Refusal& refusal, const Catalog& catalog) {
+  switch (refusal.kind) {
+    case CommandKind::set_parameter:
+      return refusal.index < catalog.parameters.size() ? catalog.parameters.info(refusal.index).name : "";
+    case CommandKind::set_point:
+    case CommandKind::cancel_motion:
+    case CommandKind::trapezoid:
+    case CommandKind::via_point:
+      return refusal.index < catalog.setpoints.size() ? catalog.setpoints[refusal.index].name : "";
+    case CommandKind::switch_set:
+      return refusal.index < catalog.sets.size() ? "control set " + catalog.sets[refusal.index].name : "";
+    default:
+      return "";
+  }
+}
+
+std::string range(const Refusal& refusal, const Catalog& catalog) {
+  const auto text = [](double min, double max, const std::string& unit) {
+    return number(min) + ".." + number(max) + (unit.empty() ? "" : " ") + unit;
+  };
+  if (refusal.kind == CommandKind::set_parameter) {
+    const Parameter& parameter = catalog.parameters.info(refusal.index);
+    return text(parameter.min, parameter.max, parameter.unit);
+  }
+  const Setpoint& setpoint = catalog.setpoints[refusal.index];
+  return text(setpoint.min, setpoint.max, setpoint.unit);
+}
+
+}  // namespace
+
+std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
+  const std::string name = target(refusal, catalog);
+  const std::string of = name.empty() ? "" : name + ": ";
+  switch (refusal.reason) {
+    case RefusalReason::none:
+      return "";
+    case RefusalReason::malformed:
+      return "a command of no known kind";
+    case RefusalReason::unknown:
+      return "number " + std::to_string(refusal.index) + " is unknown";
+    case RefusalReason::out_of_range:
+      return name + " = " + number(refusal.value) + " is outside its range " + range(refusal, catalog);
+    case RefusalReason::motion:
+      return of + "it cannot be moved with this duration and these limits";
+    case RefusalReason::too_old:
+      return "the commands were too old";
+    case RefusalReason::robot_held:
+      return of + "the robot is held";
+    case RefusalReason::joint_held:
+      return of + "joint " +
+             (refusal.joint < catalog.model->joints.size() ? catalog.model->joints[refusal.joint].name : "?") +
+             " is held";
+  }
+  return "";
+}
+
+void copy_refusal_text(const Refusal& refusal, const Catalog& catalog, std::span<char> text) {
+  std::snprintf(text.data(), text.size(), "%s", refusal_text(refusal, catalog).c_str());
+}
+
+}  // namespace kadans

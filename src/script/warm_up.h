@@ -1,0 +1,37 @@
+// What a tick is going to need, read in one go before it. Every 10 ms something else has had the caches: what the tick
+// touches comes from memory, and where it lies from page tables that come from memory too. The interpreter asks for it
+// piece by piece, each only after the one before has come; asked for here, many are under way at once.
+//
+// Prefetch instructions would not do: processors drop them where the page table has to be walked.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace kadans {
+
+class WarmUp {
+ public:
+  // Before the loop. The memory must stay readable as long as go() is called; what finds no place is left out.
+  void add(std::span<const std::byte> memory) noexcept;
+  template <typename T>
+  void add_object(const T& object) noexcept {
+    add(std::as_bytes(std::span<const T, 1>(&object, 1)));
+  }
+  // The first instructions of a function.
+  template <typename Result, typename... Arguments>
+  void add_function(Result (*function)(Arguments...)) noexcept {
+    add({reinterpret_cast<const std::byte*>(function), 2 * line_bytes});
+  }
+  void go() const noexcept;
+  static void read(std::span<const std::byte> memory) noexcept;
+
+ private:
+  static constexpr std::size_t line_bytes = 64;
+  std::array<std::span<const std::byte>, 40> ranges_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace kadans

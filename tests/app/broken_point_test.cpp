@@ -1,0 +1,107 @@
+// Each shipped scenario fails when what it is there to show is broken: one edit of the robot, of a behavior or of the
+// scenario itself, and the check that must see it. A scenario without a row here is an error.
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+using namespace kadans::program;
+
+namespace {
+
+struct Breakage {
+  const char* scenario;
+  const char* file;  // "": the scenario's own
+  const char* from;
+  const char* to;
+  const char* seen_by;
+};
+
+constexpr const char* robot = "config/tulip/robot.json";
+constexpr const char* stand = "behaviors/tulip/stand.lua";
+constexpr const char* squat = "behaviors/tulip/squat.lua";
+constexpr const char* stiff = "set_gains(\"stiff\")";
+constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
+
+constexpr std::array<Breakage, 33> breakages = {{
+    {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
+     "found within the timeout"},
+    {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
+    {"foot_sensor_lost", "", "\"sensor_not_finite\"", "\"sensor_stuck\"", "found within 20 ms"},
+    {"imu_silent", robot, "\"silent_ticks_max\": 5", "\"silent_ticks_max\": 400", "found within 20 ms"},
+    {"knee_sensor_jumps", "", "\"size\": 0.5", "\"size\": 0.005", "found at once"},
+    {"late_drives", "", "0.002", "0.02", "stays up"},
+    {"list_of_behaviors", squat, "after = P.rest_s, to = \"done\"", "after = P.rest_s, to = \"failed\"",
+     "the arm is raised"},
+    {"payload_dropped", stand, stiff, soft, "sways ever less, upright"},
+    {"payload_dropped", "", "\"mass_kg\": 1.5", "\"mass_kg\": 0.5", "the load is felt"},
+    {"payload_front", squat, stiff, soft, "stays up"},
+    {"payload_front", "", "\"mass_kg\": 1,", "\"mass_kg\": 8,", "torso upright, rad"},
+    {"push_backward", stand, stiff, soft, "stays up"},
+    {"push_backward_left", stand, stiff, soft, "stays up"},
+    {"push_backward_right", stand, stiff, soft, "stays up"},
+    {"push_forward", stand, stiff, soft, "stays up"},
+    {"push_forward", "", "[2, 0, 0]", "[0, 0, 0]", "the push is felt"},
+    {"push_forward_left", stand, stiff, soft, "stays up"},
+    {"push_forward_right", stand, stiff, soft, "stays up"},
+    {"push_left", stand, stiff, soft, "stays up"},
+    {"push_left", "", "[0, 2, 0]", "[0, 20, 0]", "stays up"},
+    {"push_right", stand, stiff, soft, "stays up"},
+    {"reload_while_down", "config/scenarios/versions/squat.lua", "k.state \"squat\"", "k.state \"sqat\"",
+     "reloaded once"},
+    {"reload_while_down", "", "\"reload\"", "\"replace\"", "reloaded once"},
+    {"shaken_floor", stand, stiff, soft, "sways ever less, upright"},
+    {"shaken_floor", "", "[-0.06, 0, 0]", "[-0.6, 0, 0]", "stays up"},
+    {"slippery_floor", "", "0.1 }", "0.8 }", "slides"},
+    {"slope_across", "", "0.035", "0.25", "stays up"},
+    {"slope_up", "", "0.035", "0.25", "stays up"},
+    {"squat", squat, "P.depth_m)", "0.01)", "crouches, lowest height in m"},
+    {"squat", squat, stiff, soft, "height follows, m"},
+    {"squat_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "torso upright, rad"},
+    {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},
+    {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
+}};
+
+bool has_row(const std::string& scenario) {
+  return std::any_of(breakages.begin(), breakages.end(), [&](const Breakage& b) { return scenario == b.scenario; });
+}
+
+bool failed(const nlohmann::json& report, const std::string& check) {
+  for (const auto& c : report["checks"]) {
+    if (c["name"] == check) return !c["passed"].get<bool>();
+  }
+  FAIL("there is no check " << check);
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("Every shipped scenario fails when its point is broken, and by the check that is there for it") {
+  const auto folder = project_copy("broken_point");
+  for (const Breakage& broken : breakages) {
+    const std::string scenario = "config/scenarios/" + std::string(broken.scenario) + ".json";
+    const auto file = folder / (*broken.file ? broken.file : scenario);
+    CAPTURE(scenario);
+    CAPTURE(std::string(broken.to));
+    const std::string right = read(file);
+    REQUIRE(edit(file, broken.from, broken.to));
+    const Outcome outcome = run("sim " + scenario + " --no-record --json", folder);
+    write(file, right);
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit_code == 1);
+    CHECK(failed(nlohmann::json::parse(outcome.out), broken.seen_by));
+  }
+}
+
+TEST_CASE("No shipped scenario is without a proof that it can fail") {
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(KADANS_SOURCE_DIR) + "/config/scenarios")) {
+    if (entry.path().extension() != ".json" || entry.path().stem() == "golden") continue;
+    CAPTURE(entry.path().stem().string());
+    CHECK(has_row(entry.path().stem().string()));
+  }
+}
