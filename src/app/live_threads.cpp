@@ -22,8 +22,8 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
     : timing_(timing), origin_ns_(WallClock().now_ns() + start_ns), supervisor_wait_(make_wait(0)) {
   const auto priority = [&](int wanted) { return timing.real_time && !timing.virtual_time ? wanted : 0; };
   const std::int64_t period_ns = timing.control_period_ns;
-  // On the wall clock the model is half a period behind, so that what it is told and what it says is always as old; and it
-  // shares the control thread's CPU: when the machine takes that away for a while, time passes for neither.
+  // On the wall clock the model is half a period behind, so that what it is told and what it says is always as old; and
+  // it shares the control thread's CPU: when the machine takes that away for a while, time passes for neither.
   const std::int64_t plant_first_ns = timing.virtual_time ? 0 : period_ns / 2;
   add({.name = "control",
        .period_ns = period_ns,
@@ -45,7 +45,9 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
        .cpu = timing.virtual_time ? -1 : timing.cpu,
        .stack_bytes = std::size_t{1} << 20U},
       tasks.plant, 0);
-  if (tasks.record != nullptr) add({.name = "record", .period_ns = record_period_ns}, *tasks.record, 0);
+  if (tasks.record == nullptr) return;
+  // A machine busy for seconds must not cost rows: the ring holds one or two.
+  add({.name = "record", .period_ns = record_period_ns, .priority = priority(record_priority)}, *tasks.record, 0);
 }
 
 std::unique_ptr<Wait> LiveThreads::make_wait(std::int64_t spin_ns) {

@@ -15,7 +15,7 @@
 
 namespace kadans {
 
-inline constexpr int control_priority = 90, plant_priority = 80, behavior_priority = 40;
+inline constexpr int control_priority = 90, plant_priority = 80, behavior_priority = 40, record_priority = 20;
 
 struct LiveTasks {
   ControlTask& control;
