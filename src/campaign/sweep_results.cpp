@@ -153,7 +153,13 @@ fs::path SweepResults::file_of(const SweepCase& one) const {
   return folder_ / "cases" / name;
 }
 
-bool SweepResults::has(const SweepCase& one) const { return fs::exists(file_of(one)); }
+// A run that took too long says something of the machine on that day: it is run again.
+bool SweepResults::has(const SweepCase& one) const {
+  const fs::path file = file_of(one);
+  if (!fs::exists(file)) return false;
+  const Json json = Json::parse(read_text_file(file), nullptr, false);
+  return !json.is_object() || json.value("status", "") != name(RunStatus::timed_out);
+}
 
 void SweepResults::store(const SweepCase& one, const std::string& json) const { write_durably(file_of(one), json); }
 

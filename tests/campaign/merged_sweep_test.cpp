@@ -157,6 +157,16 @@ TEST_CASE("Half a result is no result: what a writer left unfinished is passed o
   CHECK_THROWS_WITH_AS((void)a.rows(), doctest::Contains("000001-x.json"), InputError);
 }
 
+TEST_CASE("A run that took too long is run again when the sweep is, a failed one is not") {
+  const Campaign campaign;
+  const SweepResults results = campaign.part("a", 0, 1);
+  CHECK(results.has(campaign.cases[3]));
+  RunOutcome late = campaign.run_of(campaign.cases[4]);
+  late.status = RunStatus::timed_out;
+  results.store(campaign.cases[4], case_json(campaign.manifest, campaign.cases[4], late));
+  CHECK_FALSE(results.has(campaign.cases[4]));
+}
+
 TEST_CASE("A case's name changes with whatever its run depends on, and with nothing else") {
   const Campaign one, same;
   CHECK(one.cases[4].id == same.cases[4].id);
