@@ -8,15 +8,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sweep_run.h"
-#include "sweep_subjects.h"
-#include "terminal.h"
 #include "kadans/campaign/content_hash.h"
 #include "kadans/campaign/durable_file.h"
 #include "kadans/campaign/merged_sweep.h"
 #include "kadans/campaign/parameter_edit.h"
 #include "kadans/config/json_value.h"
 #include "kadans/signal/random.h"
+#include "sweep_run.h"
+#include "sweep_subjects.h"
+#include "terminal.h"
 
 namespace kadans {
 namespace {

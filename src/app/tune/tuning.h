@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "tune_command.h"
 #include "kadans/campaign/shard.h"
 #include "kadans/campaign/tuning/cma_es.h"
+#include "tune_command.h"
 
 namespace kadans {
 
