@@ -1,4 +1,4 @@
-#include "warm_up.h"
+#include "../../src/script/warm_up.h"
 
 #include <array>
 #include <cstdint>
