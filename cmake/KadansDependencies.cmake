@@ -11,6 +11,7 @@ pkg_check_modules(orocos_kdl REQUIRED IMPORTED_TARGET orocos-kdl)
 pkg_check_modules(bullet REQUIRED IMPORTED_TARGET bullet-float64)  # double precision
 pkg_check_modules(luajit REQUIRED IMPORTED_TARGET luajit)
 pkg_check_modules(libedit REQUIRED IMPORTED_TARGET libedit)
+pkg_check_modules(sqlite3 REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 if(KADANS_TESTS)
   find_package(doctest REQUIRED)

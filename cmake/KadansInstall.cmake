@@ -31,4 +31,7 @@ install(FILES LICENSE third_party_notes.md DESTINATION "${CMAKE_INSTALL_DOCDIR}"
 
 if(TARGET kadans)
   install(TARGETS kadans)
+  if(TARGET kadans-tune)
+    install(TARGETS kadans-tune)
+  endif()
 endif()

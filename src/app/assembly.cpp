@@ -49,8 +49,8 @@ std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Safe
 
 }  // namespace
 
-Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log)
-    : scenario_(scenario), log_(log), robot_(read_robot(scenario.robot)) {
+Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link)
+    : scenario_(scenario), log_(log), link_(link), robot_(read_robot(scenario.robot)) {
   control_system_ = make_control_system(robot_);
   Catalog& catalog = control_system_->catalog;
   try {
@@ -112,7 +112,9 @@ void Assembly::make_plant(std::uint64_t seed) {
     model_plant_ = std::make_unique<BulletPlant>(variant_.model, variant_.plant, seed);
   }
   faulty_plant_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed, *model_plant_);
-  plant_ = faulty_plant_ ? static_cast<ModelPlant*>(faulty_plant_.get()) : model_plant_.get();
+  model_ = faulty_plant_ ? static_cast<ModelPlant*>(faulty_plant_.get()) : model_plant_.get();
+  if (link_ != nullptr) linked_plant_ = std::make_unique<LinkedPlant>(*link_, *model_);
+  plant_ = linked_plant_ ? static_cast<ModelPlant*>(linked_plant_.get()) : model_;
 }
 
 void Assembly::make_behaviors() {

@@ -7,7 +7,9 @@
 #include "kadans/config/project_root.h"
 #include "kadans/model/urdf.h"
 #include "kadans/script/check_behavior.h"
+#include "sweep_command.h"
 #include "terminal.h"
+#include "tune_command.h"
 
 namespace kadans {
 namespace {
@@ -61,6 +63,8 @@ std::string check_lua(const std::string& file, const std::string& robot) {
 
 std::string check_json(const std::string& file) {
   const JsonValue json = parse_json(read_text_file(file), file);
+  if (json.find("tune") != nullptr) return check_tune_plan(file);
+  if (json.find("scenarios") != nullptr) return check_sweep_plan(file);
   return json.find("urdf") != nullptr || json.find("control") != nullptr ? check_robot(file) : check_scenario(file);
 }
 

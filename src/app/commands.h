@@ -20,6 +20,7 @@ struct SimOptions : RunRequest {
   bool no_record = false;
   bool realtime = false;
   bool watch = false;
+  std::string metrics;                   // plan whose metrics are reported; "" = none
   std::string record;                    // "" = NAME.mcap in the working directory
   std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
   std::string from;                      // a checkpoint; then what is set and played counts from there
@@ -51,6 +52,43 @@ struct CheckOptions {
   std::string robot;  // configuration that behaviors are checked against; "" = that of the folder they are in
 };
 int run_check(const CheckOptions& options);
+
+struct RunOptions {
+  std::string robot;
+  std::string plant = "bullet";
+  std::string play;    // a list; "" = nothing, the robot holds
+  std::string record;  // "" = none
+  std::optional<double> duration_s;
+  std::optional<std::uint64_t> seed;
+  bool soft = false;          // also without the rights to be punctual
+  bool virtual_time = false;  // the same threads, while time stands still for all who are not done
+  bool sleep_only = false;
+  bool keep_awake = true;
+  double spin_us = 0;  // 0: the default
+  int cpu = -1;        // of the control thread; -1: an isolated one, else the last
+  bool verbose = false;
+  bool json = false;
+};
+int run_live(const RunOptions& options);
+
+struct JitterOptions {
+  double seconds = 60;  // of our own samples; cyclictest takes as long again
+  bool load = false;
+  bool sleep_only = false;
+  bool keep_awake = true;
+  bool json = false;
+  int cpu = -1;  // -1: the one that `kadans run` would take
+  int priority = 90;
+  double spin_us = 0;  // 0: as `kadans run`
+  std::string svg;     // "" = none
+};
+int run_jitter(const JitterOptions& options);
+
+struct DoctorOptions {
+  std::string root = "/";  // of the machine that is examined
+  bool json = false;
+};
+int run_doctor(const DoctorOptions& options);
 
 struct NewControlObjectOptions {
   std::string name;

@@ -10,7 +10,9 @@
 #include "repl_command.h"
 #include "replay_command.h"
 #include "stubs_command.h"
+#include "sweep_command.h"
 #include "terminal.h"
+#include "tune_command.h"
 #include "version.h"
 
 namespace kadans {
@@ -28,6 +30,7 @@ constexpr const char* examples =
     "  kadans replay squat.mcap                           run a record again; where does it part, and since what "
     "change\n"
     "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
+    "  kadans run config/tulip/robot.json --play squat    drive the robot, or its model, on the wall clock\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
     "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
     "\n"
@@ -65,6 +68,63 @@ void add_check(CLI::App& app, CheckOptions& options) {
       ->type_name("FILE");
 }
 
+void add_run(CLI::App& app, RunOptions& options) {
+  CLI::App* run =
+      app.add_subcommand("run", "Drive a robot, or a model of it, on the wall clock until SIGINT or SIGTERM");
+  run->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
+  run->add_option("--plant", options.plant, "What is driven: bullet (default) or ideal")
+      ->check(CLI::IsMember({"bullet", "ideal"}));
+  run->add_option("--play", options.play, "What to play: \"squat, wave\" (default: nothing, the robot holds)")
+      ->type_name("LIST");
+  run->add_option("--duration", options.duration_s, "Seconds to run (default: until it is told to stop)")
+      ->type_name("S")
+      ->check(CLI::Range(0.001, 1e9));
+  run->add_option("--record", options.record, "Write a record (default: none)")->type_name("FILE");
+  run->add_option("--seed", options.seed, "Seed of a model's noise (default: 1)")->type_name("N");
+  run->add_flag("--soft", options.soft, "Go on without the rights that real time needs");
+  run->add_flag("--threads-on-virtual-time", options.virtual_time,
+                "The same threads, but time waits for all of them: as fast or slow as the machine is");
+  CLI::Option* sleep = run->add_flag("--sleep-only", options.sleep_only, "Sleep to the end, without spinning");
+  run->add_option("--spin-us", options.spin_us, "How long to spin after sleeping")
+      ->type_name("US")
+      ->check(CLI::Range(1.0, 900.0))
+      ->excludes(sleep);
+  run->add_flag("!--no-keep-awake", options.keep_awake, "Let the control thread's CPU idle between the ticks");
+  run->add_option("--cpu", options.cpu, "CPU of the control thread (default: an isolated one, else the last)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1023));
+  run->add_flag("--json", options.json, "End with one JSON object on a line of its own");
+  run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
+}
+
+void add_jitter(CLI::App& app, JitterOptions& options) {
+  CLI::App* jitter = app.add_subcommand("jitter", "Measure how punctual this machine is, beside cyclictest");
+  jitter->add_option("--seconds", options.seconds, "Seconds of samples at 1 kHz (default: 60)")
+      ->type_name("S")
+      ->check(CLI::Range(0.1, 1000.0));
+  jitter->add_flag("--load", options.load, "While other processes compute, fill memory, write, switch, set timers");
+  CLI::Option* sleep = jitter->add_flag("--sleep-only", options.sleep_only, "Sleep to the end, without spinning");
+  jitter->add_option("--spin-us", options.spin_us, "How long to spin after sleeping")
+      ->type_name("US")
+      ->check(CLI::Range(1.0, 900.0))
+      ->excludes(sleep);
+  jitter->add_flag("!--no-keep-awake", options.keep_awake, "Let the CPU idle between the beats");
+  jitter->add_option("--cpu", options.cpu, "CPU to measure on (default: an isolated one, else the last)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1023));
+  jitter->add_option("--priority", options.priority, "Of SCHED_FIFO (default: 90)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 99));
+  jitter->add_option("--svg", options.svg, "Draw the histogram into a file")->type_name("FILE");
+  jitter->add_flag("--json", options.json, "End with one JSON object on a line of its own");
+}
+
+void add_doctor(CLI::App& app, DoctorOptions& options) {
+  CLI::App* doctor = app.add_subcommand("doctor", "Say what of this machine is in the way of real time");
+  doctor->add_option("--root", options.root, "Folder that stands for / (default: /)")->type_name("FOLDER");
+  doctor->add_flag("--json", options.json, "Print one JSON object instead of text");
+}
+
 void add_new(CLI::App& app, NewControlObjectOptions& options) {
   CLI::App* made = app.add_subcommand("new", "Write a first version of something of your own");
   made->require_subcommand(1);
@@ -99,6 +159,12 @@ int run(int argc, char** argv) {
   ReplayOptions replay;
   add_replay(app, replay);
   add_check(app, check);
+  SweepOptions sweep;
+  add_sweep(app, sweep);
+  MergeOptions merge;
+  add_merge(app, merge);
+  TuneOptions tune;
+  add_tune(app, tune);
   BehaviorOptions behavior;
   add_behavior(app, behavior);
   ReplOptions repl;
@@ -107,6 +173,12 @@ int run(int argc, char** argv) {
   add_stubs(app, stubs);
   ParamsOptions params;
   add_params(app, params);
+  RunOptions live;
+  add_run(app, live);
+  JitterOptions jitter;
+  add_jitter(app, jitter);
+  DoctorOptions doctor;
+  add_doctor(app, doctor);
   NewControlObjectOptions new_object;
   add_new(app, new_object);
   try {
@@ -119,7 +191,13 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   if (app.got_subcommand("test")) return run_test(test);
+  if (app.got_subcommand("run")) return run_live(live);
+  if (app.got_subcommand("jitter")) return run_jitter(jitter);
+  if (app.got_subcommand("doctor")) return run_doctor(doctor);
   if (app.got_subcommand("replay")) return run_replay(replay);
+  if (app.got_subcommand("sweep")) return run_sweep(sweep);
+  if (app.got_subcommand("merge")) return run_merge(merge);
+  if (app.got_subcommand("tune")) return start_tune_program(argv);
   if (app.got_subcommand("new")) return run_new_control_object(new_object);
   if (app.got_subcommand("repl")) return run_repl(repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(stubs);

@@ -70,7 +70,7 @@ ScenarioConfig read_scenario(const RunRequest& request) {
 std::string repeat_command(const RunRequest& request, std::uint64_t seed) {
   std::string command = "kadans sim " + request.scenario + " --seed " + std::to_string(seed);
   if (!request.play.empty()) command += " --play '" + request.play + "'";
-  for (const std::string& setting : request.set) command += " --set " + setting;
+  for (const std::string& setting : request.set) command += " --set '" + setting + "'";
   if (request.duration_s) command += " --duration " + number_text(*request.duration_s);
   return command;
 }

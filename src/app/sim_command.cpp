@@ -70,6 +70,8 @@ void add_sim(CLI::App& app, SimOptions& options) {
   sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);
+  sim->add_option("--metrics", options.metrics, "A plan of a sweep or tuning whose metrics are reported")
+      ->type_name("FILE");
   CLI::Option* record =
       sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
   sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);

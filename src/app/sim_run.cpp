@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "input_files.h"
+#include "kadans/config/experiment_config.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -68,6 +69,8 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
       duration_s_(request.duration_s.value_or(scenario_.duration_s)),
       assembly_(scenario_, seed_, log_),
       checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file),
+      metrics_(assembly_.catalog().signals,
+               options.metrics.empty() ? std::vector<MetricConfig>() : read_metrics(options.metrics), options.metrics),
       height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
       continuation_(std::move(continuation)) {
   if (continuation_) {
@@ -87,7 +90,7 @@ int SimRun::run() {
   if (!continuation_) start_record();
   const bool alone = !continuation_ || continuation_->branches.size() == 1;
   ProgressBar progress(duration_s_, stderr_is_terminal() && !options_.json && alone);
-  std::vector<RunObserver*> observers{&progress, &height_, &evidence_, this};
+  std::vector<RunObserver*> observers{&progress, &height_, &evidence_, &metrics_, this};
   Pace pace;
   if (options_.realtime) observers.push_back(&pace);
   if (trail_) observers.push_back(trail_.get());
@@ -216,6 +219,7 @@ void SimRun::print(const RunResult& result) const {
     ReportContext context{.log = log_,
                           .model = assembly_.robot().model,
                           .quantities = assembly_.quantities(),
+                          .metrics = metrics_.values(),
                           .evidence = evidence_.around(result.checks),
                           .record = record_,
                           .hashes = {},
@@ -241,6 +245,7 @@ void SimRun::print(const RunResult& result) const {
   const std::string text =
       text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
   std::fputs(text.c_str(), stdout);
+  for (const MetricValue& metric : metrics_.values()) std::printf("  %s = %.6g\n", metric.name.c_str(), metric.value);
 }
 
 }  // namespace kadans

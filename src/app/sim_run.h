@@ -70,6 +70,7 @@ class SimRun final : public RunObserver {
   RunLog log_{&late_log_};
   Assembly assembly_;
   Checks checks_;
+  Metrics metrics_;
   Evidence evidence_{checks_, assembly_.catalog().signals};
   RunInputs inputs_;
   TraceObserver height_;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -7,6 +6,7 @@
 #include <thread>
 
 #include "commands.h"
+#include "job_progress.h"
 #include "kadans/campaign/golden.h"
 #include "kadans/campaign/scenario_search.h"
 #include "kadans/campaign/suite_report.h"
@@ -62,7 +62,8 @@ class Suite final : public JobWatcher {
       : options_(options),
         runs_(std::move(runs)),
         golden_(golden),
-        style_{.color = stdout_takes_color(), .unicode = true} {}
+        style_{.color = stdout_takes_color(), .unicode = true},
+        progress_(runs_.size(), !options.json) {}
 
   int run(const FailedRuns& failed_runs) {
     std::vector<Job> jobs;
@@ -72,10 +73,9 @@ class Suite final : public JobWatcher {
                       run.scenario.wall_limit_s});
       if (golden_ != nullptr) jobs.back().arguments.insert(jobs.back().arguments.end(), {"--hash-every", "1"});
     }
-    began_ = std::chrono::steady_clock::now();
     const std::size_t at_once = options_.jobs > 0 ? options_.jobs : std::max(1U, std::thread::hardware_concurrency());
     run_jobs(jobs, at_once, *this);
-    clear_progress();
+    progress_.clear();
     report(failed_runs);
     if (interrupted()) return exit_interrupted;
     return failed() ? exit_failed : exit_passed;
@@ -84,12 +84,13 @@ class Suite final : public JobWatcher {
   void ended(const JobOutcome& outcome) override {
     const PlannedRun& planned = runs_[outcome.job];
     RunOutcome run = read_run_outcome(outcome);
+    progress_.ended();
     run.scenario = planned.scenario.name;
     run.file = planned.scenario.file.string();
     run.seed = planned.seed;
     run.repeat = repeat_command(planned);
     if (options_.golden) check_golden(run);
-    clear_progress();
+    progress_.clear();
     if (options_.json) {
       std::puts(run_json(run).c_str());
     } else if (run.status != RunStatus::cancelled) {
@@ -100,16 +101,7 @@ class Suite final : public JobWatcher {
     ended_.emplace_back(outcome.job, std::move(run));
   }
 
-  void passed_time(std::size_t running) override {
-    if (!stderr_is_terminal() || options_.json) return;
-    const double wall_s = elapsed_s();
-    if (wall_s < drawn_s_ + 0.1) return;
-    drawn_s_ = wall_s;
-    const double share = static_cast<double>(ended_.size()) / static_cast<double>(runs_.size());
-    std::fprintf(stderr, "\r\033[K  %zu of %zu, %zu running, %.0f s", ended_.size(), runs_.size(), running, wall_s);
-    if (share > 0) std::fprintf(stderr, ", about %.0f s left", wall_s / share - wall_s);
-    std::fflush(stderr);
-  }
+  void passed_time(std::size_t running) override { progress_.draw(running); }
   bool stop_asked() const override { return stop_ || interrupted(); }
 
  private:
@@ -131,13 +123,9 @@ class Suite final : public JobWatcher {
     for (const std::string& change : changes) std::fprintf(to, "  %s\n", change.c_str());
   }
 
-  double elapsed_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
   bool failed() const {
     return ended_.size() < runs_.size() ||
            std::ranges::any_of(ended_, [](const auto& e) { return e.second.status != RunStatus::passed; });
-  }
-  void clear_progress() const {
-    if (stderr_is_terminal() && drawn_s_ > 0) std::fputs("\r\033[K", stderr);
   }
 
   // In the order of the plan, whatever order they ended in.
@@ -150,11 +138,11 @@ class Suite final : public JobWatcher {
       outcomes.push_back(std::move(run));
     }
     if (!interrupted()) failed_runs.write(failures);
-    if (!options_.json) std::fputs(suite_summary(outcomes, elapsed_s(), style_).c_str(), stdout);
+    if (!options_.json) std::fputs(suite_summary(outcomes, progress_.elapsed_s(), style_).c_str(), stdout);
     if (options_.renew_golden && !interrupted()) renew_golden(outcomes);
     if (options_.junit.empty()) return;
     std::ofstream file(options_.junit);
-    file << junit_xml(outcomes, elapsed_s());
+    file << junit_xml(outcomes, progress_.elapsed_s());
     file.close();
     if (!file) throw InputError({.file = options_.junit, .message = "cannot be written"});
   }
@@ -163,8 +151,7 @@ class Suite final : public JobWatcher {
   std::vector<PlannedRun> runs_;
   GoldenHashes* golden_;  // or nullptr
   SuiteStyle style_;
-  std::chrono::steady_clock::time_point began_;
-  double drawn_s_ = 0;
+  JobProgress progress_;
   bool stop_ = false;
   std::vector<std::pair<std::size_t, RunOutcome>> ended_;
 };

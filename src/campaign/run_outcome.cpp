@@ -50,6 +50,8 @@ void read_report(const Json& json, RunOutcome& run) {
   for (const auto& [quantity, value] : quantities.items()) {
     run.quantities.push_back({quantity, number(value)});
   }
+  const Json metrics = json.value("metrics", Json::object());
+  for (const auto& [metric, value] : metrics.items()) run.metrics.push_back({metric, number(value)});
 }
 
 // The last lines of what a process said when it broke down.

@@ -112,6 +112,8 @@ void RobotReader::plant(Fields& f) {
   f.map("surfaces", "friction of the links' surfaces by link pattern", [&](Fields& entry) { surface(entry); });
   f.number("ground_friction", plant.ground_friction, {0, 10}, "of the ground; a contact's friction is the product");
   f.numbers("gravity_m_s2", plant.gravity_m_s2, {-100, 100, "m/s2"}, "gravity in world axes");
+  static const std::vector<std::string> solvers{"tree", "stock"};
+  f.choice("solver", plant.solver, solvers, "of contacts and joint laws: our own, or Bullet's");
   f.integer("solver_iterations", plant.solver_iterations, {1, 1000}, "iterations of the contact solver in a step");
   f.boolean("fixed_base", plant.fixed_base, "the base link is bolted to the world");
   f.boolean("self_collision", plant.self_collision, "the robot's links collide with each other");

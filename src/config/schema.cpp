@@ -7,6 +7,8 @@
 
 #include "kadans/config/robot_config.h"
 #include "kadans/config/scenario_config.h"
+#include "kadans/config/sweep_plan.h"
+#include "kadans/config/tune_plan.h"
 
 namespace kadans {
 namespace {
@@ -101,5 +103,7 @@ std::string json_schema(const FieldInfo& fields, const std::string& title) {
 
 std::string robot_schema() { return json_schema(describe_robot_config(), "Configuration of a robot"); }
 std::string scenario_schema() { return json_schema(describe_scenario_config(), "Scenario"); }
+std::string sweep_schema() { return json_schema(describe_sweep_plan(), "Sweep"); }
+std::string tune_schema() { return json_schema(describe_tune_plan(), "Tuning"); }
 
 }  // namespace kadans

@@ -39,6 +39,11 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
   ++tick_;
 }
 
+void ControlEngine::warm() noexcept {
+  signals_.gather(row_);
+  if (sink_ != nullptr) sink_->warm();
+}
+
 void ControlEngine::publish(std::int64_t time_ns) noexcept {
   snapshot_.tick = tick_;
   snapshot_.time_ns = time_ns;

@@ -73,6 +73,8 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   json["record"] = context.record;
   json["quantities"] = Json::object();
   for (const QuantityValue& quantity : context.quantities) json["quantities"][quantity.name] = quantity.value;
+  if (!context.metrics.empty()) json["metrics"] = Json::object();
+  for (const MetricValue& metric : context.metrics) json["metrics"][metric.name] = metric.value;
   if (!context.branch.empty()) json["branch"] = context.branch;
   for (const std::uint64_t hash : context.hashes) json["hashes"].push_back(hex(hash));
   if (!result.passed) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "kadans/config/name_pattern.h"
 #include "kadans/signal/random.h"
@@ -32,6 +33,19 @@ double& friction_of(PlantSettings& plant, const std::string& link) {
   return plant.surfaces.back().friction;
 }
 
+// Where the presets of the control objects keep a parameter, and what they have there.
+std::vector<std::pair<double*, double>> values_in_presets(Catalog& catalog, ParameterId id) {
+  std::vector<std::pair<double*, double>> found;
+  for (ObjectInfo& object : catalog.objects) {
+    for (Preset& preset : object.presets) {
+      for (auto& [parameter, value] : preset.values) {
+        if (parameter == id) found.emplace_back(&value, value);
+      }
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 Quantities::Quantities(PlantVariant& variant, Catalog& catalog) {
@@ -55,14 +69,18 @@ void Quantities::add_value(std::string name, NumberRange range, double& value) {
 }
 
 void Quantities::add_scale(std::string name, double& value) {
-  add(std::move(name), scale_range, [&value](double factor) { value *= factor; });
+  add(std::move(name), scale_range, [&value, whole = value](double factor) { value = whole * factor; });
 }
 
 void Quantities::add_start(PlantSettings& plant) {
   constexpr std::array<const char*, 3> names{"start.roll_rad", "start.pitch_rad", "start.yaw_rad"};
   for (std::size_t axis = 0; axis < names.size(); ++axis) {
-    add(names[axis], {-4, 4, "rad"}, [&plant, axis](double angle_rad) {
-      plant.base.orientation = turned(about(axis, angle_rad), plant.base.orientation);
+    add(names[axis], {-4, 4, "rad"}, [this, &plant, axis, start = plant.base.orientation](double angle_rad) {
+      turn_rad_[axis] = angle_rad;
+      plant.base.orientation = start;
+      for (std::size_t i = 0; i < turn_rad_.size(); ++i) {
+        if (turn_rad_[i] != 0) plant.base.orientation = turned(about(i, turn_rad_[i]), plant.base.orientation);
+      }
     });
   }
 }
@@ -86,17 +104,19 @@ void Quantities::add_joints(const RobotModel& model, PlantSettings& plant) {
     add_scale(joint + "spring_scale", drive.spring_Nm_per_rad);
     add_value(joint + "encoder_noise_rad", {0, 1, "rad"}, plant.encoders[i].noise_rad);
     const std::size_t joints = model.joints.size();
-    add(joint + "start_rad", {-7, 7, "rad"}, [&plant, i, joints](double offset_rad) {
+    const double start_rad = i < plant.position_rad.size() ? plant.position_rad[i] : 0;
+    add(joint + "start_rad", {-7, 7, "rad"}, [&plant, i, joints, start_rad](double offset_rad) {
       plant.position_rad.resize(joints);
-      plant.position_rad[i] += offset_rad;
+      plant.position_rad[i] = start_rad + offset_rad;
     });
   }
 }
 
 void Quantities::add_links(RobotModel& model, PlantSettings& plant) {
   for (Link& link : model.links) {
-    add("link." + link.name + ".mass_scale", {0.01, 100, ""}, [&link](double factor) {
+    add("link." + link.name + ".mass_scale", {0.01, 100, ""}, [&link, whole = link.inertia](double factor) {
       Inertia& inertia = link.inertia;
+      inertia = whole;
       for (double* part :
            {&inertia.mass_kg, &inertia.xx, &inertia.yy, &inertia.zz, &inertia.xy, &inertia.xz, &inertia.yz})
         *part *= factor;
@@ -109,12 +129,26 @@ void Quantities::add_links(RobotModel& model, PlantSettings& plant) {
 void Quantities::add_parameters(Catalog& catalog) {
   for (ParameterId id = 0; id < catalog.parameters.size(); ++id) {
     const Parameter& info = catalog.parameters.info(id);
+    struct Scaled {
+      double value, factor;
+    };
+    const auto scaled = std::make_shared<Scaled>(Scaled{catalog.parameters.get(id), 1});
     // The range was looked at: the table takes it.
-    const auto store = [&catalog, id](double value) { (void)catalog.parameters.set(id, value); };
-    add("control." + info.name, {info.min, info.max, info.unit}, store);
-    add("control." + info.name + "_scale", scale_range, [&catalog, id, store](double factor) {
+    const auto store = [&catalog, id, scaled] {
       const Parameter& range = catalog.parameters.info(id);
-      store(std::clamp(catalog.parameters.get(id) * factor, range.min, range.max));
+      (void)catalog.parameters.set(id, std::clamp(scaled->value * scaled->factor, range.min, range.max));
+    };
+    add("control." + info.name, {info.min, info.max, info.unit}, [scaled, store](double value) {
+      scaled->value = value;
+      store();
+    });
+    // A gain that is off by a factor is so whatever preset a behavior chooses.
+    const std::vector<std::pair<double*, double>> presets = values_in_presets(catalog, id);
+    add("control." + info.name + "_scale", scale_range, [scaled, store, presets, &catalog, id](double factor) {
+      scaled->factor = factor;
+      store();
+      const Parameter& range = catalog.parameters.info(id);
+      for (const auto& [value, whole] : presets) *value = std::clamp(whole * factor, range.min, range.max);
     });
   }
 }
@@ -134,7 +168,12 @@ bool Quantities::apply(std::size_t index, double value, TextPlace place, std::ve
     return false;
   }
   quantities_[index].set(value);
-  done.push_back({names_[index], value});
+  const auto known = std::ranges::find(done, names_[index], &QuantityValue::name);
+  if (known == done.end()) {
+    done.push_back({names_[index], value});
+  } else {
+    known->value = value;
+  }
   return true;
 }
 

@@ -101,8 +101,8 @@ KADANS_TICK_CODE bool Behavior::tick(const Snapshot& snapshot, CommandSender& co
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
-  parts.tell_refused();
-  bindings.bring_in_again();
+  if (snapshot.transactions_refused != bindings.refusals_seen) parts.tell_refused();
+  if (bindings.wanted != 0) bindings.bring_in_again();
   if (!parts.run(tick_chart)) {
     commands.discard();
     if (take_back(snapshot, commands)) return true;

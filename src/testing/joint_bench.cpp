@@ -113,10 +113,10 @@ SetpointId JointBench::find_setpoint(std::string_view name) const {
 
 void JointBench::set_point(double value, double duration_s) {
   for (SetpointId id = 0; id < catalog_.setpoints.size(); ++id) {
-    if (catalog_.setpoints[id].owner == sets_->active())
+    if (catalog_.setpoints[id].owner == active_object())
       return set_point(catalog_.setpoints[id].name, value, duration_s);
   }
-  throw std::invalid_argument("control object " + catalog_.objects[sets_->active()].name + " has no set-point");
+  throw std::invalid_argument("control object " + catalog_.objects[active_object()].name + " has no set-point");
 }
 
 void JointBench::set_point(std::string_view setpoint, double value, double duration_s) {

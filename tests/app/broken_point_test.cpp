@@ -54,7 +54,7 @@ constexpr std::array<Breakage, 33> breakages = {{
     {"push_right", stand, stiff, soft, "stays up"},
     {"reload_while_down", "config/scenarios/versions/squat.lua", "k.state \"squat\"", "k.state \"sqat\"",
      "reloaded once"},
-    {"reload_while_down", "", "\"reload\"", "\"replace\"", "reloaded once"},
+    {"reload_while_down", "", "\"at_s\": 2.2", "\"at_s\": 8", "reloaded once"},
     {"shaken_floor", stand, stiff, soft, "sways ever less, upright"},
     {"shaken_floor", "", "[-0.06, 0, 0]", "[-0.6, 0, 0]", "stays up"},
     {"slippery_floor", "", "0.1 }", "0.8 }", "slides"},

@@ -73,8 +73,8 @@ void check_bends_and_waves(const std::filesystem::path& folder, const char* play
   CHECK(result.faults.empty());
   CHECK(robot.host().behavior(0).outcome() == "done");
   CHECK(watch.sets == sets);
-  CHECK(watch.lowest_m < 0.85);
-  CHECK(watch.height_m > 0.88);
+  CHECK(watch.lowest_m < 0.8);
+  CHECK(watch.height_m > 0.855);
   CHECK(watch.arm_rad == doctest::Approx(-1).epsilon(0.05));
 }
 

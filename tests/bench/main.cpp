@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   using namespace kadans::bench;
   const std::map<std::string, void (*)(Report&)> parts = {{"behavior", bench_behavior}, {"control", bench_control},
                                                           {"exchange", bench_exchange}, {"objects", bench_objects},
-                                                          {"plant", bench_simulation},  {"record", bench_record},
+                                                          {"plant", bench_plant},       {"record", bench_record},
                                                           {"switch", bench_switch}};
   CLI::App app("Kadans benchmarks", "kadans_bench");
   std::vector<std::string> only;

@@ -63,6 +63,7 @@ void bench_behavior(Report& report);
 void bench_control(Report& report);
 void bench_exchange(Report& report);
 void bench_objects(Report& report);
+void bench_plant(Report& report);
 void bench_record(Report& report);
 void bench_simulation(Report& report);
 void bench_rfsm(Report& report);  // part of bench_behavior; nothing without KADANS_RFSM

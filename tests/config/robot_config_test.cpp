@@ -122,7 +122,7 @@ TEST_CASE("Several sets may be active first when they share no joint") {
                     doctest::Contains("unknown control set 'wav', did you mean 'wave'?"));
 }
 
-TEST_CASE("A joint that no set holds damps as in safety, or does what its pattern says; one without a motor is off") {
+TEST_CASE("A joint that no set holds damps as in safety, or does what its pattern says, one without a motor is off") {
   const RobotConfig plain = read(right_robot);
   CHECK(plain.unheld[joint(plain, "l_knee")].damping_Nms_per_rad == plain.safety.damping_Nms_per_rad);
   CHECK(plain.unheld[joint(plain, "l_knee")].stiffness_Nm_per_rad == 0);

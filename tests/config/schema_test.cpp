@@ -67,6 +67,8 @@ void check_file(const std::string& schema, const fs::path& file) {
 TEST_CASE("The shipped schemas are what the readers' field lists say") {
   check_shipped(robot_schema(), "robot.schema.json");
   check_shipped(scenario_schema(), "scenario.schema.json");
+  check_shipped(sweep_schema(), "sweep.schema.json");
+  check_shipped(tune_schema(), "tune.schema.json");
 }
 
 TEST_CASE("What the readers accept fits the schemas, what the schemas refuse is no shipped file") {
@@ -75,6 +77,12 @@ TEST_CASE("What the readers accept fits the schemas, what the schemas refuse is 
   check_file(robot_schema(), source / "config" / "tulip" / "robot.json");
   for (const auto& entry : fs::directory_iterator(source / "config" / "scenarios")) {
     if (entry.path().extension() == ".json") check_file(scenario_schema(), entry.path());
+  }
+  for (const auto& entry : fs::directory_iterator(source / "config" / "sweeps")) {
+    if (entry.path().extension() == ".json") check_file(sweep_schema(), entry.path());
+  }
+  for (const auto& entry : fs::directory_iterator(source / "config" / "tuning")) {
+    if (entry.path().extension() == ".json") check_file(tune_schema(), entry.path());
   }
 }
 

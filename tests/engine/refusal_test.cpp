@@ -14,7 +14,7 @@ namespace {
 // A set of its own for each motor beside those of both.
 std::vector<std::unique_ptr<ControlObject>> single_joints(Catalog& catalog, const RobotModel& model) {
   auto objects = bench::posture(catalog, model);
-  for (const std::size_t joint : {0, 1}) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
     const std::string name = model.joints[joint].name + "_alone";
     objects.push_back(std::make_unique<JointPid>(ObjectSetup{model, {joint}}));
     const auto index = static_cast<std::uint32_t>(objects.size() - 1);

@@ -30,3 +30,16 @@ TEST_CASE("Without any tick every figure is 0") {
   CHECK(statistics.min_ns() == 0);
   CHECK(statistics.max_ns() == 0);
 }
+
+TEST_CASE("Counts up to a duration and sums of two are what was added") {
+  TickStatistics one, other;
+  for (int i = 1; i <= 100; ++i) one.add(i * 1000);
+  other.add(5);
+  CHECK(one.count_until(50'500) == doctest::Approx(50).epsilon(0.03));
+  CHECK(one.count_until(1) == 0);
+  one.add_all(other);
+  CHECK(one.count() == 101);
+  CHECK(one.min_ns() == 5);
+  CHECK(one.max_ns() == 100'000);
+  CHECK(one.mean_ns() == doctest::Approx((5 + 5'050'000) / 101.0));
+}

@@ -1,95 +1,15 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 
 #include <doctest/doctest.h>
 
-#include "kadans/model/urdf.h"
 #include "kadans/testing/allocation_count.h"
-#include "small_robots.h"
+#include "tulip_robot.h"
 
 using namespace kadans;
 using namespace kadans::test;
 
 namespace {
-
-enum class Drives : std::uint8_t { elastic, stiff_spring, rigid };
-
-double crouch_rad(const std::string& joint) {
-  if (joint.ends_with("hip_pitch") || joint.ends_with("ankle_pitch")) return -0.3;
-  return joint.ends_with("knee") ? 0.6 : 0;
-}
-
-DriveSettings drive_of(const Joint& joint, Drives kind) {
-  DriveSettings drive;
-  if (joint.passive()) {
-    drive.parallel_spring_Nm_per_rad = 25;
-    drive.parallel_damping_Nms_per_rad = 0.6;
-    return drive;
-  }
-  drive.torque_max_Nm = joint.effort_max_Nm;
-  drive.velocity_max_rad_s = joint.velocity_max_rad_s;
-  drive.knee_velocity_rad_s = joint.velocity_max_rad_s / 2;
-  drive.rotor_inertia_kg_m2 = 0.02;
-  drive.viscous_Nms_per_rad = 0.2;
-  if (kind == Drives::rigid) return drive;
-  drive.spring_Nm_per_rad = kind == Drives::elastic ? 300 : 3000;
-  drive.spring_damping_Nms_per_rad = 0.5;
-  return drive;
-}
-
-FootSettings foot_of(const std::string& link) {
-  const double inner = link.starts_with("l") ? -0.05 : 0.05;
-  FootSettings foot;
-  foot.link = link;
-  foot.sensors_m = {{{-0.08, inner, -0.06}, {-0.08, -inner, -0.06}, {0.14, inner, -0.06}, {0.14, -inner, -0.06}}};
-  return foot;
-}
-
-Robot tulip(Drives kind) {
-  Robot robot;
-  robot.model = read_urdf(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
-  for (const Joint& joint : robot.model.joints) {
-    robot.settings.drives.push_back(drive_of(joint, kind));
-    robot.settings.position_rad.push_back(crouch_rad(joint.name));
-  }
-  robot.settings.encoders.resize(robot.model.joints.size());
-  for (const std::string link : {"l_ankle_roll_link", "r_ankle_roll_link"}) {
-    robot.settings.feet.push_back(foot_of(link));
-    robot.settings.surfaces.push_back({link, 0.8});
-  }
-  return robot;
-}
-
-// Joint PD on the motors' side, one tick of delay, as a control object would do it.
-class JointPdHold {
- public:
-  explicit JointPdHold(const Robot& robot) : robot_(robot) {}
-
-  void tick(BulletPlant& plant) {
-    plant.read(sensors_);
-    actuation_.joint_count = sensors_.joint_count;
-    plant.write(actuation_);
-    for (std::size_t i = 0; i < sensors_.joint_count; ++i) {
-      const double at_rad = sensors_.joints[i].motor_position_rad;
-      const double velocity_rad_s = started_ ? (at_rad - last_rad_[i]) / 1e-3 : 0;
-      last_rad_[i] = at_rad;
-      actuation_.joints[i] = {.effort_Nm = 300 * (robot_.settings.position_rad[i] - at_rad) - 6 * velocity_rad_s,
-                              .mode = ActuationMode::effort};
-    }
-    started_ = true;
-    plant.step(ms);
-  }
-  const SensorFrame& sensors() const { return sensors_; }
-
- private:
-  const Robot& robot_;
-  SensorFrame sensors_;
-  ActuationFrame actuation_;
-  std::array<double, max_joints> last_rad_{};
-  bool started_ = false;
-};
 
 double tilt_rad(const PlantTruth& truth) {
   const Quat& q = truth.base.orientation;
@@ -104,7 +24,7 @@ TEST_CASE("TULip stands for 2 s on joint torques, with every kind of drive") {
     const Robot robot = tulip(kind);
     BulletPlant plant(robot.model, robot.settings, 1);
     const Pose left = plant.truth().feet[0];
-    JointPdHold hold(robot);
+    JointHold hold(robot);
     double most_tilt_rad = 0;
     for (int i = 0; i < 2000; ++i) {
       hold.tick(plant);
@@ -121,7 +41,7 @@ TEST_CASE("TULip stands for 2 s on joint torques, with every kind of drive") {
 TEST_CASE("TULip's feet creep less than 0.06 mm in 10 s of standing") {
   const Robot robot = tulip(Drives::rigid);
   BulletPlant plant(robot.model, robot.settings, 1);
-  JointPdHold hold(robot);
+  JointHold hold(robot);
   for (int i = 0; i < 1000; ++i) hold.tick(plant);
   const Vec3 at = plant.truth().feet[0].position_m;
   for (int i = 0; i < 10000; ++i) hold.tick(plant);
@@ -132,7 +52,7 @@ TEST_CASE("TULip's feet creep less than 0.06 mm in 10 s of standing") {
 TEST_CASE("TULip's two feet carry its weight") {
   const Robot robot = tulip(Drives::rigid);
   BulletPlant plant(robot.model, robot.settings, 1);
-  JointPdHold hold(robot);
+  JointHold hold(robot);
   double sensors_N = 0, truth_N = 0;
   for (int i = 0; i < 4000; ++i) {
     hold.tick(plant);
@@ -161,7 +81,7 @@ TEST_CASE("TULip stands on a box and on a ramp of 5 degrees as on the ground") {
     }
     robot.settings.world.objects = {under};
     BulletPlant plant(robot.model, robot.settings, 1);
-    JointPdHold hold(robot);
+    JointHold hold(robot);
     for (int i = 0; i < 2000; ++i) hold.tick(plant);
     const Vec3 at = plant.truth().feet[0].position_m;
     double weight_N = 0;
@@ -206,7 +126,7 @@ TEST_CASE("TULip falls the same way twice") {
 TEST_CASE("A standing TULip's plant allocates nothing, neither in read and write nor in a step") {
   const Robot robot = tulip(Drives::elastic);
   BulletPlant plant(robot.model, robot.settings, 1);
-  JointPdHold hold(robot);
+  JointHold hold(robot);
   for (int i = 0; i < 1000; ++i) hold.tick(plant);
   const testing::AllocationCount heap;
   for (int i = 0; i < 1000; ++i) hold.tick(plant);

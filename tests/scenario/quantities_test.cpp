@@ -1,6 +1,8 @@
 // What may be set and drawn for a run: names, patterns, ranges, and that draws repeat and do not disturb each other.
 #include "kadans/scenario/quantities.h"
 
+#include <cmath>
+
 #include <doctest/doctest.h>
 
 using namespace kadans;
@@ -92,4 +94,40 @@ TEST_CASE("A distribution's quantiles are those of its kind") {
   CHECK(Distribution{.kind = Kind::normal, .of = {10, 2}}.at(0) == doctest::Approx(2));  // four deviations
   CHECK(Distribution{.kind = Kind::values, .values = {1, 5, 9}}.at(0.5) == 5);
   CHECK(Distribution{.kind = Kind::values, .values = {1, 5, 9}}.at(0.999) == 9);
+}
+
+TEST_CASE("What is set again replaces what was set before, a scale is of the robot as its files have it") {
+  Robot robot;
+  Quantities quantities(robot.variant, robot.catalog);
+  const auto set = [&](const char* pattern, double value) {
+    quantities.set({pattern, value, {3, 5}, {3, 20}}, robot.done, robot.problems);
+  };
+  for (const double factor : {0.5, 0.9}) {
+    set("joint.*.torque_scale", factor);
+    set("link.torso.mass_scale", factor);
+    set("joint.l_knee.start_rad", factor);
+    set("control.posture.l_knee.kp_scale", factor);
+    set("start.roll_rad", factor);
+  }
+  CHECK(robot.variant.plant.drives[0].torque_max_Nm == doctest::Approx(54));
+  CHECK(robot.variant.model.links[0].inertia.mass_kg == doctest::Approx(1.8));
+  CHECK(robot.variant.plant.position_rad[0] == doctest::Approx(0.9));
+  CHECK(robot.kp == doctest::Approx(90));
+  CHECK(robot.variant.plant.base.orientation[1] == doctest::Approx(std::sin(0.45)));
+  set("control.posture.l_knee.kp", 200);
+  CHECK(robot.kp == doctest::Approx(180));  // value and scale stand side by side
+  REQUIRE(robot.done.size() == 7);          // each once, with its last value
+  CHECK(robot.done[0].value == 0.9);
+}
+
+TEST_CASE("The scale of a parameter is of its presets too, its value is not") {
+  Robot robot;
+  robot.catalog.objects.push_back(
+      {.name = "posture", .presets = {{"stiff", {{0, 150.0}}}, {"stiffest", {{0, 480.0}}}}});
+  robot.set("control.posture.l_knee.kp", 90);
+  CHECK(robot.catalog.objects[0].presets[0].values[0].second == 150);
+  robot.set("control.posture.l_knee.kp_scale", 1.2);
+  CHECK(robot.catalog.objects[0].presets[0].values[0].second == doctest::Approx(180));
+  CHECK(robot.catalog.objects[0].presets[1].values[0].second == 500);  // the parameter's own limit
+  CHECK(robot.kp == doctest::Approx(108));
 }

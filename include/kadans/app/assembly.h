@@ -13,6 +13,7 @@
 #include "kadans/control/control_object_types.h"
 #include "kadans/engine/lockstep.h"
 #include "kadans/plant/plant.h"
+#include "kadans/realtime/plant_link.h"
 #include "kadans/scenario/disturbances.h"
 #include "kadans/scenario/faulty_host.h"
 #include "kadans/scenario/faulty_plant.h"
@@ -41,8 +42,9 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 class Assembly {
  public:
   // Reads the robot and the behaviors that the scenario names. Throws InputError with everything that is wrong. The log
-  // must outlive the assembly.
-  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log);
+  // must outlive the assembly, and so must `link`: with it the model is for a thread of its own, and the engines see
+  // its other end.
+  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr);
 
   const RobotConfig& robot() const noexcept { return robot_.config; }
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
@@ -51,6 +53,7 @@ class Assembly {
   // Before the run: takes what somebody saves. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() { host_->watch(); }
   RunParts parts() noexcept;
+  ModelPlant& model() noexcept { return *model_; }  // faults included
   // What was set and drawn for this run.
   const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
@@ -67,11 +70,14 @@ class Assembly {
 
   const ScenarioConfig& scenario_;
   RunLog& log_;
+  PlantExchange* link_;
   Robot robot_;
   PlantVariant variant_;
   std::vector<QuantityValue> quantities_;
   std::unique_ptr<ModelPlant> model_plant_;
   std::unique_ptr<FaultyPlant> faulty_plant_;  // around it, when something of it fails
+  ModelPlant* model_ = nullptr;                // the outer of the two
+  std::unique_ptr<LinkedPlant> linked_plant_;  // when the model is on another thread
   ModelPlant* plant_ = nullptr;                // what the engine sees
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;

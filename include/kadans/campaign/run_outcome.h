@@ -7,6 +7,7 @@
 
 #include "kadans/campaign/job_pool.h"
 #include "kadans/scenario/evidence.h"
+#include "kadans/scenario/metrics.h"
 #include "kadans/scenario/quantities.h"
 
 namespace kadans {
@@ -27,6 +28,7 @@ struct RunOutcome {
   std::vector<std::string> transitions;  // the last ones, a line each
   std::vector<std::string> errors;       // what the run, a behavior or the process said
   std::vector<QuantityValue> quantities;
+  std::vector<MetricValue> metrics;
   std::string repeat;  // the command that repeats it
   std::string json;    // the run's own report, "" when it left none
 };

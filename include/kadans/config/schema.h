@@ -12,5 +12,7 @@ std::string json_schema(const FieldInfo& fields, const std::string& title);
 
 std::string robot_schema();
 std::string scenario_schema();
+std::string sweep_schema();
+std::string tune_schema();
 
 }  // namespace kadans

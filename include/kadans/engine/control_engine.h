@@ -44,6 +44,10 @@ class ControlEngine {
   // Control thread. `missed` ticks were skipped before this one; dt_s is the true time since the last tick.
   void tick(std::int64_t time_ns, double dt_s, std::uint32_t missed = 0) noexcept;
 
+  // Control thread, in the wait before a tick: reads what the tick will read, so that its memory is in the cache of a
+  // CPU that worked for others meanwhile. Changes nothing that counts.
+  void warm() noexcept;
+
   std::uint64_t ticks() const noexcept { return tick_; }
   std::span<const double> row() const noexcept { return row_; }  // signals of the last tick
   const Snapshot& state() const noexcept { return snapshot_; }

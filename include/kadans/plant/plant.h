@@ -58,9 +58,10 @@ struct PlantTruth {
   std::array<Vec3, max_feet> foot_force_N{};  // from whatever the foot stands on, world axes
   std::uint32_t object_count = 0;
   std::array<ObjectTruth, max_world_objects> objects{};
-  LinkSet ground_links;           // that press on the ground
-  LinkSet touching_links;         // that press on the ground or an object
-  double self_penetration_m = 0;  // largest overlap of two links that may collide
+  LinkSet ground_links;             // that press on the ground
+  LinkSet touching_links;           // that press on the ground or an object
+  std::uint32_t contact_count = 0;  // points of the robot that press on something
+  double self_penetration_m = 0;    // largest overlap of two links that may collide
 };
 
 class ModelPlant : public Plant {

@@ -53,6 +53,10 @@ struct SurfaceSettings {
   double friction = 0.5;
 };
 
+// Of contacts and joint laws: our own, or the one that Bullet brings; or, to compare the two, our own with Bullet's
+// friction, a square along two fixed directions instead of a cone.
+enum class ContactSolver : std::uint8_t { tree, stock, tree_square_friction };
+
 struct PlantSettings {
   std::vector<DriveSettings> drives;      // one a joint
   std::vector<EncoderSettings> encoders;  // one a joint
@@ -61,6 +65,7 @@ struct PlantSettings {
   std::vector<SurfaceSettings> surfaces;  // links not named have friction 0.5
   double ground_friction = 1.0;           // a contact's friction is the product
   Vec3 gravity_m_s2{0, 0, -9.81};
+  ContactSolver solver = ContactSolver::tree;
   int solver_iterations = 10;
   bool fixed_base = false;  // the base link is bolted to the world
   bool self_collision = true;

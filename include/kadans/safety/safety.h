@@ -61,6 +61,8 @@ class Safety {
   void check(const SafetyInput& input, ActuationFrame& actuation, SafetyStatus& status) noexcept;
   // Notes a fault that somebody else found; its reaction follows in the next check.
   void raise(const Fault& fault) noexcept;
+  // The whole robot down to this rung from the next check on, until cleared: somebody wants it so, nothing failed.
+  void latch(SafetyLevel level) noexcept { robot_.latch(level); }
   // Lifts all latches: the next check judges anew.
   void clear() noexcept;
   // In the last check, or by clearing since: joints that damped or were off follow again what is asked of them. What is

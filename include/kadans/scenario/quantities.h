@@ -11,6 +11,7 @@
 // the controller of. Names may be patterns ("joint.*_knee.torque_scale"). Before the run; not for the tick.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -36,8 +37,10 @@ struct PlantVariant {
 
 class Quantities {
  public:
-  // Keeps references.
+  // Keeps references. What is set again replaces what was set before: a scale is of the value that was found here.
   Quantities(PlantVariant& variant, Catalog& catalog);
+  Quantities(const Quantities&) = delete;
+  Quantities& operator=(const Quantities&) = delete;
 
   // Full names, in a fixed order.
   const std::vector<std::string>& names() const noexcept { return names_; }
@@ -67,6 +70,7 @@ class Quantities {
 
   std::vector<std::string> names_;
   std::vector<Quantity> quantities_;
+  std::array<double, 3> turn_rad_{};  // of the start: roll, pitch, yaw
 };
 
 }  // namespace kadans

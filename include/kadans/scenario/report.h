@@ -6,6 +6,7 @@
 
 #include "kadans/model/robot_model.h"
 #include "kadans/scenario/evidence.h"
+#include "kadans/scenario/metrics.h"
 #include "kadans/scenario/quantities.h"
 #include "kadans/scenario/run.h"
 
@@ -16,17 +17,18 @@ struct ReportContext {
   const RunLog& log;
   const RobotModel& model;
   std::vector<QuantityValue> quantities;  // that were set or drawn
-  std::vector<EvidenceTrace> evidence;    // of the checks that failed
-  std::string record;                     // file, or ""
-  std::vector<std::uint64_t> hashes{};    // of the state, at times that somebody asked for
-  std::string branch{};                   // name, or ""
+  std::vector<MetricValue> metrics{};
+  std::vector<EvidenceTrace> evidence;  // of the checks that failed
+  std::string record;                   // file, or ""
+  std::vector<std::uint64_t> hashes{};  // of the state, at times that somebody asked for
+  std::string branch{};                 // name, or ""
 };
 
 // {scenario, seed, passed, checks [{name, passed, value, at_s, note}], duration_s, realtime_factor, control_ticks,
 // behavior_ticks, state_hash, tick_ns {median, p99, max}, queue {sent, refused}, faults [], errors [], record,
-// quantities {}, hashes [], branch, transitions [], evidence [{check, signal, unit, from_s, to_s, values}]}, on one
-// line; hashes and branch only when there are any, the transitions and the evidence only when the run did not pass.
-// Numbers that are not finite become null.
+// quantities {}, metrics {}, hashes [], branch, transitions [], evidence [{check, signal, unit, from_s, to_s,
+// values}]}, on one line; hashes and branch only when there are any, the transitions and the evidence only when the run
+// did not pass. Numbers that are not finite become null.
 std::string json_report(const RunResult& result, const ReportContext& context);
 
 struct ReportStyle {

@@ -52,6 +52,7 @@ class Recorder final : public RecordSink {
   [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns);
 
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
+  void warm() noexcept override { ring_->warm(head_size + signal_count_); }
   BehaviorLog& events() noexcept { return events_; }
 
   // Writes what waits; the file gets it chunk by chunk. False once the file has failed: the ring is emptied all the

@@ -22,7 +22,7 @@ PlantSettings checked(const RobotModel& model, const PlantSettings& settings) {
 
 ContactWorld::Options world_options(const PlantSettings& settings) {
   return {to_bullet(settings.gravity_m_s2), settings.solver_iterations, settings.ground_friction,
-          to_bullet(ground_pose(settings.world))};
+          to_bullet(ground_pose(settings.world)), settings.solver};
 }
 
 bool finite(const JointActuation& actuation) noexcept {
@@ -159,7 +159,9 @@ class BulletPlant::World {
         const btManifoldPoint& point = manifold.getContactPoint(j);
         for (int k = 0; k < 3; ++k) hash.add(point.m_localPointA[k]);
         hash.add(point.m_distance1);
-        hash.add(point.m_appliedImpulse);  // the solver starts from it
+        hash.add(point.m_appliedImpulse);  // the solver starts from these
+        hash.add(point.m_appliedImpulseLateral1);
+        hash.add(point.m_appliedImpulseLateral2);
         hash.add(point.m_prevRHS);
       }
     }

@@ -15,7 +15,7 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     getDispatchInfo().m_timeStep = dt_s;
     performDiscreteCollisionDetection();
     getSolverInfo().m_timeStep = dt_s;
-    accelerate(dt_s);
+    if (!own_solver()) accelerate(dt_s);
     getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
     solve();
     // NOLINTNEXTLINE(bugprone-parent-virtual-call)
@@ -27,6 +27,8 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   void drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays) {
     driven_.push_back({&body, velocity_m_s, stays});
   }
+
+  void use(const TreeSolver& solver) { tree_solver_ = &solver; }
 
   void set_iterations(int iterations) { iterations_ = iterations; }
 
@@ -40,6 +42,9 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   }
 
  private:
+  // Which takes the free motion along with the contacts.
+  bool own_solver() const { return tree_solver_ != nullptr && tree_solver_->covers(); }
+
   bool against_limit(double dt_s) const {
     return std::any_of(rows_.begin(), rows_.end(), [dt_s](const JointRows* rows) { return rows->against_limit(dt_s); });
   }
@@ -59,6 +64,7 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     m_multiBodyConstraintSolver->solveMultiBodyGroup(&m_collisionObjects[0], m_collisionObjects.size(), manifolds,
                                                      manifold_count, nullptr, 0, rows, m_multiBodyConstraints.size(),
                                                      getSolverInfo(), nullptr, getDispatcher());
+    if (own_solver()) return;
     for (int i = 0; i < m_multiBodies.size(); ++i) m_multiBodies[i]->processDeltaVeeMultiDof2();
   }
 
@@ -93,17 +99,36 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   };
 
   int iterations_ = 10;
+  const TreeSolver* tree_solver_ = nullptr;
   std::vector<Driven> driven_;  // in the next step
   std::vector<JointRows*> rows_;
 };
 
+namespace {
+
+// Bullet's own pools hold 4096 of each and cost 8 MB, and milliseconds at every start.
+btDefaultCollisionConstructionInfo small_pools() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 512;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 512;
+  return info;
+}
+
+}  // namespace
+
 ContactWorld::ContactWorld(const Options& options, PairMask& mask)
-    : object_contact_(
+    : configuration_(small_pools()),
+      object_contact_(
           *configuration_.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE)),
-      dispatcher_(&configuration_) {
+      dispatcher_(&configuration_),
+      tree_solver_({.friction = options.solver == ContactSolver::tree_square_friction ? FrictionLaw::pyramid
+                                                                                      : FrictionLaw::cone}) {
   ground_contact_.register_with(dispatcher_);
   object_contact_.register_with(dispatcher_);
-  world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver_, &configuration_);
+  const bool own = options.solver != ContactSolver::stock;
+  btMultiBodyConstraintSolver& solver = own ? tree_solver_ : stock_solver_;
+  world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver, &configuration_);
+  if (own) world_->use(tree_solver_);
   world_->setGravity(options.gravity_m_s2);
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
   world_->getDispatchInfo().m_useContinuous = false;
@@ -133,18 +158,26 @@ ContactWorld::~ContactWorld() {
 
 void ContactWorld::add(btMultiBody& body) {
   world_->addMultiBody(&body);
+  tree_solver_.add(body);
   world_->update_frames();
 }
 
 void ContactWorld::add(btCollisionObject& collider, bool fixed) {
+  tree_solver_.add(collider);
   const int everything = btBroadphaseProxy::DefaultFilter | btBroadphaseProxy::StaticFilter;
   world_->addCollisionObject(&collider, fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
                              fixed ? btBroadphaseProxy::DefaultFilter : everything);
 }
 
-void ContactWorld::add(JointRows& rows) { world_->add_rows(rows); }
+void ContactWorld::add(JointRows& rows) {
+  world_->add_rows(rows);
+  tree_solver_.add(rows);
+}
 
-void ContactWorld::add(btMultiBodyConstraint& rows) { world_->addMultiBodyConstraint(&rows); }
+void ContactWorld::add(RollingRows& rows) {
+  world_->addMultiBodyConstraint(&rows);
+  tree_solver_.add(rows);
+}
 
 void ContactWorld::drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays) {
   world_->drive(body, velocity_m_s, stays);

@@ -18,15 +18,17 @@
 #include <memory>
 #include <vector>
 
-#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <btBulletDynamicsCommon.h>
 
 #include "ground_contact.h"
 #include "joint_rows.h"
+#include "kadans/plant/settings.h"
 #include "object_contact.h"
 #include "pair_mask.h"
+#include "rolling_rows.h"
+#include "solver/tree_solver.h"
 
 namespace kadans::bullet {
 
@@ -41,6 +43,7 @@ class ContactWorld {
     int solver_iterations = 10;
     double ground_friction = 1;
     btTransform ground = btTransform::getIdentity();  // of the plane: z is its normal
+    ContactSolver solver = ContactSolver::tree;
   };
 
   ContactWorld(const Options& options, PairMask& mask);  // keeps a reference to the mask
@@ -51,7 +54,7 @@ class ContactWorld {
   void add(btMultiBody& body);
   void add(btCollisionObject& collider, bool fixed);
   void add(JointRows& rows);
-  void add(btMultiBodyConstraint& rows);
+  void add(RollingRows& rows);
 
   // For the next step: the velocity with which a body that nothing stops meets others. Unless `stays`, the step moves
   // it.
@@ -72,7 +75,8 @@ class ContactWorld {
   ObjectContactMaker object_contact_;
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
-  btMultiBodyConstraintSolver solver_;
+  btMultiBodyConstraintSolver stock_solver_;
+  TreeSolver tree_solver_;
   std::unique_ptr<SteppedWorld> world_;
   btStaticPlaneShape ground_shape_{btVector3(0, 0, 1), 0};
   btRigidBody ground_{0, nullptr, &ground_shape_};

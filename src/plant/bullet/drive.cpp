@@ -119,6 +119,7 @@ void Drive::hash(StateHash& hash) const noexcept {
   for (const auto kind : {JointRows::linear, JointRows::servo, JointRows::friction, JointRows::limit}) {
     hash.add(rows_->impulse(kind));  // the solver starts from it
   }
+  hash.add(rows_->servo_at_limit() ? 1.0 : 0.0);
 }
 
 }  // namespace kadans::bullet

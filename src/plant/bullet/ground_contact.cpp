@@ -26,7 +26,7 @@ struct Corner {
 
 // What the solver starts from at a corner that touched in the last step already.
 struct Impulse {
-  double normal = 0, rhs = 0;
+  double normal = 0, lateral1 = 0, lateral2 = 0, rhs = 0;
 };
 using Impulses = std::array<Impulse, corners_per_shape>;
 
@@ -34,7 +34,8 @@ Impulses impulses_of(const btPersistentManifold& manifold) {
   Impulses impulses{};
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
     const btManifoldPoint& point = manifold.getContactPoint(i);
-    impulses[static_cast<std::size_t>(point.m_index0)] = {point.m_appliedImpulse, point.m_prevRHS};
+    impulses[static_cast<std::size_t>(point.m_index0)] = {point.m_appliedImpulse, point.m_appliedImpulseLateral1,
+                                                          point.m_appliedImpulseLateral2, point.m_prevRHS};
   }
   return impulses;
 }
@@ -100,6 +101,14 @@ LowestPoints lowest_points(const btCollisionShape& shape, const btTransform& pos
   return points;
 }
 
+// No point of the shape is further from its centre.
+double reach_m(const btCollisionShape& shape) {
+  btVector3 center;
+  btScalar radius = 0;
+  shape.getBoundingSphere(center, radius);
+  return radius;
+}
+
 class GroundContact final : public btCollisionAlgorithm {
  public:
   GroundContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject& link,
@@ -107,7 +116,11 @@ class GroundContact final : public btCollisionAlgorithm {
       : btCollisionAlgorithm(info), link_(&link), ground_(&ground), surface_(link, ground) {
     const int parts = compound().getNumChildShapes();
     manifolds_.reserve(parts);
-    for (int i = 0; i < parts; ++i) manifolds_.push_back(info.m_dispatcher1->getNewManifold(&link, &ground));
+    reaches_m_.reserve(parts);
+    for (int i = 0; i < parts; ++i) {
+      manifolds_.push_back(info.m_dispatcher1->getNewManifold(&link, &ground));
+      reaches_m_.push_back(reach_m(*compound().getChildShape(i)));
+    }
   }
   ~GroundContact() override {
     for (int i = 0; i < manifolds_.size(); ++i) m_dispatcher->releaseManifold(manifolds_[i]);
@@ -115,11 +128,14 @@ class GroundContact final : public btCollisionAlgorithm {
 
   void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
                         btManifoldResult*) override {
-    const btTransform link_in_ground = ground_->getWorldTransform().inverse() * link_->getWorldTransform();
+    const btVector3 up = ground_->getWorldTransform().getBasis().getColumn(2);
     for (int i = 0; i < manifolds_.size(); ++i) {
       const Impulses last = impulses_of(*manifolds_[i]);
       manifolds_[i]->clearManifold();
-      const btTransform part = link_in_ground * compound().getChildTransform(i);
+      const btVector3 center = link_->getWorldTransform() * compound().getChildTransform(i).getOrigin();
+      if (up.dot(center - ground_->getWorldTransform().getOrigin()) > reaches_m_[i] + contact_distance_m) continue;
+      const btTransform part =
+          ground_->getWorldTransform().inverseTimes(link_->getWorldTransform()) * compound().getChildTransform(i);
       for (const Corner& corner : lowest_points(*compound().getChildShape(i), part)) {
         add(*manifolds_[i], corner, last[static_cast<std::size_t>(corner.number)]);
       }
@@ -151,6 +167,8 @@ class GroundContact final : public btCollisionAlgorithm {
     surface_.give(contact);
     contact.m_index0 = corner.number;
     contact.m_appliedImpulse = last.normal;
+    contact.m_appliedImpulseLateral1 = last.lateral1;
+    contact.m_appliedImpulseLateral2 = last.lateral2;
     contact.m_prevRHS = last.rhs;
     manifold.addManifoldPoint(contact);
   }
@@ -158,7 +176,8 @@ class GroundContact final : public btCollisionAlgorithm {
   const btCollisionObject* link_;
   const btCollisionObject* ground_;
   ContactSurface surface_;
-  btManifoldArray manifolds_;  // one a part
+  btManifoldArray manifolds_;                 // one a part
+  btAlignedObjectArray<btScalar> reaches_m_;  // likewise
 };
 
 }  // namespace

@@ -12,8 +12,6 @@ constexpr double limit_return_rad_s = 0.5;
 constexpr double hard_approach_rad_s = 1, excess_rad = 0.002;  // see against_limit
 constexpr double limit_margin_rad = 0.05;  // nearer than this, or than a few steps' way, the limit's row is there
 
-bool stiff(JointRows::Kind kind) { return kind == JointRows::friction || kind == JointRows::limit; }
-
 }  // namespace
 
 JointRows::JointRows(btMultiBody& body, int link, double lower_rad, double upper_rad)
@@ -25,17 +23,17 @@ JointRows::JointRows(btMultiBody& body, int link, double lower_rad, double upper
 
 void JointRows::set_linear(double impulse_at_rest, double slope) {
   active_[linear] = slope > 0;
-  laws_[linear] = {impulse_at_rest, slope, -infinite, infinite};
+  laws_[linear] = {.at_rest = impulse_at_rest, .slope = slope, .lower = -infinite, .upper = infinite};
 }
 
 void JointRows::set_servo(double impulse_at_rest, double slope, double lower, double upper) {
   active_[servo] = slope > 0;
-  laws_[servo] = {impulse_at_rest, slope, lower, upper};
+  laws_[servo] = {.at_rest = impulse_at_rest, .slope = slope, .lower = lower, .upper = upper};
 }
 
 void JointRows::set_friction(double impulse_max) {
   active_[friction] = impulse_max > 0;
-  laws_[friction] = {0, 0, -impulse_max, impulse_max};
+  laws_[friction] = {.lower = -impulse_max, .upper = impulse_max, .stiff = true};
 }
 
 bool JointRows::against_limit(double dt_s) const {
@@ -53,8 +51,10 @@ void JointRows::activate_limit(double dt_s) {
   const double room = at_lower ? above : below;
   // How fast it may still go towards the limit; when beyond it, how fast it must come back, negated.
   const double away = room < 0 ? std::max(limit_erp * room / dt_s, -limit_return_rad_s) : room / dt_s;
-  limit_velocity_rad_s_ = at_lower ? -away : away;
-  laws_[limit] = {0, 0, at_lower ? 0 : -infinite, at_lower ? infinite : 0};
+  laws_[limit] = {.lower = at_lower ? 0 : -infinite,
+                  .upper = at_lower ? infinite : 0,
+                  .stiff = true,
+                  .wanted_rad_s = at_lower ? -away : away};
 }
 
 btMultiBodySolverConstraint JointRows::prototype(btMultiBodyJacobianData& data, double& response) const {
@@ -101,11 +101,10 @@ void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBo
     }
     if (!made) row = prototype(data, response);
     made = true;
-    const Law& law = laws_[kind];
-    if (stiff(kind)) {
-      const double wanted = kind == limit ? limit_velocity_rad_s_ : 0;
+    const JointLaw& law = laws_[kind];
+    if (law.stiff) {
       row.m_jacDiagABInv = 1 / response;
-      row.m_rhs = (wanted - velocity) / response;
+      row.m_rhs = (law.wanted_rad_s - velocity) / response;
       row.m_cfm = 0;
     } else {
       const double scale = 1 / (1 + law.slope * response);

@@ -14,13 +14,16 @@
 //   dry friction            stiff, v_wanted = 0, limited to dt times the friction torque
 //   joint limit             stiff, one-sided: v may just reach the limit at the step's end; when beyond, a small part
 //                           (limit_erp) of the excess is taken back each step, slowly, so that nothing is thrown out
-// All rows of a joint share one Jacobian and one articulated-body pass for the response.
+// Here they are rows of Bullet's stock solver, all rows of a joint sharing one Jacobian and one articulated-body pass
+// for the response; solver/tree_solver.h takes the laws alone.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>
+
+#include "solver/joint_law.h"
 
 namespace kadans::bullet {
 
@@ -40,6 +43,18 @@ class JointRows final : public btMultiBodyConstraint {
   void set_servo(double impulse_at_rest, double slope, double lower, double upper);
   void set_friction(double impulse_max);
 
+  // The laws of this step, for a solver of our own. begin_step decides about the joint's limit.
+  void begin_step(double dt_s) { activate_limit(dt_s); }
+  btMultiBody& body() { return *m_bodyA; }
+  int link() const { return m_linkA; }
+  bool active(Kind kind) const { return active_[kind]; }
+  const JointLaw& law(Kind kind) const { return laws_[kind]; }
+  double last_impulse(Kind kind) const { return impulses_at(kind); }
+  void set_impulse(Kind kind, double impulse) { internalSetAppliedImpulse(kind, impulse); }
+  // Whether the servo gave all it could in the last step.
+  bool servo_at_limit() const { return servo_at_limit_; }
+  void set_servo_at_limit(bool at_limit) { servo_at_limit_ = at_limit; }
+
   // Runs into its limit, or stands beyond it, so that the solver should look closer. Before the solver, after the
   // accelerations.
   bool against_limit(double dt_s) const;
@@ -54,10 +69,6 @@ class JointRows final : public btMultiBodyConstraint {
   void debugDraw(btIDebugDraw*) override {}
 
  private:
-  struct Law {
-    double at_rest = 0, slope = 0, lower = 0, upper = 0;
-  };
-
   double impulses_at(Kind kind) const { return m_data[kind]; }
   double above_lower_rad() const { return m_bodyA->getJointPos(m_linkA) - lower_rad_; }
   double below_upper_rad() const { return upper_rad_ - m_bodyA->getJointPos(m_linkA); }
@@ -66,8 +77,8 @@ class JointRows final : public btMultiBodyConstraint {
 
   double lower_rad_, upper_rad_;
   std::array<bool, 4> active_{};
-  std::array<Law, 4> laws_{};
-  double limit_velocity_rad_s_ = 0;
+  std::array<JointLaw, 4> laws_{};
+  bool servo_at_limit_ = false;
 };
 
 }  // namespace kadans::bullet

@@ -24,6 +24,7 @@ double overlap_m(const btPersistentManifold& manifold) {
 void forget(PlantTruth& truth) {
   truth.ground_links.reset();
   truth.touching_links.reset();
+  truth.contact_count = 0;
   truth.self_penetration_m = 0;
   for (std::size_t i = 0; i < truth.object_count; ++i) {
     truth.objects[i].force_N = {};
@@ -71,6 +72,7 @@ void read_contacts(const ContactWorld& world, const Body& body, double dt_s, Pla
     for (int j = 0; j < manifold.getNumContacts(); ++j) {
       const btManifoldPoint& point = manifold.getContactPoint(j);
       presses = presses || point.m_appliedImpulse > 0;
+      if (point.m_appliedImpulse > 0) ++truth.contact_count;
       impulse += contact_impulse(point);
     }
     if (presses) add_contact(contact, world, (contact.link_is_first ? -1 : 1) * impulse / dt_s, truth);

@@ -18,7 +18,7 @@ constexpr double same_point_m = 0.005;
 
 struct Remembered {
   btVector3 on_a;  // in a's frame
-  double impulse = 0, rhs = 0;
+  double impulse = 0, lateral1 = 0, lateral2 = 0, rhs = 0;
 };
 
 // What the solver starts from at points that touched in the last step already; each serves once.
@@ -27,7 +27,8 @@ class LastPoints {
   explicit LastPoints(const btPersistentManifold& manifold) {
     for (int i = 0; i < manifold.getNumContacts(); ++i) {
       const btManifoldPoint& point = manifold.getContactPoint(i);
-      points_[count_++] = {point.m_localPointA, point.m_appliedImpulse, point.m_prevRHS};
+      points_[count_++] = {point.m_localPointA, point.m_appliedImpulse, point.m_appliedImpulseLateral1,
+                           point.m_appliedImpulseLateral2, point.m_prevRHS};
     }
   }
   Remembered take(const btVector3& on_a) {
@@ -102,6 +103,8 @@ class ObjectContact final : public btCollisionAlgorithm {
     surface_.give(contact);
     const Remembered before = last.take(on_a);
     contact.m_appliedImpulse = before.impulse;
+    contact.m_appliedImpulseLateral1 = before.lateral1;
+    contact.m_appliedImpulseLateral2 = before.lateral2;
     contact.m_prevRHS = before.rhs;
     manifold.addManifoldPoint(contact);
   }

@@ -13,6 +13,8 @@ class RollingRows final : public btMultiBodyConstraint {
 
   // For the next step. 0: no rows.
   void set_limit(double impulse_Nms) { limit_Nms_ = impulse_Nms; }
+  double limit_Nms() const { return limit_Nms_; }
+  btMultiBody& body() { return *m_bodyA; }
 
   void createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
                             const btContactSolverInfo& info) override;

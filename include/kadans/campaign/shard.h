@@ -1,0 +1,24 @@
+// One part of a sweep, for one of several processes or machines that share the work.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace kadans {
+
+// Of every `count` cases the one with `index`.
+struct Shard {
+  std::size_t index = 0, count = 1;
+  bool holds(std::size_t number) const noexcept { return number % count == index; }
+  bool whole() const noexcept { return count == 1; }
+};
+
+// "0/4" .. "3/4". Throws InputError.
+Shard parse_shard(const std::string& text);
+
+// What a task of a Slurm array is to do: SLURM_ARRAY_TASK_ID, _COUNT, _MIN and _STEP; nothing outside an array. Throws
+// InputError when the array is no range.
+std::optional<Shard> slurm_shard();
+
+}  // namespace kadans

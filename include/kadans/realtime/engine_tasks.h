@@ -1,0 +1,56 @@
+// The two engines as periodic tasks.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "kadans/engine/behavior_engine.h"
+#include "kadans/engine/control_engine.h"
+#include "kadans/realtime/task_thread.h"
+
+namespace kadans {
+
+// Other work that has to be done on an engine's thread.
+class BesideTick {
+ public:
+  virtual ~BesideTick() = default;
+  virtual void beside_tick(std::int64_t time_ns) = 0;
+};
+
+// A control tick a beat: from waking up to having published there is no system call but the plant's. What comes beside
+// it comes after.
+class ControlTask final : public Task {
+ public:
+  explicit ControlTask(ControlEngine& engine, BesideTick* after = nullptr) noexcept : engine_(engine), after_(after) {}
+
+  bool beat(const Beat& beat) override;
+  void prepare() noexcept override { engine_.warm(); }
+
+  // Any thread: from the next tick on the robot is down to this rung, or lower. It is not taken back.
+  void degrade(SafetyLevel level) noexcept { wanted_.store(level, std::memory_order_relaxed); }
+  std::uint64_t ticks() const noexcept { return ticks_.get(); }
+  const TickStatistics& tick_cost() const noexcept { return cost_; }  // of the engine's tick alone, in wall time
+
+ private:
+  ControlEngine& engine_;
+  BesideTick* after_;
+  WallClock wall_;
+  std::atomic<SafetyLevel> wanted_{SafetyLevel::normal};
+  Count ticks_;
+  TickStatistics cost_;
+};
+
+// A behavior tick a beat, after what comes beside it.
+class BehaviorTask final : public Task {
+ public:
+  explicit BehaviorTask(BehaviorEngine& engine, BesideTick* before = nullptr) noexcept
+      : engine_(engine), before_(before) {}
+
+  bool beat(const Beat& beat) override;  // throws what the high level of a control object throws
+
+ private:
+  BehaviorEngine& engine_;
+  BesideTick* before_;
+};
+
+}  // namespace kadans

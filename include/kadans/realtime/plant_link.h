@@ -1,0 +1,59 @@
+// A model on a thread of its own, and what the control thread sees of it.
+//
+// The model's thread steps it once a period and publishes what its sensors say; the control thread reads the newest and
+// leaves its actuation, which holds until the model's next step, as a drive would. Both through storages that never
+// block: position independent, so the model may as well be another process.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/exchange/latest.h"
+#include "kadans/plant/plant.h"
+#include "kadans/realtime/task_thread.h"
+
+namespace kadans {
+
+struct PlantExchange {
+  Latest<SensorFrame> sensors;       // written by the model's thread
+  Latest<PlantTruth> truth;          // the same
+  Latest<ActuationFrame> actuation;  // written by the control thread
+};
+
+// The control thread's end. Its step does nothing: the model lives on its own.
+class LinkedPlant final : public ModelPlant {
+ public:
+  // The model as it is before the threads start.
+  LinkedPlant(PlantExchange& exchange, ModelPlant& model);
+
+  void read(SensorFrame& sensors) noexcept override { sensors = exchange_.sensors.read(); }
+  void write(const ActuationFrame& actuation) noexcept override { exchange_.actuation.publish(actuation); }
+  void step(std::int64_t) override {}
+  const PlantTruth& truth() const noexcept override { return exchange_.truth.read(); }  // control thread
+  void push(std::size_t, const Vec3&, const Vec3&) override {}
+  void hash(StateHash&) const noexcept override {}
+
+ private:
+  PlantExchange& exchange_;
+};
+
+// The model's end. When its thread comes late it steps what it missed, but at most a few periods: the rest of the time
+// did not pass for the model, and is counted.
+class PlantTask final : public Task {
+ public:
+  PlantTask(PlantExchange& exchange, ModelPlant& model, std::int64_t period_ns) noexcept
+      : exchange_(exchange), model_(model), period_ns_(period_ns) {}
+
+  bool beat(const Beat& beat) override;  // throws what the model's step throws
+  std::uint64_t lost_periods() const noexcept { return lost_periods_.get(); }
+
+ private:
+  static constexpr std::uint32_t catch_up_max = 10;
+
+  PlantExchange& exchange_;
+  ModelPlant& model_;
+  std::int64_t period_ns_;
+  Count lost_periods_;
+  SensorFrame sensors_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,95 @@
+// A periodic task on a thread of its own: its period, priority, CPU and stack, and what became of it.
+//
+// The thread blocks all signals, so that they disturb only the thread that started it, touches its whole stack before
+// the first beat, and has its scheduling from the start: SCHED_FIFO above 0, the usual one at 0. What the system
+// refuses of that is kept and may be asked for; the task runs all the same, whoever must not go on without looks at
+// refused().
+//
+// pthreads, not std::thread: Xenomai replaces the pthread calls when the program is linked, not those inside libstdc++.
+// Threads: start, stop, join by the owner; the others by any.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <pthread.h>
+
+#include "kadans/realtime/periodic.h"
+
+namespace kadans {
+
+class Task {
+ public:
+  virtual ~Task() = default;
+  // The task's thread. False: the task is over. An exception ends it too.
+  virtual bool beat(const Beat& beat) = 0;
+  // The task's thread, prepare_ns before a beat is due.
+  virtual void prepare() noexcept {}
+};
+
+struct TaskSettings {
+  std::string name;  // at most 15 characters, shown by ps and top
+  std::int64_t period_ns = 1'000'000;
+  std::int64_t first_ns = 0;    // the first beat, on the clock of its wait
+  std::int64_t prepare_ns = 0;  // 0: not at all
+  int priority = 0;             // of SCHED_FIFO, 1..99; 0: not a real-time thread
+  int cpu = -1;                 // -1: any
+  std::size_t stack_bytes = std::size_t{256} * 1024;
+};
+
+class TaskThread {
+ public:
+  // Wakes without the clock having advanced in a row before the task gives up.
+  static constexpr int standing_max = 100;
+
+  // Task and wait must outlive it.
+  TaskThread(TaskSettings settings, Task& task, Wait& wait);
+  ~TaskThread();  // stops and joins
+  TaskThread(const TaskThread&) = delete;
+  TaskThread& operator=(const TaskThread&) = delete;
+
+  // Throws std::system_error when there can be no thread.
+  void start();
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }  // after the beat that goes on
+  void join() noexcept;
+
+  const TaskSettings& settings() const noexcept { return settings_; }
+  const TaskStatistics& statistics() const noexcept { return periodic_.statistics(); }
+  bool over() const noexcept { return over_.load(std::memory_order_acquire); }
+  // Once it is over: why it ended before its time, "" when it did not.
+  const char* failure() const noexcept { return over() ? failure_.data() : ""; }
+  // Once it beats: what the system refused, as errno; 0 when nothing.
+  int refused_priority() const noexcept { return refused_priority_.load(std::memory_order_relaxed); }
+  int refused_cpu() const noexcept { return refused_cpu_.load(std::memory_order_relaxed); }
+  // CPU time that it used so far; 0 before start().
+  std::int64_t cpu_time_ns() const noexcept;
+  // Once it is over: page faults in its beats, those of the first `warm_up_beats` left out.
+  std::uint64_t page_faults() const noexcept { return over() ? page_faults_ : 0; }
+
+ private:
+  static constexpr std::uint64_t warm_up_beats = 100;
+
+  static void* enter(void* self);
+  void run() noexcept;
+  void loop();
+  int create(int priority) noexcept;
+  void move_to_cpu() noexcept;
+  void fail(const char* why) noexcept;
+
+  TaskSettings settings_;
+  Task& task_;
+  Wait& wait_;
+  Periodic periodic_;
+  pthread_t thread_{};
+  bool joinable_ = false;
+  std::atomic<bool> stop_{false}, over_{false};
+  std::atomic<int> refused_priority_{0}, refused_cpu_{0};
+  std::atomic<std::int64_t> cpu_time_at_end_ns_{0};
+  std::array<char, 256> failure_{};
+  std::uint64_t page_faults_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,46 @@
+#include <algorithm>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "kadans/realtime/machine.h"
+#include "terminal.h"
+
+namespace kadans {
+namespace {
+
+void print_text(const std::vector<MachineFinding>& findings) {
+  const bool color = stdout_takes_color();
+  for (const MachineFinding& f : findings) {
+    const char* const paint = !color ? "" : f.good ? "\033[32m" : "\033[33;1m";
+    std::printf("%s%-4s%s %-21s %s\n", paint, f.good ? "ok" : "poor", color ? "\033[0m" : "", f.topic.c_str(),
+                f.is.c_str());
+    if (f.good) continue;
+    std::printf("       should be           %s\n", f.should.c_str());
+    std::printf("       to change it        %s\n", f.how.c_str());
+  }
+}
+
+void print_json(const std::vector<MachineFinding>& findings, bool good) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const MachineFinding& f : findings) {
+    all.push_back({{"topic", f.topic}, {"good", f.good}, {"is", f.is}, {"should", f.should}, {"how", f.how}});
+  }
+  std::puts(nlohmann::ordered_json{{"good", good}, {"findings", all}}.dump().c_str());
+}
+
+}  // namespace
+
+int run_doctor(const DoctorOptions& options) {
+  const std::vector<MachineFinding> findings = examine_machine(options.root, ".");
+  const bool good = std::ranges::all_of(findings, &MachineFinding::good);
+  if (options.json) {
+    print_json(findings, good);
+  } else {
+    print_text(findings);
+  }
+  return good ? exit_passed : exit_failed;
+}
+
+}  // namespace kadans

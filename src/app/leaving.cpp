@@ -1,0 +1,19 @@
+#include "leaving.h"
+
+namespace kadans {
+
+void Leaving::beside_tick(std::int64_t time_ns) {
+  if (!asked_.load(std::memory_order_relaxed)) return;
+  if (step_ == Step::play) {
+    host_.order({.kind = PlayOrder::Kind::stop});  // carried out in the tick that follows
+    step_ = Step::leave;
+    return;
+  }
+  if (step_ == Step::leave) posture_.failed(time_ns, ~ObjectMask{0});
+  step_ = Step::move;
+  if (posture_.due(time_ns)) {
+    posture_.move(exchange_.snapshot.read(0), behaviors_.sender(), 0);
+  }
+}
+
+}  // namespace kadans

@@ -1,0 +1,39 @@
+// How behaviors leave a robot that is to be switched off: what plays leaves its states, then the robot moves to the
+// safe posture of its configuration. On the behavior thread, asked for by the supervisor.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "kadans/engine/behavior_engine.h"
+#include "kadans/realtime/engine_tasks.h"
+#include "kadans/script/safe_posture.h"
+#include "kadans/script/script_host.h"
+
+namespace kadans {
+
+class Leaving final : public BesideTick {
+ public:
+  // Throws InputError on an unknown pose.
+  Leaving(const SafePosture::Settings& posture, const Catalog& catalog, ScriptHost& host, BehaviorEngine& behaviors,
+          EngineExchange& exchange)
+      : posture_({.pose = posture.pose, .after_s = 0, .time_s = posture.time_s}, catalog),
+        host_(host),
+        behaviors_(behaviors),
+        exchange_(exchange) {}
+
+  void ask() noexcept { asked_.store(true, std::memory_order_relaxed); }  // supervisor
+  void beside_tick(std::int64_t time_ns) override;
+
+ private:
+  enum class Step : std::uint8_t { play, leave, move };
+
+  SafePosture posture_;
+  ScriptHost& host_;
+  BehaviorEngine& behaviors_;
+  EngineExchange& exchange_;
+  std::atomic<bool> asked_{false};
+  Step step_ = Step::play;
+};
+
+}  // namespace kadans

@@ -1,0 +1,31 @@
+// What behaviors say in a live run, to the record and to the supervisor: through queues, so that neither a slow disk
+// nor a terminal that stands still keeps the behavior thread.
+#pragma once
+
+#include "kadans/telemetry/event_log.h"
+
+namespace kadans {
+
+class LiveLog final : public BehaviorLog {
+ public:
+  // Before the loop.
+  void record_to(BehaviorLog* record) noexcept { record_ = record; }
+
+  // Behavior thread.
+  void transition(const Transition& transition) override {
+    told_.transition(transition);
+    if (record_ != nullptr) record_->transition(transition);
+  }
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
+    told_.message(time_ns, severity, behavior, text);
+    if (record_ != nullptr) record_->message(time_ns, severity, behavior, text);
+  }
+
+  EventLog& told() noexcept { return told_; }  // supervisor: pops
+
+ private:
+  EventLog told_;
+  BehaviorLog* record_ = nullptr;
+};
+
+}  // namespace kadans

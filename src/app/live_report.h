@@ -1,0 +1,28 @@
+// What a live run came to: how punctual its threads were, what was sent, refused, recorded and lost.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "kadans/telemetry/recorder.h"
+#include "live_threads.h"
+
+namespace kadans {
+
+struct LiveResult {
+  const LiveThreads& threads;
+  const ControlTask& control;
+  const BehaviorEngine& behaviors;
+  const ControlEngine& engine;
+  const PlantTask& plant;
+  const Recorder* recorder = nullptr;
+  double duration_s = 0;
+  double start_ms = 0;  // from the start of the process to the first control tick
+  std::string ended;    // why: "told to stop", "duration", or what failed
+  bool failed = false;
+};
+
+std::string live_text(const LiveResult& result);
+std::string live_json(const LiveResult& result);  // one line
+
+}  // namespace kadans

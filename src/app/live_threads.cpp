@@ -1,0 +1,77 @@
+#include "live_threads.h"
+
+#include <sched.h>
+
+namespace kadans {
+namespace {
+
+constexpr std::int64_t start_ns = 10'000'000;  // for the threads to come up
+constexpr std::int64_t record_period_ns = 20'000'000;
+
+// The threads that are started from here on leave the control thread's CPU alone, if there is another.
+void leave_cpu(int cpu) noexcept {
+  cpu_set_t cpus;
+  if (sched_getaffinity(0, sizeof cpus, &cpus) != 0 || CPU_COUNT(&cpus) < 2) return;
+  CPU_CLR(static_cast<std::size_t>(cpu), &cpus);
+  (void)sched_setaffinity(0, sizeof cpus, &cpus);
+}
+
+}  // namespace
+
+LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
+    : timing_(timing), origin_ns_(WallClock().now_ns() + start_ns), supervisor_wait_(make_wait(0)) {
+  const auto priority = [&](int wanted) { return timing.real_time && !timing.virtual_time ? wanted : 0; };
+  const std::int64_t period_ns = timing.control_period_ns;
+  // On the wall clock the model is half a period behind, so that what it is told and what it says is always as old; and
+  // it shares the control thread's CPU: when the machine takes that away for a while, time passes for neither.
+  const std::int64_t plant_first_ns = timing.virtual_time ? 0 : period_ns / 2;
+  add({.name = "control",
+       .period_ns = period_ns,
+       .first_ns = period_ns,
+       .prepare_ns = timing.virtual_time ? 0 : timing.spin_ns / 4,
+       .priority = priority(control_priority),
+       .cpu = timing.virtual_time ? -1 : timing.cpu},
+      tasks.control, timing.spin_ns);
+  add({.name = "behaviors",
+       .period_ns = timing.behavior_period_ns,
+       .first_ns = 2 * period_ns,
+       .priority = priority(behavior_priority),
+       .stack_bytes = std::size_t{1} << 20U},
+      tasks.behaviors, 0);
+  add({.name = "plant",
+       .period_ns = period_ns,
+       .first_ns = plant_first_ns,
+       .priority = priority(plant_priority),
+       .cpu = timing.virtual_time ? -1 : timing.cpu,
+       .stack_bytes = std::size_t{1} << 20U},
+      tasks.plant, 0);
+  if (tasks.record == nullptr) return;
+  // A machine busy for seconds must not cost rows: the ring holds one or two.
+  add({.name = "record", .period_ns = record_period_ns, .priority = priority(record_priority)}, *tasks.record, 0);
+}
+
+std::unique_ptr<Wait> LiveThreads::make_wait(std::int64_t spin_ns) {
+  if (timing_.virtual_time) return virtual_time_.make_wait();
+  return std::make_unique<PosixWait>(spin_ns, origin_ns_);
+}
+
+void LiveThreads::add(const TaskSettings& settings, Task& task, std::int64_t spin_ns) {
+  waits_.push_back(make_wait(spin_ns));
+  threads_.push_back(std::make_unique<TaskThread>(settings, task, *waits_.back()));
+}
+
+void LiveThreads::start() {
+  if (!timing_.virtual_time) {
+    if (timing_.keep_awake) awake_.emplace(timing_.cpu);
+    leave_cpu(timing_.cpu);
+  }
+  for (const auto& thread : threads_) thread->start();
+}
+
+void LiveThreads::stop() noexcept {
+  for (const auto& thread : threads_) thread->stop();
+  supervisor_wait_->end();
+  for (const auto& thread : threads_) thread->join();
+}
+
+}  // namespace kadans

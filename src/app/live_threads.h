@@ -1,0 +1,65 @@
+// The threads of a live run on their clocks: control, behaviors, the model, the record; and the supervisor's own place
+// among them. The same on the wall clock and on virtual time.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "kadans/realtime/engine_tasks.h"
+#include "kadans/realtime/keep_awake.h"
+#include "kadans/realtime/plant_link.h"
+#include "kadans/realtime/posix_wait.h"
+#include "kadans/realtime/task_thread.h"
+#include "kadans/realtime/virtual_time.h"
+
+namespace kadans {
+
+inline constexpr int control_priority = 90, plant_priority = 80, behavior_priority = 40, record_priority = 20;
+
+struct LiveTasks {
+  ControlTask& control;
+  BehaviorTask& behaviors;
+  PlantTask& plant;
+  Task* record = nullptr;
+};
+
+struct LiveTiming {
+  std::int64_t control_period_ns = 1'000'000, behavior_period_ns = 10'000'000;
+  bool virtual_time = false;
+  bool real_time = true;  // priorities
+  bool keep_awake = true;
+  std::int64_t spin_ns = default_spin_ns;
+  int cpu = 0;  // of the control thread
+};
+
+class LiveThreads {
+ public:
+  // The tasks must outlive it. Time 0 is a little later: when start() is through.
+  LiveThreads(const LiveTiming& timing, const LiveTasks& tasks);
+
+  void start();  // throws std::system_error
+  // Once the supervisor does not wait any more.
+  void stop() noexcept;
+
+  Wait& supervisor() noexcept { return *supervisor_wait_; }
+  const TaskThread& control() const noexcept { return *threads_[0]; }
+  const TaskThread& behaviors() const noexcept { return *threads_[1]; }
+  const std::vector<std::unique_ptr<TaskThread>>& all() const noexcept { return threads_; }
+  const KeepAwake* keep_awake() const noexcept { return awake_ ? &*awake_ : nullptr; }
+  std::int64_t origin_ns() const noexcept { return origin_ns_; }  // time 0 on CLOCK_MONOTONIC
+
+ private:
+  void add(const TaskSettings& settings, Task& task, std::int64_t spin_ns);
+  std::unique_ptr<Wait> make_wait(std::int64_t spin_ns);
+
+  LiveTiming timing_;
+  std::int64_t origin_ns_;
+  VirtualTime virtual_time_;
+  std::unique_ptr<Wait> supervisor_wait_;
+  std::vector<std::unique_ptr<Wait>> waits_;
+  std::vector<std::unique_ptr<TaskThread>> threads_;
+  std::optional<KeepAwake> awake_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,256 @@
+// `kadans run`: the engines on real threads, and the supervisor that starts, watches and ends them.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <sstream>
+
+#include <unistd.h>
+
+#include "commands.h"
+#include "kadans/app/assembly.h"
+#include "kadans/config/project_root.h"
+#include "kadans/realtime/machine.h"
+#include "kadans/realtime/memory_lock.h"
+#include "kadans/realtime/rights.h"
+#include "kadans/realtime/service_notifier.h"
+#include "leaving.h"
+#include "live_log.h"
+#include "live_report.h"
+#include "live_threads.h"
+#include "terminal.h"
+#include "version.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::int64_t supervisor_period_ns = 50'000'000;
+constexpr std::size_t kept_lines = 1000;
+constexpr std::size_t heap_reserve_bytes = std::size_t{2} << 20U;
+
+ScenarioConfig scenario_of(const RunOptions& options) {
+  ScenarioConfig scenario;
+  scenario.file = scenario.robot = options.robot;
+  scenario.name = "run";
+  scenario.plant = options.plant == "ideal" ? PlantKind::ideal : PlantKind::bullet;
+  scenario.seed = options.seed.value_or(1);
+  if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
+  return scenario;
+}
+
+// False when the run must not go on without.
+bool rights_suffice(const RunOptions& options) {
+  if (options.virtual_time) return true;
+  const std::vector<std::string> missing = missing_rights(read_rights("/"), control_priority);
+  for (const std::string& right : missing) print_error((options.soft ? "going on without " : "missing ") + right);
+  if (!missing.empty() && !options.soft) print_error("--soft goes on without, late as the system likes");
+  return missing.empty() || options.soft;
+}
+
+LiveTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
+  const std::int64_t period_ns = engine.control_period_ns();
+  const bool one_cpu = sysconf(_SC_NPROCESSORS_ONLN) < 2;
+  const double spin_us = options.spin_us > 0 ? options.spin_us : 1e-3 * static_cast<double>(default_spin_ns);
+  return {.control_period_ns = period_ns,
+          .behavior_period_ns = engine.behavior_divisor() * period_ns,
+          .virtual_time = options.virtual_time,
+          .real_time = read_rights("/").priority(control_priority),
+          .keep_awake = options.keep_awake && !one_cpu,
+          .spin_ns = options.sleep_only || one_cpu ? 0 : std::llround(1e3 * spin_us),
+          .cpu = options.cpu >= 0 ? options.cpu : real_time_cpu("/")};
+}
+
+// From the start of this process to a time on CLOCK_MONOTONIC, to 10 ms.
+double ms_since_start(std::int64_t monotonic_ns) {
+  std::ifstream file("/proc/self/stat");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  std::string skipped;
+  for (int i = 3; i < 22; ++i) fields >> skipped;
+  double began_ticks = 0;
+  fields >> began_ticks;
+  timespec boot{};
+  clock_gettime(CLOCK_BOOTTIME, &boot);
+  const double boot_s = static_cast<double>(boot.tv_sec) + 1e-9 * static_cast<double>(boot.tv_nsec);
+  const double ahead_s = 1e-9 * static_cast<double>(monotonic_ns - WallClock().now_ns());
+  return 1e3 * (boot_s + ahead_s - began_ticks / static_cast<double>(sysconf(_SC_CLK_TCK)));
+}
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread is started
+  return value == nullptr ? "" : value;
+}
+
+class RecordTask final : public Task {
+ public:
+  explicit RecordTask(Recorder& recorder) : recorder_(recorder) {}
+  bool beat(const Beat&) override {
+    (void)recorder_.drain();  // a disk that fails is told at the end; the robot goes on
+    return true;
+  }
+
+ private:
+  Recorder& recorder_;
+};
+
+// The truth of the model, for the record: on the control thread, whose row it becomes part of, after the tick.
+class TruthTask final : public BesideTick {
+ public:
+  explicit TruthTask(const RunParts& parts) : truth_(parts.truth), control_(parts.control) {}
+  void beside_tick(std::int64_t time_ns) override {
+    truth_.update(1e-9 * static_cast<double>(time_ns), control_.row());
+  }
+
+ private:
+  TruthSignals& truth_;
+  ControlEngine& control_;
+};
+
+class LiveRun {
+ public:
+  explicit LiveRun(const RunOptions& options)
+      : options_(options),
+        scenario_(scenario_of(options)),
+        link_(std::make_unique<PlantExchange>()),
+        assembly_(scenario_, scenario_.seed, log_, link_.get()),
+        parts_(assembly_.parts()),
+        truth_(parts_),
+        plant_(*link_, assembly_.model(), assembly_.robot().engine.control_period_ns()),
+        leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
+                 assembly_.host(), parts_.behaviors, parts_.control.exchange()) {}
+
+  int run() {
+    start_record();
+    const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
+    if (!timing.virtual_time) (void)lock_memory(heap_reserve_bytes);  // without the right, which has been told
+    LiveThreads threads(timing, {control_, behaviors_, plant_, recorder_ ? record_.get() : nullptr});
+    const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
+    threads.start();
+    notifier_.ready("drives " + assembly_.robot().name);
+    const std::string ended = watch(threads);
+    notifier_.stopping();
+    leave(threads);
+    threads.stop();
+    ActuationFrame off;
+    off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
+    assembly_.model().write(off);
+    tell(threads.supervisor().now_ns());
+    if (recorder_ && !recorder_->close()) print_error("the record is not complete: " + recorder_->error());
+    LiveResult result{threads,         control_,   parts_.behaviors, parts_.control, plant_,
+                      recorder_.get(), left_at_s_, start_ms,         ended,          failed_};
+    result.failed = result.failed || log_.has_errors();
+    std::fputs(live_text(result).c_str(), stdout);
+    if (options_.json) std::puts(live_json(result).c_str());
+    return result.failed ? exit_failed : exit_passed;
+  }
+
+ private:
+  void start_record() {
+    if (options_.record.empty()) return;
+    recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
+    if (!recorder_->open(options_.record)) throw InputError({.message = recorder_->error()});
+    (void)recorder_->describe(
+        "run", {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}});
+    live_log_.record_to(&recorder_->events());
+    assembly_.record_to(recorder_.get());
+    record_ = std::make_unique<RecordTask>(*recorder_);
+  }
+
+  // Until somebody or something ends the run; says what.
+  std::string watch(LiveThreads& threads) {
+    Wait& wait = threads.supervisor();
+    for (std::int64_t at_ns = supervisor_period_ns;; at_ns += supervisor_period_ns) {
+      const bool last = options_.duration_s && static_cast<double>(at_ns) >= *options_.duration_s * 1e9;
+      wait.until(last ? std::llround(*options_.duration_s * 1e9) : at_ns);
+      if (at_ns < wait.now_ns() - supervisor_period_ns) at_ns = wait.now_ns();
+      left_at_s_ = 1e-9 * static_cast<double>(wait.now_ns());
+      notifier_.alive(control_.ticks());
+      tell(wait.now_ns());
+      for (const auto& thread : threads.all()) {
+        if (!thread->over()) continue;
+        failed_ = true;
+        return thread->settings().name + " ended: " + thread->failure();
+      }
+      if (interrupted()) return "told to stop";
+      if (last) return "duration over";
+    }
+  }
+
+  // Posture, damp, off. A robot whose threads failed, or that is held already, does not get the posture.
+  void leave(LiveThreads& threads) {
+    const SafetySettings& safety = parts_.control.safety().settings();
+    const bool held = parts_.control.exchange().snapshot.read(1).status.safety.level >= SafetyLevel::hold;
+    failed_ = failed_ || held;
+    if (!failed_) {
+      leaving_.ask();
+      pass(threads, assembly_.robot().safe.time_s + 0.2);
+    }
+    control_.degrade(SafetyLevel::damp);
+    pass(threads, safety.damp_s);
+    control_.degrade(SafetyLevel::off);
+    pass(threads, 0.05);
+  }
+
+  void pass(LiveThreads& threads, double seconds) {
+    Wait& wait = threads.supervisor();
+    const std::int64_t end_ns = wait.now_ns() + std::llround(seconds * 1e9);
+    while (wait.now_ns() < end_ns) {
+      wait.until(std::min(end_ns, wait.now_ns() + supervisor_period_ns));
+      notifier_.alive(control_.ticks());
+      tell(wait.now_ns());
+    }
+  }
+
+  // What behaviors said, and faults but for late ticks, which the report counts.
+  void tell(std::int64_t time_ns) {
+    Event event;
+    while (live_log_.told().pop(time_ns, event)) {
+      const bool message = event.kind == Event::Kind::message;
+      if (!options_.verbose && (!message || event.severity != BehaviorLog::Severity::error)) continue;
+      const Transition& t = event.transition;
+      const std::string text = message ? event.text : t.from + " -> " + t.to + " (" + t.why + ")";
+      std::fprintf(stderr, "%9.2f s  %s: %s\n", 1e-9 * static_cast<double>(t.time_ns), t.behavior.c_str(),
+                   text.c_str());
+    }
+    Fault fault;
+    while (parts_.control.safety().log().try_pop(fault)) {
+      if (fault.code == FaultCode::tick_overrun) continue;
+      const auto& joints = assembly_.robot().model.joints;
+      std::fprintf(stderr, "%9.2f s  fault %s%s%s: %g, limit %g\n", 1e-9 * static_cast<double>(time_ns),
+                   name(fault.code), fault.joint < joints.size() ? " at " : "",
+                   fault.joint < joints.size() ? joints[fault.joint].name.c_str() : "", fault.value, fault.limit);
+    }
+  }
+
+  const RunOptions& options_;
+  ScenarioConfig scenario_;
+  ServiceNotifier notifier_{environment("NOTIFY_SOCKET")};
+  LiveLog live_log_;
+  RunLog log_{&live_log_, kept_lines};
+  std::unique_ptr<PlantExchange> link_;
+  Assembly assembly_;
+  RunParts parts_;
+  TruthTask truth_;
+  PlantTask plant_;
+  Leaving leaving_;
+  ControlTask control_{parts_.control, &truth_};
+  BehaviorTask behaviors_{parts_.behaviors, &leaving_};
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<RecordTask> record_;
+  double left_at_s_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace
+
+int run_live(const RunOptions& options) {
+  if (!rights_suffice(options)) return exit_usage;
+  LiveRun run(options);
+  catch_interrupts();
+  return run.run();
+}
+
+}  // namespace kadans

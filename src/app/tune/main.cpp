@@ -1,0 +1,42 @@
+// kadans-tune, which `kadans tune` becomes.
+#include <cstdio>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+
+#include "terminal.h"
+#include "tuning.h"
+
+namespace kadans {
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app("Kadans: the program behind `kadans tune`", "kadans");
+  app.require_subcommand(1);
+  TuneOptions options;
+  add_tune(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    print_error(error.what());
+    return exit_usage;
+  }
+  catch_interrupts();
+  return Tuning(options).run();
+}
+
+}  // namespace
+}  // namespace kadans
+
+int main(int argc, char** argv) {
+  try {
+    return kadans::run(argc, argv);
+  } catch (const kadans::InputError& error) {
+    kadans::print_problems(error);
+    return kadans::exit_usage;
+  } catch (const std::exception& error) {
+    kadans::print_error(std::string("internal: ") + error.what());
+    return kadans::exit_internal;
+  }
+}

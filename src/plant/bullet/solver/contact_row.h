@@ -1,0 +1,75 @@
+// One point of contact in the solver: an impulse along the normal that only pushes, and friction across it within a
+// cone.
+//
+// Each body in the contact that is a tree has y of the three directions along its link's path (tree_factor.h); what is
+// static or driven has none and enters with its velocity. A = sum of y y^T, 3 x 3, is what an impulse does to the
+// contact's own velocity. The normal law is Bullet's: the velocity at the step's end is at least -distance / dt while
+// apart, and erp * depth / dt, or what the restitution asks for, when overlapping.
+//
+// An iteration, all other impulses staying: the normal impulse first, then friction about the normal impulse it has
+// now. Friction tries to hold: exactly, both directions at once. If that takes more than friction * normal, it slides:
+// a step against the sliding velocity, as long as the stiffest direction of A allows, and back onto the cone. Where
+// that comes to rest the impulse lies on the cone and opposite to the sliding.
+#pragma once
+
+#include <array>
+
+#include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
+
+#include "row_memory.h"
+#include "tree.h"
+
+namespace kadans::bullet {
+
+// How friction is limited: a circle, or for comparison Bullet's square along the two friction directions.
+enum class FrictionLaw : std::uint8_t { cone, pyramid };
+
+// One body of a contact.
+struct ContactBody {
+  Tree* tree = nullptr;  // or null
+  int link = -1;
+  btVector3 velocity_m_s{0, 0, 0};  // of what is no tree; nothing driven turns
+};
+
+struct ContactTiming {
+  double dt_s = 0, erp = 0, restitution_velocity_m_s = 0;
+};
+
+class ContactRow {
+ public:
+  // Starts from the point's impulses and keeps the point, to which finish() gives the new ones.
+  ContactRow(btManifoldPoint& point, const ContactBody& first, const ContactBody& second, const ContactTiming& timing,
+             RowMemory& memory);
+
+  double iterate(FrictionLaw law);  // returns how much it changed a velocity
+  void finish() const;
+
+ private:
+  using Three = std::array<double, 4>;  // normal, two across; the last is 0
+  struct Side {
+    double* z = nullptr;
+    Path path;
+    Three* y = nullptr;
+  };
+
+  void add_side(const ContactBody& body, const btVector3& at, double sign, RowMemory& memory);
+  void add_own_response(const Side& side);
+  void add_shared_response();
+  void aim(const ContactTiming& timing);
+  void prepare_gains();
+  Three velocity() const;
+  void apply(const Three& change);
+  void hold_or_slide(const Three& velocity, double limit, FrictionLaw law, Three& impulse) const;
+
+  btManifoldPoint* point_;
+  std::array<btVector3, 3> directions_;
+  std::array<Side, 2> sides_;
+  int side_count_ = 0;
+  bool same_tree_ = false;
+  Three impulse_{}, bias_{};         // bias: velocity without any impulse, less the wanted one
+  std::array<Three, 3> response_{};  // A
+  double normal_gain_ = 0, slide_gain_ = 0;
+  double hold_[3] = {0, 0, 0};  // inverse of A's lower block: first, mixed, second
+};
+
+}  // namespace kadans::bullet

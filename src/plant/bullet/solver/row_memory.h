@@ -1,0 +1,34 @@
+// Where the rows of one step keep their numbers: handed out in order, all given back at once. It grows when a step
+// needs more than any before; what was handed out stays where it is.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace kadans::bullet {
+
+class RowMemory {
+ public:
+  double* take(std::size_t count) {
+    if (blocks_.empty() || used_ + count > block_size) next_block();
+    double* const taken = blocks_[block_].get() + used_;
+    used_ += count + count % 2;  // aligned for two numbers at a time
+    return taken;
+  }
+  void clear() { block_ = used_ = 0; }
+
+ private:
+  static constexpr std::size_t block_size = 16384;
+
+  void next_block() {
+    if (!blocks_.empty()) ++block_;
+    if (block_ == blocks_.size()) blocks_.push_back(std::make_unique<double[]>(block_size));
+    used_ = 0;
+  }
+
+  std::vector<std::unique_ptr<double[]>> blocks_;
+  std::size_t block_ = 0, used_ = 0;
+};
+
+}  // namespace kadans::bullet

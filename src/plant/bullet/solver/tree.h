@@ -1,0 +1,80 @@
+// One multibody in the solver: its motion, its joint-space inertia and the impulses of a step, all in world axes about
+// the base's centre of mass.
+//
+// With the velocities u (base and joints), a step of dt solves
+//     M (u_new - u) = dt (tau - h) + a - B u_new + J^T p,
+// M the joint-space inertia by the composite rigid body method (RBDA table 6.2), tau the joints' torques, h what
+// gravity, pushes, centrifugal and Coriolis terms ask for, by a recursive Newton-Euler pass with zero acceleration
+// (RBDA table 5.1). a - B u_new are the implicit laws of the joints (damping, rotor inertia, springs, drives;
+// joint_rows.h): B is diagonal and simply adds to M. J^T p are the impulses of contacts and other rows. With M + B =
+// L^T D L and G from tree_factor.h, the unknown is z = G (M + B) (u_new - u): it begins as G (dt (tau - h) + a - B u),
+// each row adds y p, and u_new = u + G^T z.
+//
+// In a step: begin_step, add_implicit for each joint that has such laws, factorise, rows, accelerate, end_step.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "spatial.h"
+#include "tree_factor.h"
+
+namespace kadans::bullet {
+
+class Tree {
+ public:
+  explicit Tree(btMultiBody& body);
+  Tree(const Tree&) = delete;
+  Tree& operator=(const Tree&) = delete;
+
+  btMultiBody& body() { return *body_; }
+  const TreeShape& shape() const { return shape_; }
+
+  void begin_step(double dt_s);
+  // An impulse at_rest - slope * velocity_new on the joint of this degree of freedom.
+  void add_implicit(int dof, double at_rest, double slope);
+  void factorise();
+  void accelerate();  // no more rows: from here on new_velocity() is known
+  double new_velocity(int dof) const { return velocity(dof) + z_[static_cast<std::size_t>(dof)]; }
+  void end_step();  // gives the new velocities to the body
+
+  // How fast a point of the link at this wrench's line moves along it, as the step began.
+  double velocity_along(int link, const Wrench& wrench) const { return dot(state(link).velocity, wrench); }
+  double velocity(int dof) const { return body_->getVelocityVector()[dof]; }
+  // y = G J^T along the link's path, J of three wrenches on the link; a fourth column is 0.
+  void response(int link, const std::array<Wrench, 3>& wrenches, std::array<double, 4>* y) const;
+  // Likewise along the path of the degree of freedom, of an impulse on it.
+  void response(int dof, double* y) const;
+
+  double* z() { return z_.data(); }
+  const btVector3& origin_m() const { return origin_m_; }
+
+ private:
+  struct LinkState {
+    Motion axis;  // of the link's joint
+    Motion velocity, acceleration;
+    Wrench force;            // to move it without accelerating any joint; then with all that it carries
+    SpatialInertia inertia;  // likewise
+  };
+
+  LinkState& state(int link) { return links_[static_cast<std::size_t>(link + 1)]; }
+  const LinkState& state(int link) const { return links_[static_cast<std::size_t>(link + 1)]; }
+  void begin_base();
+  void begin_link(int link);
+  void set_inertia(LinkState& link, const btTransform& pose, double mass_kg, const btVector3& moments_kg_m2,
+                   const btVector3& force_N, const btVector3& torque_Nm) const;
+  void gather();
+  void fill_joint_row(int link);
+  void fill_base_rows();
+
+  btMultiBody* body_;
+  TreeShape shape_;
+  TreeFactor factor_;
+  bool fixed_;
+  btVector3 origin_m_{0, 0, 0};
+  std::vector<LinkState> links_;  // the base first
+  std::vector<Motion> axes_;      // of the degrees of freedom after the base's
+  std::vector<double> z_;
+};
+
+}  // namespace kadans::bullet

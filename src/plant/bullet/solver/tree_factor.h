@@ -1,0 +1,46 @@
+// The joint-space inertia M of a tree and its sparse factor.
+//
+// M has an entry only where one degree of freedom carries the other, and M = L^T D L with L as sparse as M itself:
+// going from the leaves to the base, eliminating row k touches only rows of degrees of freedom on k's path (RBDA 6.5
+// and table 6.3). Stored is, for each degree of freedom, its row along its path (tree_shape.h), diagonal last. As the
+// path of the p-th on k's path is the start of k's own path, all inner loops run over dense arrays.
+//
+// Solving is done in halves. With G = D^-1/2 L^-T, M^-1 = G^T G, so
+//     y = G J^T  gives  J M^-1 J^T = y . y,
+// and y lives on the path of the link that J speaks of: a row of a contact needs a dozen numbers, not the whole robot.
+// Impulses p of many rows add up in z = sum of y p, and one second half, G^T z, turns them into joint velocities.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "tree_shape.h"
+
+namespace kadans::bullet {
+
+class TreeFactor {
+ public:
+  explicit TreeFactor(const TreeShape& shape);  // keeps a reference
+
+  // To be filled before factorise(): entries of the row of a degree of freedom along its path, diagonal last.
+  double* row(int dof) { return &entries_[static_cast<std::size_t>(shape_->row_start(dof))]; }
+  void factorise();
+
+  // y along the path of `dof` <- G y.
+  void first_half(int dof, double* y) const;
+  void first_half(int dof, std::array<double, 4>* y) const;  // four at once
+  // The same for a vector of all degrees of freedom.
+  void first_half(double* y) const;
+  // x <- G^T x, all degrees of freedom.
+  void second_half(double* x) const;
+
+ private:
+  const double* row(int dof) const { return &entries_[static_cast<std::size_t>(shape_->row_start(dof))]; }
+  double scale(int dof) const { return scales_[static_cast<std::size_t>(dof)]; }
+
+  const TreeShape* shape_;
+  std::vector<double> entries_;  // of M, then of L
+  std::vector<double> scales_;   // D^-1/2
+};
+
+}  // namespace kadans::bullet

@@ -1,0 +1,187 @@
+#include "tree_solver.h"
+
+#include <algorithm>
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+#include "joint_rows.h"
+#include "rolling_rows.h"
+
+namespace kadans::bullet {
+namespace {
+
+constexpr std::size_t contacts_per_link = 6;  // room from the start, so that hardly any step allocates
+
+bool at_limit(const JointLaw& law, double impulse) { return impulse <= law.lower || impulse >= law.upper; }
+
+}  // namespace
+
+void TreeSolver::add(btMultiBody& body) {
+  if (!TreeShape::fits(body)) {
+    covers_ = false;
+    return;
+  }
+  trees_.push_back(std::make_unique<Tree>(body));
+  contacts_.reserve(contacts_.capacity() + contacts_per_link * static_cast<std::size_t>(body.getNumLinks() + 1));
+}
+
+void TreeSolver::add(const btCollisionObject& collider) {
+  const btRigidBody* rigid = btRigidBody::upcast(&collider);
+  if (rigid != nullptr && rigid->getInvMass() > 0) covers_ = false;
+}
+
+void TreeSolver::add(JointRows& rows) {
+  Tree* const tree = tree_of(&rows.body());
+  if (tree == nullptr) {
+    covers_ = false;
+    return;
+  }
+  joints_.push_back({&rows, tree, tree->shape().dof(rows.link())});
+  joint_rows_.reserve(3 * joints_.size() + 3 * rollings_.size());
+}
+
+void TreeSolver::add(RollingRows& rows) {
+  Tree* const tree = tree_of(&rows.body());
+  if (tree == nullptr) {
+    covers_ = false;
+    return;
+  }
+  rollings_.push_back({&rows, tree});
+  joint_rows_.reserve(3 * joints_.size() + 3 * rollings_.size());
+}
+
+Tree* TreeSolver::tree_of(const btMultiBody* body) {
+  for (const auto& tree : trees_) {
+    if (&tree->body() == body) return tree.get();
+  }
+  return nullptr;
+}
+
+void TreeSolver::solveMultiBodyGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                                     int manifold_count, btTypedConstraint** constraints, int constraint_count,
+                                     btMultiBodyConstraint** rows, int row_count, const btContactSolverInfo& info,
+                                     btIDebugDraw* draw, btDispatcher* dispatcher) {
+  if (!covers_) {
+    btMultiBodyConstraintSolver::solveMultiBodyGroup(bodies, body_count, manifolds, manifold_count, constraints,
+                                                     constraint_count, rows, row_count, info, draw, dispatcher);
+    return;
+  }
+  solve(manifolds, manifold_count, info, false);
+  if (servo_beyond_limit()) solve(manifolds, manifold_count, info, true);
+  finish();
+}
+
+void TreeSolver::solve(btPersistentManifold** manifolds, int manifold_count, const btContactSolverInfo& info,
+                       bool servo_rows) {
+  begin(info.m_timeStep, servo_rows);
+  for (Joint& joint : joints_) add_joint_rows(joint);
+  add_rolling_rows();
+  add_contacts(manifolds, manifold_count, info);
+  iterate(info.m_numIterations);
+  for (const auto& tree : trees_) tree->accelerate();
+}
+
+void TreeSolver::begin(double dt_s, bool servo_rows) {
+  memory_.clear();
+  joint_rows_.clear();
+  contacts_.clear();
+  for (const auto& tree : trees_) tree->begin_step(dt_s);
+  for (Joint& joint : joints_) {
+    joint.rows->begin_step(dt_s);
+    add_linear_laws(joint, servo_rows);
+  }
+  for (const auto& tree : trees_) tree->factorise();
+}
+
+void TreeSolver::add_linear_laws(Joint& joint, bool servo_rows) {
+  const JointRows& rows = *joint.rows;
+  if (rows.active(JointRows::linear)) {
+    const JointLaw& law = rows.law(JointRows::linear);
+    joint.tree->add_implicit(joint.dof, law.at_rest, law.slope);
+  }
+  const JointLaw& servo = rows.law(JointRows::servo);
+  joint.servo_is_linear = rows.active(JointRows::servo) && !servo_rows && !rows.servo_at_limit();
+  if (joint.servo_is_linear) joint.tree->add_implicit(joint.dof, servo.at_rest, servo.slope);
+}
+
+void TreeSolver::add_joint_rows(Joint& joint) {
+  joint.first_row = joint_rows_.size();
+  for (const auto kind : {JointRows::servo, JointRows::friction, JointRows::limit}) {
+    if (!joint.rows->active(kind) || (kind == JointRows::servo && joint.servo_is_linear)) continue;
+    joint_rows_.emplace_back(*joint.tree, joint.dof, joint.rows->law(kind), joint.rows->last_impulse(kind), memory_);
+  }
+}
+
+void TreeSolver::add_rolling_rows() {
+  for (const Rolling& rolling : rollings_) {
+    const double limit = rolling.rows->limit_Nms();
+    if (!(limit > 0)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      joint_rows_.emplace_back(*rolling.tree, axis, JointLaw{.lower = -limit, .upper = limit, .stiff = true}, 0.0,
+                               memory_);
+    }
+  }
+}
+
+ContactBody TreeSolver::contact_body(const btCollisionObject& collider) {
+  if (const auto* link = btMultiBodyLinkCollider::upcast(&collider); link != nullptr) {
+    return {.tree = tree_of(link->m_multiBody), .link = link->m_link};
+  }
+  const btRigidBody* driven = btRigidBody::upcast(&collider);
+  return {.velocity_m_s = driven == nullptr ? btVector3(0, 0, 0) : driven->getLinearVelocity()};
+}
+
+void TreeSolver::add_contacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) {
+  const ContactTiming timing{info.m_timeStep, info.m_erp2, info.m_restitutionVelocityThreshold};
+  for (int i = 0; i < count; ++i) {
+    btPersistentManifold& manifold = *manifolds[i];
+    if (manifold.getNumContacts() == 0) continue;
+    const ContactBody first = contact_body(*manifold.getBody0()), second = contact_body(*manifold.getBody1());
+    for (int j = 0; j < manifold.getNumContacts(); ++j) {
+      contacts_.emplace_back(manifold.getContactPoint(j), first, second, timing, memory_);
+    }
+  }
+}
+
+void TreeSolver::iterate(int iterations_max) {
+  for (int i = 0; i < iterations_max; ++i) {
+    double largest = 0;
+    for (JointRow& row : joint_rows_) largest = std::max(largest, row.iterate());
+    for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction));
+    if (largest <= options_.tolerance) return;
+  }
+}
+
+bool TreeSolver::servo_beyond_limit() const {
+  return std::any_of(joints_.begin(), joints_.end(), [](const Joint& joint) {
+    if (!joint.servo_is_linear) return false;
+    const JointLaw& servo = joint.rows->law(JointRows::servo);
+    const double impulse = servo.at_rest - servo.slope * joint.tree->new_velocity(joint.dof);
+    return impulse < servo.lower || impulse > servo.upper;
+  });
+}
+
+void TreeSolver::finish() {
+  for (Joint& joint : joints_) finish_joint(joint);
+  for (const ContactRow& contact : contacts_) contact.finish();
+  for (const auto& tree : trees_) tree->end_step();
+}
+
+void TreeSolver::finish_joint(Joint& joint) {
+  JointRows& rows = *joint.rows;
+  const double velocity = joint.tree->new_velocity(joint.dof);
+  std::size_t row = joint.first_row;
+  for (const auto kind : {JointRows::linear, JointRows::servo, JointRows::friction, JointRows::limit}) {
+    const JointLaw& law = rows.law(kind);
+    const bool linear = kind == JointRows::linear || (kind == JointRows::servo && joint.servo_is_linear);
+    double impulse = 0;
+    if (rows.active(kind)) impulse = linear ? law.at_rest - law.slope * velocity : joint_rows_[row++].impulse();
+    rows.set_impulse(kind, impulse);
+  }
+  const bool limited =
+      rows.active(JointRows::servo) && at_limit(rows.law(JointRows::servo), rows.last_impulse(JointRows::servo));
+  rows.set_servo_at_limit(limited);
+}
+
+}  // namespace kadans::bullet

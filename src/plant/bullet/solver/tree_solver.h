@@ -1,0 +1,92 @@
+// The plant's own solver of contacts and joint laws, in place of Bullet's iteration over full joint-space vectors.
+//
+// Bullet's multibody solver runs one articulated-body pass for each row of each contact to learn what the row moves,
+// and iterates over vectors of all joint velocities. Here each multibody's joint-space inertia is made and factorised
+// once a step (tree.h), a row's response is a dozen numbers along its path to the base (tree_factor.h), and joint laws
+// that are linear never become rows: they add to the inertia's diagonal.
+//
+// A servo (position or velocity mode, limited to the drive's torque) is linear while it stays within its limits. It is
+// taken as such unless it was at its limit in the last step; should one turn out beyond its limits, the step is solved
+// again with every servo as a row.
+//
+// Projected Gauss-Seidel: rows of joints first, then contacts in the order of Bullet's manifolds, starting from the
+// last step's impulses, until an iteration changes no velocity by more than `tolerance` or the iterations are used up.
+//
+// It covers what the plant's worlds are made of: any number of multibodies with joints of one degree of freedom,
+// against each other, themselves and what is static or driven. Once anything else was added - a rigid body that moves
+// freely, a joint of several degrees of freedom and the rows on it - covers() is false, and the stock solver serves
+// after an articulated-body pass.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+
+#include "contact_row.h"
+#include "joint_row.h"
+
+namespace kadans::bullet {
+
+class JointRows;
+class RollingRows;
+
+class TreeSolver final : public btMultiBodyConstraintSolver {
+ public:
+  struct Options {
+    FrictionLaw friction = FrictionLaw::cone;
+    double tolerance = 1e-7;  // m/s or rad/s
+  };
+
+  explicit TreeSolver(const Options& options) : options_(options) {}
+
+  // All that takes part must be added before the first step, and only that may be in the world.
+  void add(btMultiBody& body);
+  void add(const btCollisionObject& collider);
+  void add(JointRows& rows);
+  void add(RollingRows& rows);
+  bool covers() const { return covers_; }
+
+  // Contacts, joint laws and free motion at once; the new velocities are in the bodies afterwards.
+  void solveMultiBodyGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                           int manifold_count, btTypedConstraint** constraints, int constraint_count,
+                           btMultiBodyConstraint** rows, int row_count, const btContactSolverInfo& info,
+                           btIDebugDraw* draw, btDispatcher* dispatcher) override;
+
+ private:
+  struct Joint {
+    JointRows* rows;
+    Tree* tree;
+    int dof;
+    std::size_t first_row = 0;    // of this step, in joint_rows_; in the order of the kinds
+    bool servo_is_linear = true;  // in this step
+  };
+  struct Rolling {
+    RollingRows* rows;
+    Tree* tree;
+  };
+
+  Tree* tree_of(const btMultiBody* body);
+  ContactBody contact_body(const btCollisionObject& collider);
+  void solve(btPersistentManifold** manifolds, int manifold_count, const btContactSolverInfo& info, bool servo_rows);
+  void begin(double dt_s, bool servo_rows);
+  void add_linear_laws(Joint& joint, bool servo_rows);
+  void add_joint_rows(Joint& joint);
+  void add_rolling_rows();
+  void add_contacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info);
+  void iterate(int iterations_max);
+  bool servo_beyond_limit() const;
+  void finish();
+  void finish_joint(Joint& joint);
+
+  Options options_;
+  bool covers_ = true;
+  std::vector<std::unique_ptr<Tree>> trees_;
+  std::vector<Joint> joints_;
+  std::vector<Rolling> rollings_;
+  RowMemory memory_;
+  std::vector<JointRow> joint_rows_;
+  std::vector<ContactRow> contacts_;
+};
+
+}  // namespace kadans::bullet

@@ -1,0 +1,24 @@
+#include "kadans/realtime/engine_tasks.h"
+
+namespace kadans {
+
+static_assert(std::atomic<SafetyLevel>::is_always_lock_free);
+
+bool ControlTask::beat(const Beat& beat) {
+  const SafetyLevel wanted = wanted_.load(std::memory_order_relaxed);
+  if (wanted > SafetyLevel::normal) engine_.safety().latch(wanted);
+  const std::int64_t began_ns = wall_.now_ns();
+  engine_.tick(beat.woke_ns, beat.dt_s, beat.missed);
+  cost_.add(wall_.now_ns() - began_ns);
+  ticks_.add(1);
+  if (after_ != nullptr) after_->beside_tick(beat.woke_ns);
+  return true;
+}
+
+bool BehaviorTask::beat(const Beat& beat) {
+  if (before_ != nullptr) before_->beside_tick(beat.woke_ns);
+  engine_.tick(beat.woke_ns);
+  return true;
+}
+
+}  // namespace kadans

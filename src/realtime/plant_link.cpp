@@ -1,0 +1,27 @@
+#include "kadans/realtime/plant_link.h"
+
+#include <algorithm>
+
+namespace kadans {
+
+LinkedPlant::LinkedPlant(PlantExchange& exchange, ModelPlant& model) : exchange_(exchange) {
+  SensorFrame sensors;
+  model.read(sensors);
+  exchange_.sensors.publish(sensors);
+  exchange_.truth.publish(model.truth());
+}
+
+bool PlantTask::beat(const Beat& beat) {
+  model_.write(exchange_.actuation.read());
+  const std::uint32_t steps = std::min(1 + beat.missed, catch_up_max);
+  lost_periods_.add(1 + std::uint64_t{beat.missed} - steps);
+  for (std::uint32_t i = 0; i < steps; ++i) {  // a control tick may come between any two
+    model_.step(period_ns_);
+    model_.read(sensors_);
+    exchange_.sensors.publish(sensors_);
+    exchange_.truth.publish(model_.truth());
+  }
+  return true;
+}
+
+}  // namespace kadans

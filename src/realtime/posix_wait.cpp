@@ -1,0 +1,34 @@
+#include "kadans/realtime/posix_wait.h"
+
+#include <cerrno>
+#include <ctime>
+
+#include "relax.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+// More looks at the clock than the longest spin needs; a clock that stands still must not hold a real-time thread.
+constexpr int looks_max = 10'000'000;
+
+}  // namespace
+
+std::int64_t PosixWait::now_ns() const noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * second_ns + now.tv_nsec - origin_ns_;
+}
+
+void PosixWait::until(std::int64_t time_ns) noexcept {
+  const std::int64_t wake_ns = time_ns + origin_ns_ - spin_ns_;
+  timespec wake{};
+  wake.tv_sec = static_cast<std::time_t>(wake_ns / second_ns);
+  wake.tv_nsec = static_cast<long>(wake_ns % second_ns);
+  const bool far = now_ns() < time_ns - spin_ns_;
+  while (far && clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) == EINTR) {
+  }
+  for (int i = 0; i < looks_max && now_ns() < time_ns; ++i) relax();
+}
+
+}  // namespace kadans

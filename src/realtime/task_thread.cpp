@@ -1,0 +1,155 @@
+#include "kadans/realtime/task_thread.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <system_error>
+#include <utility>
+
+#include <sched.h>
+#include <sys/resource.h>
+
+namespace kadans {
+namespace {
+
+// All that is left of this thread's stack, but for a reserve at its end, is in memory before the first beat. What the
+// thread's own variables take of it differs: a sanitizer's are large.
+void touch_stack() noexcept {
+  constexpr std::size_t page = 4096, reserve = 16 * 1024;
+  pthread_attr_t attributes;
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  pthread_attr_getstack(&attributes, &lowest, &size);
+  pthread_attr_destroy(&attributes);
+  const auto* const here = static_cast<const char*>(__builtin_frame_address(0));
+  const auto left = static_cast<std::size_t>(here - static_cast<const char*>(lowest));
+  if (left <= 2 * reserve) return;
+  auto* const deep = static_cast<volatile char*>(__builtin_alloca(left - 2 * reserve));
+  for (std::size_t i = 0; i < left - 2 * reserve; i += page) deep[i] = 0;
+}
+
+std::uint64_t faults_of_this_thread() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return static_cast<std::uint64_t>(usage.ru_minflt + usage.ru_majflt);
+}
+
+std::int64_t cpu_time_of(clockid_t clock) noexcept {
+  timespec used{};
+  if (clock_gettime(clock, &used) != 0) return 0;
+  return std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec;
+}
+
+}  // namespace
+
+TaskThread::TaskThread(TaskSettings settings, Task& task, Wait& wait)
+    : settings_(std::move(settings)),
+      task_(task),
+      wait_(wait),
+      periodic_(wait, settings_.period_ns, settings_.first_ns) {}
+
+TaskThread::~TaskThread() {
+  stop();
+  join();
+}
+
+void TaskThread::start() {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // inherited by the thread
+  int error = create(settings_.priority);
+  if (error != 0 && settings_.priority > 0) {
+    refused_priority_.store(error, std::memory_order_relaxed);
+    error = create(0);
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (error != 0) throw std::system_error(error, std::generic_category(), "no thread for task " + settings_.name);
+  joinable_ = true;
+  pthread_setname_np(thread_, settings_.name.substr(0, 15).c_str());
+}
+
+// With its priority from the first instruction on: on a busy machine it would wait long to give it to itself.
+int TaskThread::create(int priority) noexcept {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, settings_.stack_bytes);
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  int error = 0;
+  if (priority > 0) {
+    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+    pthread_attr_setschedpolicy(&attributes, SCHED_FIFO);
+    error = pthread_attr_setschedparam(&attributes, &parameter);
+  }
+  if (error == 0) error = pthread_create(&thread_, &attributes, enter, this);
+  pthread_attr_destroy(&attributes);
+  return error;
+}
+
+void TaskThread::join() noexcept {
+  if (!std::exchange(joinable_, false)) return;
+  pthread_join(thread_, nullptr);
+}
+
+void* TaskThread::enter(void* self) {
+  static_cast<TaskThread*>(self)->run();
+  return nullptr;
+}
+
+void TaskThread::move_to_cpu() noexcept {
+  if (settings_.cpu < 0) return;
+  cpu_set_t cpus;
+  CPU_ZERO(&cpus);
+  CPU_SET(static_cast<std::size_t>(settings_.cpu), &cpus);
+  refused_cpu_.store(pthread_setaffinity_np(pthread_self(), sizeof cpus, &cpus), std::memory_order_relaxed);
+}
+
+void TaskThread::run() noexcept {
+  move_to_cpu();
+  touch_stack();
+  wait_.begin();
+  try {
+    loop();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  wait_.end();
+  cpu_time_at_end_ns_.store(cpu_time_of(CLOCK_THREAD_CPUTIME_ID), std::memory_order_relaxed);
+  over_.store(true, std::memory_order_release);
+}
+
+void TaskThread::loop() {
+  std::uint64_t beats = 0, faults_before = 0;
+  int standing = 0;
+  while (!stop_.load(std::memory_order_relaxed)) {
+    const std::int64_t due_ns = periodic_.plan();
+    if (settings_.prepare_ns > 0) {
+      wait_.until(due_ns - settings_.prepare_ns);
+      task_.prepare();
+    }
+    const Beat beat = periodic_.wake();
+    standing = beat.stands ? standing + 1 : 0;
+    if (standing == standing_max) fail("the clock stands still");
+    if (standing == standing_max) break;
+    if (beat.stands) continue;
+    const bool goes_on = task_.beat(beat);
+    periodic_.done();
+    if (++beats == warm_up_beats) faults_before = faults_of_this_thread();
+    if (!goes_on) break;
+  }
+  page_faults_ = beats >= warm_up_beats ? faults_of_this_thread() - faults_before : 0;
+}
+
+void TaskThread::fail(const char* why) noexcept { std::snprintf(failure_.data(), failure_.size(), "%s", why); }
+
+std::int64_t TaskThread::cpu_time_ns() const noexcept {
+  if (over() || !joinable_) return cpu_time_at_end_ns_.load(std::memory_order_relaxed);
+  clockid_t clock{};
+  return pthread_getcpuclockid(thread_, &clock) == 0 ? cpu_time_of(clock) : 0;
+}
+
+}  // namespace kadans

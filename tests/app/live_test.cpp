@@ -1,0 +1,92 @@
+// `kadans run`, jitter and doctor as a person would call them; the runs on virtual time.
+#include <cstdlib>
+#include <filesystem>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+using namespace kadans::program;
+using Json = nlohmann::json;
+
+namespace {
+
+Json last_line(const std::string& text) {
+  const auto end = text.find_last_not_of('\n');
+  return Json::parse(text.substr(text.rfind('\n', end) + 1, end));
+}
+
+}  // namespace
+
+TEST_CASE("run squats on threads, records every tick, and ends with the robot off") {
+  const auto project = project_copy("live_squat");
+  const Outcome outcome =
+      run("run config/tulip/robot.json --play squat --duration 3 --threads-on-virtual-time --record live.mcap --json",
+          project);
+  CHECK_MESSAGE(outcome.exit_code == 0, outcome.err);
+  const Json result = last_line(outcome.out);
+  CHECK(result["passed"] == true);
+  CHECK(result["ended"] == "duration over");
+  CHECK(result["commands"]["sent"] > 0);
+  CHECK(result["commands"]["sent"] == result["commands"]["applied"]);
+  CHECK(result["commands"]["refused"] == 0);
+  CHECK(result["threads"]["control"]["missed"] == 0);
+  CHECK(result["record"]["rows"] == result["control_ticks"]);
+  CHECK(result["record"]["dropped"] == 0);
+  CHECK(result["safety_level"] == "off");
+  CHECK(std::filesystem::file_size(project / "live.mcap") > 100'000);
+}
+
+TEST_CASE("run ends cleanly on SIGTERM: behaviors leave, the robot is off, the record is closed") {
+  const auto project = project_copy("live_term");
+  // Waits for the first transition, then sends the signal.
+  write(project / "term.sh",
+        "mkfifo told\n"
+        "$1 run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time -v --record r.mcap"
+        " --json >out 2>told &\n"
+        "exec 3<told; read -r line <&3; kill -TERM $!; cat <&3 >err; wait $!\n");
+  const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
+  const int status = std::system(("cd '" + project.string() + "' && sh term.sh '" + program + "'").c_str());
+  CHECK(status == 0);
+  const Json result = last_line(read(project / "out"));
+  CHECK(result["ended"] == "told to stop");
+  CHECK(result["safety_level"] == "off");
+  CHECK(result["record"]["rows"] == result["control_ticks"]);
+  CHECK(has(read(project / "err"), "supervisor: stop"));
+}
+
+TEST_CASE("run refuses a wrong list before anything moves") {
+  const auto project = project_copy("live_wrong");
+  const Outcome outcome =
+      run("run config/tulip/robot.json --play sqat --duration 1 --threads-on-virtual-time", project);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "did you mean 'squat'"));
+}
+
+TEST_CASE("doctor tells of any machine whose files it is given") {
+  const auto folder = fresh_folder("doctor");
+  std::filesystem::create_directories(folder / "machine/sys/kernel");
+  write(folder / "machine/sys/kernel/realtime", "1\n");
+  const Outcome outcome = run("doctor --root machine --json", folder);
+  CHECK(outcome.exit_code == 1);
+  const Json result = Json::parse(outcome.out);
+  CHECK(result["good"] == false);
+  CHECK(result["findings"][0]["topic"] == "kernel");
+  CHECK(result["findings"][0]["good"] == true);
+  CHECK(has(run("doctor --root machine", folder).out, "to change it"));
+}
+
+TEST_CASE("jitter ends with its figures as one object, and draws them") {
+  const auto folder = fresh_folder("jitter");
+  const Outcome outcome = run("jitter --seconds 0.1 --no-keep-awake --json --svg jitter.svg", folder);
+  CHECK(outcome.exit_code == 0);
+  CHECK(has(outcome.out, "verdict:"));
+  const Json result = last_line(outcome.out);
+  CHECK(result["samples"] == 100);
+  for (const char* what : {"lateness_us", "jitter_us", "execution_us"}) {
+    for (const char* which : {"p50", "p99", "p999", "max"}) CHECK(result[what][which].is_number());
+  }
+  CHECK(result["overruns"].is_number());
+  CHECK(has(read(folder / "jitter.svg"), "</svg>"));
+}

@@ -1,0 +1,124 @@
+// Rows of the failure contract that take real threads; on virtual time, so that nothing depends on the machine's speed.
+#include <csignal>
+#include <filesystem>
+
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+
+#include "kadans/telemetry/recorder.h"
+#include "realtime/live_robot.h"
+
+using namespace kadans;
+using doctest::description;
+
+namespace {
+
+// Drains the record once a beat, or hangs.
+class Drain final : public Task {
+ public:
+  explicit Drain(Recorder& recorder) : recorder_(recorder) {}
+  bool beat(const Beat&) override {
+    if (!hangs) (void)recorder_.drain();
+    return true;
+  }
+  bool hangs = false;
+
+ private:
+  Recorder& recorder_;
+};
+
+struct RecordedRobot : LiveRobot {
+  Recorder recorder{catalog.signals};
+  Drain drain{recorder};
+  std::unique_ptr<Wait> wait = time.make_wait();
+  TaskThread thread{{.name = "record", .period_ns = 20 * tick_ns}, drain, *wait};
+
+  void run(const std::string& file, std::int64_t ms) {
+    REQUIRE(recorder.open(file));
+    control.record_to(&recorder);
+    thread.start();
+    start();
+    (void)run_until(ms);
+    thread.stop();
+    stop();
+    thread.join();
+  }
+};
+
+// No file grows beyond a few blocks.
+class FullDisk {
+ public:
+  FullDisk() {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{65536, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    std::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+std::string record_file(const char* name) {
+  return (std::filesystem::temp_directory_path() / ("kadans_" + std::string(name) + ".mcap")).string();
+}
+
+}  // namespace
+
+TEST_SUITE_BEGIN("contract");
+
+TEST_CASE("the robot holds, then damps, then is off, as without a heartbeat" *
+          description("the behavior thread ends")) {
+  LiveRobot robot;
+  robot.script.at = [](std::int64_t time_ns) {
+    if (time_ns > 300 * tick_ns) throw std::runtime_error("a high level failed");
+  };
+  robot.start();
+  CHECK(robot.run_until(500).status.safety.level == SafetyLevel::hold);
+  CHECK(robot.run_until(5000).status.safety.level == SafetyLevel::off);
+  robot.stop();
+}
+
+TEST_CASE("rows that do not fit the ring are dropped and counted, no tick is late" *
+          description("the record's thread hangs")) {
+  RecordedRobot robot;
+  robot.drain.hangs = true;
+  const std::int64_t ms = 15'000;  // longer than the ring holds
+  robot.run(record_file("hung"), ms);
+  CHECK(robot.control_task.ticks() >= static_cast<std::uint64_t>(ms));
+  CHECK(robot.control_thread.statistics().missed.get() == 0);
+  CHECK(robot.recorder.dropped() > 0);
+  CHECK(robot.recorder.close());
+  CHECK(robot.recorder.rows() + robot.recorder.dropped() == robot.control_task.ticks());
+}
+
+TEST_CASE("rows are lost and counted, the record says why, no tick is late" * description("the disk is full")) {
+  const FullDisk disk;
+  RecordedRobot robot;
+  robot.run(record_file("full"), 3000);
+  CHECK(robot.control_task.ticks() >= 3000);
+  CHECK(robot.control_thread.statistics().missed.get() == 0);
+  CHECK(robot.recorder.lost() > 0);
+  CHECK_FALSE(robot.recorder.close());
+  CHECK(robot.recorder.error().find("File too large") != std::string::npos);
+}
+
+TEST_CASE("the task gives up after 100 wake-ups without time passing, the run ends, the watchdog is not fed" *
+          description("the control thread's clock stands still")) {
+  LiveRobot robot;
+  robot.control_wait.frozen_at_ns_ = 250 * tick_ns;
+  robot.start();
+  (void)robot.run_until(400);
+  CHECK(robot.control_thread.over());
+  CHECK(std::string(robot.control_thread.failure()) == "the clock stands still");
+  CHECK(robot.control_task.ticks() <= 250);
+  robot.stop();
+}
+
+TEST_SUITE_END();

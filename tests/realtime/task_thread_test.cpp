@@ -1,0 +1,82 @@
+#include "kadans/realtime/task_thread.h"
+
+#include <stdexcept>
+
+#include <doctest/doctest.h>
+
+#include "fake_wait.h"
+#include "kadans/realtime/jitter.h"
+
+using namespace kadans;
+
+namespace {
+
+class Counter final : public Task {
+ public:
+  bool beat(const Beat& beat) override {
+    last = beat;
+    if (++beats == throw_at) throw std::runtime_error("the work failed");
+    return beats < end_at;
+  }
+  int beats = 0, end_at = 1000, throw_at = 0;
+  Beat last;
+};
+
+}  // namespace
+
+TEST_CASE("A task beats on its own thread until it says that it is over") {
+  Counter counter;
+  FakeWait wait;
+  TaskThread thread({.name = "count", .first_ns = 0}, counter, wait);
+  CHECK_FALSE(thread.over());
+  thread.start();
+  thread.join();
+  CHECK(thread.over());
+  CHECK(counter.beats == 1000);
+  CHECK(counter.last.due_ns == 999'000'000);
+  CHECK(thread.statistics().lateness.count() == 1000);
+  CHECK(std::string(thread.failure()).empty());
+  CHECK(thread.cpu_time_ns() > 0);
+}
+
+TEST_CASE("An exception ends a task, and its words are kept") {
+  Counter counter;
+  counter.throw_at = 3;
+  FakeWait wait;
+  TaskThread thread({.name = "throw"}, counter, wait);
+  thread.start();
+  thread.join();
+  CHECK(counter.beats == 3);
+  CHECK(std::string(thread.failure()) == "the work failed");
+}
+
+TEST_CASE("A task whose clock stands still gives up instead of spinning") {
+  Counter counter;
+  FakeWait wait;
+  wait.frozen = true;
+  TaskThread thread({.name = "frozen", .first_ns = 1}, counter, wait);
+  thread.start();
+  thread.join();
+  CHECK(counter.beats == 0);
+  CHECK(std::string(thread.failure()) == "the clock stands still");
+}
+
+TEST_CASE("A priority or CPU that the system refuses is told, and the task runs all the same") {
+  Counter counter;
+  FakeWait wait;
+  TaskThread thread({.name = "refused", .priority = 1000, .cpu = 1023}, counter, wait);
+  thread.start();
+  thread.join();
+  CHECK(counter.beats == 1000);
+  CHECK(thread.refused_priority() != 0);
+  CHECK(thread.refused_cpu() != 0);
+}
+
+TEST_CASE("Lines of cyclictest are samples, or not") {
+  CHECK(cyclictest_lateness_ns("       0:    1997:   24314\n") == 24314);
+  CHECK_FALSE(cyclictest_lateness_ns("# /dev/cpu_dma_latency set to 0us\n"));
+  CHECK_FALSE(cyclictest_lateness_ns("Thread 0 Interval: 1500\n"));
+  CHECK_FALSE(cyclictest_lateness_ns("0: 1\n"));
+  CHECK_FALSE(cyclictest_lateness_ns("0: 1:\n"));
+  CHECK_FALSE(cyclictest_lateness_ns(""));
+}
