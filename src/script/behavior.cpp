@@ -53,7 +53,7 @@ KADANS_TICK_CODE void Behavior::Parts::tell_dropped(bool at_once) noexcept {
               std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
 }
 
-void Behavior::Parts::tell_refused() noexcept {
+KADANS_TICK_CODE void Behavior::Parts::tell_refused() noexcept {
   while (const Refusal* refusal = bindings.next_refusal()) {
     ++transactions_refused;
     log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
@@ -92,9 +92,11 @@ Behavior::~Behavior() = default;
 
 KADANS_TICK_CODE bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
   Parts& parts = *parts_;
-  WarmUp::read(std::as_bytes(std::span(&snapshot, 1)).first<warm_snapshot_bytes>());
-  parts.warm_up.go();
-  parts.snapshot_tables.warm_up();
+  if (parts.warm_up.due()) {
+    WarmUp::read(std::as_bytes(std::span(&snapshot, 1)).first<warm_snapshot_bytes>());
+    parts.warm_up.go();
+    parts.snapshot_tables.warm_up();
+  }
   if (failed() || finished()) return false;
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;

@@ -31,11 +31,11 @@ void Bindings::bring_in(std::size_t machine) noexcept {
   (void)send({.kind = CommandKind::switch_set, .index = number});
 }
 
-void Bindings::bring_in_again() noexcept {
+KADANS_TICK_CODE void Bindings::bring_in_again() noexcept {
   each_bit(wanted, [&](std::uint32_t set) { (void)send({.kind = CommandKind::switch_set, .index = set}); });
 }
 
-const Refusal* Bindings::next_refusal() noexcept {
+KADANS_TICK_CODE const Refusal* Bindings::next_refusal() noexcept {
   const std::uint32_t count = snapshot->transactions_refused;
   if (count - refusals_seen > refusals_shown) refusals_seen = count - refusals_shown;
   while (refusals_seen != count) {

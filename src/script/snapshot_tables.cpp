@@ -1,8 +1,7 @@
 #include "snapshot_tables.h"
 
 #include <algorithm>
-#include <initializer_list>
-#include <utility>
+#include <string_view>
 
 #include "lua_core.h"
 #include "sandbox.h"
@@ -11,67 +10,16 @@
 namespace kadans {
 namespace {
 
-// The field names, interned once.
-// NOLINTBEGIN(readability-identifier-naming): they carry their units as the fields do
-enum Key : int {
-  position_rad = 1,
-  velocity_rad_s,
-  effort_Nm,
-  roll_rad,
-  pitch_rad,
-  yaw_rad,
-  tilt_rad,
-  height_m,
-  axis_x,
-  axis_y,
-  axis_z,
-  contact,
-  force_N,
-  cop_x_m,
-  cop_y_m,
-  level,
-  faults,
-  first_fault,
-  time_s,
-  tick,
-  key_count
-};
-// NOLINTEND(readability-identifier-naming)
-constexpr const char* key_names[] = {"",
-                                     "position_rad",
-                                     "velocity_rad_s",
-                                     "effort_Nm",
-                                     "roll_rad",
-                                     "pitch_rad",
-                                     "yaw_rad",
-                                     "tilt_rad",
-                                     "height_m",
-                                     "x",
-                                     "y",
-                                     "z",
-                                     "contact",
-                                     "force_N",
-                                     "cop_x_m",
-                                     "cop_y_m",
-                                     "level",
-                                     "faults",
-                                     "first_fault",
-                                     "time_s",
-                                     "tick"};
+constexpr std::size_t fields_a_part_max = 5;
 
-// What `keys` holds at this number becomes a field of the table.
-KADANS_TICK_CODE void put(lua_State* state, int table, int keys, Key key, double value) {
-  lua_rawgeti(state, keys, key);
-  lua_pushnumber(state, value);
-  lua_rawset(state, table);
-}
-
-// first_read(content, key): a field that is not there, for nobody read this part yet, or at all. Upvalues: what
+// first_read(content, key): a field that is not there, for nobody read it yet, or at all. Upvalues: what
 // messages call it, its content, the tables, the part's number.
 int first_read(lua_State* state) {
   auto& tables = *static_cast<SnapshotTables*>(lua_touserdata(state, lua_upvalueindex(3)));
-  tables.read_first(state, static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(4))));
-  if (lua_gettop(state) < 2) return 0;  // called to fill
+  const auto part = static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(4)));
+  const bool whole = lua_gettop(state) < 2;  // called to fill
+  if (whole || !tables.read_first(state, part, 2)) tables.read_whole(state, part);
+  if (whole) return 0;
   lua_pushvalue(state, 2);
   lua_rawget(state, lua_upvalueindex(2));
   if (!lua_isnil(state, -1)) return 1;
@@ -79,6 +27,54 @@ int first_read(lua_State* state) {
 }
 
 }  // namespace
+
+const std::array<SnapshotTables::Field, 23> SnapshotTables::fields{{
+    {Kind::joint, Type::number, "position_rad",
+     [](const Snapshot& s, std::size_t i) -> double { return s.joints.joints[i].position_rad; }},
+    {Kind::joint, Type::number, "velocity_rad_s",
+     [](const Snapshot& s, std::size_t i) -> double { return s.joints.joints[i].velocity_rad_s; }},
+    {Kind::joint, Type::number, "effort_Nm",
+     [](const Snapshot& s, std::size_t i) -> double { return s.joints.joints[i].effort_Nm; }},
+    {Kind::base, Type::number, "roll_rad",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.base.roll_rad; }},
+    {Kind::base, Type::number, "pitch_rad",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.base.pitch_rad; }},
+    {Kind::base, Type::number, "yaw_rad",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.base.yaw_rad; }},
+    {Kind::base, Type::number, "tilt_rad",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.base.tilt_rad; }},
+    {Kind::base, Type::number, "height_m",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.base.height_m; }},
+    {Kind::rate, Type::number, "x",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.base.angular_velocity_rad_s[0]; }},
+    {Kind::rate, Type::number, "y",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.base.angular_velocity_rad_s[1]; }},
+    {Kind::rate, Type::number, "z",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.base.angular_velocity_rad_s[2]; }},
+    {Kind::foot, Type::boolean, "contact",
+     [](const Snapshot& s, std::size_t i) -> double { return s.status.feet[i].contact; }},
+    {Kind::foot, Type::number, "force_N",
+     [](const Snapshot& s, std::size_t i) -> double { return s.status.feet[i].force_N; }},
+    {Kind::foot, Type::number, "cop_x_m",
+     [](const Snapshot& s, std::size_t i) -> double { return s.status.feet[i].cop_x_m; }},
+    {Kind::foot, Type::number, "cop_y_m",
+     [](const Snapshot& s, std::size_t i) -> double { return s.status.feet[i].cop_y_m; }},
+    {Kind::support, Type::number, "force_N",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.support.force_N; }},
+    {Kind::support, Type::number, "cop_x_m",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.support.cop_x_m; }},
+    {Kind::support, Type::number, "cop_y_m",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.support.cop_y_m; }},
+    {Kind::safety, Type::level, "level",
+     [](const Snapshot& s, std::size_t) -> double { return static_cast<int>(s.status.safety.level); }},
+    {Kind::safety, Type::number, "faults",
+     [](const Snapshot& s, std::size_t) -> double { return s.status.safety.fault_count; }},
+    {Kind::safety, Type::number, "first_fault",
+     [](const Snapshot& s, std::size_t) -> double { return static_cast<int>(s.status.safety.first_fault.code); }},
+    {Kind::root, Type::number, "tick",
+     [](const Snapshot& s, std::size_t) -> double { return static_cast<double>(s.tick); }},
+    {Kind::root, Type::time, "time_s", nullptr},
+}};
 
 // [-0 +1] An empty table, content of a part.
 void SnapshotTables::push_part(lua_State* state, Kind kind, std::size_t index) {
@@ -158,16 +154,16 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
   push_whole_part(state, Kind::safety, 0, "s.safety");
   lua_setfield(state, -2, "safety");
   finish_part(state, 0, "s");
-  read_.reserve(parts_.size());
-  for (std::size_t i = 0; !on_demand && i < parts_.size(); ++i) read_first(state, i);
+  read_.reserve(parts_.size() * fields_a_part_max);
+  for (std::size_t i = 0; !on_demand && i < parts_.size(); ++i) read_whole(state, i);
   return luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
 void SnapshotTables::push_names(lua_State* state) {
-  lua_createtable(state, key_count, 0);
-  for (int key = 1; key < key_count; ++key) {
-    lua_pushstring(state, key_names[key]);
-    lua_rawseti(state, -2, key);
+  lua_createtable(state, static_cast<int>(fields.size()), 0);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    lua_pushstring(state, fields[i].name);
+    lua_rawseti(state, -2, static_cast<int>(i) + 1);
   }
   keys_ = luaL_ref(state, LUA_REGISTRYINDEX);
   lua_createtable(state, 8, 0);
@@ -184,84 +180,65 @@ KADANS_TICK_CODE void SnapshotTables::refill(lua_State* state, const Snapshot& s
   if (read_.empty()) return;
   luaL_checkstack(state, 8, "snapshot");
   lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
-  for (const std::uint16_t number : read_) fill(state, parts_[number]);
+  const int keys = lua_gettop(state);
+  for (const Read read : read_) fill(state, read, keys);
   lua_pop(state, 1);
+}
+
+KADANS_TICK_CODE void SnapshotTables::fill(lua_State* state, Read read, int keys) const {
+  const Part& part = parts_[read.part];
+  lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
+  lua_rawgeti(state, keys, read.field + 1);
+  push_value(state, fields[read.field], part.index);
+  lua_rawset(state, -3);
+  lua_pop(state, 1);
+}
+
+// [-0 +1]
+KADANS_TICK_CODE void SnapshotTables::push_value(lua_State* state, const Field& field, std::size_t index) const {
+  if (field.type == Type::time) return lua_pushnumber(state, static_cast<double>(now_ns_) / 1e9);
+  const double value = field.value(*snapshot_, index);
+  if (field.type == Type::number) return lua_pushnumber(state, value);
+  if (field.type == Type::boolean) return lua_pushboolean(state, value != 0 ? 1 : 0);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, levels_);
+  lua_rawgeti(state, -1, static_cast<int>(value) + 1);
+  lua_remove(state, -2);
 }
 
 KADANS_TICK_CODE void SnapshotTables::warm_up() const noexcept {
   if (!read_.empty()) WarmUp::read(joints_);
-  for (const std::uint16_t number : read_) WarmUp::read(parts_[number].memory);
-}
-
-void SnapshotTables::read_first(lua_State* state, std::size_t number) {
-  Part& part = parts_[number];
-  if (part.read) return;
-  luaL_checkstack(state, 8, "snapshot");
-  lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
-  fill(state, part);
-  lua_pop(state, 1);
-  part.read = true;
-  read_.push_back(static_cast<std::uint16_t>(number));
-}
-
-// The names are at the top.
-KADANS_TICK_CODE void SnapshotTables::fill(lua_State* state, const Part& part) const {
-  const int keys = lua_gettop(state), table = keys + 1;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
-  const auto set = [=](std::initializer_list<std::pair<Key, double>> fields) {
-    for (const auto& [key, value] : fields) put(state, table, keys, key, value);
-  };
-  const RobotStatus& status = snapshot_->status;
-  const BaseStatus& base = status.base;
-  const auto& rate = base.angular_velocity_rad_s;
-  const JointState& joint = snapshot_->joints.joints[part.kind == Kind::joint ? part.index : 0];
-  switch (part.kind) {
-    case Kind::joint:
-      set({{position_rad, joint.position_rad}, {velocity_rad_s, joint.velocity_rad_s}, {effort_Nm, joint.effort_Nm}});
-      break;
-    case Kind::base:
-      set({{roll_rad, base.roll_rad}, {pitch_rad, base.pitch_rad}, {yaw_rad, base.yaw_rad}});
-      set({{tilt_rad, base.tilt_rad}, {height_m, base.height_m}});
-      break;
-    case Kind::rate:
-      set({{axis_x, rate[0]}, {axis_y, rate[1]}, {axis_z, rate[2]}});
-      break;
-    case Kind::foot:
-      fill_foot(state, keys, status.feet[part.index]);
-      break;
-    case Kind::support:
-      set({{force_N, status.support.force_N}, {cop_x_m, status.support.cop_x_m}, {cop_y_m, status.support.cop_y_m}});
-      break;
-    case Kind::safety:
-      fill_safety(state, keys, status.safety);
-      break;
-    case Kind::root:
-      set({{time_s, static_cast<double>(now_ns_) / 1e9}, {tick, static_cast<double>(snapshot_->tick)}});
-      break;
+  std::size_t last = parts_.size();
+  for (const Read read : read_) {
+    if (read.part != last) WarmUp::read(parts_[read.part].memory);
+    last = read.part;
   }
-  lua_settop(state, keys);
 }
 
-// The content is at the top.
-void SnapshotTables::fill_foot(lua_State* state, int keys, const FootStatus& foot) const {
-  const int table = lua_gettop(state);
-  lua_rawgeti(state, keys, contact);
-  lua_pushboolean(state, foot.contact ? 1 : 0);
-  lua_rawset(state, table);
-  put(state, table, keys, force_N, foot.force_N);
-  put(state, table, keys, cop_x_m, foot.cop_x_m);
-  put(state, table, keys, cop_y_m, foot.cop_y_m);
+bool SnapshotTables::read_first(lua_State* state, std::size_t part, int key) {
+  if (lua_type(state, key) != LUA_TSTRING) return false;
+  const std::string_view name = lua_tostring(state, key);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (fields[i].kind == parts_[part].kind && fields[i].name == name) return read_field(state, part, i), true;
+  }
+  return false;
 }
 
-void SnapshotTables::fill_safety(lua_State* state, int keys, const SafetyStatus& status) const {
-  const int table = lua_gettop(state);
-  lua_rawgeti(state, keys, level);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, levels_);
-  lua_rawgeti(state, -1, static_cast<int>(status.level) + 1);
-  lua_remove(state, -2);
-  lua_rawset(state, table);
-  put(state, table, keys, faults, status.fault_count);
-  put(state, table, keys, first_fault, static_cast<double>(status.first_fault.code));
+void SnapshotTables::read_whole(lua_State* state, std::size_t part) {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (fields[i].kind == parts_[part].kind) read_field(state, part, i);
+  }
+}
+
+void SnapshotTables::read_field(lua_State* state, std::size_t part, std::size_t field) {
+  const std::uint32_t bit = std::uint32_t{1} << field;
+  if ((parts_[part].read & bit) != 0) return;
+  luaL_checkstack(state, 8, "snapshot");
+  const Read read{static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(field)};
+  lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
+  fill(state, read, lua_gettop(state));
+  lua_pop(state, 1);
+  parts_[part].read |= bit;
+  read_.insert(std::ranges::upper_bound(read_, read.part, {}, &Read::part), read);
 }
 
 }  // namespace kadans

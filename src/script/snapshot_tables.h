@@ -1,7 +1,8 @@
-// `s`: the snapshot as scripts see it. The tables are made once; each tick only their numbers are replaced, and only
-// those of parts (a joint, a foot, the base ...) that this script has ever read: the first read of a part fills it.
+// `s`: the snapshot as scripts see it. The tables are made once; each tick only their fields are replaced, and only
+// those that this script has ever read: the first read of a field fills it, and does so in each tick from then on.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,13 +20,15 @@ namespace kadans {
 class SnapshotTables {
  public:
   // Makes the tables; `feet` names the feet in their order. On demand: this must outlive the state, and stay where it
-  // is; else every part is refilled always. Returns the registry reference of `s`. Raises.
+  // is; else every field is refilled always. Returns the registry reference of `s`. Raises.
   int open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet, bool on_demand = false);
   // The snapshot must live as long as functions of this tick run. Raises only when out of memory; fields that exist are
   // replaced without allocation.
   void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
-  // Fills a part from now on.
-  void read_first(lua_State* state, std::size_t part);
+  // Fills the field that the string at `key` names from now on. False: the part has none of this name.
+  bool read_first(lua_State* state, std::size_t part, int key);
+  // Fills all fields of a part from now on.
+  void read_whole(lua_State* state, std::size_t part);
   // Reads what refill() and the script are going to need. Before each refill().
   void warm_up() const noexcept;
 
@@ -34,22 +37,34 @@ class SnapshotTables {
   struct Part {
     Kind kind;
     std::uint32_t index;
-    int content;  // registry reference
-    bool read = false;
+    int content;                          // registry reference
+    std::uint32_t read = 0;               // bits: its fields that were read
     std::span<const std::byte> memory{};  // its tables
   };
+  enum class Type : std::uint8_t { number, boolean, level, time };
+  struct Field {
+    Kind kind;
+    Type type;
+    const char* name;
+    double (*value)(const Snapshot& snapshot, std::size_t index);
+  };
+  struct Read {
+    std::uint16_t part, field;
+  };
+  static const std::array<Field, 23> fields;
+
   void push_names(lua_State* state);
   void push_part(lua_State* state, Kind kind, std::size_t index);
   void finish_part(lua_State* state, std::size_t number, const char* shown);
   void push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown);
   void push_joints(lua_State* state, const RobotModel& model);
-  void fill(lua_State* state, const Part& part) const;
-  void fill_foot(lua_State* state, int keys, const FootStatus& foot) const;
-  void fill_safety(lua_State* state, int keys, const SafetyStatus& status) const;
+  void read_field(lua_State* state, std::size_t part, std::size_t field);
+  void push_value(lua_State* state, const Field& field, std::size_t index) const;
+  void fill(lua_State* state, Read read, int keys) const;
 
   bool on_demand_ = true;
   std::vector<Part> parts_;
-  std::vector<std::uint16_t> read_;  // parts, in the order of their first read
+  std::vector<Read> read_;  // by part
   Snapshot nothing_{};
   const Snapshot* snapshot_ = &nothing_;
   std::int64_t now_ns_ = 0;

@@ -1,5 +1,7 @@
 #include "warm_up.h"
 
+#include <chrono>
+
 #include "tick_code.h"
 
 // The linker names the ends of a section so.
@@ -16,6 +18,15 @@ KADANS_TICK_CODE void WarmUp::read(std::span<const std::byte> memory) noexcept {
     (void)*static_cast<const volatile std::byte*>(at);
     at += line_bytes - reinterpret_cast<std::uintptr_t>(at) % line_bytes;
   }
+}
+
+// A clock's page and code would be cold too, so a register where there is one.
+KADANS_TICK_CODE std::uint64_t WarmUp::cycles() noexcept {
+#if defined(__x86_64__) || defined(__i386__)
+  return __builtin_ia32_rdtsc();
+#else
+  return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+#endif
 }
 
 KADANS_TICK_CODE void WarmUp::go() const noexcept {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 namespace kadans {
 
@@ -25,13 +26,19 @@ class WarmUp {
   void add_function(Result (*function)(Arguments...)) noexcept {
     add({reinterpret_cast<const std::byte*>(function), 2 * line_bytes});
   }
+  // Whether others may have had the caches since the last call: not when ticks follow each other at once.
+  bool due() noexcept { return due(cycles()); }
+  bool due(std::uint64_t now_cycles) noexcept { return now_cycles - std::exchange(asked_, now_cycles) > hold_cycles; }
   void go() const noexcept;
   static void read(std::span<const std::byte> memory) noexcept;
 
  private:
   static constexpr std::size_t line_bytes = 64;
+  static constexpr std::uint64_t hold_cycles = 1'000'000;  // some 0.3 ms
+  static std::uint64_t cycles() noexcept;
   std::array<std::span<const std::byte>, 40> ranges_{};
   std::size_t count_ = 0;
+  std::uint64_t asked_ = 0;
 };
 
 }  // namespace kadans

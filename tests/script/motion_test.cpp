@@ -206,3 +206,15 @@ TEST_CASE("the snapshot shows the robot, refilled each tick in the same tables")
         "0 0 0 0 0 0 0 0 0 0 0 false 0 0 0 normal 0\n"
         "0.01 10 1 2 3 4 5 6 7 8 9 true 13 11 12 hold 14\n");
 }
+
+TEST_CASE("a field that a script begins to read late is of this tick, and of each that follows") {
+  Stage stage(
+      "local k = require 'kadans'\nlocal n = 0\nreturn k.behavior 'test' { k.state 'a' { during = function(m, s)\n"
+      "n = n + 1\nlocal knee = s.joints.l_knee\n"
+      "if n == 1 then print(knee.position_rad) else print(knee.effort_Nm, knee.position_rad) end end } }");
+  for (int i = 1; i <= 3; ++i) {
+    stage.snapshot.joints.joints[3] = {.position_rad = 1.0 * i, .velocity_rad_s = 0, .effort_Nm = 10.0 * i};
+    stage.tick();
+  }
+  CHECK(stage.said() == "1\n20 2\n30 3\n");
+}
