@@ -1,12 +1,17 @@
 // Behaviors: what a tick costs when it is hot, and cold, at a real 100 Hz with other work between.
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <numeric>
 #include <thread>
 
 #include <lua.hpp>
+#include <sched.h>
 
+#include "kadans/realtime/keep_awake.h"
+#include "kadans/realtime/machine.h"
 #include "kadans/script/behavior.h"
 #include "kadans/signal/random.h"
 #include "report.h"
@@ -131,9 +136,23 @@ struct Cold {
   std::vector<double> ticks_ns, walks_ns, bare_ns;
 };
 
-// At a real 100 Hz, thirty ticks, walks and calls of bare Lua in turn: whatever the machine does meanwhile takes the
-// caches from all three. With `wiped`, 4 MB are written before each.
-Cold run_cold(Played& played, bool wiped) {
+// What there is between two ticks: whatever the machine does; the same with 4 MB written before each tick; a thread
+// that keeps the CPU from idling, as `kadans run` has one.
+enum class Between { asleep, wiped, awake };
+
+// At a real 100 Hz, thirty ticks, walks and calls of bare Lua in turn: what takes the caches takes them from all three.
+Cold run_cold(Played& played, Between between) {
+  const bool wiped = between == Between::wiped;
+  std::unique_ptr<KeepAwake> awake;
+  cpu_set_t before, one;
+  sched_getaffinity(0, sizeof before, &before);
+  if (between == Between::awake) {
+    const int cpu = real_time_cpu("/");
+    CPU_ZERO(&one);
+    CPU_SET(static_cast<std::size_t>(cpu), &one);
+    sched_setaffinity(0, sizeof one, &one);
+    awake = std::make_unique<KeepAwake>(cpu);
+  }
   Cold cold;
   Walk walk;
   BareLua bare;
@@ -149,14 +168,19 @@ Cold run_cold(Played& played, bool wiped) {
     turn == 0 ? played.tick() : turn == 1 ? walk.go() : bare.go();
     (turn == 0 ? cold.ticks_ns : turn == 1 ? cold.walks_ns : cold.bare_ns).push_back(now_ns() - began);
   }
+  sched_setaffinity(0, sizeof before, &before);
   return cold;
 }
 
-void add_cold(Report& report, Played& played, bool wiped) {
-  const std::string key = wiped ? ".wiped" : ".cold", how = wiped ? ", 4 MB written before each" : ", at a real 100 Hz";
-  const Cold cold = run_cold(played, wiped);
+void add_cold(Report& report, Played& played, Between between) {
+  const auto which = static_cast<std::size_t>(between);
+  const std::string key = std::array{".cold", ".wiped", ".awake"}.at(which);
+  const std::string how = std::array{", at a real 100 Hz", ", at a real 100 Hz, 4 MB written before each",
+                                     ", at a real 100 Hz, the CPU kept awake as kadans run does"}
+                              .at(which);
+  const Cold cold = run_cold(played, between);
   const double tick_ns = median(cold.ticks_ns), walk_ns = median(cold.walks_ns);
-  report.add("behavior_tick_ns" + key, "the same, cold" + how, tick_ns, "ns");
+  report.add("behavior_tick_ns" + key, "the same" + how, tick_ns, "ns");
   report.add("behavior_tick_min_ns" + key, "  the fastest", *std::ranges::min_element(cold.ticks_ns), "ns");
   report.add("memory_walk_ns" + key, "  a walk over as many cache lines, in turn with it", walk_ns, "ns");
   report.add("behavior_tick_walks" + key, "  tick per walk", tick_ns / walk_ns, "");
@@ -183,8 +207,7 @@ void bench_behavior(Report& report) {
     Played played(ring(0.095, true));
     report.add("behavior_tick_ns.hot", "behavior tick: 10 states, 14 joint readings, hook on, hot",
                time_ns([&] { played.tick(); }, 100), "ns");
-    add_cold(report, played, false);
-    add_cold(report, played, true);
+    for (const Between between : {Between::asleep, Between::wiped, Between::awake}) add_cold(report, played, between);
   }
   Played slow(ring(1e6, false)), every(ring(0.095, false));
   report.add("chart_step_ns.still", "chart of 10 states, nothing to do", time_ns([&] { slow.tick(); }, 100), "ns");
