@@ -24,13 +24,15 @@ target_compile_options(kadans_flags INTERFACE -ffp-contract=off)
 target_compile_features(kadans_flags INTERFACE cxx_std_20)
 
 # With a sanitizer's calls between the lines gcc warns of what cannot be; there a warning is no error.
-set(warnings_are_errors "$<AND:$<BOOL:${KADANS_WERROR}>,$<NOT:$<BOOL:${KADANS_SANITIZE}>>>")
+if(KADANS_WERROR AND NOT KADANS_SANITIZE)
+  set(warnings_are_errors -Werror)
+endif()
 
 # gcc counts what a designated initializer leaves out as missing; leaving out is its point.
 add_library(kadans_warnings INTERFACE)
 target_compile_options(kadans_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
                                                  -Wno-missing-field-initializers
-                                                 $<${warnings_are_errors}:-Werror>)
+                                                 ${warnings_are_errors})
 if(CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(kadans_warnings INTERFACE -fpch-preprocess)
 endif()
