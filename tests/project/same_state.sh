@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# same_state.sh SCENARIO: three seconds of it end with the same state_hash in the release, clang and sanitizer builds,
-# and two scenarios of the suite end with their golden hashes in them.
+# same_state.sh SCENARIO: three seconds of it end with the same state_hash in the release and the clang build, and two
+# scenarios of the suite end with their golden hashes there; in the sanitizer build too where its program was built.
 set -euo pipefail
 scenario="$KADANS_SOURCE_DIR/$1"
 [ -e "$scenario" ] || { echo "no $1 yet"; exit 0; }
@@ -12,12 +12,14 @@ hash_of() {
 expected=$(hash_of "$KADANS_BINARY_DIR/kadans")
 echo "gcc: $expected"
 [ -n "$expected" ]
-for variant in clang asan; do
+variants=(clang)
+[ ! -e "$KADANS_BINARY_DIR/asan/kadans" ] || variants+=(asan)
+for variant in "${variants[@]}"; do
   found=$(hash_of "$KADANS_BINARY_DIR/$variant/kadans")
   echo "$variant: $found"
   [ "$found" = "$expected" ]
 done
 cd "$KADANS_SOURCE_DIR"
-for variant in clang asan; do
+for variant in "${variants[@]}"; do
   "$KADANS_BINARY_DIR/$variant/kadans" test --golden push_left ticks_missed
 done
