@@ -28,6 +28,8 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void tell_refused() noexcept;  // what the control engine refused since the last time
   // The sets of all active machines that the snapshot does not show are asked for in the next tick.
   void want_sets(const Snapshot& snapshot) noexcept;
+  // Reads what a tick is going to need; false when it was done a moment ago.
+  bool warm(const Snapshot& snapshot) noexcept;
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
 
@@ -43,6 +45,11 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   SnapshotTables snapshot_tables;
   std::unique_ptr<ChartRunner> runner;
   Transition transition;  // reused, so that its strings keep their room
+  struct Rehearsal {
+    const Snapshot* snapshot = nullptr;
+    std::int64_t now_ns = 0;
+    int function = LUA_NOREF;
+  } rehearsal;
   ScriptError error;
   bool failed = false;
   std::uint64_t transactions_refused = 0;

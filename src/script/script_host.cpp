@@ -70,6 +70,10 @@ void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcep
   list_.publish(pause_.paused());
 }
 
+void ScriptHost::prepare(const Snapshot& newest) noexcept {
+  list_.each_in_turn([&](PlayList::Entry& entry) { entry.behavior->prepare(newest); });
+}
+
 void ScriptHost::step(PlayList::Entry& entry, const Snapshot& snapshot, CommandSender& commands) noexcept {
   Behavior& behavior = *entry.behavior;
   behavior.hold_clock(pause_.held_ns());

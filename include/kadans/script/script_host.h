@@ -43,6 +43,7 @@ class ScriptHost final : public BehaviorHost {
   ~ScriptHost() override;
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
+  void prepare(const Snapshot& newest) noexcept override;
   // Behavior thread, between ticks: takes effect with the next. Throws InputError, and nothing changes, when something
   // in it is wrong: a file, an argument, a behavior that does not play.
   void order(const PlayOrder& order);
