@@ -16,6 +16,7 @@ local k = require "kadans"
 local kept, guards = nil, 0
 return k.behavior "watchful" {
   controls = "posture",
+  initial = "a",
   vars = { ticks = 0 },
   during = function(m, s)
     m.vars.ticks = m.vars.ticks + 1
