@@ -92,7 +92,8 @@ ChildProcess::~ChildProcess() { (void)end(); }
 bool ChildProcess::reap(int tries) noexcept {
   for (int i = 0; i < tries && !reaped_; ++i) {
     if (i > 0) nanosleep(&between_tries, nullptr);
-    reaped_ = waitpid(pid_, &status_, WNOHANG) == pid_;
+    const pid_t ended = waitpid(pid_, &status_, WNOHANG);
+    reaped_ = ended == pid_ || (ended < 0 && errno == ECHILD);  // as when somebody set SIGCHLD to be ignored
   }
   return reaped_;
 }

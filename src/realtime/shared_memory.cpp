@@ -30,8 +30,10 @@ SharedMemory::SharedMemory(std::size_t bytes)
 
 SharedMemory::SharedMemory(int descriptor, std::size_t bytes) : descriptor_(descriptor), bytes_(bytes) {
   struct stat size = {};
-  if (fstat(descriptor_, &size) != 0) fail(errno);
-  if (static_cast<std::size_t>(size.st_size) < bytes) fail(EINVAL);
+  if (fstat(descriptor_, &size) != 0 || static_cast<std::size_t>(size.st_size) < bytes) {
+    close(descriptor_);
+    fail(EINVAL);
+  }
   map();
 }
 

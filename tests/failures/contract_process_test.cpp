@@ -176,6 +176,23 @@ TEST_CASE("it stays down and says so, the robot holds, then is in its safe postu
   CHECK(hostage.level() == SafetyLevel::normal);
 }
 
+TEST_CASE("it is told when that comes up, the next one is not started, the robot goes to its safe posture" *
+          description("the behaviors' process dies and its state could not be kept")) {
+  const auto project = program::project_copy("process_unkept");
+  REQUIRE(program::edit(project / "behaviors/tulip/squat.lua", "vars     = { done = 0 }",
+                        "vars = { done = 0, f = { 1 } }"));
+  REQUIRE(program::edit(project / "behaviors/tulip/squat.lua", "m.posture:set_gains(\"stiff\")",
+                        "m.vars.f = { print } m.posture:set_gains(\"stiff\")"));
+  LiveProgram program(project, std::string(squat) + "--plant ideal");
+  REQUIRE(program.says("would be lost with this process: squat: vars hold a function"));
+  REQUIRE(program.says("settle -> squat"));
+  program.signal_behavior_process(SIGKILL);
+  CHECK(program.says("stays down: signal 9 (Killed), and its state could not be kept"));
+  program.signal(SIGTERM);
+  CHECK(program.end()["behavior_process"]["down"] == true);
+  CHECK(program.exit_code() == 1);
+}
+
 TEST_SUITE_END();
 
 TEST_CASE("TULip stands through a thousand kills of the behaviors' process") {

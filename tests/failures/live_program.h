@@ -31,6 +31,10 @@ class LiveProgram {
 
   // Any thread. The process of the behaviors that is alive, other than `other`; waits for one. -1: the program ended.
   pid_t behavior_process(pid_t other = -1) const;
+  void signal_behavior_process(int number) const {
+    const pid_t pid = behavior_process();
+    if (pid > 1) kill(pid, number);
+  }
 
   // Of a signal in the record, between two times.
   struct Range {

@@ -65,7 +65,7 @@ TEST_CASE("states, their time, vars, motions and random numbers are the same aft
     replace_host(broken, kept);
     broken.tick(2);
   }
-  REQUIRE(whole.log.messages.size() == 24);
+  REQUIRE(whole.log.messages.size() == 25);
   REQUIRE(broken.log.messages.size() == whole.log.messages.size());
   CHECK(whole.log.transitions == broken.log.transitions);
   for (std::size_t i = 0; i < whole.log.messages.size(); ++i) {
@@ -125,7 +125,7 @@ TEST_CASE("history, waiting events and changed parameters are kept") {
 local k = require 'kadans'
 local P = k.params { n = { 1, min = 0, max = 10, doc = 'a number' } }
 return k.behavior 'one' { initial = 'in',
-  k.state 'in' { initial = 'x', k.history 'h' { initial = 'x' },
+  k.state 'in' { initial = 'x', k.history 'h' { to = 'x' },
     k.state 'x' { { after = 0.02, to = 'in.y' } },
     k.state 'y' { endless = true, { after = 0.02, to = 'out', on = 'go' } },
     { on = 'leave', to = 'out' } },
