@@ -53,7 +53,10 @@ std::unique_ptr<ProcessHost> start_behavior_process(const RunOptions& options, B
   if (!options.play.empty()) settings.arguments.insert(settings.arguments.end(), {"--play", options.play});
   if (options.seed) settings.arguments.insert(settings.arguments.end(), {"--seed", std::to_string(*options.seed)});
   settings.time_stands = options.virtual_time;
-  if (options.virtual_time) settings.patience_ns = patience_on_virtual_time_ns;
+  if (options.virtual_time) {
+    settings.patience_ns = patience_on_virtual_time_ns;
+    settings.start_patience_ns = 6 * patience_on_virtual_time_ns;
+  }
   if (options.behaviors_patience_s > 0) settings.patience_ns = std::llround(1e9 * options.behaviors_patience_s);
   if (options.behaviors_deaths > 0) settings.restart.deaths_max = options.behaviors_deaths;
   settings.setup = setup_of(options);

@@ -84,6 +84,28 @@ void kill_at_random(const LiveProgram& program, int times, std::uint64_t seed, c
 const char* const squat =
     "config/tulip/robot.json --play 'squat{repeats=100}' --threads-on-virtual-time --behaviors process ";
 
+// To the end of the run, and back through its record.
+void check_that_it_stood(LiveProgram& program, int deaths) {
+  program.signal(SIGTERM);
+  const nlohmann::json result = program.end();
+  CAPTURE(program.heard());
+  REQUIRE(result.is_object());
+  CHECK(program.exit_code() == 0);
+  CHECK(result["ended"] == "told to stop");
+  const auto& process = result["behavior_process"];
+  CHECK(process["down"] == false);
+  CHECK(process["deaths"] >= deaths);
+  CHECK(process["takeovers"] > 0);
+  CHECK(result["commands"]["refused"] == 0);
+  CHECK(result["threads"]["control"]["missed"] == 0);
+  CHECK(program.heard("settle -> squat") == 1);
+  const double end_s = result["duration_s"];
+  CHECK(program.recorded("plant.base.height_m", 0, end_s).min > 0.6);
+  CHECK(program.recorded("plant.base.tilt_rad", 0, end_s).max < 0.1);
+  CHECK(program.recorded("behavior.squat.state", 0, end_s).max >= 2);
+  CHECK(program.recorded("safety.faults", 0, end_s).max == 0);
+}
+
 // TULip squats, its process is killed, it squats on; stands all the time, in every run.
 void kill_while_squatting(const std::string& name, int times, std::uint64_t seed, const std::vector<int>& signals,
                           const std::string& options = "") {
@@ -96,23 +118,7 @@ void kill_while_squatting(const std::string& name, int times, std::uint64_t seed
   killer.join();
   // It goes on in the state that it was in, and through it.
   CHECK(program.says("squat -> rest"));
-  program.signal(SIGTERM);
-  const nlohmann::json result = program.end();
-  CAPTURE(program.heard());
-  REQUIRE(result.is_object());
-  CHECK(program.exit_code() == 0);
-  CHECK(result["ended"] == "told to stop");
-  const auto& process = result["behavior_process"];
-  CHECK(process["down"] == false);
-  CHECK(process["deaths"] == times);
-  CHECK(process["takeovers"] > 0);
-  CHECK(result["commands"]["refused"] == 0);
-  CHECK(result["threads"]["control"]["missed"] == 0);
-  CHECK(program.heard("settle -> squat") == 1);
-  const double end_s = result["duration_s"];
-  CHECK(program.recorded("plant.base.height_m", 0, end_s).min > 0.6);
-  CHECK(program.recorded("plant.base.tilt_rad", 0, end_s).max < 0.1);
-  CHECK(program.recorded("safety.faults", 0, end_s).max == 0);
+  check_that_it_stood(program, times);
 }
 
 }  // namespace
@@ -127,7 +133,15 @@ TEST_CASE("TULip stands, holds its set-points, and squats on in the state in whi
 
 TEST_CASE("it is killed when its patience is over, and replaced" *
           description("the behaviors' process hangs or is stopped")) {
-  kill_while_squatting("process_stopped", 2, 2, {SIGSTOP}, "--behaviors-patience 0.3");
+  LiveProgram program(program::project_copy("process_stopped"), std::string(squat) + "--behaviors-patience 0.3");
+  REQUIRE(program.says("settle -> squat"));
+  for (int i = 0; i < 2; ++i) {
+    program.signal_behavior_process(SIGSTOP);
+    REQUIRE(program.says("the behaviors' process died: it did not answer"));
+    REQUIRE(program.says("the behaviors' process goes on"));
+  }
+  REQUIRE(program.says("squat -> rest"));
+  check_that_it_stood(program, 2);
   Hostage hostage("mute", {.deaths_max = 1000, .delay_max_ns = 0}, 20'000'000);
   hostage.run(100);
   CHECK(hostage.words.have("it did not answer"));

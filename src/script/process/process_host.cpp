@@ -153,6 +153,7 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
   if (commands.last_sequence() == asked_sequence_) answer_.send_on(commands, asked_for_ns_);
   ChildAnswer::take_status(link, play_, behaviors_);
   if (asked_order_) orders_.pop_front();
+  order_deaths_ = 0;
   policy_.answered();
   if (died_ns_ < 0) return true;
   ++takeovers_;
@@ -176,12 +177,22 @@ void ProcessHost::bury(const std::string& why, bool alive) noexcept {
     died_ns_ = now_ns_;
     if (play_.phase.load(std::memory_order_relaxed) != 0) safe_->failed(now_ns_, ~ObjectMask{0});
   }
+  give_up_order();
   const std::optional<std::int64_t> due_ns = policy_.died(now_ns_);
   if (!kept_) return stay_down(how + ", and its state could not be kept");
   if (!due_ns) return stay_down(how + ", " + std::to_string(policy_.in_a_row()) + " times in a row");
   phase_ = Phase::waiting;
   start_due_ns_ = *due_ns;
   say(Severity::warning, "the behaviors' process died: " + how + "; the robot holds until the next one goes on");
+}
+
+// The next process gets it too, but not for ever.
+void ProcessHost::give_up_order() noexcept {
+  constexpr std::uint32_t deaths_max = 3;
+  if (!asked_ || !asked_order_ || ++order_deaths_ < deaths_max) return;
+  orders_.pop_front();
+  order_deaths_ = 0;
+  say(Severity::error, "an order was dropped: the behaviors' process died of it three times");
 }
 
 void ProcessHost::stay_down(const std::string& why) noexcept {

@@ -44,7 +44,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
     bool time_stands = false;                // virtual time: a tick waits for the process, also while it starts
     std::int64_t answer_ns = 5'000'000;      // how long else a tick waits; wall time, as are the next two
     std::int64_t patience_ns = 300'000'000;  // for an answer
-    std::int64_t start_patience_ns = 30'000'000'000;  // for a process that starts
+    std::int64_t start_patience_ns = 10'000'000'000;  // for a process that starts
     RestartPolicy::Settings restart{};
     BehaviorLink::Setup setup{};
   };
@@ -78,6 +78,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   void wait_for_answer(CommandSender& commands) noexcept;
   bool take_answer(CommandSender& commands) noexcept;
   void bury(const std::string& why, bool alive) noexcept;
+  void give_up_order() noexcept;
   void stay_down(const std::string& why) noexcept;
   void say(BehaviorLog::Severity severity, const std::string& text) noexcept;
 
@@ -95,12 +96,13 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   std::deque<std::vector<std::byte>> orders_;
   WallClock clock_;
 
-  std::int64_t now_ns_ = 0;        // of the engine's clock
-  std::int64_t start_due_ns_ = 0;  // the same
-  std::int64_t died_ns_ = -1;      // the same; -1: it lives
-  std::uint32_t number_ = 0;       // of the last request
-  bool asked_ = false;             // and it has not been answered
-  bool asked_order_ = false;       // with the oldest order
+  std::int64_t now_ns_ = 0;         // of the engine's clock
+  std::int64_t start_due_ns_ = 0;   // the same
+  std::int64_t died_ns_ = -1;       // the same; -1: it lives
+  std::uint32_t number_ = 0;        // of the last request
+  bool asked_ = false;              // and it has not been answered
+  bool asked_order_ = false;        // with the oldest order
+  std::uint32_t order_deaths_ = 0;  // before an answer to it
   std::int64_t asked_wall_ns_ = 0, asked_for_ns_ = 0;
   std::uint32_t asked_sequence_ = 0;
   std::uint64_t takeovers_ = 0;
