@@ -29,7 +29,8 @@ int limit_memory(unsigned long long more_bytes) noexcept {
   unsigned long long pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   rlimit limit{};
-  limit.rlim_cur = limit.rlim_max = pages * static_cast<unsigned long long>(sysconf(_SC_PAGESIZE)) + more_bytes;
+  limit.rlim_cur = limit.rlim_max =
+      static_cast<rlim_t>(pages * static_cast<unsigned long long>(sysconf(_SC_PAGESIZE)) + more_bytes);
   return setrlimit(RLIMIT_AS, &limit) == 0 ? 0 : errno;
 }
 

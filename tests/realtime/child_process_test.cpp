@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include <doctest/doctest.h>
-#include <sys/mman.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 using namespace kadans;
@@ -34,7 +34,7 @@ TEST_CASE("the doorbell ends when the process does, and how it ended is known") 
 
 TEST_CASE("a program finds its doorbell and its memory where they are promised, and no other file") {
   const SharedMemory memory(4096);
-  const int other = dup(STDERR_FILENO);
+  const int other = fcntl(STDERR_FILENO, F_DUPFD, 20);
   ChildProcess process(shell("printf hello >&4 && ! test -e /dev/fd/" + std::to_string(other) +
                                  " && ! test -e /dev/fd/5 && printf x >&3 && exit 0; exit 1",
                              memory));
