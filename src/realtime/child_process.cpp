@@ -77,6 +77,7 @@ class SpawnPlan {
 ChildProcess::Started ChildProcess::start(const std::string& program, std::vector<std::string> arguments,
                                           const SharedMemory& memory) {
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   auto [ours, theirs] = Doorbell::make_pair();
@@ -98,7 +99,7 @@ bool ChildProcess::reap(int tries) noexcept {
   return reaped_;
 }
 
-void ChildProcess::kill() noexcept {
+void ChildProcess::kill() const noexcept {
   if (!reaped_) ::kill(pid_, SIGKILL);
 }
 

@@ -22,7 +22,7 @@ std::pair<Doorbell, Doorbell> Doorbell::make_pair() {
   return {Doorbell(ends[0]), Doorbell(ends[1])};
 }
 
-void Doorbell::ring() noexcept {
+void Doorbell::ring() const noexcept {
   const char ring = 1;
   (void)!send(descriptor_, &ring, 1, MSG_NOSIGNAL | MSG_DONTWAIT);  // full: there are rings enough
 }

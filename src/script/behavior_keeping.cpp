@@ -72,16 +72,16 @@ struct GoingOn {
   ByteReader& bytes;
 };
 
-std::uint16_t machine_at(const Chart& chart, std::string_view path) {
-  for (std::uint16_t i = 0; i < chart.machines.size(); ++i) {
-    if (chart.states[chart.machines[i].root].path == path) return i;
-  }
-  return static_cast<std::uint16_t>(chart.machines.size());
+std::size_t machine_at(const Chart& chart, std::string_view path) {
+  std::size_t at = 0;
+  while (at < chart.machines.size() && chart.states[chart.machines[at].root].path != path) ++at;
+  return at;
 }
 
 void renew_active_machines(lua_State* state, Behavior::Parts& parts) {
-  for (std::uint16_t i = 0; i < parts.chart.machines.size(); ++i) {
-    if (parts.runner->active(parts.chart.machines[i].root)) renew_machine(state, parts.chart, parts.tables, i);
+  for (std::size_t i = 0; i < parts.chart.machines.size(); ++i) {
+    if (!parts.runner->active(parts.chart.machines[i].root)) continue;
+    renew_machine(state, parts.chart, parts.tables, static_cast<std::uint16_t>(i));
   }
 }
 
@@ -93,7 +93,7 @@ int take_machines(lua_State* state) {
   renew_active_machines(state, parts);
   while (bytes.take<std::uint8_t>() != 0) {
     const auto path = bytes.take_bytes(bytes.take<std::uint32_t>());
-    const std::uint16_t number = machine_at(parts.chart, {reinterpret_cast<const char*>(path.data()), path.size()});
+    const std::size_t number = machine_at(parts.chart, {reinterpret_cast<const char*>(path.data()), path.size()});
     const auto version = bytes.take<std::int32_t>();
     const bool known = number < parts.chart.machines.size() && parts.runner->active(parts.chart.machines[number].root);
     luaL_checkstack(state, 16, "vars");

@@ -35,7 +35,7 @@ class ChildProcess {
   pid_t pid() const noexcept { return pid_; }
   Doorbell& bell() noexcept { return bell_; }
 
-  void kill() noexcept;
+  void kill() const noexcept;
   // Lets go of the doorbell, waits a moment for a process that ends by itself, kills one that does not, reaps it; how
   // it ended: "exit code 2", "signal 11 (Segmentation fault)".
   std::string end() noexcept;

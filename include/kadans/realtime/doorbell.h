@@ -25,7 +25,7 @@ class Doorbell {
   static std::pair<Doorbell, Doorbell> make_pair();
 
   // Never blocks; to ring where nobody is does nothing.
-  void ring() noexcept;
+  void ring() const noexcept;
   // Waits for a ring for at most this long; < 0: for ever. Takes all rings there are, but no more than a few: the other
   // side cannot keep it here.
   Heard wait(std::int64_t timeout_ns) noexcept;
