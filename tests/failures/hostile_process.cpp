@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 #include "kadans/realtime/child_process.h"
 #include "kadans/realtime/placement.h"
 #include "kadans/script/process/behavior_link.h"
@@ -24,7 +22,7 @@ namespace {
 struct Harm {
   BehaviorLink& link;
   Doorbell& bell;
-  RandomStream random{static_cast<std::uint64_t>(getpid()), "harm"};
+  RandomStream random{0, "harm"};
 
   std::uint32_t number() { return std::atomic_ref(link.request.number).load(); }
   void answer() {
@@ -95,6 +93,7 @@ struct Harm {
   }
 
   void at_request(const std::string& what) {
+    random = RandomStream(number(), "harm");
     if (what == "quit") std::_Exit(3);
     if (what == "scribble") scribble();
     if (what == "hungry") eat();
