@@ -1,20 +1,12 @@
 #include "live_threads.h"
 
-#include <sched.h>
+#include "kadans/realtime/placement.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::int64_t start_ns = 10'000'000;  // for the threads to come up
 constexpr std::int64_t record_period_ns = 20'000'000;
-
-// The threads that are started from here on leave the control thread's CPU alone, if there is another.
-void leave_cpu(int cpu) noexcept {
-  cpu_set_t cpus;
-  if (sched_getaffinity(0, sizeof cpus, &cpus) != 0 || CPU_COUNT(&cpus) < 2) return;
-  CPU_CLR(static_cast<std::size_t>(cpu), &cpus);
-  (void)sched_setaffinity(0, sizeof cpus, &cpus);
-}
 
 }  // namespace
 
@@ -65,7 +57,7 @@ void LiveThreads::add(const TaskSettings& settings, Task& task, std::int64_t spi
 void LiveThreads::start() {
   if (!timing_.virtual_time) {
     if (timing_.keep_awake) awake_.emplace(timing_.cpu);
-    leave_cpu(timing_.cpu);
+    (void)leave_cpu(timing_.cpu);  // and so do the threads that are started here
   }
   for (const auto& thread : threads_) thread->start();
 }

@@ -202,6 +202,7 @@ bool Behavior::post(const std::string& event) noexcept {
 }
 
 const std::string& Behavior::name() const noexcept { return parts_->chart.name; }
+const Behavior::Settings& Behavior::settings() const noexcept { return parts_->settings; }
 const Chart& Behavior::chart() const noexcept { return parts_->chart; }
 KADANS_TICK_CODE bool Behavior::finished() const noexcept { return parts_->runner->finished(); }
 KADANS_TICK_CODE bool Behavior::failed() const noexcept { return parts_->failed; }
