@@ -29,7 +29,7 @@ TEST_CASE("publishing a row does not allocate") {
   LatestRow row(3);
   row.want(1);
   const std::array<double, 3> values{1, 2, 3};
-  const kadans::AllocationCount heap;
+  const kadans::testing::AllocationCount heap;
   row.publish(1, 1, values);
   const double last = row.read().values[2];
   const long allocations = heap.count();
