@@ -28,10 +28,23 @@ CtlRequests::~CtlRequests() = default;
 std::string CtlRequests::take(CtlSession& session, const std::string& line) {
   try {
     const CtlRequest request = read_request(line, session.role());
+    if (known_here(request)) return told(session, request, {});
     return request.verb->order ? send(session, request) : at_once(session, request);
   } catch (const std::exception& error) {
     return refusal(error.what());
   }
+}
+
+// What the behavior thread need not be asked for.
+bool CtlRequests::known_here(const CtlRequest& request) const {
+  const std::string verb = request.verb->name, name = request.text("name"), what = request.text("what");
+  const Catalog& catalog = instance_.catalog();
+  if (verb == "get") return catalog.signals.find(name) || catalog.parameters.find(name);
+  return verb == "list" && what != "behaviors" && what != "parameters";
+}
+
+bool CtlRequests::reports(const CtlSession& session) const {
+  return *asked_.at(session.number()).verb->order == Order::Kind::report;
 }
 
 std::string CtlRequests::at_once(CtlSession& session, const CtlRequest& request) {
@@ -64,8 +77,8 @@ std::string CtlRequests::answered(CtlSession& session, const Answer* answer) {
   const CtlRequest request = asked_.at(session.number());
   session.order = 0;
   try {
-    const bool reports = *request.verb->order == Order::Kind::report;
-    if (answer == nullptr && !reports) return refusal("the behavior thread does not answer; estop works without it");
+    if (answer == nullptr && !reports(session))
+      return refusal("the behavior thread does not answer; estop works without it");
     if (answer == nullptr) {
       const Answer none;
       const std::string verb = request.verb->name;

@@ -187,8 +187,9 @@ void CtlServer::expire() {
     guest.gone = session.finished();
     if (session.half_since(now_ns_ - settings_.half_line_max_ns)) drop(guest, "the rest of the line did not come");
     if (session.unread_since(now_ns_ - settings_.unread_max_ns)) drop(guest, "");
-    if (session.order != 0 && session.ordered_ns < now_ns_ - settings_.answer_max_ns)
-      session.say(requests_.answered(session, nullptr), now_ns_);
+    if (session.order == 0) continue;
+    const std::int64_t patience_ns = requests_.reports(session) ? settings_.report_max_ns : settings_.answer_max_ns;
+    if (session.ordered_ns < now_ns_ - patience_ns) session.say(requests_.answered(session, nullptr), now_ns_);
   }
 }
 

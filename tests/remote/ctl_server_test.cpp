@@ -114,10 +114,11 @@ TEST_CASE("estop damps and then switches off, orders are refused with the reason
 }
 
 TEST_CASE("estop and status work although the behavior thread is dead, everything else says why not") {
-  LiveInstance live({.answer_max_ns = 50'000'000});
+  LiveInstance live({.answer_max_ns = 50'000'000, .report_max_ns = 50'000'000});
   live.start(false);
   CHECK(says(live.ask({{"verb", "status"}}), "the behavior thread does not answer"));
   CHECK(says(live.ask({{"verb", "set"}, {"name", kp}, {"value", 50}}), "the behavior thread does not answer"));
+  CHECK(live.ask({{"verb", "get"}, {"name", kp}})["value"] == 40);
   CHECK(live.ask({{"verb", "estop"}})["ok"] == true);
   const auto off = [](const Json& a) { return a["safety"]["level"] == "off"; };
   CHECK(off(live.ask_until({{"verb", "status"}}, off)));

@@ -39,7 +39,7 @@ TEST_CASE("undoing what was saved is a change again, and a value set while it wa
 
 TEST_CASE("the way back has an end") {
   TuningHistory history;
-  for (int i = 0; i < 2000; ++i) history.note({"kp", i, i + 1.0}, true);
+  for (double value = 0; value < 2000; ++value) history.note({"kp", value, value + 1}, true);
   std::size_t steps = 0;
   for (; history.newest() != nullptr; ++steps) history.drop();
   CHECK(steps == TuningHistory::steps_max);

@@ -25,6 +25,8 @@ class CtlRequests {
   std::string take(CtlSession& session, const std::string& line);
   // The answer has come, or, without one, will not come any more.
   std::string answered(CtlSession& session, const Answer* answer);
+  // Whether it only waits to be told what plays.
+  bool reports(const CtlSession& session) const;
   // The newest sample for who watches; "" when there is no newer one.
   std::string sample(CtlSession& session);
   // The session ends.
@@ -38,6 +40,7 @@ class CtlRequests {
     Fault last;
   };
 
+  bool known_here(const CtlRequest& request) const;
   std::string at_once(CtlSession& session, const CtlRequest& request);
   std::string send(CtlSession& session, const CtlRequest& request);
   std::string watch(CtlSession& session, const CtlRequest& request);

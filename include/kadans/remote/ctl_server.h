@@ -33,6 +33,7 @@ class CtlServer {
     std::int64_t half_line_max_ns = 5'000'000'000;
     std::int64_t unread_max_ns = 5'000'000'000;
     std::int64_t answer_max_ns = 10'000'000'000;  // of the behavior thread
+    std::int64_t report_max_ns = 2'000'000'000;   // when it is only asked what plays
   };
   struct Counts {
     std::atomic<std::uint32_t> served{0}, refused{0}, dropped{0};

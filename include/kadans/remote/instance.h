@@ -49,7 +49,6 @@ struct InstanceStatus {
   SafetyStatus safety;
   SetMask control_sets = 0;
   std::uint32_t commands_refused = 0;
-  bool behaviors_alive = true;  // their thread goes on
   RecordStatus record;
 };
 

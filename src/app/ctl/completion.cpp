@@ -32,12 +32,13 @@ void add_cases(const CLI::App& app, const std::string& path, bool options, std::
     add_cases(*command, path + (path.empty() ? "" : " ") + command->get_name(), options, text);
 }
 
-// The part that both shells understand. "$1" is the path of commands typed so far, then come options for ctl.
+// In zsh `path` is PATH. The part that both shells understand. "$1" is the commands typed so far, then come options for
+// ctl.
 constexpr const char* names_function = R"sh(
 _kadans_names() {
-  local path=$1
+  local at=$1
   shift
-  case $path in
+  case $at in
     'ctl set') kadans ctl "$@" list parameters --names;;
     'ctl get') kadans ctl "$@" list parameters --names; kadans ctl "$@" list signals --names;;
     'ctl watch') kadans ctl "$@" list signals --names;;
@@ -49,19 +50,20 @@ _kadans_names() {
 }
 )sh";
 
-// Goes through the words before the one that is completed; leaves path and the options that lead to the instance.
+// Goes through the words before the one that is completed; leaves the commands and the options that lead to the
+// instance.
 constexpr const char* walk = R"sh(
-  local path= before= word= socket=
+  local at= before= word= socket=
   for word in "${typed[@]}"; do
     if [[ $before == --socket ]]; then socket=$word
-    elif [[ $word != -* && " $(_kadans_commands "$path") " == *" $word "* ]]; then path="$path${path:+ }$word"; fi
+    elif [[ $word != -* && " $(_kadans_commands "$at") " == *" $word "* ]]; then at="$at${at:+ }$word"; fi
     before=$word
   done
   local -a to=()
   if [[ -n $socket ]]; then to=(--socket "$socket"); fi
   local choice=
-  if [[ $current == -* ]]; then choice=$(_kadans_options "$path")
-  elif [[ $before != --* ]]; then choice="$(_kadans_commands "$path") $(_kadans_names "$path" "${to[@]}")"; fi
+  if [[ $current == -* ]]; then choice=$(_kadans_options "$at")
+  elif [[ $before != --* || $before == --replace || $before == --json ]]; then choice="$(_kadans_commands "$at") $(_kadans_names "$at" "${to[@]}")"; fi
 )sh";
 
 constexpr const char* bash_tail = R"sh(
