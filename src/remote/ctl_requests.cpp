@@ -204,10 +204,12 @@ std::string CtlRequests::faults() {
 
 void CtlRequests::forget(const CtlSession& session) {
   asked_.erase(session.number());
-  if (session.has_console) (void)port_.send({.kind = Order::Kind::leave_console, .client = session.number()});
+  if (session.has_console) leaving_.push_back(session.number());
 }
 
 void CtlRequests::upkeep() {
+  while (!leaving_.empty() && port_.send({.kind = Order::Kind::leave_console, .client = leaving_.back()}) != 0)
+    leaving_.pop_back();
   for (Event event; port_.next(event);) {
   }
   for (Fault fault; port_.next(fault);) {

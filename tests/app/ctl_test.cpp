@@ -16,8 +16,7 @@ namespace {
 const std::string program = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
 const char* const kp = "posture.l_knee.kp_Nm_per_rad";
 
-// Runs `commands` while `started` goes on in the background, found in the folder c; `ctl` stands for the program's. The
-// run has begun when it has told its first line.
+// Runs `commands` while `started` goes on in the background, found in the folder c; `ctl` stands for the program's.
 int beside(const fs::path& project, const std::string& started, const std::string& commands) {
   write(project / "beside.sh",
         "export XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/none\"\n"
@@ -25,10 +24,11 @@ int beside(const fs::path& project, const std::string& started, const std::strin
             program +
             "' \"$@\"; }\n"
             "ctl() { kadans ctl --socket c \"$@\"; }\n"
-            "mkfifo told\n'" +
+            "'" +
             program + "' " + started +
-            " --ctl c >out 2>told &\n"
-            "run=$!\nexec 3<told; read -r line <&3; cat <&3 >err &\n" +
+            " --ctl c >out 2>err &\n"
+            "run=$!\n"
+            "until ctl status >/dev/null 2>&1; do kill -0 $run || exit 9; done\n" +
             commands + "\nkill -TERM $run; wait $run; echo $? >code; wait\n");
   return std::system(("cd '" + project.string() + "' && bash beside.sh >said 2>wrong").c_str());  // NOLINT: the point
 }
@@ -82,7 +82,7 @@ TEST_CASE("ctl says what it could not do, with the reason, by its exit code") {
                  "ctl switch postur; echo $?\n"
                  "ctl stauts; echo $?\n"
                  "printf 'nonsense(\\n)\\nx.y.z\\n' | ctl repl; echo $?\n"
-                 "ctl --socket c/develop estop; ctl play squat; echo $?\n") == 0);
+                 "kadans ctl --socket c/develop estop; echo $?\n") == 0);
   CHECK(read(project / "said") == "1\n1\n1\n1\n2\n1\n0\n");
   const std::string wrong = read(project / "wrong");
   CHECK(has(wrong, "unknown parameter 'posture.l_knee.kp', did you mean"));

@@ -141,7 +141,7 @@ Json LiveInstance::ask_until(const Json& request, bool (*wanted)(const Json&)) c
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   for (;;) {
     Json answer = ask(request);
-    if (wanted(answer) || std::chrono::steady_clock::now() > end) return answer;
+    if ((answer.value("ok", false) && wanted(answer)) || std::chrono::steady_clock::now() > end) return answer;
   }
 }
 

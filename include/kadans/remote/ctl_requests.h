@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "kadans/remote/ctl_session.h"
 #include "kadans/remote/instance.h"
@@ -52,6 +53,7 @@ class CtlRequests {
   Instance& instance_;
   InstancePort& port_;
   std::map<std::uint64_t, CtlRequest> asked_;  // by session
+  std::vector<std::uint64_t> leaving_;         // whose consoles are to be closed
   std::map<std::pair<FaultCode, std::uint16_t>, Seen> faults_;
 };
 

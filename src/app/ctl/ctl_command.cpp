@@ -94,7 +94,7 @@ int talk(const Verb& verb, const CtlOptions& options) {
   }
   if (std::string(verb.words) == "watch") return watch(link, options, answer);
   if (options.names) {
-    for (const Json& item : answer["items"]) std::puts(item["name"].get<std::string>().c_str());
+    for (const Json& item : answer.at("items")) std::puts(item.at("name").get<std::string>().c_str());
     return exit_passed;
   }
   std::fputs(options.json ? (*line + "\n").c_str() : answer_text(verb.words, answer).c_str(), stdout);

@@ -29,12 +29,12 @@ int from_pipe(CtlLink& link) {
   int code = exit_passed;
   for (std::string line; std::getline(std::cin, line);) {
     const Json answer = ask(link, "line", line);
-    if (answer["ok"] == true) {
-      const std::string text = answer["text"];
+    if (answer.value("ok", false)) {
+      const std::string text = answer.at("text");
       if (!text.empty()) std::puts(text.c_str());
     } else {
       code = exit_failed;
-      print_error(answer["error"]);
+      print_error(answer.at("error"));
     }
     std::fflush(stdout);
     if (answer.value("leaves", false) || interrupted()) break;
@@ -47,15 +47,15 @@ int from_terminal(CtlLink& link) {
   std::puts(":help tells what can be typed; :quit leaves, the instance goes on");
   LineEditor editor("kadans> ", state_file("history"), [&link](const std::string& text) {
     const Json answer = ask(link, "complete", text);
-    if (answer["ok"] != true) return LineEditor::Completion{};
-    return LineEditor::Completion{answer["begin"], answer["words"]};
+    if (!answer.value("ok", false)) return LineEditor::Completion{};
+    return LineEditor::Completion{answer.at("begin"), answer.at("words")};
   });
   while (!editor.ended() && !interrupted()) {
     const std::optional<std::string> line = editor.poll(keys_ms);
     if (!line) continue;
     const Json answer = ask(link, "line", *line);
-    const bool good = answer["ok"] == true;
-    const std::string text = good ? answer["text"] : answer["error"];
+    const bool good = answer.value("ok", false);
+    const std::string text = good ? answer.at("text") : answer.at("error");
     if (!text.empty()) editor.print(good ? text : "error: " + text);
     if (answer.value("leaves", false)) break;
     editor.prompt(answer.value("incomplete", false) ? "   ... "

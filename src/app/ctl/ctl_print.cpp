@@ -45,91 +45,94 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string behavior_text(const Json& behavior) {
-  const std::string name = behavior["name"];
-  if (behavior.contains("error")) return name + ": " + behavior["error"].get<std::string>();
-  if (behavior.contains("outcome")) return name + ": " + behavior["outcome"].get<std::string>();
+  const std::string name = behavior.at("name");
+  if (behavior.contains("error")) return name + ": " + behavior.at("error").get<std::string>();
+  if (behavior.contains("outcome")) return name + ": " + behavior.at("outcome").get<std::string>();
   if (!behavior.value("plays", false)) return name + ": stopped";
-  return name + (behavior.contains("state") ? " in " + behavior["state"].get<std::string>() : " waits");
+  return name + (behavior.contains("state") ? " in " + behavior.at("state").get<std::string>() : " waits");
 }
 
 std::string status_text(const Json& answer) {
   char head[128];
-  std::snprintf(head, sizeof head, "%.2f s, tick %lld", answer["time_s"].get<double>(),
-                static_cast<long long>(answer["tick"].get<std::int64_t>()));
-  std::string text = answer["name"].get<std::string>() + " (" + answer["mode"].get<std::string>() + ", process " +
-                     std::to_string(answer["pid"].get<int>()) + "): " + head + "\n";
-  const Json& safety = answer["safety"];
-  text += "  safety   " + safety["level"].get<std::string>();
+  std::snprintf(head, sizeof head, "%.2f s, tick %lld", answer.at("time_s").get<double>(),
+                static_cast<long long>(answer.at("tick").get<std::int64_t>()));
+  std::string text = answer.at("name").get<std::string>() + " (" + answer.at("mode").get<std::string>() + ", process " +
+                     std::to_string(answer.at("pid").get<int>()) + "): " + head + "\n";
+  const Json& safety = answer.at("safety");
+  text += "  safety   " + safety.at("level").get<std::string>();
   if (safety.contains("first"))
-    text += ", " + std::to_string(safety["faults"].get<std::uint32_t>()) + " faults, first " +
-            safety["first"]["text"].get<std::string>();
-  text += "\n  sets     " + joined(answer["control_sets"]) + "\n  plays    ";
+    text += ", " + std::to_string(safety.at("faults").get<std::uint32_t>()) + " faults, first " +
+            safety.at("first").at("text").get<std::string>();
+  text += "\n  sets     " + joined(answer.at("control_sets")) + "\n  plays    ";
   std::string playing = answer.value("behaviors_error", std::string());
   for (const Json& behavior : answer.value("behaviors", Json::array()))
     playing += (playing.empty() ? "" : "; ") + behavior_text(behavior);
   text += (answer.value("paused", false) ? "paused; " : "") + (playing.empty() ? "nothing" : playing) + "\n";
-  const Json& record = answer["record"];
+  const Json& record = answer.at("record");
   if (record.is_null()) return text + "  record   none\n";
-  return text + "  record   " + record["file"].get<std::string>() + ", " +
-         std::to_string(record["rows"].get<std::uint64_t>()) + " rows, " +
-         std::to_string(record["dropped"].get<std::uint32_t>()) + " dropped" +
-         (record["failed"].get<bool>() ? ", the disk failed" : "") + "\n";
+  return text + "  record   " + record.at("file").get<std::string>() + ", " +
+         std::to_string(record.at("rows").get<std::uint64_t>()) + " rows, " +
+         std::to_string(record.at("dropped").get<std::uint32_t>()) + " dropped" +
+         (record.at("failed").get<bool>() ? ", the disk failed" : "") + "\n";
 }
 
 std::string range_text(const Json& item) {
   if (!item.contains("min") && !item.contains("max")) return "";
-  return (item.contains("min") ? number(item["min"]) : "") + ".." + (item.contains("max") ? number(item["max"]) : "");
+  return (item.contains("min") ? number(item.at("min")) : "") + ".." +
+         (item.contains("max") ? number(item.at("max")) : "");
 }
 
 std::string list_text(const Json& items) {
   std::vector<std::vector<std::string>> rows;
   for (const Json& item : items) {
-    std::vector<std::string> row{item["name"].get<std::string>()};
-    if (item.contains("value")) row.push_back(number(item["value"]));
-    if (item.contains("unit")) row.push_back(item["unit"]);
+    std::vector<std::string> row{item.at("name").get<std::string>()};
+    if (item.contains("value")) row.push_back(number(item.at("value")));
+    if (item.contains("unit")) row.push_back(item.at("unit"));
     if (item.contains("value")) row.push_back(range_text(item));
-    if (item.contains("type")) row.push_back(item["type"]);
-    if (item.contains("joints")) row.push_back(joined(item["joints"]));
-    if (item.contains("objects")) row.push_back(joined(item["objects"]));
-    if (item.contains("active")) row.emplace_back(item["active"].get<bool>() ? "active" : "");
+    if (item.contains("type")) row.push_back(item.at("type"));
+    if (item.contains("joints")) row.push_back(joined(item.at("joints")));
+    if (item.contains("objects")) row.push_back(joined(item.at("objects")));
+    if (item.contains("active")) row.emplace_back(item.at("active").get<bool>() ? "active" : "");
     if (item.contains("lane")) row.push_back(behavior_text(item).substr(row.front().size()));
-    if (item.contains("doc")) row.push_back(item["doc"]);
+    if (item.contains("doc")) row.push_back(item.at("doc"));
     rows.push_back(std::move(row));
   }
   return table(rows);
 }
 
 std::string value_text(const Json& answer) {
-  const std::string unit = answer["unit"];
-  return number(answer["value"]) + (unit.empty() ? "" : " " + unit) + "\n";
+  const std::string unit = answer.at("unit");
+  return number(answer.at("value")) + (unit.empty() ? "" : " " + unit) + "\n";
 }
 
 std::string change_text(const Json& change) {
-  return change["name"].get<std::string>() + ": " + number(change["before"]) + " -> " + number(change["now"]) + "\n";
+  return change.at("name").get<std::string>() + ": " + number(change.at("before")) + " -> " + number(change.at("now")) +
+         "\n";
 }
 
 std::string fault_list(const Json& answer) {
-  std::string text = "safety level " + answer["level"].get<std::string>() + ", " +
-                     std::to_string(answer["since_clearing"].get<std::uint32_t>()) +
+  std::string text = "safety level " + answer.at("level").get<std::string>() + ", " +
+                     std::to_string(answer.at("since_clearing").get<std::uint32_t>()) +
                      " faults since the last clearing\n";
-  for (const Json& fault : answer["faults"])
-    text += "  " + fault["text"].get<std::string>() + " (tick " + std::to_string(fault["tick"].get<std::uint64_t>()) +
-            ", " + std::to_string(fault["count"].get<std::uint32_t>()) + " times)\n";
+  for (const Json& fault : answer.at("faults"))
+    text += "  " + fault.at("text").get<std::string>() + " (tick " +
+            std::to_string(fault.at("tick").get<std::uint64_t>()) + ", " +
+            std::to_string(fault.at("count").get<std::uint32_t>()) + " times)\n";
   return text;
 }
 
 std::string save_text(const Json& answer) {
-  if (answer["saved"].empty()) return "nothing was changed\n";
+  if (answer.at("saved").empty()) return "nothing was changed\n";
   std::string text;
-  for (const Json& change : answer["saved"]) text += change_text(change);
-  return text + "saved in " + answer["file"].get<std::string>() + "\n";
+  for (const Json& change : answer.at("saved")) text += change_text(change);
+  return text + "saved in " + answer.at("file").get<std::string>() + "\n";
 }
 
 }  // namespace
 
 std::string answer_text(const std::string& words, const Json& answer) {
   if (words == "status") return status_text(answer);
-  if (words == "list") return list_text(answer["items"]);
+  if (words == "list") return list_text(answer.at("items"));
   if (words == "get") return value_text(answer);
   if (words == "set" || words == "undo") return change_text(answer);
   if (words == "save") return save_text(answer);
@@ -140,15 +143,15 @@ std::string answer_text(const std::string& words, const Json& answer) {
 
 std::string watch_head(const Json& answer) {
   std::string text = "time_s";
-  for (const Json& signal : answer["signals"]) text += "\t" + signal["name"].get<std::string>();
+  for (const Json& signal : answer.at("signals")) text += "\t" + signal.at("name").get<std::string>();
   return text + "\n";
 }
 
 std::string watch_line(const Json& sample) {
   char time[32];
-  std::snprintf(time, sizeof time, "%.3f", sample["time_s"].get<double>());
+  std::snprintf(time, sizeof time, "%.3f", sample.at("time_s").get<double>());
   std::string text = time;
-  for (const Json& value : sample["values"]) text += "\t" + number(value);
+  for (const Json& value : sample.at("values")) text += "\t" + number(value);
   return text;
 }
 
