@@ -137,9 +137,10 @@ class LiveRun {
   int run() {
     assembly_.record_to(&control_side_);
     if (!options_.record.empty()) record_side_.start(options_.record);
+    const bool may_record = !options_.record.empty() || place_of(options_).wanted;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) (void)lock_memory(heap_reserve_bytes);  // without the right, which has been told
-    LiveThreads threads(timing, {control_, behaviors_, plant_, &record_side_});
+    LiveThreads threads(timing, {control_, behaviors_, plant_, may_record ? &record_side_ : nullptr});
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
     ctl_.start();
