@@ -19,11 +19,12 @@ Json last_line(const std::string& text) {
   return Json::parse(text.substr(text.rfind('\n', end) + 1, end));
 }
 
-// The lines of the behaviors, without the times.
+// The lines of the behaviors until the robot is left, without the times.
 std::string said(const std::string& err) {
   std::istringstream lines(err);
   std::string all;
   for (std::string line; std::getline(lines, line);) {
+    if (has(line, "supervisor: stop")) break;
     if (has(line, " s  ")) all += line.substr(line.find(" s  ") + 4) + "\n";
   }
   return all;

@@ -21,12 +21,12 @@ return k.behavior "watchful" {
   during = function(m, s)
     m.vars.ticks = m.vars.ticks + 1
     kept = kept or s
-    print(m.vars.ticks, guards, k.random and k.random() or math.random(), s.time_s, kept.joints.l_knee.position_rad,
+    print(m.vars.ticks, guards, math.random(), s.time_s, kept.joints.l_knee.position_rad,
           m.vars.ticks > 5 and s.base.pitch_rad or 0)
   end,
   k.state "a" {
     run = function(m) m.posture:move("lean", { time_s = 0.1 }):wait() end,
-    { when = function(m, s) guards = guards + 1 return s.joints.l_knee.position_rad > 1e6 end, to = "b" },
+    { when = function(s) guards = guards + 1 return s.joints.l_knee.position_rad > 1e6 end, to = "b" },
     { on = "run.done", to = "b" },
   },
   k.state "b" { { after = 0.1, to = "a" } },
@@ -43,7 +43,7 @@ std::string play(bool prepared) {
     if (prepared) stage.behavior->prepare(newest);
     stage.tick();
   }
-  std::string all = stage.said();
+  std::string all = stage.said() + stage.behavior->error().text();
   for (const std::string& each : stage.log.transitions) all += each + "\n";
   for (const Command& each : stage.applied)
     all += std::to_string(each.time_ns) + " " + std::to_string(each.value) + "\n";

@@ -21,5 +21,5 @@ TEST_CASE("A hash has sixteen digits") {
 
 TEST_CASE("Printed text longer than its room is cut, not lost") {
   CHECK(printed("%d of %s", 2, "three") == "2 of three");
-  CHECK(printed("%600d", 1).size() == 511);
+  CHECK(printed("%s", std::string(600, 'x').c_str()).size() == 511);
 }
