@@ -56,6 +56,7 @@ std::string CtlRequests::at_once(CtlSession& session, const CtlRequest& request)
     session.watched.clear();
   } else {  // estop
     instance_.stop_now();
+    (void)port_.send({.kind = Order::Kind::note, .text = "asked for the emergency stop", .who = session.who()});
   }
   return line_of({{"ok", true}});
 }

@@ -104,6 +104,8 @@ TEST_CASE("every change stands in the record with who made it, the old value and
   CHECK(live.ask({{"verb", "record_start"}, {"file", "tuned.mcap"}})["ok"] == true);
   CHECK(set(live, kp, 55)["ok"] == true);
   CHECK(live.ask({{"verb", "undo"}})["ok"] == true);
+  CHECK(live.ask({{"verb", "estop"}})["ok"] == true);
+  CHECK(live.ask({{"verb", "status"}})["ok"] == true);  // after it, so what was said before is in the record
   CHECK(live.ask({{"verb", "record_stop"}})["ok"] == true);
   McapReader record((live.project.root / "tuned.mcap").string());
   std::string log;
@@ -113,5 +115,6 @@ TEST_CASE("every change stands in the record with who made it, the old value and
   }
   const std::string who = "uid " + std::to_string(getuid()) + " (develop)";
   CHECK(has(log, who + " set " + kp + ": 40 -> 55"));
+  CHECK(has(log, who + " asked for the emergency stop"));
   CHECK(has(log, who + " undid " + kp + ": 55 -> 40"));
 }
