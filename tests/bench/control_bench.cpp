@@ -1,7 +1,4 @@
-#include <memory>
-
-#include "chain_robot.h"
-#include "kadans/plant/ideal_plant.h"
+#include "chain_rig.h"
 #include "kadans/telemetry/recorder.h"
 #include "kadans/testing/allocation_count.h"
 #include "report.h"
@@ -53,19 +50,9 @@ TickCost tulip_tick() {
 }
 
 TickCost chain_tick(std::size_t joints, const ControlObjectTypes& types) {
-  const Robot robot = chain_robot(joints, types, "joint_pid");
-  const RobotConfig& config = robot.config;
-  const auto system = make_control_system(robot);
-  Catalog& catalog = system->catalog;
-  IdealPlant plant(config.model, config.plant);
-  ControlSets sets(catalog, std::move(system->objects));
-  Estimator estimator(config.model, config.estimate, config.engine.control_period_s);
-  Safety safety(config.safety, config.model);
-  const auto exchange = std::make_unique<EngineExchange>();
-  ControlEngine control(config.engine, plant, estimator, safety, sets, catalog, *exchange);
-  BehaviorEngine behaviors(sets, *exchange, nullptr);
-  Recorder recorder(catalog.signals);
-  return tick_cost(control, behaviors, recorder);
+  ChainRig rig(joints, types);
+  Recorder recorder(rig.catalog.signals);
+  return tick_cost(rig.control, rig.behaviors, recorder);
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // Behaviors: what a tick costs when it is hot, and cold, at a real 100 Hz with other work between.
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <numeric>
 #include <thread>
@@ -10,70 +8,14 @@
 #include <lua.hpp>
 #include <sched.h>
 
+#include "chart_rig.h"
 #include "kadans/realtime/keep_awake.h"
 #include "kadans/realtime/machine.h"
-#include "kadans/script/behavior.h"
 #include "kadans/signal/random.h"
 #include "report.h"
 
 namespace kadans::bench {
 namespace {
-
-class Silence final : public BehaviorLog {
- public:
-  void transition(const Transition& /*transition*/) override { ++transitions; }
-  void message(std::int64_t /*time_ns*/, Severity /*severity*/, const std::string& /*behavior*/,
-               const std::string& text) override {
-    last = text;
-  }
-  std::uint64_t transitions = 0;
-  std::string last;
-};
-
-// Ten states in a ring; `during` reads 14 joints; every state is left after so long, or as `by` says.
-std::string ring(double after_s, bool reads, const std::string& by = "") {
-  std::string text = "local k = require 'kadans'\nlocal total = 0\n";
-  text += "local function look(m, s)\n  local j, sum = s.joints, 0\n";
-  for (int i = 0; i < 14; ++i) text += "  sum = sum + j.joint_" + std::to_string(i) + ".position_rad\n";
-  text += "  total = sum\nend\nreturn k.behavior 'ring' { initial = 's0', " +
-          std::string(reads ? "during = look,\n" : "\n");
-  for (int i = 0; i < 10; ++i) {
-    text += "k.state 's" + std::to_string(i) + "' { { " + (by.empty() ? "after = " + std::to_string(after_s) : by) +
-            ", to = 's" + std::to_string((i + 1) % 10) + "' } },\n";
-  }
-  return text + "}\n";
-}
-
-struct Played {
-  explicit Played(const std::string& text) : folder(std::filesystem::temp_directory_path() / "kadans_lua_bench") {
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / "ring.lua") << text;
-    for (int i = 0; i < 14; ++i) model.joints.push_back({.name = "joint_" + std::to_string(i)});
-    catalog.model = &model;
-    behavior =
-        std::make_unique<Behavior>(Behavior::Settings{.root = folder, .file = folder / "ring.lua"}, catalog, log);
-  }
-  ~Played() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder, ignored);
-  }
-  Played(const Played&) = delete;
-  Played& operator=(const Played&) = delete;
-  void prepare() { behavior->prepare(snapshot); }
-  void tick() {
-    (void)behavior->tick(snapshot, sender);
-    snapshot.time_ns += 10'000'000;
-  }
-
-  std::filesystem::path folder;
-  RobotModel model;
-  Catalog catalog;
-  Silence log;
-  CommandQueue queue;
-  CommandSender sender{queue};
-  Snapshot snapshot;
-  std::unique_ptr<Behavior> behavior;
-};
 
 // A chain through as many cache lines as a tick touches (269 of data, 211 of code, counted with valgrind's lackey),
 // over as many pages: what the machine asks for memory alone, however busy it is.
@@ -183,20 +125,20 @@ Cold run_cold(Played& played, Between between) {
 
 void add_cold(Report& report, Played& played, Between between) {
   const auto which = static_cast<std::size_t>(between);
-  const std::string key = std::array{".cold", ".wiped", ".awake", ".prepared"}.at(which);
+  const std::string key = std::array{".asleep", ".wiped", ".awake", ".prepared"}.at(which);
   const std::string how = std::array{", at a real 100 Hz", ", at a real 100 Hz, 4 MB written before each",
                                      ", at a real 100 Hz, the CPU kept awake as kadans run does",
                                      ", at a real 100 Hz, prepared 0.1 ms before as kadans run does"}
                               .at(which);
   const Cold cold = run_cold(played, between);
   const double tick_ns = median(cold.ticks_ns), walk_ns = median(cold.walks_ns);
-  report.add("behavior_tick_ns" + key, "the same" + how, tick_ns, "ns");
-  report.add("behavior_tick_min_ns" + key, "  the fastest", *std::ranges::min_element(cold.ticks_ns), "ns");
+  report.add("behavior_cold_ns" + key, "the same" + how, tick_ns, "ns");
+  report.add("behavior_cold_min_ns" + key, "  the fastest", *std::ranges::min_element(cold.ticks_ns), "ns");
   report.add("memory_walk_ns" + key, "  a walk over as many cache lines, in turn with it", walk_ns, "ns");
-  report.add("behavior_tick_walks" + key, "  tick per walk", tick_ns / walk_ns, "");
+  report.add("behavior_cold_walks" + key, "  tick per walk", tick_ns / walk_ns, "");
   const double bare_ns = median(cold.bare_ns);
   report.add("bare_lua_ns" + key, "  bare Lua: a table of 14 refilled and added up, in turn with it", bare_ns, "ns");
-  report.add("behavior_tick_bare_lua" + key, "  tick per bare Lua", tick_ns / bare_ns, "");
+  report.add("behavior_cold_bare_lua" + key, "  tick per bare Lua", tick_ns / bare_ns, "");
 }
 
 // Median of a step of this chart with "next" sent before every tenth.
@@ -212,10 +154,10 @@ double with_events_ns(Played& played) {
 
 }  // namespace
 
-void bench_behavior(Report& report) {
+void bench_lua(Report& report) {
   {
     Played played(ring(0.095, true));
-    report.add("behavior_tick_ns.hot", "behavior tick: 10 states, 14 joint readings, hook on, hot",
+    report.add("behavior_tick_ns", "behavior tick: 10 states, 14 joint readings, hook on, hot",
                time_ns([&] { played.tick(); }, 100), "ns");
     for (const Between between : {Between::asleep, Between::wiped, Between::awake, Between::prepared})
       add_cold(report, played, between);

@@ -1,4 +1,6 @@
+#include <cstdio>
 #include <map>
+#include <stdexcept>
 
 #include <CLI/CLI.hpp>
 
@@ -6,10 +8,9 @@
 
 int main(int argc, char** argv) {
   using namespace kadans::bench;
-  const std::map<std::string, void (*)(Report&)> parts = {{"behavior", bench_behavior}, {"control", bench_control},
-                                                          {"exchange", bench_exchange}, {"objects", bench_objects},
-                                                          {"plant", bench_plant},       {"record", bench_record},
-                                                          {"switch", bench_switch}};
+  const std::map<std::string, void (*)(Report&)> parts = {
+      {"control", bench_control}, {"exchange", bench_exchange}, {"lua", bench_lua},     {"objects", bench_objects},
+      {"plant", bench_plant},     {"record", bench_record},     {"start", bench_start}, {"switch", bench_switch}};
   CLI::App app("Kadans benchmarks", "kadans_bench");
   std::vector<std::string> only;
   bool json = false;
@@ -19,8 +20,15 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json, "Print one JSON object");
   CLI11_PARSE(app, argc, argv);
   Report report;
-  for (const auto& [name, run] : parts) {
-    if (only.empty() || std::find(only.begin(), only.end(), name) != only.end()) run(report);
+  try {
+    for (const auto& [name, run] : parts) {
+      if (!only.empty() && std::find(only.begin(), only.end(), name) == only.end()) continue;
+      std::fprintf(stderr, "bench: %s\n", name.c_str());
+      run(report);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench: %s\n", error.what());
+    return 1;
   }
   if (json) {
     report.print_json();

@@ -59,14 +59,16 @@ void keep(T& value) {
   asm volatile("" : : "r"(&value) : "memory");
 }
 
-void bench_behavior(Report& report);
 void bench_control(Report& report);
 void bench_exchange(Report& report);
+void bench_latency(Report& report);
+void bench_lua(Report& report);
 void bench_objects(Report& report);
 void bench_plant(Report& report);
 void bench_record(Report& report);
+void bench_rfsm(Report& report);  // part of bench_lua; nothing without KADANS_RFSM
 void bench_simulation(Report& report);
-void bench_rfsm(Report& report);  // part of bench_behavior; nothing without KADANS_RFSM
+void bench_start(Report& report);
 void bench_switch(Report& report);
 
 }  // namespace kadans::bench

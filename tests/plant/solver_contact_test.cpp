@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "kadans/model/dynamics.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/random.h"
 #include "kadans/testing/allocation_count.h"
@@ -32,6 +33,21 @@ double energy_J(const PlantTruth& truth) {
     w2 += truth.base_angular_velocity_rad_s[i] * truth.base_angular_velocity_rad_s[i];
   }
   return mass_kg * g * truth.base.position_m[2] + mass_kg * v2 / 2 + inertia_kg_m2 * w2 / 2;
+}
+
+// Of all links, from the robot's own mass matrix.
+double energy_J(Dynamics& dynamics, const PlantTruth& truth) {
+  const std::span<const double> position_rad(truth.position_rad.data(), truth.joint_count);
+  const std::span<const double> velocity_rad_s(truth.velocity_rad_s.data(), truth.joint_count);
+  dynamics.update(position_rad, velocity_rad_s,
+                  {truth.base, truth.base_velocity_m_s, truth.base_angular_velocity_rad_s});
+  Eigen::VectorXd v(static_cast<Eigen::Index>(dynamics.size()));
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    v[i] = truth.base_velocity_m_s[static_cast<std::size_t>(i)];
+    v[i + 3] = truth.base_angular_velocity_rad_s[static_cast<std::size_t>(i)];
+  }
+  for (std::size_t i = 0; i < truth.joint_count; ++i) v[static_cast<Eigen::Index>(6 + i)] = velocity_rad_s[i];
+  return 0.5 * v.dot(dynamics.mass_matrix() * v) + dynamics.potential_energy_J();
 }
 
 double beyond_cone_N(const Vec3& force_N, double most) {
@@ -96,6 +112,30 @@ TEST_CASE("A cube thrown at the ground never has more energy than it began with,
     }
     CHECK(most_J < begun_J * 1.001);
     CHECK(energy_J(plant.truth()) < begun_J);
+  }
+}
+
+TEST_CASE("A limp TULip that is let fall never has more energy than it began with, and comes to rest") {
+  for (const double lean_rad : {0.3, -0.4}) {
+    CAPTURE(lean_rad);
+    Robot robot = tulip(Drives::rigid);
+    for (DriveSettings& drive : robot.settings.drives) drive = {};
+    robot.settings.stand_on_ground = false;
+    robot.settings.base = {.position_m = {0, 0, 1.1}, .orientation = normalized({1, 0.3 * lean_rad, lean_rad / 2, 0})};
+    BulletPlant plant(robot.model, robot.settings, 1);
+    Dynamics dynamics(robot.model, {.base = Dynamics::Base::floating});
+    const double begun_J = energy_J(dynamics, plant.truth());
+    double most_J = 0, before_J = begun_J, largest_gain_J = 0;
+    for (int i = 0; i < 3000; ++i) {
+      plant.step(ms);
+      const double now_J = energy_J(dynamics, plant.truth());
+      most_J = std::max(most_J, now_J);
+      largest_gain_J = std::max(largest_gain_J, now_J - before_J);
+      before_J = now_J;
+    }
+    CHECK(most_J < begun_J * 1.001);
+    CHECK(largest_gain_J < 0.002 * begun_J);
+    CHECK(before_J < 0.5 * begun_J);
   }
 }
 

@@ -1,79 +1,18 @@
 // The plant's own solver against Bullet's: iterated to the end, both must find the same motion. Where feet slide the
 // two differ on purpose (a cone of friction against a square), so the ground here holds whatever stands on it; sliding
 // has its formulas in solver_contact_test.cpp.
-#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/random.h"
-#include "tulip_robot.h"
+#include "solver_pair.h"
 
 using namespace kadans;
 using namespace kadans::test;
 
 namespace {
-
-struct Pair {
-  explicit Pair(Robot robot)
-      : tree(with(robot, ContactSolver::tree_square_friction)),
-        stock(with(robot, ContactSolver::stock)),
-        tree_hold(robot),
-        stock_hold(robot) {}
-
-  static Robot& prepared(Robot& robot, ContactSolver solver) {
-    robot.settings.solver = solver;
-    robot.settings.solver_iterations = 400;
-    return robot;
-  }
-  static BulletPlant with(Robot robot, ContactSolver solver) {
-    prepared(robot, solver);
-    return BulletPlant(robot.model, robot.settings, 1);
-  }
-
-  void tick() {
-    tree_hold.tick(tree);
-    stock_hold.tick(stock);
-  }
-  void aim(std::size_t joint, double position_rad) {
-    tree_hold.aim(joint, position_rad);
-    stock_hold.aim(joint, position_rad);
-  }
-  void push(std::size_t link, const Vec3& force_N) {
-    tree.push(link, force_N, {});
-    stock.push(link, force_N, {});
-  }
-
-  double apart_m() const {
-    const Vec3 &a = tree.truth().com_m, &b = stock.truth().com_m;
-    return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
-  }
-  double apart_rad() const {
-    double worst = 0;
-    for (std::size_t i = 0; i < tree.truth().joint_count; ++i) {
-      worst = std::max(worst, std::abs(tree.truth().position_rad[i] - stock.truth().position_rad[i]));
-    }
-    return worst;
-  }
-  double apart_rad_s() const {
-    double worst = 0;
-    for (std::size_t i = 0; i < tree.truth().joint_count; ++i) {
-      worst = std::max(worst, std::abs(tree.truth().velocity_rad_s[i] - stock.truth().velocity_rad_s[i]));
-    }
-    return worst;
-  }
-  double apart_N() const {
-    double worst = 0;
-    for (std::size_t i = 0; i < tree.truth().foot_count; ++i) {
-      worst = std::max(worst, std::abs(tree.truth().foot_force_N[i][2] - stock.truth().foot_force_N[i][2]));
-    }
-    return worst;
-  }
-
-  BulletPlant tree, stock;
-  JointHold tree_hold, stock_hold;
-};
 
 double squat_rad(const std::string& joint, double crouch_rad) {
   if (joint.ends_with("hip_pitch") || joint.ends_with("ankle_pitch")) return -crouch_rad;
@@ -85,7 +24,7 @@ double squat_rad(const std::string& joint, double crouch_rad) {
 TEST_CASE("Standing TULip moves the same with both solvers") {
   for (const Drives kind : {Drives::rigid, Drives::elastic}) {
     CAPTURE(static_cast<int>(kind));
-    Pair pair(tulip(kind));
+    SolverPair pair(tulip(kind));
     double worst_m = 0, worst_rad = 0;
     for (int i = 0; i < 300; ++i) {
       pair.tick();
@@ -101,7 +40,7 @@ TEST_CASE("Standing TULip moves the same with both solvers") {
 
 TEST_CASE("Squatting TULip moves the same with both solvers") {
   const Robot robot = tulip(Drives::rigid);
-  Pair pair(robot);
+  SolverPair pair(robot);
   double worst_m = 0;
   for (int i = 0; i < 600; ++i) {
     const double crouch_rad = 0.3 + 0.05 * (1 - std::cos(i * 2 * M_PI / 600));
@@ -115,7 +54,7 @@ TEST_CASE("Squatting TULip moves the same with both solvers") {
 }
 
 TEST_CASE("Pushed TULip moves the same with both solvers until it has fallen") {
-  Pair pair(tulip(Drives::rigid));
+  SolverPair pair(tulip(Drives::rigid));
   double worst_m = 0;
   int ticks = 0;
   for (; ticks < 1500 && pair.tree.truth().base.position_m[2] > 0.5; ++ticks) {
@@ -140,7 +79,7 @@ TEST_CASE("From 1000 random poses both solvers find the same velocities") {
       const Joint& joint = robot.model.joints[j];
       robot.settings.position_rad[j] = joint.lower_rad + (joint.upper_rad - joint.lower_rad) * random.uniform();
     }
-    Pair pair(robot);
+    SolverPair pair(robot);
     for (int i = 0; i < 2; ++i) pair.tick();
     touching += pair.tree.truth().contact_count > 0 ? 1 : 0;
     if (pose % 2 == 0) worst_smooth_rad_s = std::max(worst_smooth_rad_s, pair.apart_rad_s());

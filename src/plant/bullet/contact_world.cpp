@@ -179,6 +179,11 @@ void ContactWorld::add(RollingRows& rows) {
   tree_solver_.add(rows);
 }
 
+void ContactWorld::add(btMultiBodyConstraint& rows) {
+  world_->addMultiBodyConstraint(&rows);
+  tree_solver_.add(rows);
+}
+
 void ContactWorld::drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays) {
   world_->drive(body, velocity_m_s, stays);
 }

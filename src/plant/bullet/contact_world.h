@@ -55,6 +55,7 @@ class ContactWorld {
   void add(btCollisionObject& collider, bool fixed);
   void add(JointRows& rows);
   void add(RollingRows& rows);
+  void add(btMultiBodyConstraint& rows);  // anything else: for Bullet's solver only
 
   // For the next step: the velocity with which a body that nothing stops meets others. Unless `stays`, the step moves
   // it.

@@ -63,7 +63,7 @@ double LinkShapes::lowest_m(const btTransform& pose) const {
     const btTransform part = pose * compound_.getChildTransform(i);
     const btVector3 down = btVector3(0, 0, -1) * part.getBasis();
     const auto* convex = parts_[static_cast<std::size_t>(i)].get();
-    lowest = std::min(lowest, (part * convex->localGetSupportingVertex(down)).z());
+    lowest = std::min<double>(lowest, (part * convex->localGetSupportingVertex(down)).z());
   }
   return lowest;
 }

@@ -2,20 +2,16 @@
 // rigid drives (reflected inertia, damping), the same torques by the same rule from each engine's own state, 1 ms. The
 // engines take turns, a few steps each, so that whatever the machine does beside meets all alike; compare ratios, not
 // figures. Our step includes what a plant does beyond mechanics: encoders, IMU and foot sensors with noise, truth.
-#include <cmath>
-#include <numbers>
+// Standing, our plant in single precision takes its turns too, in a program of its own.
+#include <optional>
 
 #include "../report.h"
-#include "engines.h"
 #include "kadans/model/urdf.h"
-#include "standing.h"
+#include "scene_run.h"
+#include "single_precision.h"
 
 namespace kadans::bench {
 namespace {
-
-constexpr int steps_per_turn = 20, settle_steps = 1000;
-
-enum class Scene : std::uint8_t { standing, squatting, fallen, ball };
 
 struct SceneInfo {
   Scene scene;
@@ -28,89 +24,60 @@ constexpr SceneInfo scenes[] = {{Scene::standing, "standing", "standing", 10000}
                                 {Scene::fallen, "fallen", "lying", 3000},
                                 {Scene::ball, "ball", "standing, ball on its foot", 3000}};
 
-PlantSettings settings_of(const RobotModel& model, Scene scene) {
-  PlantSettings settings = standing_settings(model);
-  if (scene == Scene::fallen) settings.base.orientation = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};
-  if (scene == Scene::ball) {
-    settings.world.objects.push_back({.name = "ball",
-                                      .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4, .velocity_m_s = {-0.2, 0, 0}},
-                                      .pose = {.position_m = {0.4, 0.1, 0.1}}});
-  }
-  put_on_ground(model, settings);
-  return settings;
-}
-
-struct Runner {
+struct Figures {
   std::string key, text;
-  std::unique_ptr<Engine> engine;
-  std::vector<double> times_us;
-  EngineState settled;
+  double step_us = 0;
+  int contact_count = 0;
+  double drift_mm = 0;
 };
 
-class SceneRun {
- public:
-  SceneRun(const RobotModel& model, Scene scene) : model_(model), scene_(scene) {
-    const PlantSettings settings = settings_of(model, scene);
-    add("kadans", "Kadans", kadans_engine(model, settings, ContactSolver::tree));
-    add("bullet", "Bullet's solver", kadans_engine(model, settings, ContactSolver::stock));
-    add("mujoco_cg", "MuJoCo CG", mujoco_engine(model, settings, "CG"));
-    add("mujoco_newton", "MuJoCo Newton", mujoco_engine(model, settings, "Newton"));
+// All engines through one scene, in turns; ours first.
+std::vector<Figures> run_scene(const RobotModel& model, const SceneInfo& info) {
+  const PlantSettings settings = settings_of(model, info.scene);
+  struct Runner {
+    std::string key, text;
+    SceneRun run;
+  };
+  std::vector<Runner> runners;
+  const auto add = [&](const char* key, const char* text, std::unique_ptr<Engine> engine) {
+    runners.push_back({key, text, SceneRun(model, info.scene, std::move(engine))});
+  };
+  add("kadans", "Kadans", kadans_engine(model, settings, ContactSolver::tree));
+  add("bullet", "Bullet's solver", kadans_engine(model, settings, ContactSolver::stock));
+  add("mujoco_cg", "MuJoCo CG", mujoco_engine(model, settings, "CG"));
+  add("mujoco_newton", "MuJoCo Newton", mujoco_engine(model, settings, "Newton"));
+  std::optional<SinglePrecisionRun> single;
+  if (info.scene == Scene::standing) single.emplace();
+
+  for (int k = 0; k < settle_steps + info.timed_steps; k += steps_per_turn) {
+    for (Runner& runner : runners) runner.run.turn();
+    if (single) single->turn();
   }
 
-  void run(int timed_steps) {
-    for (int k = 0; k < settle_steps + timed_steps; k += steps_per_turn) {
-      for (Runner& runner : runners_) {
-        if (k == settle_steps) runner.settled = runner.engine->state();
-        for (int i = 0; i < steps_per_turn; ++i) step(runner, k + i);
-      }
-    }
+  std::vector<Figures> figures;
+  for (const Runner& runner : runners) {
+    const SceneRun& run = runner.run;
+    figures.push_back({runner.key, runner.text, run.step_us(), run.contact_count(), run.drift_mm()});
   }
-  const std::vector<Runner>& runners() const { return runners_; }
-
- private:
-  void add(std::string key, std::string text, std::unique_ptr<Engine> engine) {
-    runners_.push_back({std::move(key), std::move(text), std::move(engine), {}, {}});
-  }
-
-  void step(Runner& runner, int number) {
-    runner.engine->set_torques(torques(runner.engine->state(), 1e-3 * number));
-    const double began = now_ns();
-    runner.engine->step();
-    if (number >= settle_steps) runner.times_us.push_back(1e-3 * (now_ns() - began));
-  }
-
-  std::vector<double> torques(const EngineState& state, double time_s) const {
-    const double depth = scene_ == Scene::squatting ? (1 - std::cos(std::numbers::pi * time_s)) / 2 : 0;
-    return hold_torques(model_, state, depth);
-  }
-
-  const RobotModel& model_;
-  Scene scene_;
-  std::vector<Runner> runners_;
-};
-
-double drift_mm(const Runner& runner) {
-  const EngineState now = runner.engine->state();
-  double worst_m = 0;
-  for (std::size_t i = 0; i < now.feet_m.size(); ++i) {
-    const Vec3 &a = now.feet_m[i], &b = runner.settled.feet_m[i];
-    worst_m = std::max(worst_m, std::hypot(a[0] - b[0], a[1] - b[1]));
-  }
-  return 1e3 * worst_m;
+  if (!single) return figures;
+  const SinglePrecision result = single->end();
+  figures.push_back(
+      {"kadans_float", "Kadans in single precision", result.step_us, result.contact_count, result.drift_mm});
+  return figures;
 }
 
-void report_scene(Report& report, const SceneInfo& info, const SceneRun& run) {
+void report_scene(Report& report, const SceneInfo& info, const std::vector<Figures>& all) {
   const bool main = info.scene == Scene::standing;
-  const double ours_us = median(run.runners()[0].times_us);
-  for (const Runner& runner : run.runners()) {
-    const double step_us = median(runner.times_us);
-    const std::string text = std::string(info.text) + ", " + runner.text, end = info.key + ("." + runner.key);
-    report.add(main ? "plant_step_us." + runner.key : "plant_scenes_us." + end, "step, " + text, step_us, "us");
-    if (&runner != &run.runners()[0]) {
-      report.add("plant_ratio." + end, "  Kadans to that", ours_us / step_us, "x");
+  const double ours_us = all.front().step_us;
+  for (const Figures& figures : all) {
+    const std::string text = std::string(info.text) + ", " + figures.text, end = info.key + ("." + figures.key);
+    report.add(main ? "plant_step_us." + figures.key : "plant_scenes_us." + end, "step, " + text, figures.step_us,
+               "us");
+    if (&figures != &all.front()) {
+      report.add("plant_ratio." + end, "  Kadans to that", ours_us / figures.step_us, "x");
     }
-    report.add("plant_contacts." + end, "  points of contact", runner.engine->contact_count(), "");
-    if (main) report.add("plant_drift_mm." + runner.key, "  drift of the feet in 10 s", drift_mm(runner), "mm");
+    report.add("plant_contacts." + end, "  points of contact", figures.contact_count, "");
+    if (main) report.add("plant_drift_mm." + figures.key, "  drift of the feet in 10 s", figures.drift_mm, "mm");
   }
 }
 
@@ -118,11 +85,7 @@ void report_scene(Report& report, const SceneInfo& info, const SceneRun& run) {
 
 void bench_plant(Report& report) {
   const RobotModel model = read_urdf(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
-  for (const SceneInfo& info : scenes) {
-    SceneRun run(model, info.scene);
-    run.run(info.timed_steps);
-    report_scene(report, info, run);
-  }
+  for (const SceneInfo& info : scenes) report_scene(report, info, run_scene(model, info));
   bench_simulation(report);
 }
 

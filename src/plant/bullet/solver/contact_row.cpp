@@ -6,9 +6,9 @@
 namespace kadans::bullet {
 namespace {
 
-constexpr double smallest_response = 1e-12;  // 1/kg; less cannot move
+constexpr btScalar smallest_response = 1e-12;  // 1/kg; less cannot move
 
-using Three = std::array<double, 4>;
+using Three = std::array<btScalar, 4>;
 
 void add_product(const Three& a, const Three& b, std::array<Three, 3>& sum) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -33,7 +33,7 @@ ContactRow::ContactRow(btManifoldPoint& point, const ContactBody& first, const C
   if (normal_gain_ > 0 && start[0] > 0) apply(start);
 }
 
-void ContactRow::add_side(const ContactBody& body, const btVector3& at, double sign, RowMemory& memory) {
+void ContactRow::add_side(const ContactBody& body, const btVector3& at, btScalar sign, RowMemory& memory) {
   if (body.tree == nullptr) {
     for (std::size_t i = 0; i < 3; ++i) bias_[i] += sign * directions_[i].dot(body.velocity_m_s);
     return;
@@ -67,27 +67,27 @@ void ContactRow::add_shared_response() {
 }
 
 void ContactRow::prepare_gains() {
-  const double first = response_[1][1], second = response_[2][2], mixed = response_[1][2];
+  const btScalar first = response_[1][1], second = response_[2][2], mixed = response_[1][2];
   if (response_[0][0] > smallest_response) normal_gain_ = 1 / response_[0][0];
-  const double determinant = first * second - mixed * mixed;
+  const btScalar determinant = first * second - mixed * mixed;
   if (!(determinant > smallest_response * smallest_response)) return;  // no friction where nothing can slide
   hold_[0] = second / determinant;
   hold_[1] = -mixed / determinant;
   hold_[2] = first / determinant;
-  const double half = (first - second) / 2;
+  const btScalar half = (first - second) / 2;
   slide_gain_ = 1 / ((first + second) / 2 + std::sqrt(half * half + mixed * mixed));
 }
 
 // What the normal velocity must at least be goes into the bias.
 void ContactRow::aim(const ContactTiming& timing) {
-  const double distance_m = point_->getDistance();
-  double wanted = -distance_m / timing.dt_s;
+  const btScalar distance_m = point_->getDistance();
+  btScalar wanted = -distance_m / timing.dt_s;
   if (distance_m <= 0) {
     const bool own = (point_->m_contactPointFlags & BT_CONTACT_FLAG_HAS_CONTACT_ERP) != 0;
     wanted *= own ? point_->m_contactERP : timing.erp;
   }
   if (point_->m_combinedRestitution > 0) {
-    const double approach = -velocity()[0];
+    const btScalar approach = -velocity()[0];
     if (approach > timing.restitution_velocity_m_s) wanted += point_->m_combinedRestitution * approach;
   }
   bias_[0] -= wanted;
@@ -98,7 +98,7 @@ ContactRow::Three ContactRow::velocity() const {
   for (int s = 0; s < side_count_; ++s) {
     const Side& side = sides_[static_cast<std::size_t>(s)];
     for (int p = 0; p < side.path.length; ++p) {
-      const double z = side.z[side.path.dofs[p]];
+      const btScalar z = side.z[side.path.dofs[p]];
       for (std::size_t i = 0; i < 4; ++i) sum[i] += side.y[p][i] * z;
     }
   }
@@ -116,11 +116,11 @@ void ContactRow::apply(const Three& change) {
   }
 }
 
-double ContactRow::iterate(FrictionLaw law) {
+btScalar ContactRow::iterate(FrictionLaw law) {
   Three v = velocity();
-  Three wanted{std::max(0.0, impulse_[0] - normal_gain_ * v[0]), 0, 0, 0};
+  Three wanted{std::max(btScalar(0), impulse_[0] - normal_gain_ * v[0]), 0, 0, 0};
   if (wanted[0] == 0 && impulse_[0] == 0) return 0;
-  const double normal_change = wanted[0] - impulse_[0];
+  const btScalar normal_change = wanted[0] - impulse_[0];
   v[1] += response_[0][1] * normal_change;
   v[2] += response_[0][2] * normal_change;
   hold_or_slide(v, point_->m_combinedFriction * wanted[0], law, wanted);
@@ -130,10 +130,10 @@ double ContactRow::iterate(FrictionLaw law) {
          std::abs(change[2]) * response_[2][2];
 }
 
-void ContactRow::hold_or_slide(const Three& v, double limit, FrictionLaw law, Three& impulse) const {
+void ContactRow::hold_or_slide(const Three& v, btScalar limit, FrictionLaw law, Three& impulse) const {
   if (law == FrictionLaw::pyramid) {
     impulse[1] = std::clamp(impulse_[1] - v[1] / response_[1][1], -limit, limit);
-    const double after = v[2] + response_[1][2] * (impulse[1] - impulse_[1]);
+    const btScalar after = v[2] + response_[1][2] * (impulse[1] - impulse_[1]);
     impulse[2] = std::clamp(impulse_[2] - after / response_[2][2], -limit, limit);
     return;
   }
@@ -142,9 +142,9 @@ void ContactRow::hold_or_slide(const Three& v, double limit, FrictionLaw law, Th
   if (impulse[1] * impulse[1] + impulse[2] * impulse[2] <= limit * limit) return;
   impulse[1] = impulse_[1] - slide_gain_ * v[1];
   impulse[2] = impulse_[2] - slide_gain_ * v[2];
-  const double length2 = impulse[1] * impulse[1] + impulse[2] * impulse[2];
+  const btScalar length2 = impulse[1] * impulse[1] + impulse[2] * impulse[2];
   if (length2 <= limit * limit) return;
-  const double scale = limit / std::sqrt(length2);
+  const btScalar scale = limit / std::sqrt(length2);
   impulse[1] *= scale;
   impulse[2] *= scale;
 }

@@ -32,7 +32,7 @@ struct ContactBody {
 };
 
 struct ContactTiming {
-  double dt_s = 0, erp = 0, restitution_velocity_m_s = 0;
+  btScalar dt_s = 0, erp = 0, restitution_velocity_m_s = 0;
 };
 
 class ContactRow {
@@ -41,25 +41,25 @@ class ContactRow {
   ContactRow(btManifoldPoint& point, const ContactBody& first, const ContactBody& second, const ContactTiming& timing,
              RowMemory& memory);
 
-  double iterate(FrictionLaw law);  // returns how much it changed a velocity
+  btScalar iterate(FrictionLaw law);  // returns how much it changed a velocity
   void finish() const;
 
  private:
-  using Three = std::array<double, 4>;  // normal, two across; the last is 0
+  using Three = std::array<btScalar, 4>;  // normal, two across; the last is 0
   struct Side {
-    double* z = nullptr;
+    btScalar* z = nullptr;
     Path path;
     Three* y = nullptr;
   };
 
-  void add_side(const ContactBody& body, const btVector3& at, double sign, RowMemory& memory);
+  void add_side(const ContactBody& body, const btVector3& at, btScalar sign, RowMemory& memory);
   void add_own_response(const Side& side);
   void add_shared_response();
   void aim(const ContactTiming& timing);
   void prepare_gains();
   Three velocity() const;
   void apply(const Three& change);
-  void hold_or_slide(const Three& velocity, double limit, FrictionLaw law, Three& impulse) const;
+  void hold_or_slide(const Three& velocity, btScalar limit, FrictionLaw law, Three& impulse) const;
 
   btManifoldPoint* point_;
   std::array<btVector3, 3> directions_;
@@ -68,8 +68,8 @@ class ContactRow {
   bool same_tree_ = false;
   Three impulse_{}, bias_{};         // bias: velocity without any impulse, less the wanted one
   std::array<Three, 3> response_{};  // A
-  double normal_gain_ = 0, slide_gain_ = 0;
-  double hold_[3] = {0, 0, 0};  // inverse of A's lower block: first, mixed, second
+  btScalar normal_gain_ = 0, slide_gain_ = 0;
+  btScalar hold_[3] = {0, 0, 0};  // inverse of A's lower block: first, mixed, second
 };
 
 }  // namespace kadans::bullet

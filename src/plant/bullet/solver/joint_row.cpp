@@ -5,7 +5,7 @@
 
 namespace kadans::bullet {
 
-JointRow::JointRow(Tree& tree, int dof, const JointLaw& law, double impulse, RowMemory& memory)
+JointRow::JointRow(Tree& tree, int dof, const JointLaw& law, btScalar impulse, RowMemory& memory)
     : tree_(&tree),
       path_(tree.shape().path(dof)),
       y_(memory.take(static_cast<std::size_t>(path_.length))),
@@ -20,18 +20,18 @@ JointRow::JointRow(Tree& tree, int dof, const JointLaw& law, double impulse, Row
   apply(std::clamp(impulse, lower_, upper_));
 }
 
-void JointRow::apply(double change) {
+void JointRow::apply(btScalar change) {
   impulse_ += change;
-  double* const z = tree_->z();
+  btScalar* const z = tree_->z();
   for (int p = 0; p < path_.length; ++p) z[path_.dofs[p]] += y_[p] * change;
 }
 
-double JointRow::iterate() {
-  const double* const z = tree_->z();
-  double velocity = 0;
+btScalar JointRow::iterate() {
+  const btScalar* const z = tree_->z();
+  btScalar velocity = 0;
   for (int p = 0; p < path_.length; ++p) velocity += y_[p] * z[path_.dofs[p]];
-  const double wanted = impulse_ + offset_ - gain_ * velocity - leak_ * impulse_;
-  const double change = std::clamp(wanted, lower_, upper_) - impulse_;
+  const btScalar wanted = impulse_ + offset_ - gain_ * velocity - leak_ * impulse_;
+  const btScalar change = std::clamp(wanted, lower_, upper_) - impulse_;
   if (change != 0) apply(change);
   return std::abs(change) * response_;
 }

@@ -14,21 +14,21 @@ namespace kadans::bullet {
 class JointRow {
  public:
   // Starts from `impulse`. The memory lives as long as the row.
-  JointRow(Tree& tree, int dof, const JointLaw& law, double impulse, RowMemory& memory);
+  JointRow(Tree& tree, int dof, const JointLaw& law, btScalar impulse, RowMemory& memory);
 
   // Returns how much it changed its velocity.
-  double iterate();
-  double impulse() const { return impulse_; }
+  btScalar iterate();
+  btScalar impulse() const { return impulse_; }
 
  private:
-  void apply(double change);
+  void apply(btScalar change);
 
   Tree* tree_;
   Path path_;
-  double* y_;
-  double lower_, upper_;
-  double offset_ = 0, gain_ = 0, leak_ = 0, response_ = 0;  // p += offset - gain v - leak p
-  double impulse_ = 0;
+  btScalar* y_;
+  btScalar lower_, upper_;
+  btScalar offset_ = 0, gain_ = 0, leak_ = 0, response_ = 0;  // p += offset - gain v - leak p
+  btScalar impulse_ = 0;
 };
 
 }  // namespace kadans::bullet

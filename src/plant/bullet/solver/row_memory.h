@@ -6,13 +6,15 @@
 #include <memory>
 #include <vector>
 
+#include <LinearMath/btScalar.h>
+
 namespace kadans::bullet {
 
 class RowMemory {
  public:
-  double* take(std::size_t count) {
+  btScalar* take(std::size_t count) {
     if (blocks_.empty() || used_ + count > block_size) next_block();
-    double* const taken = blocks_[block_].get() + used_;
+    btScalar* const taken = blocks_[block_].get() + used_;
     used_ += count + count % 2;  // aligned for two numbers at a time
     return taken;
   }
@@ -23,11 +25,11 @@ class RowMemory {
 
   void next_block() {
     if (!blocks_.empty()) ++block_;
-    if (block_ == blocks_.size()) blocks_.push_back(std::make_unique<double[]>(block_size));
+    if (block_ == blocks_.size()) blocks_.push_back(std::make_unique<btScalar[]>(block_size));
     used_ = 0;
   }
 
-  std::vector<std::unique_ptr<double[]>> blocks_;
+  std::vector<std::unique_ptr<btScalar[]>> blocks_;
   std::size_t block_ = 0, used_ = 0;
 };
 

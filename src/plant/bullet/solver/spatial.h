@@ -15,10 +15,10 @@ struct Wrench {  // moment about the origin, and force
 };
 
 inline Motion operator+(const Motion& a, const Motion& b) { return {a.angular + b.angular, a.linear + b.linear}; }
-inline Motion operator*(const Motion& m, double s) { return {m.angular * s, m.linear * s}; }
+inline Motion operator*(const Motion& m, btScalar s) { return {m.angular * s, m.linear * s}; }
 inline Wrench operator+(const Wrench& a, const Wrench& b) { return {a.moment + b.moment, a.force + b.force}; }
 inline Wrench operator-(const Wrench& a, const Wrench& b) { return {a.moment - b.moment, a.force - b.force}; }
-inline double dot(const Motion& m, const Wrench& w) { return m.angular.dot(w.moment) + m.linear.dot(w.force); }
+inline btScalar dot(const Motion& m, const Wrench& w) { return m.angular.dot(w.moment) + m.linear.dot(w.force); }
 
 inline Wrench wrench_at(const btVector3& point_m, const btVector3& force) { return {point_m.cross(force), force}; }
 
@@ -32,9 +32,9 @@ inline Wrench carried(const Motion& v, const Wrench& w) {
 
 // Mass, first moment m c, and the six different entries of the rotational inertia about the origin (RBDA 2.63).
 struct SpatialInertia {
-  double mass_kg = 0;
+  btScalar mass_kg = 0;
   btVector3 moment_kg_m{0, 0, 0};
-  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+  btScalar xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
   SpatialInertia& operator+=(const SpatialInertia& other) {
     mass_kg += other.mass_kg;
@@ -55,7 +55,7 @@ struct SpatialInertia {
 };
 
 // Of a body with these principal moments about its centre of mass, which is at `com_m` and turned by `axes`.
-inline SpatialInertia spatial_inertia(double mass_kg, const btVector3& moments_kg_m2, const btMatrix3x3& axes,
+inline SpatialInertia spatial_inertia(btScalar mass_kg, const btVector3& moments_kg_m2, const btMatrix3x3& axes,
                                       const btVector3& com_m) {
   const btVector3 c = com_m * mass_kg;
   const btVector3 rows[3] = {axes[0] * moments_kg_m2, axes[1] * moments_kg_m2, axes[2] * moments_kg_m2};

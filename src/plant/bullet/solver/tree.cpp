@@ -13,7 +13,7 @@ Tree::Tree(btMultiBody& body)
       axes_(static_cast<std::size_t>(shape_.dof_count())),
       z_(static_cast<std::size_t>(shape_.dof_count())) {}
 
-void Tree::begin_step(double dt_s) {
+void Tree::begin_step(btScalar dt_s) {
   begin_base();
   for (int link = 0; link < shape_.link_count(); ++link) begin_link(link);
   gather();
@@ -62,7 +62,7 @@ void Tree::begin_link(int number) {
   set_inertia(link, pose, from.m_mass, from.m_inertiaLocal, from.m_appliedForce, from.m_appliedTorque);
 }
 
-void Tree::set_inertia(LinkState& link, const btTransform& pose, double mass_kg, const btVector3& moments_kg_m2,
+void Tree::set_inertia(LinkState& link, const btTransform& pose, btScalar mass_kg, const btVector3& moments_kg_m2,
                        const btVector3& force_N, const btVector3& torque_Nm) const {
   const btVector3 com_m = pose.getOrigin() - origin_m_;
   link.inertia = spatial_inertia(mass_kg, moments_kg_m2, pose.getBasis(), com_m);
@@ -82,7 +82,7 @@ void Tree::gather() {
 void Tree::fill_joint_row(int link) {
   const int dof = shape_.dof(link);
   const Path path = shape_.path(dof);
-  double* const row = factor_.row(dof);
+  btScalar* const row = factor_.row(dof);
   const Wrench force = state(link).inertia * state(link).axis;  // that turns the joint alone by 1 rad/s in 1 s
   for (int i = 0; i < 3; ++i) {
     row[i] = fixed_ ? 0 : force.moment[i];
@@ -94,11 +94,11 @@ void Tree::fill_joint_row(int link) {
 void Tree::fill_base_rows() {
   const SpatialInertia& all = state(-1).inertia;
   const btVector3& c = all.moment_kg_m;
-  const double angular[3][3] = {{all.xx, 0, 0}, {all.xy, all.yy, 0}, {all.xz, all.yz, all.zz}};
-  const double mixed[3][3] = {{0, c.z(), -c.y()}, {-c.z(), 0, c.x()}, {c.y(), -c.x(), 0}};
+  const btScalar angular[3][3] = {{all.xx, 0, 0}, {all.xy, all.yy, 0}, {all.xz, all.yz, all.zz}};
+  const btScalar mixed[3][3] = {{0, c.z(), -c.y()}, {-c.z(), 0, c.x()}, {c.y(), -c.x(), 0}};
   for (int i = 0; i < 3; ++i) {
-    double* const turn = factor_.row(i);
-    double* const shift = factor_.row(i + 3);
+    btScalar* const turn = factor_.row(i);
+    btScalar* const shift = factor_.row(i + 3);
     for (int j = 0; j <= i; ++j) turn[j] = fixed_ ? 0 : angular[i][j];
     for (int j = 0; j < 3 + i; ++j) shift[j] = fixed_ || j >= 3 ? 0 : mixed[i][j];
     if (fixed_) turn[i] = 1;
@@ -106,7 +106,7 @@ void Tree::fill_base_rows() {
   }
 }
 
-void Tree::add_implicit(int dof, double at_rest, double slope) {
+void Tree::add_implicit(int dof, btScalar at_rest, btScalar slope) {
   factor_.row(dof)[shape_.path(dof).length - 1] += slope;
   z_[static_cast<std::size_t>(dof)] += at_rest - slope * velocity(dof);
 }
@@ -123,11 +123,11 @@ void Tree::accelerate() {
 
 // What is infinite becomes not a number: Bullet would cut it down to its greatest velocity, and hide it.
 void Tree::end_step() {
-  for (double& change : z_) change += 0 * change;
+  for (btScalar& change : z_) change += 0 * change;
   body_->applyDeltaVeeMultiDof(z(), 1);
 }
 
-void Tree::response(int link, const std::array<Wrench, 3>& wrenches, std::array<double, 4>* y) const {
+void Tree::response(int link, const std::array<Wrench, 3>& wrenches, std::array<btScalar, 4>* y) const {
   const Path path = shape_.link_path(link);
   for (std::size_t c = 0; c < 3; ++c) {
     for (int i = 0; i < 3; ++i) {
@@ -144,7 +144,7 @@ void Tree::response(int link, const std::array<Wrench, 3>& wrenches, std::array<
   factor_.first_half(path.dofs[path.length - 1], y);
 }
 
-void Tree::response(int dof, double* y) const {
+void Tree::response(int dof, btScalar* y) const {
   const int last = shape_.path(dof).length - 1;
   for (int p = 0; p < last; ++p) y[p] = 0;
   y[last] = 1;

@@ -30,23 +30,23 @@ class Tree {
   btMultiBody& body() { return *body_; }
   const TreeShape& shape() const { return shape_; }
 
-  void begin_step(double dt_s);
+  void begin_step(btScalar dt_s);
   // An impulse at_rest - slope * velocity_new on the joint of this degree of freedom.
-  void add_implicit(int dof, double at_rest, double slope);
+  void add_implicit(int dof, btScalar at_rest, btScalar slope);
   void factorise();
   void accelerate();  // no more rows: from here on new_velocity() is known
-  double new_velocity(int dof) const { return velocity(dof) + z_[static_cast<std::size_t>(dof)]; }
+  btScalar new_velocity(int dof) const { return velocity(dof) + z_[static_cast<std::size_t>(dof)]; }
   void end_step();  // gives the new velocities to the body
 
   // How fast a point of the link at this wrench's line moves along it, as the step began.
-  double velocity_along(int link, const Wrench& wrench) const { return dot(state(link).velocity, wrench); }
-  double velocity(int dof) const { return body_->getVelocityVector()[dof]; }
+  btScalar velocity_along(int link, const Wrench& wrench) const { return dot(state(link).velocity, wrench); }
+  btScalar velocity(int dof) const { return body_->getVelocityVector()[dof]; }
   // y = G J^T along the link's path, J of three wrenches on the link; a fourth column is 0.
-  void response(int link, const std::array<Wrench, 3>& wrenches, std::array<double, 4>* y) const;
+  void response(int link, const std::array<Wrench, 3>& wrenches, std::array<btScalar, 4>* y) const;
   // Likewise along the path of the degree of freedom, of an impulse on it.
-  void response(int dof, double* y) const;
+  void response(int dof, btScalar* y) const;
 
-  double* z() { return z_.data(); }
+  btScalar* z() { return z_.data(); }
   const btVector3& origin_m() const { return origin_m_; }
 
  private:
@@ -61,7 +61,7 @@ class Tree {
   const LinkState& state(int link) const { return links_[static_cast<std::size_t>(link + 1)]; }
   void begin_base();
   void begin_link(int link);
-  void set_inertia(LinkState& link, const btTransform& pose, double mass_kg, const btVector3& moments_kg_m2,
+  void set_inertia(LinkState& link, const btTransform& pose, btScalar mass_kg, const btVector3& moments_kg_m2,
                    const btVector3& force_N, const btVector3& torque_Nm) const;
   void gather();
   void fill_joint_row(int link);
@@ -74,7 +74,7 @@ class Tree {
   btVector3 origin_m_{0, 0, 0};
   std::vector<LinkState> links_;  // the base first
   std::vector<Motion> axes_;      // of the degrees of freedom after the base's
-  std::vector<double> z_;
+  std::vector<btScalar> z_;
 };
 
 }  // namespace kadans::bullet

@@ -23,24 +23,24 @@ class TreeFactor {
   explicit TreeFactor(const TreeShape& shape);  // keeps a reference
 
   // To be filled before factorise(): entries of the row of a degree of freedom along its path, diagonal last.
-  double* row(int dof) { return &entries_[static_cast<std::size_t>(shape_->row_start(dof))]; }
+  btScalar* row(int dof) { return &entries_[static_cast<std::size_t>(shape_->row_start(dof))]; }
   void factorise();
 
   // y along the path of `dof` <- G y.
-  void first_half(int dof, double* y) const;
-  void first_half(int dof, std::array<double, 4>* y) const;  // four at once
+  void first_half(int dof, btScalar* y) const;
+  void first_half(int dof, std::array<btScalar, 4>* y) const;  // four at once
   // The same for a vector of all degrees of freedom.
-  void first_half(double* y) const;
+  void first_half(btScalar* y) const;
   // x <- G^T x, all degrees of freedom.
-  void second_half(double* x) const;
+  void second_half(btScalar* x) const;
 
  private:
-  const double* row(int dof) const { return &entries_[static_cast<std::size_t>(shape_->row_start(dof))]; }
-  double scale(int dof) const { return scales_[static_cast<std::size_t>(dof)]; }
+  const btScalar* row(int dof) const { return &entries_[static_cast<std::size_t>(shape_->row_start(dof))]; }
+  btScalar scale(int dof) const { return scales_[static_cast<std::size_t>(dof)]; }
 
   const TreeShape* shape_;
-  std::vector<double> entries_;  // of M, then of L
-  std::vector<double> scales_;   // D^-1/2
+  std::vector<btScalar> entries_;  // of M, then of L
+  std::vector<btScalar> scales_;   // D^-1/2
 };
 
 }  // namespace kadans::bullet

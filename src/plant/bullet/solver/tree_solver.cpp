@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t contacts_per_link = 6;  // room from the start, so that hardly any step allocates
 
-bool at_limit(const JointLaw& law, double impulse) { return impulse <= law.lower || impulse >= law.upper; }
+bool at_limit(const JointLaw& law, btScalar impulse) { return impulse <= law.lower || impulse >= law.upper; }
 
 }  // namespace
 
@@ -82,7 +82,7 @@ void TreeSolver::solve(btPersistentManifold** manifolds, int manifold_count, con
   for (const auto& tree : trees_) tree->accelerate();
 }
 
-void TreeSolver::begin(double dt_s, bool servo_rows) {
+void TreeSolver::begin(btScalar dt_s, bool servo_rows) {
   memory_.clear();
   joint_rows_.clear();
   contacts_.clear();
@@ -115,7 +115,7 @@ void TreeSolver::add_joint_rows(Joint& joint) {
 
 void TreeSolver::add_rolling_rows() {
   for (const Rolling& rolling : rollings_) {
-    const double limit = rolling.rows->limit_Nms();
+    const btScalar limit = rolling.rows->limit_Nms();
     if (!(limit > 0)) continue;
     for (int axis = 0; axis < 3; ++axis) {
       joint_rows_.emplace_back(*rolling.tree, axis, JointLaw{.lower = -limit, .upper = limit, .stiff = true}, 0.0,
@@ -146,7 +146,7 @@ void TreeSolver::add_contacts(btPersistentManifold** manifolds, int count, const
 
 void TreeSolver::iterate(int iterations_max) {
   for (int i = 0; i < iterations_max; ++i) {
-    double largest = 0;
+    btScalar largest = 0;
     for (JointRow& row : joint_rows_) largest = std::max(largest, row.iterate());
     for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction));
     if (largest <= options_.tolerance) return;
@@ -157,7 +157,7 @@ bool TreeSolver::servo_beyond_limit() const {
   return std::any_of(joints_.begin(), joints_.end(), [](const Joint& joint) {
     if (!joint.servo_is_linear) return false;
     const JointLaw& servo = joint.rows->law(JointRows::servo);
-    const double impulse = servo.at_rest - servo.slope * joint.tree->new_velocity(joint.dof);
+    const btScalar impulse = servo.at_rest - servo.slope * joint.tree->new_velocity(joint.dof);
     return impulse < servo.lower || impulse > servo.upper;
   });
 }
@@ -170,12 +170,12 @@ void TreeSolver::finish() {
 
 void TreeSolver::finish_joint(Joint& joint) {
   JointRows& rows = *joint.rows;
-  const double velocity = joint.tree->new_velocity(joint.dof);
+  const btScalar velocity = joint.tree->new_velocity(joint.dof);
   std::size_t row = joint.first_row;
   for (const auto kind : {JointRows::linear, JointRows::servo, JointRows::friction, JointRows::limit}) {
     const JointLaw& law = rows.law(kind);
     const bool linear = kind == JointRows::linear || (kind == JointRows::servo && joint.servo_is_linear);
-    double impulse = 0;
+    btScalar impulse = 0;
     if (rows.active(kind)) impulse = linear ? law.at_rest - law.slope * velocity : joint_rows_[row++].impulse();
     rows.set_impulse(kind, impulse);
   }

@@ -14,8 +14,8 @@
 //
 // It covers what the plant's worlds are made of: any number of multibodies with joints of one degree of freedom,
 // against each other, themselves and what is static or driven. Once anything else was added - a rigid body that moves
-// freely, a joint of several degrees of freedom and the rows on it - covers() is false, and the stock solver serves
-// after an articulated-body pass.
+// freely, a joint of several degrees of freedom and the rows on it, a constraint that closes a loop - covers() is
+// false, and the stock solver serves after an articulated-body pass.
 #pragma once
 
 #include <memory>
@@ -35,7 +35,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
  public:
   struct Options {
     FrictionLaw friction = FrictionLaw::cone;
-    double tolerance = 1e-7;  // m/s or rad/s
+    btScalar tolerance = 1e-7;  // m/s or rad/s
   };
 
   explicit TreeSolver(const Options& options) : options_(options) {}
@@ -45,6 +45,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   void add(const btCollisionObject& collider);
   void add(JointRows& rows);
   void add(RollingRows& rows);
+  void add(const btMultiBodyConstraint&) { covers_ = false; }
   bool covers() const { return covers_; }
 
   // Contacts, joint laws and free motion at once; the new velocities are in the bodies afterwards.
@@ -69,7 +70,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   Tree* tree_of(const btMultiBody* body);
   ContactBody contact_body(const btCollisionObject& collider);
   void solve(btPersistentManifold** manifolds, int manifold_count, const btContactSolverInfo& info, bool servo_rows);
-  void begin(double dt_s, bool servo_rows);
+  void begin(btScalar dt_s, bool servo_rows);
   void add_linear_laws(Joint& joint, bool servo_rows);
   void add_joint_rows(Joint& joint);
   void add_rolling_rows();

@@ -1,5 +1,3 @@
-#include "engines.h"
-
 #include <array>
 #include <cstdio>
 #include <cstring>
@@ -7,40 +5,11 @@
 
 #include <mujoco/mujoco.h>
 
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "engines.h"
 #include "mjcf.h"
 
 namespace kadans::bench {
 namespace {
-
-class KadansEngine final : public Engine {
- public:
-  KadansEngine(const RobotModel& model, const PlantSettings& settings) : plant_(model, settings, 1) {}
-
-  void set_torques(const std::vector<double>& torque_Nm) override {
-    ActuationFrame frame;
-    frame.joint_count = static_cast<std::uint32_t>(torque_Nm.size());
-    for (std::size_t i = 0; i < torque_Nm.size(); ++i) {
-      frame.joints[i].mode = ActuationMode::effort;
-      frame.joints[i].effort_Nm = torque_Nm[i];
-    }
-    plant_.write(frame);
-  }
-  void step() override { plant_.step(1'000'000); }
-  EngineState state() const override {
-    const PlantTruth& truth = plant_.truth();
-    EngineState state;
-    state.position_rad.assign(truth.position_rad.begin(), truth.position_rad.begin() + truth.joint_count);
-    state.velocity_rad_s.assign(truth.velocity_rad_s.begin(), truth.velocity_rad_s.begin() + truth.joint_count);
-    for (std::size_t i = 0; i < truth.foot_count; ++i) state.feet_m.push_back(truth.feet[i].position_m);
-    state.base_height_m = truth.base.position_m[2];
-    return state;
-  }
-  int contact_count() const override { return static_cast<int>(plant_.truth().contact_count); }
-
- private:
-  BulletPlant plant_;
-};
 
 struct FreeModel {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
@@ -102,12 +71,6 @@ class MujocoEngine final : public Engine {
 };
 
 }  // namespace
-
-std::unique_ptr<Engine> kadans_engine(const RobotModel& model, const PlantSettings& settings, ContactSolver solver) {
-  PlantSettings own = settings;
-  own.solver = solver;
-  return std::make_unique<KadansEngine>(model, own);
-}
 
 std::unique_ptr<Engine> mujoco_engine(const RobotModel& model, const PlantSettings& settings,
                                       const std::string& solver) {

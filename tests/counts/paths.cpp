@@ -1,0 +1,110 @@
+#include "paths.h"
+
+#include <array>
+#include <memory>
+
+#include "../bench/chain_rig.h"
+#include "../bench/chart_rig.h"
+#include "../bench/plant/engines.h"
+#include "../bench/plant/standing.h"
+#include "kadans/telemetry/recorder.h"
+
+using Element = std::array<std::uint64_t, 64>;  // 512 bytes
+using Queue = kadans::Ring<Element, 64>;
+using Newest = kadans::Latest<Element>;
+
+// Both are templates, which the compiler would merge with whoever calls them.
+extern "C" {
+[[gnu::noinline]] void kadans_queue_push_pop(Queue& queue, Element& element) {
+  (void)queue.try_push(element);
+  (void)queue.try_pop(element);
+}
+[[gnu::noinline]] void kadans_newest_write_read(Newest& newest, Element& element) {
+  newest.publish(element);
+  element = newest.read();
+}
+}
+
+namespace kadans::counts {
+namespace {
+
+using namespace bench;
+
+constexpr std::int64_t period_ns = 1'000'000;
+constexpr int ticks_per_behavior_tick = 10;
+
+Robot tulip() { return read_robot(KADANS_SOURCE_DIR "/config/tulip/robot.json"); }
+
+// Estimate, safety, 14 PID, snapshot, record.
+void control_ticks(int calls) {
+  ChainRig rig(14, tulip().types);
+  Recorder recorder(rig.catalog.signals);
+  rig.control.record_to(&recorder);
+  for (int i = 0; i < calls; ++i) {
+    if (i % ticks_per_behavior_tick == 0) rig.behaviors.tick(i * period_ns);
+    rig.control.tick(i * period_ns, 1e-9 * period_ns);
+  }
+}
+
+void standing_steps(int calls) {
+  const StandingRobot robot = standing_tulip();
+  const auto plant = kadans_engine(robot.model, robot.settings, ContactSolver::tree);
+  for (int i = 0; i < calls; ++i) {
+    plant->set_torques(hold_torques(robot.model, plant->state(), 0));
+    plant->step();
+  }
+}
+
+void behavior_ticks(int calls) {
+  Played played(ring(0.095, true));
+  for (int i = 0; i < calls; ++i) played.tick();
+}
+
+void records(int calls) {
+  ChainRig rig(14, tulip().types);
+  Recorder recorder(rig.catalog.signals);
+  const std::vector<double> row(rig.catalog.signals.size(), 0.5);
+  for (int i = 0; i < calls; ++i) recorder.record(static_cast<std::uint64_t>(i), i * period_ns, row);
+}
+
+void queue_elements(int calls) {
+  const auto queue = std::make_unique<Queue>();
+  Element element{};
+  for (int i = 0; i < calls; ++i) kadans_queue_push_pop(*queue, element);
+}
+
+void newest_values(int calls) {
+  const auto newest = std::make_unique<Newest>();
+  Element element{};
+  for (int i = 0; i < calls; ++i) kadans_newest_write_read(*newest, element);
+}
+
+// Everything at once: the squat, its plant, control objects and behavior.
+void simulated_ms(int calls) {
+  const ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json");
+  RunLog log;
+  Assembly robot(scenario, 1, log);
+  for (int i = 0; i < calls; ++i) robot.parts().lockstep.step();
+}
+
+constexpr Path all[] = {
+    {"control_tick_14", "kadans::ControlEngine::tick(long, double, unsigned int)", 500, control_ticks},
+    {"plant_step_standing", "kadans::BulletPlant::step(long)", 1000, standing_steps},
+    {"contact_solver_standing",
+     "kadans::bullet::TreeSolver::solveMultiBodyGroup(btCollisionObject**, int, btPersistentManifold**, int, "
+     "btTypedConstraint**, int, btMultiBodyConstraint**, int, btContactSolverInfo const&, btIDebugDraw*, "
+     "btDispatcher*)",
+     1000, standing_steps},
+    {"behavior_tick", "kadans::Behavior::tick(kadans::Snapshot const&, kadans::CommandSender&)", 500, behavior_ticks},
+    {"record_tick", "kadans::Recorder::record(unsigned long, long, std::span<double const, 18446744073709551615ul>)",
+     500, records},
+    {"queue_push_pop", "kadans_queue_push_pop", 1000, queue_elements},
+    {"newest_write_read", "kadans_newest_write_read", 1000, newest_values},
+    {"simulated_ms_squat", "kadans::Lockstep::step()", 500, simulated_ms},
+};
+
+}  // namespace
+
+std::span<const Path> paths() { return all; }
+
+}  // namespace kadans::counts
