@@ -1,7 +1,7 @@
 -- Gets up from wherever it lies: waits until it lies still, looks how, rolls onto its face if need be, folds onto hands and
 -- feet, rises. Whatever goes wrong on the way it lies down again and begins anew, a few times.
 --
--- It ends in "up" when the first try did it, in "up_late" when it took more.
+-- When the first try did it, it passes through "at_once" on its way to "up": sweeps count that state, number 1.
 local k = require "kadans"
 local floor = require "floor"
 
@@ -14,6 +14,7 @@ local P = k.params {
   steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
   tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
+  balance     = { 1, min = 0, max = 1, doc = "share of the balance's torques while it rises" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
 
@@ -50,18 +51,19 @@ local function roll(over)
 end
 
 return k.behavior "get_up" {
-  controls = "posture",
+  controls = "balanced",
   vars     = { tried = 0, still_s = 0, arms = {} },
   initial  = "lie",
 
+  k.state "at_once" { { after = 0, to = "up" } },
   k.final "up"      { outcome = "done" },
-  k.final "up_late" { outcome = "done" },
 
   k.state "lie" {
     enter = function(m)
       m:clear_faults()
       m.vars.still_s = 0
       m.posture:set_gains("get_up")
+      m.balance:set_parameter("share", 0)
       m.posture:move(floor.lying(), { time_s = 0.4 })
     end,
     during = function(m, s)
@@ -91,7 +93,10 @@ return k.behavior "get_up" {
     { on = "run.done", to = "again", why = "not on hands and feet" },
   },
   k.state "rise" {
-    run = function(m) m.posture:move_through(floor.rise(m.vars.arms)):wait() end,
+    run = function(m)
+      m.balance:set_parameter("share", P.balance)
+      m.posture:move_through(floor.rise(m.vars.arms)):wait()
+    end,
     { on = "run.done", to = "steady" },
     { when = function(s, m) return m.time_s > 1 and floor.up(s.base).z < 0.3 end, to = "again", why = "fell" },
   },
@@ -104,8 +109,8 @@ return k.behavior "get_up" {
     },
     k.state "stands" {
       { when = function(s) return not stands(s) end, to = "sways" },
-      { when = function(_, m) return m.vars.tried == 1 end, after = P.steady_s, to = "up" },
-      { after = P.steady_s, to = "up_late" },
+      { when = function(_, m) return m.vars.tried == 1 end, after = P.steady_s, to = "at_once" },
+      { after = P.steady_s, to = "up" },
     },
   },
   k.state "again" {
