@@ -1,6 +1,7 @@
 #include "shipped_types.h"
 
 #include "kadans/control/computed_torque.h"
+#include "kadans/control/dcm_balance.h"
 #include "kadans/control/feedforward_player.h"
 #include "kadans/control/gravity_compensation.h"
 #include "kadans/control/joint_cascade.h"
@@ -25,6 +26,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   types.add("profile_position", make_profile_position);
   types.add("feedforward_player", make_feedforward_player);
   types.add("computed_torque", make_computed_torque);
+  types.add("dcm_balance", make_dcm_balance);
   types.add("gravity_compensation", make_gravity_compensation);
   types.add("task_impedance", make_task_impedance);
 }

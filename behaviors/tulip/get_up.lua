@@ -1,0 +1,121 @@
+-- Gets up from wherever it lies: waits until it lies still, looks how, rolls onto its face if need be, folds onto hands and
+-- feet, rises. Whatever goes wrong on the way it lies down again and begins anew, a few times.
+--
+-- When the first try did it, it passes through "at_once" on its way to "up": sweeps count that state, number 1.
+local k = require "kadans"
+local floor = require "floor"
+
+local P = k.params {
+  tries       = { 3, min = 1, max = 10, doc = "how often it tries" },
+  still_s     = { 0.6, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins: torque is back by then" },
+  still_rad_s = { 0.5, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
+  patience_s  = { 2.0, min = 0.1, max = 20, unit = "s", doc = "longest wait to lie still" },
+  bear_s      = { 0.15, min = 0, max = 2, unit = "s", doc = "time to come to rest on hands and feet" },
+  steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
+  tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
+  height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
+  balance     = { 1, min = 0, max = 1, doc = "share of the balance's torques while it rises" },
+  sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
+}
+
+local function rate(s)
+  local w = s.base.angular_velocity_rad_s
+  return math.sqrt(w.x ^ 2 + w.y ^ 2 + w.z ^ 2)
+end
+
+local function stands(s)
+  return s.base.tilt_rad < P.tilt_rad and s.base.height_m > P.height_m and s.feet.left.contact and s.feet.right.contact
+end
+
+-- Folded on its hands and feet, head down.
+local function bears(s)
+  local up = floor.up(s.base)
+  return s.feet.left.contact and s.feet.right.contact and up.x < -0.4 and math.abs(up.y) < 0.4
+end
+
+local function is(posture) return function(s) return floor.posture(s.base) == posture end end
+
+local function play(m, steps)
+  for _, step in ipairs(steps) do m.posture:move(step[1], { time_s = step.time_s }):wait() end
+end
+
+local function roll(over)
+  return {
+    run = function(m, s)
+      play(m, floor.roll(over, s.joints))
+      m.posture:move(floor.lying(), { time_s = 0.3 }):wait()
+    end,
+    { on = "run.done", when = is "prone", to = "fold" },
+    { on = "run.done", to = "again", why = "did not roll over" },
+  }
+end
+
+return k.behavior "get_up" {
+  controls = "balanced",
+  vars     = { tried = 0, still_s = 0, arms = {} },
+  initial  = "lie",
+
+  k.state "at_once" { { after = 0, to = "up" } },
+  k.final "up"      { outcome = "done" },
+
+  k.state "lie" {
+    enter = function(m)
+      m:clear_faults()
+      m.vars.still_s = 0
+      m.posture:set_gains("get_up")
+      m.balance:set_parameter("share", 0)
+      m.posture:move(floor.lying(), { time_s = 0.4 })
+    end,
+    during = function(m, s)
+      m.vars.still_s = rate(s) < P.still_rad_s and m.vars.still_s + 0.01 or 0
+    end,
+    { when = function(_, m) return m.vars.still_s >= P.still_s end, to = "look" },
+    { after = P.patience_s, to = "look" },
+  },
+  k.state "look" {
+    enter = function(m) m.vars.tried = m.vars.tried + 1 end,
+    { when = stands, to = "steady" },
+    { when = is "prone", to = "fold" },
+    { when = function(s) return floor.posture(s.base) == "left" or floor.up(s.base).y <= 0 end, to = "roll_left" },
+    { after = 0, to = "roll_right" },
+  },
+  k.state "roll_left"  (roll "left"),
+  k.state "roll_right" (roll "right"),
+  k.state "fold" {
+    run = function(m, s)
+      local steps, turns = floor.fold(s.joints)
+      m.vars.arms = turns
+      play(m, steps)
+      m:wait(P.bear_s)
+      play(m, { floor.bear(turns) })
+    end,
+    { on = "run.done", when = bears, to = "rise" },
+    { on = "run.done", to = "again", why = "not on hands and feet" },
+  },
+  k.state "rise" {
+    run = function(m)
+      m.balance:set_parameter("share", P.balance)
+      m.posture:move_through(floor.rise(m.vars.arms)):wait()
+    end,
+    { on = "run.done", to = "steady" },
+    { when = function(s, m) return m.time_s > 1 and floor.up(s.base).z < 0.3 end, to = "again", why = "fell" },
+  },
+  k.state "steady" {
+    initial = "sways",
+    { when = function(s) return s.base.tilt_rad > 0.8 end, to = "again", why = "fell" },
+    k.state "sways" {
+      { when = stands, to = "stands" },
+      { after = P.sway_s, to = "again", why = "does not stand" },
+    },
+    k.state "stands" {
+      { when = function(s) return not stands(s) end, to = "sways" },
+      { when = function(_, m) return m.vars.tried == 1 end, after = P.steady_s, to = "at_once" },
+      { after = P.steady_s, to = "up" },
+    },
+  },
+  k.state "again" {
+    { when = function(_, m) return m.vars.tried >= P.tries end, to = "failed" },
+    { after = 0, to = "lie" },
+  },
+  k.final "failed" { outcome = "failed" },
+}

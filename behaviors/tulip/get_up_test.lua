@@ -1,0 +1,77 @@
+-- kadans behavior test behaviors/tulip/get_up_test.lua
+local k = require "kadans"
+
+describe("get_up", function()
+  local run
+  before_each(function() run = k.play "get_up.lua" end)
+
+  local function lies(roll, pitch)
+    run:set_sensor("base.roll_rad", roll)
+    run:set_sensor("base.pitch_rad", pitch)
+    run:set_sensor("base.tilt_rad", 1.5)
+    run:set_sensor("feet.left.contact", true)
+    run:set_sensor("feet.right.contact", true)
+  end
+  local function stands()
+    run:set_sensor("base.pitch_rad", 0)
+    run:set_sensor("base.roll_rad", 0)
+    run:set_sensor("base.tilt_rad", 0)
+    run:set_sensor("base.height_m", 0.86)
+  end
+
+  it("lies still before it begins", function()
+    lies(0, 1.5)
+    run:advance(0.5)
+    expect(run.state).to_equal "lie"
+    run:advance(0.2)
+    expect(run.state).to_equal "fold"
+  end)
+
+  it("folds onto hands and feet from its face, rises, and is up after two seconds of standing", function()
+    lies(0, 1.5)
+    run:advance_to("rise")
+    expect(run.joints.l_hip_pitch.position_rad).to_be_near(-2.3, 0.05)
+    run:advance(0.9)
+    stands()
+    run:advance_to("steady.stands")
+    expect(run.joints.l_hip_pitch.position_rad).to_be_near(-0.15, 0.05)
+    run:advance(1.9)
+    expect(run.state).to_equal "steady.stands"
+    expect(run:finish(5)).to_equal "done"
+    expect(run.states).to_contain "stands at_once up"
+  end)
+
+  it("rolls onto its face first, over the side that it lies on", function()
+    lies(0, -1.5)
+    run:advance(0.7)
+    expect(run.state).to_contain "roll"
+    run:advance(0.5)
+    lies(0, 1.5)
+    run:advance_to("fold")
+    expect(run.states).to_contain "fold"
+  end)
+
+  it("rolls over the right side when it lies there", function()
+    lies(1.5, 0)
+    run:advance(0.7)
+    expect(run.state).to_equal "roll_right"
+  end)
+
+  it("tries again when it falls, and says so at the end", function()
+    lies(0, 1.5)
+    run:advance_to("rise")
+    run:advance(1.2)
+    expect(run.state).to_equal "lie"
+    run:advance_to("rise")
+    run:advance(0.9)
+    stands()
+    expect(run:finish(10)).to_equal "done"
+    expect(run.states).to_contain "stands up"
+  end)
+
+  it("gives up after as many tries as it is told", function()
+    run:set_parameter("tries", 2)
+    lies(0, -1.5)  -- and never rolls over
+    expect(run:finish(30)).to_equal "failed"
+  end)
+end)

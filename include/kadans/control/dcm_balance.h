@@ -1,0 +1,89 @@
+// Keeps a standing robot's balance, in effort mode: type "dcm_balance". Meant to be composed onto a posture ("sum").
+//
+// The divergent component of motion is where the robot's pendulum is going (Hof 2008, Human Movement Science 27(1);
+// Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z), c being the centre of mass over the
+// middle between the feet's frames, v its velocity. The robot stays up while xi can be kept over the soles, so the
+// centre of pressure has to lie beyond xi. Three means, as people use them (Horak and Nashner 1986, J. Neurophysiology
+// 55(6)), each with what the one before leaves over:
+//
+//   ankles  tau = m g k_ankle e / 2 each, e = xi_x - offset_x; at most what the sole's length gives
+//   hips    tau = -k_hip r each, r what of e lies beyond reach_front or reach_back: the torso bows the way it falls
+//   arms    tau = k_arm r each: they swing the same way
+//   roll    tau = k_roll e_y on both hip rolls: the load goes to the foot on the side that it falls to
+//
+// The velocity is the difference of two kinematics, one of them moved on by a millisecond with the filtered joint
+// velocities and the gyro: no position is differentiated. The feet are taken to stand flat.
+//
+// Joints      of each side *_ankle_pitch, *_hip_pitch, *_hip_roll, *_shoulder_pitch, all or some.
+// Options     left_foot, right_foot: the links that stand; required.
+// Parameters  Config. `share` fades the whole in and out, 1 takes 0.2 s.
+// Signals     State, and <joint>.effort_Nm.
+// Start       from no torque, in 0.2 s.
+// Not finite  what depends on it gives no torque: the posture goes on alone.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "kadans/control/control_object.h"
+#include "kadans/control/joint_axis.h"
+#include "kadans/model/kinematics.h"
+
+namespace kadans {
+
+class DcmBalance final : public ControlObject {
+ public:
+  struct Config {
+    double share = 1;            // 0..1
+    double offset_x_m = 0.02;    // where xi shall be, forward of the ankles
+    double ankle_per_m = 1;      // shift of the centre of pressure per error
+    double ankle_max_Nm = 12;    // each
+    double reach_front_m = 0.1;  // error that the ankles hold
+    double reach_back_m = 0.06;
+    double hip_Nm_per_m = 0;
+    double arm_Nm_per_m = 0;
+    double roll_Nm_per_m = 0;
+    double reach_side_m = 0;
+  };
+  struct State {
+    double com_x_m = 0, com_y_m = 0, com_z_m = 0;
+    double dcm_x_m = 0, dcm_y_m = 0;
+    double beyond_x_m = 0, beyond_y_m = 0;  // r, and its like to the side
+    double share = 0;
+  };
+
+  // Throws std::invalid_argument for a passive joint or one of no known role, OptionError for feet.
+  explicit DcmBalance(const ObjectSetup& setup);
+
+  void declare(Declaration& declaration) override;
+  void start(const ControlInput& input) noexcept override;
+  void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
+  void set_point(std::uint32_t, double, double) noexcept override {}  // has none
+  void cancel_motion(std::uint32_t) noexcept override {}
+  double motion_remaining_s() const noexcept override { return 0; }
+  const State& state() const noexcept { return state_; }
+
+ private:
+  enum class Role : std::uint8_t { ankle_pitch, hip_pitch, hip_roll, shoulder_pitch };
+  struct Part {
+    JointAxis axis;
+    Role role = Role::ankle_pitch;
+    double effort_Nm = 0;
+  };
+  static Role role_of(const std::string& joint);
+  Vec3 com_over_feet(const ControlInput& input, double ahead_s) noexcept;
+  bool measure(const ControlInput& input) noexcept;
+  double law_Nm(Role role) const noexcept;
+
+  std::vector<Part> parts_;
+  std::array<std::size_t, 2> feet_{};
+  Kinematics kinematics_;
+  std::size_t joint_count_;
+  double weight_N_;
+  Config config_;
+  State state_;
+};
+
+std::unique_ptr<ControlObject> make_dcm_balance(const ObjectSetup& setup);
+
+}  // namespace kadans

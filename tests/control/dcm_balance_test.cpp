@@ -1,0 +1,158 @@
+#include "kadans/control/dcm_balance.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "kadans/control/catalog.h"
+#include "kadans/testing/allocation_count.h"
+
+using namespace kadans;
+
+namespace {
+
+constexpr double weight_N = 9.81 * 12;
+constexpr double com_height_m = (10 * 0.7 + 2 * 0.25) / 12;  // over the ankles
+
+Link link(const char* name, double mass_kg, double com_z_m) {
+  Link link;
+  link.name = name;
+  link.inertia = {.mass_kg = mass_kg, .com_m = {0, 0, com_z_m}, .xx = 0.1, .yy = 0.1, .zz = 0.1};
+  return link;
+}
+
+Joint joint(const char* name, std::size_t parent, const Vec3& origin_m) {
+  Joint joint;
+  joint.name = name;
+  joint.parent = parent;
+  joint.origin.position_m = origin_m;
+  joint.axis = {0, 1, 0};
+  joint.lower_rad = -2;
+  joint.upper_rad = 2;
+  joint.effort_max_Nm = 20;
+  joint.velocity_max_rad_s = 8;
+  return joint;
+}
+
+// Two straight legs of 0.5 m and 1 kg under a torso of 10 kg; feet without mass.
+RobotModel biped() {
+  RobotModel model;
+  model.links = {link("torso", 10, 0), link("l_leg", 1, -0.25), link("l_foot", 0, 0), link("r_leg", 1, -0.25),
+                 link("r_foot", 0, 0)};
+  model.joints = {joint("l_hip_pitch", 0, {0, 0.1, -0.2}), joint("l_ankle_pitch", 1, {0, 0, -0.5}),
+                  joint("r_hip_pitch", 0, {0, -0.1, -0.2}), joint("r_ankle_pitch", 3, {0, 0, -0.5})};
+  return model;
+}
+
+const ObjectOptions feet{{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}};
+
+struct Bench {
+  RobotModel model = biped();
+  DcmBalance balance{{.model = model, .joints = {0, 1, 2, 3}, .options = feet}};
+  ParameterTable parameters;
+  SetpointTable setpoints;
+  SignalTable signals;
+  JointStates joints;
+  RobotStatus status;
+  ActuationFrame last, actuation;
+
+  Bench() {
+    Declaration declaration("balance", 0, parameters, setpoints, signals);
+    balance.declare(declaration);
+    joints.count = 4;
+    set("offset_x_m", 0);
+    set("hip_Nm_per_m", 300);
+  }
+  void set(const std::string& name, double value) {
+    REQUIRE(parameters.set(parameters.find("balance." + name).value(), value));
+  }
+  ControlInput input() { return {joints, status, last, 0, 0.001}; }
+  // Rigid, leaning forward and turning that way.
+  void lean(double pitch_rad, double rate_rad_s = 0) {
+    status.base.pitch_rad = pitch_rad;
+    status.base.angular_velocity_rad_s = {0, rate_rad_s, 0};
+    balance.start(input());
+    for (int i = 0; i < 300; ++i) balance.step(input(), actuation);
+  }
+  double hip_Nm() const { return actuation.joints[0].effort_Nm; }
+  double ankle_Nm() const { return actuation.joints[1].effort_Nm; }
+};
+
+}  // namespace
+
+TEST_CASE("DcmBalance presses with the toes against a lean forward, each ankle with half of it") {
+  Bench bench;
+  bench.lean(0.05);
+  const double error_m = com_height_m * std::sin(0.05);
+  CHECK(bench.balance.state().dcm_x_m == doctest::Approx(error_m));
+  CHECK(bench.ankle_Nm() == doctest::Approx(weight_N * error_m / 2));
+  CHECK(bench.actuation.joints[3].effort_Nm == bench.ankle_Nm());
+  bench.lean(-0.05);
+  CHECK(bench.ankle_Nm() == doctest::Approx(-weight_N * error_m / 2));
+}
+
+TEST_CASE("DcmBalance counts where the robot is going, not only where it is") {
+  Bench bench;
+  bench.lean(0, 0.2);
+  const double velocity_m_s = 0.2 * com_height_m;
+  CHECK(bench.balance.state().com_x_m == doctest::Approx(0));
+  CHECK(bench.balance.state().dcm_x_m ==
+        doctest::Approx(velocity_m_s * std::sqrt(com_height_m / 9.81)).epsilon(1e-3));
+}
+
+TEST_CASE("DcmBalance keeps its ankles within their bound, and bows only beyond their reach") {
+  Bench bench;
+  bench.set("ankle_max_Nm", 3);
+  bench.lean(0.1);
+  CHECK(bench.ankle_Nm() == 3);
+  CHECK(bench.hip_Nm() == 0);
+  bench.lean(0.3);
+  CHECK(bench.hip_Nm() == doctest::Approx(-300 * (com_height_m * std::sin(0.3) - 0.1)));
+  bench.lean(-0.3);
+  CHECK(bench.hip_Nm() == doctest::Approx(300 * (com_height_m * std::sin(0.3) - 0.06)));
+}
+
+TEST_CASE("DcmBalance comes in from no torque, and goes as far as it is told") {
+  Bench bench;
+  bench.lean(0.05);
+  const double whole_Nm = bench.ankle_Nm();
+  bench.balance.start(bench.input());
+  bench.balance.step(bench.input(), bench.actuation);
+  CHECK(bench.ankle_Nm() == doctest::Approx(0.005 * whole_Nm));
+  bench.set("share", 0.5);
+  bench.lean(0.05);
+  CHECK(bench.ankle_Nm() == doctest::Approx(whole_Nm / 2));
+}
+
+TEST_CASE("DcmBalance gives no torque when something is not measured, or the robot lies") {
+  Bench bench;
+  bench.lean(0.05);
+  bench.joints.joints[1].position_rad = std::numeric_limits<double>::quiet_NaN();
+  bench.balance.step(bench.input(), bench.actuation);
+  CHECK(bench.ankle_Nm() == 0);
+  CHECK(bench.hip_Nm() == 0);
+  bench.joints.joints[1].position_rad = 0;
+  bench.lean(1.57);
+  CHECK(bench.ankle_Nm() == 0);
+}
+
+TEST_CASE("DcmBalance does not allocate") {
+  Bench bench;
+  const ControlInput input = bench.input();
+  const kadans::testing::AllocationCount heap;
+  bench.balance.start(input);
+  bench.balance.step(input, bench.actuation);
+  const long allocations = heap.count();
+  CHECK(allocations == 0);
+}
+
+TEST_CASE("DcmBalance needs feet, and joints that have a part in balance") {
+  const RobotModel model = biped();
+  CHECK_THROWS_WITH_AS(DcmBalance({.model = model, .joints = {0}}),
+                       "it needs the option 'left_foot': a foot's link", OptionError);
+  RobotModel other = biped();
+  other.joints[0].name = "l_wing";
+  CHECK_THROWS_AS(DcmBalance({.model = other, .joints = {0}, .options = feet}), std::invalid_argument);
+}
