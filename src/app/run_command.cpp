@@ -12,11 +12,13 @@
 
 #include "commands.h"
 #include "kadans/app/assembly.h"
+#include "kadans/config/json_value.h"
 #include "kadans/config/project_root.h"
 #include "kadans/realtime/machine.h"
 #include "kadans/realtime/memory_lock.h"
 #include "kadans/realtime/rights.h"
 #include "kadans/realtime/service_notifier.h"
+#include "kadans/telemetry/run_description.h"
 #include "leaving.h"
 #include "live_log.h"
 #include "live_report.h"
@@ -154,6 +156,9 @@ class LiveRun {
     if (!recorder_->open(options_.record)) throw InputError({.message = recorder_->error()});
     (void)recorder_->describe(
         "run", {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}});
+    const RobotConfig& robot = assembly_.robot();
+    (void)recorder_->describe_robot(robot.model.name, read_text_file(robot.model.file), 0);
+    (void)recorder_->describe_parts(run_description(robot, assembly_.catalog(), assembly_.host()), 0);
     live_log_.record_to(&recorder_->events());
     assembly_.record_to(recorder_.get());
     record_ = std::make_unique<RecordTask>(*recorder_);

@@ -9,6 +9,7 @@
 
 #include "input_files.h"
 #include "kadans/config/experiment_config.h"
+#include "kadans/telemetry/run_description.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -189,6 +190,7 @@ void SimRun::start_record() {
   const RobotModel& model = assembly_.robot().model;
   (void)recorder_->describe_run(inputs_);
   (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
+  (void)recorder_->describe_parts(run_description(assembly_.robot(), assembly_.catalog(), assembly_.host()), 0);
   late_log_.set(&recorder_->events());
   assembly_.record_to(recorder_.get());
 }
