@@ -36,12 +36,28 @@ function Parameter({ p, value, writable, change, label }) {
   );
 }
 
+// "l_knee.kp_Nm_per_rad" stands under l_knee.
+function parts_of(parameters, strip) {
+  const parts = new Map();
+  for (const p of parameters) {
+    const label = p.name.startsWith(strip) ? p.name.slice(strip.length) : p.name;
+    const dot = label.lastIndexOf('.');
+    const part = dot < 0 ? '' : label.slice(0, dot);
+    if (!parts.has(part)) parts.set(part, []);
+    parts.get(part).push([label.slice(dot + 1), p]);
+  }
+  return [...parts];
+}
+
 function Group({ title, note, parameters, open, toggle, session, change, writable, strip }) {
   return (
     <div class="group">
       <button class="topic" aria-expanded={open} onClick={toggle}>{title}{note && <em>{note}</em>}<span>{parameters.length}</span></button>
-      {open && parameters.map((p) => (
-        <Parameter key={p.name} p={p} label={p.name.startsWith(strip) ? p.name.slice(strip.length) : p.name} value={session.parameters.get(p.name) ?? p.value} {...{ change, writable }} />
+      {open && parts_of(parameters, strip).map(([part, own]) => (
+        <div key={part}>
+          {part && <h4>{part}</h4>}
+          {own.map(([label, p]) => <Parameter key={p.name} {...{ p, label, change, writable }} value={session.parameters.get(p.name) ?? p.value} />)}
+        </div>
       ))}
     </div>
   );

@@ -65,7 +65,7 @@ function options_for(names, size, theme, now) {
 }
 
 function data_of(session, names, [from, to], width) {
-  const buckets = Math.max(50, Math.min(2000, Math.floor(width / 1.5)));
+  const buckets = Math.max(50, Math.min(2000, Math.floor(width)));
   const columns = names.map((name) => {
     const signal = session.signals.get(name);
     return signal && to > from ? bucket_values(signal, from, to, buckets) : new Array(2 * buckets).fill(null);

@@ -34,7 +34,8 @@ export function TimingPanel({ session }) {
     if (joints && !session.timing) found.push({ title: 'Time between rows', unit: 'µs', data: histogram(intervals_us(joints)) });
     for (const [name, signal] of session.signals) {
       if (!/^behavior\..*\.(instructions|gc_pause_ns)$/.test(name)) continue;
-      found.push({ title: name, unit: signal.unit || signal.doc, data: histogram(column_values(signal)) });
+      const data = histogram(column_values(signal));
+      if (data && data.max > 0) found.push({ title: name, unit: signal.unit, data }); // in virtual time a pause is no time
     }
     return found;
   }, [session, Math.floor(rows / 500), session.timing === null]);

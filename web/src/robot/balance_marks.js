@@ -20,7 +20,11 @@ class Foot {
     this.corners = info.corners_m.map((corner) => new Vector3(...corner));
     this.arrow = new ArrowHelper(up, new Vector3(), 0.1, mark_colors.force, 0.04, 0.025);
     this.dot = flat(new CircleGeometry(0.009, 24), mark_colors.cop);
-    for (const part of [this.arrow.line, this.arrow.cone, this.dot]) part.renderOrder = 5;
+    for (const part of [this.arrow.line, this.arrow.cone, this.dot]) {
+      part.renderOrder = 5;
+      part.material.depthTest = false; // seen through the robot
+      part.material.transparent = true;
+    }
     this.cop = new Vector3();
     this.force_N = 0;
   }

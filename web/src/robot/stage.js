@@ -21,7 +21,7 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.minDistance = 0.3;
     this.controls.maxDistance = 15;
-    this.target = new Vector3(0, 0, 0.55);
+    this.target = new Vector3(0, 0, 0.6);
     this.add_lights();
     this.ground = new Mesh(new PlaneGeometry(40, 40), new ShadowMaterial());
     this.ground.receiveShadow = true;
@@ -56,7 +56,7 @@ export class Stage {
 
   look_from_start() {
     this.controls.target.copy(this.target);
-    this.camera.position.copy(this.target).add(new Vector3(2.0, 1.35, 0.5));
+    this.camera.position.copy(this.target).add(new Vector3(2.5, 1.7, 0.62));
     this.controls.update();
   }
 
