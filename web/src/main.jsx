@@ -3,6 +3,7 @@ import { render } from 'preact';
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { App } from './app.jsx';
+import { open_live } from './data/live_source.js';
 import { open_record } from './data/record_source.js';
 import { Session } from './data/session.js';
 import { Frames } from './frames.js';
@@ -27,7 +28,10 @@ addEventListener('drop', (event) => {
 
 const wanted = new URLSearchParams(location.search);
 if (wanted.has('record')) show(open_record(new URL(wanted.get('record'), location.href).href));
+else if (wanted.has('empty')) show(new Session('Drop a record here', false));
 else {
-  const empty = new Session('Drop a record here', false);
-  show(empty);
+  const address = new URL(wanted.get('live') ?? '.', location.href);
+  address.protocol = address.protocol.replace('http', 'ws');
+  address.search = '';
+  show(open_live(address.href, wanted.get('token') ?? ''));
 }

@@ -13,6 +13,7 @@
 #include "kadans/realtime/task_thread.h"
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/instance.h"
+#include "kadans/remote/robot_texts.h"
 #include "kadans/telemetry/recorder.h"
 
 namespace kadans {
@@ -31,12 +32,6 @@ class RecordLog final : public BehaviorLog {
 
  private:
   std::atomic<BehaviorLog*> log_{nullptr};
-};
-
-// What viewers need of a robot before its first number: of each record the first messages.
-struct RobotTexts {
-  std::string name, urdf;
-  std::string description;  // run_description.h
 };
 
 class RecordSide final : public Task {

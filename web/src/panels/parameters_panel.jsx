@@ -76,8 +76,8 @@ function groups_of(description) {
   }
   for (const [owner, parameters] of rest) groups.push({ title: owner, note: '', strip: `${owner}.`, parameters });
   for (const behavior of description.behaviors) {
-    const parameters = behavior.parameters.map((p) => ({ ...p, name: `behavior.${behavior.name}.${p.name}` }));
-    groups.push({ title: behavior.name, note: 'behavior', strip: `behavior.${behavior.name}.`, parameters });
+    const parameters = behavior.parameters.map((p) => ({ ...p, name: `${behavior.name}.${p.name}` }));
+    groups.push({ title: behavior.name, note: 'behavior', strip: `${behavior.name}.`, parameters });
   }
   return groups.filter((group) => group.parameters.length > 0);
 }

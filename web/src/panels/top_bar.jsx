@@ -1,15 +1,23 @@
 // What is looked at, how it fares, and what can be asked of a live run.
-import { clock, number, useSession } from '../watching.js';
+import { useSession } from '../watching.js';
 import { rungs } from './safety_panel.jsx';
 
 function Remote({ session }) {
   const { remote } = session;
   const ask = (verb, argument) => remote.command(verb, argument);
-  const paused = remote.state?.paused;
+  const { paused, held, speed } = remote.state;
   return (
     <div class="remote" role="group" aria-label="Run">
+      {remote.verbs.has('hold') && (
+        <>
+          <button disabled={!remote.writes} title="The simulation's time" onClick={() => ask(held ? 'go' : 'hold')}>{held ? 'Go' : 'Hold'}</button>
+          <button disabled={!remote.writes || !held} onClick={() => ask('step', { value: 1 })}>Step</button>
+          <select aria-label="Speed of the simulation" value={speed ?? 1} disabled={!remote.writes} onChange={(event) => ask('speed', { value: Number(event.target.value) })}>
+            {[0.1, 0.25, 0.5, 1, 2, 5, 10].map((times) => <option key={times} value={times}>{times}×</option>)}
+          </select>
+        </>
+      )}
       {remote.verbs.has('pause') && <button disabled={!remote.writes} onClick={() => ask(paused ? 'resume' : 'pause')}>{paused ? 'Resume' : 'Pause'}</button>}
-      {remote.verbs.has('step') && <button disabled={!remote.writes || !paused} onClick={() => ask('step')}>Step</button>}
       {remote.verbs.has('stop') && <button disabled={!remote.writes} onClick={() => ask('stop')}>Stop</button>}
       {remote.verbs.has('reload') && <button disabled={!remote.writes} onClick={() => ask('reload')}>Reload</button>}
       {remote.verbs.has('estop') && <button class="estop" disabled={!remote.writes} title="Damp, then off, latched until cleared" onClick={() => ask('estop')}>E-stop</button>}
