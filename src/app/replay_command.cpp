@@ -213,6 +213,8 @@ std::vector<std::string> notes_of(const Replay& replay, const RunInputs& inputs)
     notes.emplace_back("it holds no tick to compare");
   if (!inputs.fact("watched").empty())
     notes.emplace_back("recorded with --watch: what was saved and reloaded meanwhile is not repeated");
+  if (!inputs.fact("ctl").empty() && !replay.same())
+    notes.emplace_back("recorded while 'kadans ctl' could reach it: what was ordered meanwhile is not repeated");
   return notes;
 }
 

@@ -60,6 +60,13 @@ Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenar
           .behavior_period_s = robot.engine.behavior_period_s};
 }
 
+// Many runs on virtual time may go on at once, so there nobody is found without having been asked to be.
+CtlPlace place_of(const RunOptions& options) {
+  CtlPlace place = options.ctl;
+  place.wanted = place.wanted && (!options.virtual_time || !place.folder.empty());
+  return place;
+}
+
 // False when the run must not go on without.
 bool rights_suffice(const RunOptions& options) {
   if (options.virtual_time) return true;
@@ -141,10 +148,12 @@ class LiveRun {
     LiveThreads threads(timing, {control_, behaviors_, plant_, &record_side_});
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
+    ctl_.start();
     notifier_.ready("drives " + assembly_.robot().name);
     const std::string ended = watch(threads);
     notifier_.stopping();
     leave(threads);
+    ctl_.stop();
     threads.stop();
     ActuationFrame off;
     off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
@@ -258,6 +267,7 @@ class LiveRun {
                           {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}}};
   BehaviorSide behavior_side_{{instance_, assembly_.host(), parts_.behaviors, parts_.control.exchange(), echo_, log_},
                               &leaving_};
+  CtlService ctl_{place_of(options_), instance_};
   ControlTask control_{parts_.control, &truth_};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace kadans {
@@ -32,6 +33,14 @@ class Descriptor {
       bytes.remove_prefix(static_cast<std::size_t>(written));
     }
   }
+  // As the file that it takes the place of, if the system lets it.
+  void look_like(const fs::path& file) const {
+    struct stat old {};
+    if (stat(file.c_str(), &old) != 0) return;
+    if (fchown(file_, old.st_uid, old.st_gid) != 0 && fchown(file_, static_cast<uid_t>(-1), old.st_gid) != 0) {
+    }
+    if (fchmod(file_, old.st_mode & 07777U) != 0) fail("cannot be given its mode");
+  }
   void sync() const {
     if (fsync(file_) != 0) fail("cannot be forced to the disk");
   }
@@ -51,6 +60,7 @@ void write_durably(const fs::path& file, std::string_view bytes) {
   const fs::path temporary = folder / ("." + file.filename().string() + "." + std::to_string(getpid()) + ".part");
   try {
     const Descriptor descriptor(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+    descriptor.look_like(file);
     descriptor.write_all(bytes);
     descriptor.sync();
     fs::rename(temporary, file);

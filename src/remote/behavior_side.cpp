@@ -107,6 +107,7 @@ void BehaviorSide::begin(Pending& pending) {
 void BehaviorSide::settle(std::int64_t time_ns) {
   if (pending_.empty()) return;
   const Snapshot& snapshot = p_.exchange.snapshot.read(0);
+  lines_ = p_.echo.take();
   std::erase_if(pending_, [&](Pending& pending) {
     if (!settled(pending, snapshot, time_ns)) return false;
     pending.from->answer(std::move(pending.order));

@@ -23,6 +23,7 @@ Console& BehaviorSide::console_of(const Order& order) {
 }
 
 void BehaviorSide::evaluate(const Order& order, Answer& answer) {
+  if (!consoles_.contains(order.client)) return;  // who typed it is gone
   const ParameterTable& table = p_.instance.catalog().parameters;
   parameters_.resize(table.size());
   for (ParameterId id = 0; id < table.size(); ++id) parameters_[id] = table.newest(id);

@@ -66,16 +66,15 @@ void BehaviorSide::give(const Order& order) {
   p_.echo.listen();
 }
 
-// What was said in the tick that carried it out.
+// What was said in the tick that carried it out: by the supervisor, or by the behavior that was reloaded.
 std::string BehaviorSide::told(const Order& order, bool& done) {
   const bool reload = order.kind == Order::Kind::reload;
   std::string text;
-  for (const EchoLog::Line& line : p_.echo.take()) {
-    const bool bad =
-        line.severity == BehaviorLog::Severity::error || (reload && line.severity == BehaviorLog::Severity::warning);
-    if (!bad && line.behavior != "supervisor" && !reload) continue;
-    if (bad) done = false;
-    text += (text.empty() ? "" : "\n") + (line.behavior == "supervisor" ? "" : line.behavior + ": ") + line.text;
+  for (const EchoLog::Line& line : lines_) {
+    const bool supervisor = line.behavior == "supervisor";
+    if (reload ? supervisor || (!order.text.empty() && line.behavior != order.text) : !supervisor) continue;
+    if (line.severity != BehaviorLog::Severity::info) done = false;
+    text += (text.empty() ? "" : "\n") + (supervisor ? "" : line.behavior + ": ") + line.text;
   }
   if (reload && text.empty()) return "no new version: the files are as they were loaded";
   if (!order.who.empty() && !reload)

@@ -34,8 +34,14 @@ void RecordSide::start(const std::string& file) {
   publish();
 }
 
+void RecordSide::leave_to(RecordSink& own, const std::string& file) {
+  file_ = file;
+  others_ = true;
+  control_.record_to(&own);
+}
+
 bool RecordSide::stop() {
-  if (file_.empty()) return true;
+  if (file_.empty() || others_) return true;
   control_.record_to(nullptr);
   log_.to(nullptr);
   const bool whole = recorder_->close();
@@ -46,7 +52,7 @@ bool RecordSide::stop() {
 
 bool RecordSide::beat(const Beat& beat) {
   time_ns_ = beat.due_ns;
-  if (!file_.empty()) (void)recorder_->drain();  // a disk that fails is told at the end; the robot goes on
+  if (!file_.empty() && !others_) (void)recorder_->drain();  // a disk that fails is told at the end; the robot goes on
   for (const auto& port : instance_.ports()) {
     while (std::unique_ptr<OrderCase> order = port->records_.take()) {
       try {
@@ -72,6 +78,7 @@ void RecordSide::carry_out(OrderCase& order) {
     return;
   }
   if (file_.empty()) throw InputError({.message = "there is no record to stop"});
+  if (others_) throw InputError({.message = file_ + " was begun with this run and ends with it"});
   const std::string file = file_;
   answer.done = stop();
   answer.text = file + (answer.done ? "" : " is not complete: " + recorder_->error());
@@ -90,12 +97,14 @@ fs::path RecordSide::file_for(const std::string& name) const {
 
 void RecordSide::publish() {
   RecordStatus status;
-  if (recorder_ && !file_.empty()) {
-    status = {.goes_on = true,
-              .failed = !recorder_->error().empty(),
-              .rows = recorder_->rows(),
-              .bytes = recorder_->file_bytes(),
-              .dropped = recorder_->dropped()};
+  if (!file_.empty()) {
+    status.goes_on = true;
+    if (!others_) {
+      status.failed = !recorder_->error().empty();
+      status.rows = recorder_->rows();
+      status.bytes = recorder_->file_bytes();
+      status.dropped = recorder_->dropped();
+    }
     const std::size_t length = std::min(file_.size(), status.file.size() - 1);
     std::copy_n(file_.begin(), length, status.file.begin());
   }

@@ -62,7 +62,7 @@ class BehaviorSide final : public BesideTick {
   void begin_change(Pending& pending, const ParameterChange& change);
   ParameterChange change_of(const Order& order) const;
   void send(Pending& pending, const Command& command);
-  std::string told(const Order& order, bool& done);
+  std::string told(const Order& order, bool& done);  // by lines_
 
   // behavior_side_console.cpp
   void evaluate(const Order& order, Answer& answer);
@@ -74,6 +74,7 @@ class BehaviorSide final : public BesideTick {
   TuningHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client
   std::vector<double> parameters_;
+  std::vector<EchoLog::Line> lines_;  // said in the last tick, when an order was carried out in it
   std::int64_t time_ns_ = 0;
 };
 

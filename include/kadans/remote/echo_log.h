@@ -27,7 +27,7 @@ class EchoLog final : public BehaviorLog {
   }
 
   void listen() {
-    lines_.clear();
+    if (!listens_) lines_.clear();
     listens_ = true;
   }
   // What was said since; listens no more.

@@ -25,6 +25,7 @@
 #include "kadans/control/catalog.h"
 #include "kadans/exchange/latest.h"
 #include "kadans/exchange/ring.h"
+#include "kadans/remote/configuration_text.h"
 #include "kadans/remote/latest_row.h"
 #include "kadans/remote/order.h"
 #include "kadans/signal/fault.h"
@@ -48,7 +49,6 @@ struct InstanceStatus {
   SafetyStatus safety;
   SetMask control_sets = 0;
   std::uint32_t commands_refused = 0;
-  bool behaviors_alive = true;  // their thread goes on
   RecordStatus record;
 };
 
@@ -92,19 +92,25 @@ class Instance {
     std::string name;                     // of the robot
     std::string mode;                     // "run", "run on virtual time", "simulation"
     std::string version;                  // of the program
-    std::filesystem::path configuration;  // of the robot; absolute
+    std::filesystem::path configuration;  // of the robot; absolute, "": none
     std::filesystem::path root;           // of the project
     PlayFolders folders;
     std::filesystem::path records;  // folder of records that are asked for
     double control_period_s = 0.001, behavior_period_s = 0.01;
   };
-  // When all signals are declared. The catalog must outlive it.
+  // When all signals are declared. The catalog must outlive it. Throws InputError when the configuration cannot be
+  // read.
   Instance(Facts facts, const Catalog& catalog)
-      : facts_(std::move(facts)), catalog_(catalog), console_row_(catalog.signals.size()) {}
+      : facts_(std::move(facts)),
+        catalog_(catalog),
+        configuration_(facts_.configuration),
+        console_row_(catalog.signals.size()) {}
 
   // Any thread. Of the catalog: names, units, ranges, and parameters.newest(id).
   const Facts& facts() const noexcept { return facts_; }
   const Catalog& catalog() const noexcept { return catalog_; }
+  // Threads that serve clients.
+  ConfigurationText& configuration() noexcept { return configuration_; }
   // Any thread, without asking anybody: the robot damps from the next tick on, then is off, until faults are cleared.
   void stop_now() noexcept { stop_now_.store(true, std::memory_order_relaxed); }
 
@@ -129,6 +135,7 @@ class Instance {
 
   Facts facts_;
   const Catalog& catalog_;
+  ConfigurationText configuration_;
   LatestRow console_row_;
   std::vector<std::unique_ptr<InstancePort>> ports_;
   std::atomic<bool> stop_now_{false};

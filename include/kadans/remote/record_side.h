@@ -45,6 +45,8 @@ class RecordSide final : public Task {
   // Record thread, or before the loop and after it. Throws InputError when there can be none.
   void start(const std::string& file);
   [[nodiscard]] bool stop();  // false: recorder()->error() says why the record is not complete
+  // Before the loop: somebody else has a record that goes on to the end.
+  void leave_to(RecordSink& own, const std::string& file);
   bool beat(const Beat&) override;
 
   // Supervisor.
@@ -64,7 +66,8 @@ class RecordSide final : public Task {
   RobotTexts texts_;
   std::int64_t time_ns_ = 0;
   std::unique_ptr<Recorder> recorder_;
-  std::string file_;  // "": none is open
+  std::string file_;     // "": none is open
+  bool others_ = false;  // and it is not ours
   Latest<RecordStatus> status_;
 };
 
