@@ -96,6 +96,7 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(0, 1023));
   add_ctl_place(*run, options.ctl);
+  add_live_place(*run, options.live);
   run->add_flag("--json", options.json, "End with one JSON object on a line of its own");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
 }

@@ -12,7 +12,6 @@
 
 #include "commands.h"
 #include "kadans/app/assembly.h"
-#include "kadans/config/json_value.h"
 #include "kadans/config/project_root.h"
 #include "kadans/realtime/machine.h"
 #include "kadans/realtime/memory_lock.h"
@@ -21,7 +20,6 @@
 #include "kadans/remote/behavior_side.h"
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/record_side.h"
-#include "kadans/telemetry/run_description.h"
 #include "leaving.h"
 #include "live_log.h"
 #include "live_report.h"
@@ -138,10 +136,7 @@ class LiveRun {
 
   int run() {
     assembly_.record_to(&control_side_);
-    const RobotConfig& robot = assembly_.robot();
-    record_side_.describe_with({.name = robot.model.name,
-                                .urdf = read_text_file(robot.model.file),
-                                .description = run_description(robot, assembly_.catalog(), assembly_.host())});
+    record_side_.describe_with(robot_texts(assembly_));
     if (!options_.record.empty()) record_side_.start(options_.record);
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) (void)lock_memory(heap_reserve_bytes);  // without the right, which has been told
@@ -149,10 +144,14 @@ class LiveRun {
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
     ctl_.start();
+    live_.start({{"Control tick: late", &threads.control().statistics().lateness},
+                 {"Control tick: takes", &control_.tick_cost()},
+                 {"Behavior tick: takes", &threads.behaviors().statistics().execution}});
     notifier_.ready("drives " + assembly_.robot().name);
     const std::string ended = watch(threads);
     notifier_.stopping();
     leave(threads);
+    live_.stop();
     ctl_.stop();
     threads.stop();
     ActuationFrame off;
@@ -268,6 +267,7 @@ class LiveRun {
   BehaviorSide behavior_side_{{instance_, assembly_.host(), parts_.behaviors, parts_.control.exchange(), echo_, log_},
                               &leaving_};
   CtlService ctl_{place_of(options_), instance_};
+  LiveService live_{options_.live, instance_, assembly_};
   ControlTask control_{parts_.control, &truth_};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;

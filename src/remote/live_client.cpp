@@ -184,11 +184,19 @@ void LiveClient::command(std::uint32_t service_call, const std::string& verb, co
   const std::uint32_t call = ++next_call_;
   if (!hub_.send({.kind = *kind, .text = text, .value = value, .who = who_}, id_, call))
     return say(service_failure(service_call, "too many orders wait"));
-  calls_[call] = {.service = true, .service_call = service_call};
+  calls_[call] = {.service = true, .save = *kind == Order::Kind::changes, .service_call = service_call};
 }
 
 void LiveClient::answer_service(std::uint32_t service_call, bool done, const std::string& text) {
   say_binary(service_response(service_call, Json{{"done", done}, {"text", text}}.dump()));
+}
+
+void LiveClient::save(std::uint32_t service_call, const Answer& answer) {
+  try {
+    answer_service(service_call, true, hub_.save(answer.changes));
+  } catch (const std::exception& error) {
+    answer_service(service_call, false, error.what());
+  }
 }
 
 void LiveClient::take(std::uint32_t number, const Answer& answer) {
@@ -196,6 +204,7 @@ void LiveClient::take(std::uint32_t number, const Answer& answer) {
   if (found == calls_.end()) return;
   const Call call = found->second;
   calls_.erase(found);
+  if (call.save) return save(call.service_call, answer);
   if (call.service) return answer_service(call.service_call, answer.done, answer.text);
   if (!answer.done) complain(answer.text);
   // As it is now, also after a refusal, so that the client's slider goes back.

@@ -66,6 +66,7 @@ void LiveHub::take_answers() {
       if (client != clients_.end()) client->second->take(caller.call, answer);
       continue;
     }
+    if (answer.behaviors.empty()) continue;  // of an order without a report
     report_ = 0;
     behaviors_now_.clear();
     for (const BehaviorReport& behavior : answer.behaviors) {
@@ -98,6 +99,13 @@ void LiveHub::take_parameters() {
     changed_.push_back(parameters_[id]);
   }
   for (const LiveParameter& p : behaviors_now_) note(p.name, p.value);
+}
+
+std::string LiveHub::save(const std::vector<ParameterChange>& changes) {
+  ConfigurationText& configuration = p_.instance.configuration();
+  configuration.save(changes, p_.instance.catalog());
+  (void)send({.kind = Order::Kind::saved, .changes = changes}, own, 0);
+  return std::to_string(changes.size()) + " parameters stand in " + configuration.file().filename().string();
 }
 
 bool LiveHub::act(const std::string& verb, double value) {

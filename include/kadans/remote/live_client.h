@@ -53,7 +53,7 @@ class LiveClient {
     std::uint64_t seen;
   };
   struct Call {
-    bool service = false;
+    bool service = false, save = false;
     std::uint32_t service_call = 0;
     std::string parameter{}, parameter_request{};
   };
@@ -74,6 +74,7 @@ class LiveClient {
   void fetch_asset(const Json& json);
   void call_service(std::span<const std::byte> bytes);
   void command(std::uint32_t service_call, const std::string& verb, const std::string& text, double value);
+  void save(std::uint32_t service_call, const Answer& answer);
   void answer_service(std::uint32_t service_call, bool done, const std::string& text);
   void put_message(std::uint32_t subscription, const LiveMessage& message, Outgoing& out) const;
 

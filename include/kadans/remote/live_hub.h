@@ -2,6 +2,7 @@
 // and the orders that wait for their answers. One thread, the server's, drives it by beat().
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -42,6 +43,8 @@ class LiveHub {
 
   explicit LiveHub(Parts parts);
 
+  // Before the first beat; what is given is read while it runs.
+  void watch_timing(std::vector<TimingSource> timing) { p_.timing = std::move(timing); }
   // Some rate_hz times a second: takes what the instance has.
   void beat();
 
@@ -51,6 +54,8 @@ class LiveHub {
   const std::vector<LiveParameter>& parameters() const noexcept { return parameters_; }
   const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // in the last beat
   const std::string& state() const noexcept { return state_; }                     // JSON: paused, held, speed
+  // Writes parameters that were tuned into the robot's configuration. Throws InputError, std::system_error.
+  std::string save(const std::vector<ParameterChange>& changes);
   std::uint64_t state_count() const noexcept { return state_count_; }
 
   void enter(std::uint64_t id, LiveClient& client) { clients_[id] = &client; }
