@@ -7,6 +7,7 @@ import { open_live } from './data/live_source.js';
 import { open_record } from './data/record_source.js';
 import { Session } from './data/session.js';
 import { Frames } from './frames.js';
+import { render_record } from './render.js';
 
 const frames = new Frames();
 let session = null;
@@ -27,7 +28,8 @@ addEventListener('drop', (event) => {
 });
 
 const wanted = new URLSearchParams(location.search);
-if (wanted.has('record')) show(open_record(new URL(wanted.get('record'), location.href).href));
+if (wanted.has('render')) render_record(open_record(new URL(wanted.get('record'), location.href).href), wanted);
+else if (wanted.has('record')) show(open_record(new URL(wanted.get('record'), location.href).href));
 else if (wanted.has('empty')) show(new Session('Drop a record here', false));
 else {
   const address = new URL(wanted.get('live') ?? '.', location.href);

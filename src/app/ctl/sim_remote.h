@@ -10,6 +10,7 @@
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/record_side.h"
 #include "kadans/scenario/run.h"
+#include "live/live_service.h"
 
 namespace kadans {
 
