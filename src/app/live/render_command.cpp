@@ -82,7 +82,7 @@ Size size_of(const std::string& text) {
   char rest = 0;
   const int got = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest);  // NOLINT: checked
   if (got != 2 || size.width < 16 || size.height < 16 || size.width > 4096 || size.height > 4096)
-    throw InputError({.file = "--size", .message = "must be like 960x720, from 16 to 4096"});
+    throw InputError(InputProblem{.file = "--size", .message = "must be like 960x720, from 16 to 4096"});
   return size;
 }
 
