@@ -16,8 +16,7 @@ const std::vector<PageFile>& page_files() noexcept;
 
 // What a browser gets in the page's place.
 inline constexpr std::string_view page_is_missing =
-    "This program was built without its page. To get it: install nodejs and npm, run 'npm ci && npm run build' in "
-    "web/, "
-    "and build kadans again.\n";
+    "This program was built without its page. To get it: install nodejs and npm, run scripts/page, and build kadans "
+    "again.\n";
 
 }  // namespace kadans
