@@ -82,19 +82,6 @@ function groups_of(description) {
   return groups.filter((group) => group.parameters.length > 0);
 }
 
-function save(session, groups) {
-  const moved = {};
-  for (const p of groups.flatMap((group) => group.parameters)) {
-    const value = session.parameters.get(p.name) ?? p.value;
-    if (value !== p.value) moved[p.name] = value;
-  }
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([JSON.stringify({ set: moved }, null, 2) + '\n'], { type: 'application/json' }));
-  link.download = 'parameters.json';
-  link.click();
-  URL.revokeObjectURL(link.href);
-}
-
 function Sets({ session }) {
   const active = session.value('engine.control_sets');
   return (
@@ -127,6 +114,10 @@ export function ParametersPanel({ session }) {
     const last = undo.current.pop();
     if (last) session.remote.set_parameter(last.name, last.value);
   };
+  const save = async () => {
+    const answer = await session.remote.command('save');
+    if (answer.done) session.remote.say(answer.text);
+  };
   const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
   const fits = (p) => wanted.every((word) => p.name.toLowerCase().includes(word));
   const toggle = (title) => {
@@ -141,7 +132,7 @@ export function ParametersPanel({ session }) {
       <div class="row">
         <input type="search" placeholder="Find a parameter" value={words} onInput={(event) => set_words(event.target.value)} />
         <button disabled={!writable || undo.current.length === 0} onClick={take_back}>Undo</button>
-        <button disabled={!writable} onClick={() => save(session, groups)}>Save</button>
+        <button disabled={!writable} title="Write what was changed into the robot's configuration" onClick={save}>Save</button>
       </div>
       {!writable && <p class="hint">{session.live ? 'Open the page with the token that kadans printed to change them.' : 'As configured for this run.'}</p>}
       {groups.map((group) => {
