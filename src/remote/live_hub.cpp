@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint64_t report_every = 30, timing_every = 60, parameters_every = 6;  // beats
 constexpr std::uint64_t own = 0;                                                     // the hub's orders
+constexpr std::uint32_t report_call = 1, saved_call = 2;
 
 }  // namespace
 
@@ -41,10 +42,8 @@ void LiveHub::beat() {
   }
   if (beats_ % parameters_every == 0) take_parameters();
   if (beats_ % timing_every == 0 && !p_.timing.empty()) channels_.take_timing(timing_json(p_.timing), time_ns);
-  if (beats_++ % report_every == 0 && report_ == 0) {
-    (void)send({.kind = Order::Kind::report}, own, 0);
-    report_ = 1;
-  }
+  if (beats_++ % report_every == 0 && !report_waits_)
+    report_waits_ = send({.kind = Order::Kind::report}, own, report_call);
 }
 
 bool LiveHub::send(Order order, std::uint64_t client, std::uint32_t call) {
@@ -66,8 +65,8 @@ void LiveHub::take_answers() {
       if (client != clients_.end()) client->second->take(caller.call, answer);
       continue;
     }
-    if (answer.behaviors.empty()) continue;  // of an order without a report
-    report_ = 0;
+    if (caller.call != report_call) continue;
+    report_waits_ = false;
     behaviors_now_.clear();
     for (const BehaviorReport& behavior : answer.behaviors) {
       for (const ScriptParameter& p : behavior.parameters)
@@ -104,7 +103,7 @@ void LiveHub::take_parameters() {
 std::string LiveHub::save(const std::vector<ParameterChange>& changes) {
   ConfigurationText& configuration = p_.instance.configuration();
   configuration.save(changes, p_.instance.catalog());
-  (void)send({.kind = Order::Kind::saved, .changes = changes}, own, 0);
+  (void)send({.kind = Order::Kind::saved, .changes = changes}, own, saved_call);
   return std::to_string(changes.size()) + " parameters stand in " + configuration.file().filename().string();
 }
 

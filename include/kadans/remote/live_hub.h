@@ -84,8 +84,8 @@ class LiveHub {
   std::vector<LiveParameter> parameters_, changed_;
   std::vector<LiveParameter> behaviors_now_;
   std::string state_;
-  std::uint64_t state_count_ = 0, beats_ = 0, report_ = 0, last_tick_ = 0;
-  bool wanted_ = false, paused_ = false;
+  std::uint64_t state_count_ = 0, beats_ = 0, last_tick_ = 0;
+  bool wanted_ = false, report_waits_ = false, paused_ = false;
 };
 
 }  // namespace kadans

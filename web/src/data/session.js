@@ -98,7 +98,7 @@ export class Session {
     const json = JSON.parse(text_of.decode(bytes));
     if (topic === '/description') {
       this.description = json;
-      for (const p of json.parameters) this.parameters.set(p.name, p.value);
+      for (const p of json.parameters) if (!this.parameters.has(p.name)) this.parameters.set(p.name, p.value);
     } else if (topic === '/transitions') {
       keep(this.transitions, { t: seconds(json.timestamp), ...json });
     } else if (topic === '/log') {
