@@ -13,6 +13,7 @@ pkg_check_modules(luajit REQUIRED IMPORTED_TARGET luajit)
 pkg_check_modules(libedit REQUIRED IMPORTED_TARGET libedit)
 pkg_check_modules(sqlite3 REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+find_package(Boost 1.74 REQUIRED)  # headers of Beast and Asio
 if(KADANS_TESTS)
   find_package(doctest REQUIRED)
 endif()

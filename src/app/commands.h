@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ctl/ctl_service.h"
+#include "live/live_service.h"
 #include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -29,6 +30,8 @@ struct SimOptions : RunRequest {
   std::vector<std::string> branches;     // "hard: push torso=0,3,0"
   std::optional<double> hash_every_s;
   CtlPlace ctl;  // always with realtime, else where a folder is named
+  LivePlace live;
+  double speed = 1;  // with it, of the wall clock's
 };
 void add_sim(CLI::App& app, SimOptions& options);
 int run_sim(const SimOptions& options);
@@ -75,6 +78,7 @@ struct RunOptions {
   std::uint32_t behaviors_deaths = 0;  // in a row, before it stays down; 0: the default
   double behaviors_memory_MB = 256;    // more than it has when it begins to play
   CtlPlace ctl;  // on virtual time only where a folder is named
+  LivePlace live;
 };
 int run_live(const RunOptions& options);
 // What run_live starts for behaviors in a process of their own: robot, play and seed count.

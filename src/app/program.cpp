@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "ctl/ctl_command.h"
 #include "kadans/signal/nearest_name.h"
+#include "live/page_commands.h"
 #include "repl_command.h"
 #include "replay_command.h"
 #include "stubs_command.h"
@@ -32,6 +33,7 @@ constexpr const char* examples =
     "change\n"
     "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
     "  kadans run config/tulip/robot.json --play squat    drive the robot, or its model, on the wall clock\n"
+    "  kadans view squat.mcap                             show a record in the browser: robot, plots, states\n"
     "  kadans ctl status                                  how a running robot is; 'kadans ctl --help' lists the rest\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
     "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
@@ -111,6 +113,7 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("MB")
       ->check(CLI::Range(1.0, 1e6));
   add_ctl_place(*run, options.ctl);
+  add_live_place(*run, options.live);
   run->add_flag("--json", options.json, "End with one JSON object on a line of its own");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
 }
@@ -212,6 +215,10 @@ int run(int argc, char** argv) {
   add_ctl(app, ctl);
   CompletionOptions completion;
   add_completion(app, completion);
+  ViewOptions view;
+  add_view(app, view);
+  RenderOptions render;
+  add_render(app, render);
   DoctorOptions doctor;
   add_doctor(app, doctor);
   NewControlObjectOptions new_object;
@@ -231,6 +238,8 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("jitter")) return run_jitter(jitter);
   if (app.got_subcommand("ctl")) return run_ctl(app, ctl);
   if (app.got_subcommand("completion")) return run_completion(app, completion);
+  if (app.got_subcommand("view")) return run_view(view);
+  if (app.got_subcommand("render")) return run_render(render);
   if (app.got_subcommand("doctor")) return run_doctor(doctor);
   if (app.got_subcommand("replay")) return run_replay(replay);
   if (app.got_subcommand("sweep")) return run_sweep(sweep);

@@ -128,6 +128,7 @@ class LiveRun {
 
   int run() {
     assembly_.record_to(&control_side_);
+    record_side_.describe_with(robot_texts(assembly_));
     if (!options_.record.empty()) record_side_.start(options_.record);
     const bool may_record = !options_.record.empty() || place_of(options_).wanted;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
@@ -136,10 +137,14 @@ class LiveRun {
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
     ctl_.start();
+    live_.start({{"Control tick: late", &threads.control().statistics().lateness},
+                 {"Control tick: takes", &control_.tick_cost()},
+                 {"Behavior tick: takes", &threads.behaviors().statistics().execution}});
     notifier_.ready("drives " + assembly_.robot().name);
     const std::string ended = watch(threads);
     notifier_.stopping();
     leave(threads);
+    live_.stop();
     ctl_.stop();
     threads.stop();
     ActuationFrame off;
@@ -256,6 +261,7 @@ class LiveRun {
   BehaviorSide behavior_side_{{instance_, assembly_.host(), parts_.behaviors, parts_.control.exchange(), echo_, log_},
                               &leaving_};
   CtlService ctl_{place_of(options_), instance_};
+  LiveService live_{options_.live, instance_, assembly_};
   ControlTask control_{parts_.control, &truth_};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;

@@ -9,6 +9,8 @@
 
 #include "input_files.h"
 #include "kadans/config/experiment_config.h"
+#include "kadans/telemetry/run_description.h"
+#include "live/live_pace.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -81,15 +83,20 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
   } else {
     inputs_ = inputs_for(request_, scenario_, assembly_, seed_, duration_s_, options_.watch);
   }
-  const bool reachable = options_.ctl.wanted && (options_.realtime || !options_.ctl.folder.empty());
-  if (reachable && !continuation_) {
-    inputs_.run["ctl"] = "yes";
-    remote_ = std::make_unique<SimRemote>(options_.ctl, scenario_, assembly_,
-                                          SimRemote::Logs{told_, echo_, record_log_, log_});
-  }
+  if (!continuation_) make_reachable();
   if (options_.hash_every_s) trail_ = std::make_unique<HashTrail>(*options_.hash_every_s);
   if (!options_.checkpoints.empty())
     checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_));
+}
+
+void SimRun::make_reachable() {
+  const bool paced = options_.realtime || options_.live.wanted();
+  SimRemote::Places places{options_.ctl, options_.live};
+  places.ctl.wanted = places.ctl.wanted && (paced || !options_.ctl.folder.empty());
+  if (!places.ctl.wanted && !places.live.wanted()) return;
+  inputs_.run["ctl"] = "yes";
+  remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_, SimRemote::Logs{told_, echo_, record_log_, log_});
+  remote_->pace().speed = options_.speed;
 }
 
 int SimRun::run() {
@@ -98,7 +105,12 @@ int SimRun::run() {
   ProgressBar progress(duration_s_, stderr_is_terminal() && !options_.json && alone);
   std::vector<RunObserver*> observers{&progress, &height_, &evidence_, &metrics_, this};
   Pace pace;
-  if (options_.realtime) observers.push_back(&pace);
+  std::optional<LivePacer> pacer;
+  if (options_.live.wanted() && remote_) {
+    observers.push_back(&pacer.emplace(remote_->pace()));
+  } else if (options_.realtime) {
+    observers.push_back(&pace);
+  }
   if (trail_) observers.push_back(trail_.get());
   if (checkpoints_) observers.push_back(checkpoints_.get());
   if (remote_) {
@@ -200,6 +212,7 @@ void SimRun::start_record() {
   const RobotModel& model = assembly_.robot().model;
   (void)recorder_->describe_run(inputs_);
   (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
+  (void)recorder_->describe_parts(run_description(assembly_.robot(), assembly_.catalog(), assembly_.host()), 0);
   late_log_.set(&recorder_->events());
   if (!remote_) assembly_.record_to(recorder_.get());
 }

@@ -52,6 +52,7 @@ class SimRun final : public RunObserver {
   bool stop_asked() const override { return parted_ || split_; }
 
  private:
+  void make_reachable();
   void start_record();
   void finish_record(const RunResult& result);
   std::string record_name() const;

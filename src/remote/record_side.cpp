@@ -26,6 +26,8 @@ void RecordSide::start(const std::string& file) {
   if (!recorder_) recorder_ = std::make_unique<Recorder>(instance_.catalog().signals);
   if (!recorder_->open(file)) throw InputError({.message = recorder_->error()});
   (void)recorder_->describe("run", facts_);
+  if (!texts_.urdf.empty()) (void)recorder_->describe_robot(texts_.name, texts_.urdf, time_ns_);
+  if (!texts_.description.empty()) (void)recorder_->describe_parts(texts_.description, time_ns_);
   file_ = file;
   log_.to(&recorder_->events());
   control_.record_to(recorder_.get());
@@ -48,7 +50,8 @@ bool RecordSide::stop() {
   return whole;
 }
 
-bool RecordSide::beat(const Beat&) {
+bool RecordSide::beat(const Beat& beat) {
+  time_ns_ = beat.due_ns;
   if (!file_.empty() && !others_) (void)recorder_->drain();  // a disk that fails is told at the end; the robot goes on
   for (const auto& port : instance_.ports()) {
     while (std::unique_ptr<OrderCase> order = port->records_.take()) {

@@ -140,4 +140,9 @@ std::string mermaid_graph(const Chart& chart, const std::vector<ScriptParameter>
   return text;
 }
 
+std::string transition_label(const Chart& chart, const Chart::Transition& transition,
+                             const std::vector<ScriptParameter>& parameters) {
+  return Graph(chart, parameters).label(transition);
+}
+
 }  // namespace kadans

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kadans/signal/nearest_name.h"
+#include "kadans/telemetry/run_description.h"
 
 namespace kadans {
 
@@ -83,6 +84,11 @@ bool Recorder::describe_robot(const std::string& name, const std::string& urdf, 
   payload.put(bytes_of(urdf));
   payload.put(std::uint8_t{0});
   return file_->write(channel, 0, time_ns, payload.bytes());
+}
+
+bool Recorder::describe_parts(const std::string& description, std::int64_t time_ns) {
+  const std::uint16_t schema = file_->add_schema("kadans.Description", "jsonschema", description_schema);
+  return file_->write(file_->add_channel("/description", "json", schema), 0, time_ns, bytes_of(description));
 }
 
 void Recorder::record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept {

@@ -13,6 +13,7 @@
 #include "kadans/realtime/task_thread.h"
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/instance.h"
+#include "kadans/remote/robot_texts.h"
 #include "kadans/telemetry/recorder.h"
 
 namespace kadans {
@@ -39,6 +40,8 @@ class RecordSide final : public Task {
   RecordSide(Instance& instance, ControlSide& control, RecordLog& log, TextMap facts)
       : instance_(instance), control_(control), log_(log), facts_(std::move(facts)) {}
 
+  // Before the loop.
+  void describe_with(RobotTexts texts) { texts_ = std::move(texts); }
   // Record thread, or before the loop and after it. Throws InputError when there can be none.
   void start(const std::string& file);
   [[nodiscard]] bool stop();  // false: recorder()->error() says why the record is not complete
@@ -60,6 +63,8 @@ class RecordSide final : public Task {
   ControlSide& control_;
   RecordLog& log_;
   TextMap facts_;
+  RobotTexts texts_;
+  std::int64_t time_ns_ = 0;
   std::unique_ptr<Recorder> recorder_;
   std::string file_;     // "": none is open
   bool others_ = false;  // and it is not ours

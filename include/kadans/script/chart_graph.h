@@ -14,4 +14,8 @@ namespace kadans {
 std::string dot_graph(const Chart& chart, const std::vector<ScriptParameter>& parameters);
 std::string mermaid_graph(const Chart& chart, const std::vector<ScriptParameter>& parameters);
 
+// What takes it, in words: "run.done", "after settle_s, [when] (lost balance)".
+std::string transition_label(const Chart& chart, const Chart::Transition& transition,
+                             const std::vector<ScriptParameter>& parameters);
+
 }  // namespace kadans

@@ -50,6 +50,8 @@ class Recorder final : public RecordSink {
   [[nodiscard]] bool describe(const std::string& name, const TextMap& facts);
   // After open(). Attaches the URDF and publishes it on /robot_description, where viewers look for it.
   [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns);
+  // After open(): run_description.h, on /description.
+  [[nodiscard]] bool describe_parts(const std::string& description, std::int64_t time_ns);
 
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
   void warm() noexcept override { ring_->warm(head_size + signal_count_); }

@@ -43,18 +43,21 @@ void InstanceLog::message(std::int64_t time_ns, Severity severity, const std::st
   next_->message(time_ns, severity, behavior, text);
 }
 
-SimRemote::SimRemote(const CtlPlace& place, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs)
+SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs)
     : parts_(assembly.parts()),
       told_(logs.told),
       instance_(facts_of(scenario, assembly.robot()), assembly.catalog()),
       control_side_(instance_, parts_.control.safety()),
       record_side_(instance_, control_side_, logs.record, {{"robot", scenario.robot}, {"kadans", version}}),
       behavior_side_({instance_, assembly.host(), parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),
-      service_(place, instance_) {
+      service_(places.ctl, instance_),
+      live_(places.live, instance_, assembly, &pace_) {
+  record_side_.describe_with(robot_texts(assembly));
   assembly.record_to(&control_side_);
 }
 
 SimRemote::~SimRemote() {
+  live_.stop();
   service_.stop();
   told_.tell(nullptr);
   if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
@@ -64,6 +67,7 @@ void SimRemote::begin(RecordSink* own, const std::string& own_file) {
   told_.tell(&instance_);
   if (own != nullptr) record_side_.leave_to(*own, own_file);
   service_.start();
+  live_.start({{"Control tick: takes", &parts_.lockstep.control_tick_cost()}});
 }
 
 void SimRemote::tick(double, std::span<const double>) {}
@@ -71,7 +75,7 @@ void SimRemote::tick(double, std::span<const double>) {}
 void SimRemote::between_ticks(const RunMark& mark) {
   behavior_side_.beside_tick(mark.time_ns);
   if (published_++ % publish_every_ticks != 0) return;
-  (void)record_side_.beat({});
+  (void)record_side_.beat({.due_ns = mark.time_ns});
   const Snapshot& snapshot = parts_.control.state();
   instance_.publish({.tick = snapshot.tick,
                      .time_ns = snapshot.time_ns,

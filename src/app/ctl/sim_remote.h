@@ -10,6 +10,7 @@
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/record_side.h"
 #include "kadans/scenario/run.h"
+#include "live/live_service.h"
 
 namespace kadans {
 
@@ -35,9 +36,13 @@ class SimRemote final : public RunObserver {
     RecordLog& record;
     BehaviorLog& all;
   };
+  struct Places {
+    CtlPlace ctl;
+    LivePlace live;
+  };
   // All must outlive it. Takes the place of the assembly's record sink: `own` is the simulation's record, if it has
   // one.
-  SimRemote(const CtlPlace& place, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs);
+  SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs);
   ~SimRemote() override;
   SimRemote(const SimRemote&) = delete;
   SimRemote& operator=(const SimRemote&) = delete;
@@ -45,6 +50,7 @@ class SimRemote final : public RunObserver {
   // Before the first tick.
   void begin(RecordSink* own, const std::string& own_file);
 
+  LivePace& pace() noexcept { return pace_; }
   void tick(double time_s, std::span<const double> row) override;
   void fault(const Fault& fault) override { instance_.tell(fault); }
   void between_ticks(const RunMark& mark) override;
@@ -57,6 +63,8 @@ class SimRemote final : public RunObserver {
   RecordSide record_side_;
   BehaviorSide behavior_side_;
   CtlService service_;
+  LivePace pace_;
+  LiveService live_;
   std::uint32_t published_ = 0;
 };
 

@@ -1,0 +1,97 @@
+// One client of a live server, without its socket: what it says comes in by text() and binary(), what there is to tell
+// it goes out by next(), whenever the socket has room. Foxglove WebSocket protocol (foxglove.sdk.v1 and
+// foxglove.websocket.v1, which are the same in all that is used here).
+//
+// Replies wait in a queue of at most `replies_max_bytes`; a client that asks and does not read is told off. All else
+// is read from the channels when there is room for it, so a slow client keeps nothing waiting but its own picture.
+//
+// Who writes (parameters, orders) came with the token. Server's thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kadans/remote/live_hub.h"
+
+namespace kadans {
+
+class LiveClient {
+ public:
+  static constexpr std::size_t replies_max_bytes = std::size_t{16} << 20U;
+
+  struct Outgoing {
+    bool binary = false;
+    std::vector<std::byte> bytes;
+  };
+
+  // Says who the server is and what there is. `id` from 1.
+  LiveClient(LiveHub& hub, std::uint64_t id, bool writes, std::string who);
+  ~LiveClient();
+  LiveClient(const LiveClient&) = delete;
+  LiveClient& operator=(const LiveClient&) = delete;
+
+  void text(std::string_view json);
+  void binary(std::span<const std::byte> bytes);
+  void take(std::uint32_t call, const Answer& answer);
+  // After each beat of the hub.
+  void tell_changes();
+
+  // False: nothing to tell now.
+  [[nodiscard]] bool next(Outgoing& out);
+  bool hopeless() const noexcept { return hopeless_; }  // does not read what it asked for: to be closed
+
+ private:
+  struct Subscription {
+    std::size_t channel;
+    std::uint64_t seen;
+  };
+  struct Call {
+    bool service = false, save = false;
+    std::uint32_t service_call = 0;
+    std::string parameter{}, parameter_request{};
+  };
+
+  void say(const std::string& json);
+  void say_binary(std::vector<std::byte> bytes);
+  void complain(const std::string& what);
+  void introduce();
+  void advertise();
+  void obey(std::string_view json);
+  template <typename Json>
+  void subscribe(const Json& json);
+  template <typename Json>
+  void get_parameters(const Json& json);
+  template <typename Json>
+  void set_parameters(const Json& json);
+  template <typename Json>
+  void fetch_asset(const Json& json);
+  void call_service(std::span<const std::byte> bytes);
+  void command(std::uint32_t service_call, const std::string& verb, const std::string& text, double value);
+  void save(std::uint32_t service_call, const Answer& answer);
+  void answer_service(std::uint32_t service_call, bool done, const std::string& text);
+  void put_message(std::uint32_t subscription, const LiveMessage& message, Outgoing& out) const;
+
+  LiveHub& hub_;
+  std::uint64_t id_;
+  bool writes_;
+  std::string who_;
+  std::map<std::uint32_t, Subscription> subscriptions_;  // by the client's number
+  std::uint32_t last_served_ = 0;
+  std::set<std::string, std::less<>> watched_;
+  bool watches_all_ = false;
+  std::map<std::uint32_t, Call> calls_;
+  std::uint32_t next_call_ = 0;
+  std::uint64_t state_told_ = 0;
+  std::deque<Outgoing> replies_;
+  std::size_t reply_bytes_ = 0;
+  bool hopeless_ = false;
+};
+
+}  // namespace kadans

@@ -1,0 +1,91 @@
+// What all clients of a live server share: the instance's port, the channels, the parameters as they were last told,
+// and the orders that wait for their answers. One thread, the server's, drives it by beat().
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kadans/remote/instance.h"
+#include "kadans/remote/live_assets.h"
+#include "kadans/remote/live_channels.h"
+
+namespace kadans {
+
+// Pace of a simulation, from its clients to its thread. Null where time cannot be held.
+struct LivePace {
+  std::atomic<double> speed{1};
+  std::atomic<bool> held{false};
+  std::atomic<std::uint32_t> steps{0};  // to take while it is held
+};
+
+class LiveClient;
+
+struct LiveParameter {
+  std::string name;  // of the table, or BEHAVIOR.NAME
+  double value = 0;
+};
+
+class LiveHub {
+ public:
+  struct Parts {
+    Instance& instance;
+    InstancePort& port;
+    RobotTexts texts;
+    std::string urdf_file;  // where its meshes are found from
+    std::vector<TimingSource> timing;
+    LivePace* pace = nullptr;
+  };
+  static constexpr double rate_hz = 60;
+
+  explicit LiveHub(Parts parts);
+
+  // Before the first beat; what is given is read while it runs.
+  void watch_timing(std::vector<TimingSource> timing) { p_.timing = std::move(timing); }
+  // Some rate_hz times a second: takes what the instance has.
+  void beat();
+
+  const Instance& instance() const noexcept { return p_.instance; }
+  const LiveChannels& channels() const noexcept { return channels_; }
+  const LiveAssets& assets() const noexcept { return assets_; }
+  const std::vector<LiveParameter>& parameters() const noexcept { return parameters_; }
+  const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // in the last beat
+  const std::string& state() const noexcept { return state_; }                     // JSON: paused, held, speed
+  // Writes parameters that were tuned into the robot's configuration. Throws InputError, std::system_error.
+  std::string save(const std::vector<ParameterChange>& changes);
+  std::uint64_t state_count() const noexcept { return state_count_; }
+
+  void enter(std::uint64_t id, LiveClient& client) { clients_[id] = &client; }
+  void leave(std::uint64_t id) { clients_.erase(id); }
+  // `call`: what the client knows its answer by. False: too many orders wait.
+  [[nodiscard]] bool send(Order order, std::uint64_t client, std::uint32_t call);
+  // What needs no order: the emergency stop and the pace. False: `verb` is no such thing.
+  [[nodiscard]] bool act(const std::string& verb, double value);
+  bool can_pace() const noexcept { return p_.pace != nullptr; }
+
+ private:
+  struct Caller {
+    std::uint64_t client;
+    std::uint32_t call;
+  };
+  void take_answers();
+  void take_parameters();
+  void note(const std::string& name, double value);
+  void tell_state();
+
+  Parts p_;
+  LiveChannels channels_;
+  LiveAssets assets_;
+  std::map<std::uint64_t, LiveClient*> clients_;
+  std::map<std::uint64_t, Caller> waiting_;  // by the order's number
+  std::vector<LiveParameter> parameters_, changed_;
+  std::vector<LiveParameter> behaviors_now_;
+  std::string state_;
+  std::uint64_t state_count_ = 0, beats_ = 0, last_tick_ = 0;
+  bool wanted_ = false, report_waits_ = false, paused_ = false;
+};
+
+}  // namespace kadans

@@ -1,0 +1,29 @@
+// A headless Chromium that loads a page, in a process group and with a folder of its own; both are gone with it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <sys/types.h>
+
+namespace kadans {
+
+// The program: $KADANS_CHROMIUM, or what the PATH has. "": there is none.
+std::string find_chromium();
+
+class Chromium {
+ public:
+  // Throws std::system_error when it cannot be started.
+  Chromium(const std::string& program, const std::string& url, int width, int height);
+  ~Chromium();
+  Chromium(const Chromium&) = delete;
+  Chromium& operator=(const Chromium&) = delete;
+
+  bool runs() noexcept;
+
+ private:
+  pid_t process_ = -1;
+  std::filesystem::path folder_;
+};
+
+}  // namespace kadans

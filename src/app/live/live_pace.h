@@ -1,0 +1,25 @@
+// Keeps a simulation at the pace that somebody asked for: a multiple of the wall clock's, changed or held while it
+// runs, or tick by tick.
+#pragma once
+
+#include <chrono>
+
+#include "kadans/remote/live_hub.h"
+#include "kadans/scenario/run.h"
+
+namespace kadans {
+
+class LivePacer final : public RunObserver {
+ public:
+  explicit LivePacer(LivePace& pace) noexcept : pace_(pace) {}
+  void tick(double time_s, std::span<const double> row) override;
+
+ private:
+  void hold();
+
+  LivePace& pace_;
+  std::chrono::steady_clock::time_point began_;
+  double from_s_ = 0, speed_ = 0;
+};
+
+}  // namespace kadans

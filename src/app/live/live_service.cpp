@@ -1,0 +1,54 @@
+#include "live/live_service.h"
+
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "kadans/config/json_value.h"
+#include "kadans/remote/page_files.h"
+#include "kadans/telemetry/run_description.h"
+
+namespace kadans {
+
+void add_live_place(CLI::App& command, LivePlace& place) {
+  command.add_flag("--live{8765}", place.port, "Show it in a browser and to Foxglove's kin; --live=PORT, 0: any")
+      ->check(CLI::Range(0, 65535));
+  command.add_option("--live-address", place.address, "Address to listen on (default: this machine alone)")
+      ->type_name("IP");
+  command.add_option("--live-token", place.token, "What a client must know to change anything (default: a new one)")
+      ->type_name("TEXT");
+}
+
+RobotTexts robot_texts(const Assembly& assembly) {
+  const RobotConfig& robot = assembly.robot();
+  return {.name = robot.model.name,
+          .urdf = read_text_file(robot.model.file),
+          .description = run_description(robot, assembly.catalog(), assembly.host())};
+}
+
+LiveService::LiveService(const LivePlace& place, Instance& instance, const Assembly& assembly, LivePace* pace) {
+  if (!place.wanted()) return;
+  hub_ = std::make_unique<LiveHub>(LiveHub::Parts{.instance = instance,
+                                                  .port = instance.open_port(),
+                                                  .texts = robot_texts(assembly),
+                                                  .urdf_file = assembly.robot().model.file,
+                                                  .timing = {},
+                                                  .pace = pace});
+  server_ = std::make_unique<LiveServer>(
+      LiveSettings{.address = place.address, .port = static_cast<std::uint16_t>(place.port), .token = place.token},
+      hub_.get());
+}
+
+void LiveService::start(const std::vector<TimingSource>& timing) {
+  if (!server_) return;
+  hub_->watch_timing(timing);
+  server_->start();
+  std::fprintf(stderr, "live on %s\n", server_->url().c_str());
+  if (page_files().empty()) std::fprintf(stderr, "%s", std::string(page_is_missing).c_str());
+}
+
+void LiveService::stop() noexcept {
+  if (server_) server_->stop();
+}
+
+}  // namespace kadans

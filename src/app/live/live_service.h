@@ -1,0 +1,44 @@
+// A running instance served to browsers and viewers: --live.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kadans/app/assembly.h"
+#include "kadans/remote/live_server.h"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): its name
+class App;
+}
+
+namespace kadans {
+
+struct LivePlace {
+  int port = -1;  // -1: not served; 0: any that is free
+  std::string address = "127.0.0.1";
+  std::string token;  // "": a new one
+
+  bool wanted() const noexcept { return port >= 0; }
+};
+void add_live_place(CLI::App& command, LivePlace& place);
+
+// What viewers need of the assembled robot.
+RobotTexts robot_texts(const Assembly& assembly);
+
+class LiveService {
+ public:
+  // Before the loop: opens the port, throws InputError when it cannot. `pace`: of a simulation, else null.
+  LiveService(const LivePlace& place, Instance& instance, const Assembly& assembly, LivePace* pace = nullptr);
+
+  // Says on stderr where it is found.
+  void start(const std::vector<TimingSource>& timing);
+  void stop() noexcept;
+
+ private:
+  std::unique_ptr<LiveHub> hub_;
+  std::unique_ptr<LiveServer> server_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,49 @@
+#include "kadans/remote/live_assets.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view package = "package://";
+
+// As the reader of the URDF finds it: from the file's folder, a package's folder from there up.
+std::string place_of(const std::string& name, const fs::path& folder) {
+  if (name.starts_with("file://")) return name.substr(7);
+  if (!name.starts_with(package)) return (folder / name).string();
+  const fs::path inside = name.substr(package.size());
+  for (fs::path at = folder;; at = at.parent_path()) {
+    if (fs::exists(at / inside)) return (at / inside).string();
+    if (at.filename() == *inside.begin() && fs::exists(at.parent_path() / inside))
+      return (at.parent_path() / inside).string();
+    if (at == at.parent_path()) return "";
+  }
+}
+
+}  // namespace
+
+LiveAssets::LiveAssets(const RobotTexts& texts, const std::string& urdf_file)
+    : urdf_(texts.urdf), urdf_uri_(std::string(package) + texts.name + "/" + texts.name + ".urdf") {
+  const fs::path folder = fs::absolute(urdf_file).parent_path();
+  constexpr std::string_view key = "filename=\"";
+  for (std::size_t at = urdf_.find(key); at != std::string::npos; at = urdf_.find(key, at)) {
+    at += key.size();
+    const std::string name = urdf_.substr(at, urdf_.find('"', at) - at);
+    files_[name] = place_of(name, folder);
+  }
+}
+
+std::optional<std::string> LiveAssets::read(std::string_view uri) const {
+  if (uri == "robot.urdf" || uri == urdf_uri_) return urdf_;
+  auto found = files_.find(uri);
+  if (found == files_.end()) found = files_.find(std::string(package) + std::string(uri));
+  if (found == files_.end()) return std::nullopt;
+  std::ifstream file(found->second, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+}  // namespace kadans

@@ -1,0 +1,143 @@
+#include "kadans/remote/live_hub.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "kadans/remote/live_client.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::uint64_t report_every = 30, timing_every = 60, parameters_every = 6;  // beats
+constexpr std::uint64_t own = 0;                                                     // the hub's orders
+constexpr std::uint32_t report_call = 1, saved_call = 2;
+
+}  // namespace
+
+LiveHub::LiveHub(Parts parts)
+    : p_(std::move(parts)), channels_(p_.instance, p_.texts), assets_(p_.texts, p_.urdf_file) {
+  const ParameterTable& table = p_.instance.catalog().parameters;
+  for (ParameterId id = 0; id < table.size(); ++id) parameters_.push_back({table.info(id).name, table.newest(id)});
+  tell_state();
+}
+
+void LiveHub::beat() {
+  if (wanted_ != !clients_.empty()) {
+    wanted_ = !clients_.empty();
+    const double ticks = 1 / (rate_hz * p_.instance.facts().control_period_s);
+    p_.port.want_signals(wanted_ ? static_cast<std::uint32_t>(std::max(1.0, std::floor(ticks))) : 0);
+  }
+  for (Event event; p_.port.next(event);) channels_.take(event);
+  const std::int64_t time_ns = p_.port.status().time_ns;
+  for (Fault fault; p_.port.next(fault);) channels_.take(fault, time_ns);
+  take_answers();
+  changed_.clear();
+  if (!wanted_) return;
+  const LatestRow::View row = p_.port.signals();
+  if (!row.values.empty() && row.tick != last_tick_) {
+    last_tick_ = row.tick;
+    channels_.take(row);
+  }
+  if (beats_ % parameters_every == 0) take_parameters();
+  if (beats_ % timing_every == 0 && !p_.timing.empty()) channels_.take_timing(timing_json(p_.timing), time_ns);
+  if (beats_++ % report_every == 0 && !report_waits_)
+    report_waits_ = send({.kind = Order::Kind::report}, own, report_call);
+}
+
+bool LiveHub::send(Order order, std::uint64_t client, std::uint32_t call) {
+  order.client = client;
+  const std::uint64_t number = p_.port.send(std::move(order));
+  if (number == 0) return false;
+  waiting_[number] = {client, call};
+  return true;
+}
+
+void LiveHub::take_answers() {
+  for (Answer answer; p_.port.next(answer); answer = {}) {
+    const auto found = waiting_.find(answer.number);
+    if (found == waiting_.end()) continue;
+    const Caller caller = found->second;
+    waiting_.erase(found);
+    if (caller.client != own) {
+      const auto client = clients_.find(caller.client);
+      if (client != clients_.end()) client->second->take(caller.call, answer);
+      continue;
+    }
+    if (caller.call != report_call) continue;
+    report_waits_ = false;
+    behaviors_now_.clear();
+    for (const BehaviorReport& behavior : answer.behaviors) {
+      for (const ScriptParameter& p : behavior.parameters)
+        behaviors_now_.push_back({behavior.name + "." + p.name, p.value});
+    }
+    paused_ = answer.paused;
+    tell_state();
+  }
+}
+
+void LiveHub::note(const std::string& name, double value) {
+  const auto known = std::ranges::find(parameters_, name, &LiveParameter::name);
+  if (known == parameters_.end()) {
+    parameters_.push_back({name, value});
+  } else if (known->value == value) {
+    return;
+  } else {
+    known->value = value;
+  }
+  changed_.push_back({name, value});
+}
+
+void LiveHub::take_parameters() {
+  const ParameterTable& table = p_.instance.catalog().parameters;
+  for (ParameterId id = 0; id < table.size(); ++id) {  // the first of the list, in their order
+    const double value = table.newest(id);
+    if (parameters_[id].value == value) continue;
+    parameters_[id].value = value;
+    changed_.push_back(parameters_[id]);
+  }
+  for (const LiveParameter& p : behaviors_now_) note(p.name, p.value);
+}
+
+std::string LiveHub::save(const std::vector<ParameterChange>& changes) {
+  ConfigurationText& configuration = p_.instance.configuration();
+  configuration.save(changes, p_.instance.catalog());
+  (void)send({.kind = Order::Kind::saved, .changes = changes}, own, saved_call);
+  return std::to_string(changes.size()) + " parameters stand in " + configuration.file().filename().string();
+}
+
+bool LiveHub::act(const std::string& verb, double value) {
+  if (verb == "estop") {
+    p_.instance.stop_now();
+    return true;
+  }
+  if (p_.pace == nullptr) return false;
+  if (verb == "hold") {
+    p_.pace->held = true;
+  } else if (verb == "go") {
+    p_.pace->held = false;
+  } else if (verb == "step") {
+    p_.pace->steps += 1;
+  } else if (verb == "speed" && value >= 0.01 && value <= 100) {
+    p_.pace->speed = value;
+  } else {
+    return false;
+  }
+  tell_state();
+  return true;
+}
+
+void LiveHub::tell_state() {
+  nlohmann::ordered_json json{{"paused", paused_}};
+  if (p_.pace != nullptr) {
+    json["held"] = p_.pace->held.load();
+    json["speed"] = p_.pace->speed.load();
+  }
+  const std::string text = json.dump();
+  if (text == state_) return;
+  state_ = text;
+  ++state_count_;
+}
+
+}  // namespace kadans

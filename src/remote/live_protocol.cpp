@@ -1,0 +1,128 @@
+#include "live_protocol.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <unistd.h>
+
+namespace kadans {
+namespace {
+
+constexpr std::array orders{
+    std::pair{std::string_view("play"), Order::Kind::play},
+    std::pair{std::string_view("replace"), Order::Kind::replace},
+    std::pair{std::string_view("pause"), Order::Kind::pause},
+    std::pair{std::string_view("resume"), Order::Kind::resume},
+    std::pair{std::string_view("stop"), Order::Kind::stop},
+    std::pair{std::string_view("reload"), Order::Kind::reload},
+    std::pair{std::string_view("switch_set"), Order::Kind::switch_set},
+    std::pair{std::string_view("undo"), Order::Kind::undo},
+    std::pair{std::string_view("save"), Order::Kind::changes},  // then they are written
+    std::pair{std::string_view("clear_faults"), Order::Kind::clear_faults},
+    std::pair{std::string_view("record_start"), Order::Kind::record_start},
+    std::pair{std::string_view("record_stop"), Order::Kind::record_stop},
+};
+
+std::vector<std::byte> taken(const ByteWriter& writer) {
+  const std::span<const std::byte> bytes = writer.bytes();
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+std::string session_id() { return std::to_string(getpid()); }
+
+std::string verbs_text(bool paced) {
+  std::string text = "estop";
+  for (const auto& [verb, kind] : orders) text += " " + std::string(verb);
+  return text + (paced ? " hold go step speed" : "");
+}
+
+std::optional<Order::Kind> order_of(std::string_view verb) {
+  const auto found = std::ranges::find(orders, verb, &std::pair<std::string_view, Order::Kind>::first);
+  if (found == orders.end()) return std::nullopt;
+  return found->second;
+}
+
+std::string service_advertisement() {
+  const Json request{
+      {"title", "kadans.Command"},
+      {"type", "object"},
+      {"properties",
+       {{"verb", {{"type", "string"}}}, {"text", {{"type", "string"}}}, {"value", {{"type", "number"}}}}}};
+  const Json response{{"title", "kadans.Answer"},
+                      {"type", "object"},
+                      {"properties", {{"done", {{"type", "boolean"}}}, {"text", {{"type", "string"}}}}}};
+  const Json service{{"id", command_service},
+                     {"name", "/kadans/command"},
+                     {"type", "kadans.Command"},
+                     {"requestSchema", request.dump()},
+                     {"responseSchema", response.dump()},
+                     {"request",
+                      {{"encoding", "json"},
+                       {"schemaName", "kadans.Command"},
+                       {"schemaEncoding", "jsonschema"},
+                       {"schema", request.dump()}}},
+                     {"response",
+                      {{"encoding", "json"},
+                       {"schemaName", "kadans.Answer"},
+                       {"schemaEncoding", "jsonschema"},
+                       {"schema", response.dump()}}}};
+  return Json{{"op", "advertiseServices"}, {"services", Json::array({service})}}.dump();
+}
+
+std::string service_failure(std::uint32_t call, const std::string& why) {
+  return Json{{"op", "serviceCallFailure"}, {"serviceId", command_service}, {"callId", call}, {"message", why}}.dump();
+}
+
+Json parameter_json(const LiveParameter& parameter) {
+  return {{"name", parameter.name}, {"value", parameter.value}, {"type", "float64"}};
+}
+
+std::vector<std::byte> message_data(std::uint32_t subscription, std::uint64_t time_ns,
+                                    std::span<const std::byte> payload) {
+  ByteWriter to;
+  to.put(std::uint8_t{1});
+  to.put(subscription);
+  to.put(time_ns);
+  to.put(payload);
+  return taken(to);
+}
+
+std::vector<std::byte> service_response(std::uint32_t call, const std::string& json) {
+  ByteWriter to;
+  to.put(std::uint8_t{3});
+  to.put(command_service);
+  to.put(call);
+  to.put_string("json");
+  to.put(bytes_of(json));
+  return taken(to);
+}
+
+std::vector<std::byte> asset_response(std::uint32_t request, const std::string& uri,
+                                      const std::optional<std::string>& content) {
+  ByteWriter to;
+  to.put(std::uint8_t{4});
+  to.put(request);
+  to.put(std::uint8_t{content ? std::uint8_t{0} : std::uint8_t{1}});
+  to.put_string(content ? "" : "there is no asset " + uri);
+  if (content) to.put(bytes_of(*content));
+  return taken(to);
+}
+
+std::optional<ServiceCall> read_service_call(std::span<const std::byte> bytes) {
+  ByteReader from(bytes);
+  if (from.left() < 1 + 3 * sizeof(std::uint32_t)) return std::nullopt;
+  (void)from.take<std::uint8_t>();
+  ServiceCall call;
+  call.service = from.take<std::uint32_t>();
+  call.call = from.take<std::uint32_t>();
+  const std::size_t encoding = from.take<std::uint32_t>();
+  if (encoding > from.left()) return std::nullopt;
+  const std::size_t head = bytes.size() - from.left() + encoding;
+  call.request.assign(reinterpret_cast<const char*>(bytes.data()) + head, bytes.size() - head);
+  return call;
+}
+
+}  // namespace kadans

@@ -1,0 +1,109 @@
+// The page in a real browser: a live run, then its record.
+import { existsSync, readdirSync, statSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+import { check, folder, live_address, project, run, scenario, start, until } from './program.mjs';
+
+const args = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run', '--disable-dev-shm-usage'];
+const page_max_bytes = 300 * 1024;
+
+// The robot's picture as a hash, to tell whether it changed.
+const picture = (page) =>
+  page.evaluate(() => {
+    const small = document.createElement('canvas');
+    small.width = small.height = 96;
+    const context = small.getContext('2d');
+    context.drawImage(document.getElementById('robot'), 0, 0, 96, 96);
+    return context.getImageData(0, 0, 96, 96).data.reduce((hash, value) => (Math.imul(hash, 31) + value) | 0, 7);
+  });
+const value = (page, name) => page.evaluate((signal) => globalThis.kadans.value(signal), name);
+const active = (page) => page.evaluate(() => document.querySelector('.chart .state.active')?.dataset.state ?? '');
+
+function check_size() {
+  const assets = `${project}/web/dist/assets`;
+  const bytes = readdirSync(assets).filter((file) => file.endsWith('.gz')).reduce((sum, file) => sum + statSync(`${assets}/${file}`).size, 0);
+  check(bytes < page_max_bytes, `the page is ${bytes} bytes compressed, under ${page_max_bytes}`);
+}
+
+async function check_live(page, port) {
+  await page.waitForSelector('.chart .state');
+  check(true, 'it loads and draws the chart');
+  await until('the robot squats', async () => (await active(page)) === 'squat');
+  check(true, 'it follows a transition');
+  const knee = await value(page, 'joint.l_knee.position_rad');
+  const drawn = await picture(page);
+  await until('a joint moves, as a number', async () => Math.abs((await value(page, 'joint.l_knee.position_rad')) - knee) > 0.05);
+  await until('and in the picture', async () => (await picture(page)) !== drawn);
+  check(true, 'joints move, in numbers and pixels');
+
+  await page.click('[role=tab]:has-text("Parameters")');
+  await page.fill('[placeholder="Find a parameter"]', 'l_knee.kp');
+  const slider = page.locator('[data-parameter="posture.l_knee.kp_Nm_per_rad"] input[type=range]');
+  const before = await page.evaluate(() => globalThis.kadans.parameters.get('posture.l_knee.kp_Nm_per_rad'));
+  await slider.focus();
+  await page.keyboard.press('PageUp');
+  const other = await page.context().newPage(); // one that asked for nothing: what it sees, the runtime has
+  await other.goto(`http://127.0.0.1:${port}/`);
+  await until('another client sees it', () => other.evaluate((was) => globalThis.kadans?.parameters.get('posture.l_knee.kp_Nm_per_rad') > was, before));
+  check(true, 'a slider changes the parameter in the runtime');
+  check(await other.evaluate(() => !globalThis.kadans.remote.writes), 'a page without the token changes nothing');
+  await other.close();
+}
+
+async function check_record(page, record) {
+  const view = start(['view', record], /(http:\S+)/);
+  const [, url] = await view.begun;
+  await page.goto(url);
+  await page.waitForFunction(() => globalThis.kadans?.loading === 0 && globalThis.kadans.end_s > 2.5);
+  const bar = await page.locator('.bar').boundingBox();
+  const go = async (share) => {
+    await page.mouse.click(bar.x + share * bar.width, bar.y + bar.height / 2);
+    return page.evaluate(() => globalThis.kadans.cursor_s);
+  };
+  const end_s = await page.evaluate(() => globalThis.kadans.end_s);
+  const early_s = await go(0.1);
+  await until('an early picture', async () => (await active(page)) === 'settle');
+  const [knee, drawn] = [await value(page, 'joint.l_knee.position_rad'), await picture(page)];
+  const late_s = await go(0.9);
+  check(Math.abs(early_s - 0.1 * end_s) < 0.05 * end_s && Math.abs(late_s - 0.9 * end_s) < 0.05 * end_s, 'the bar goes to the time that is clicked');
+  check(Math.abs((await value(page, 'joint.l_knee.position_rad')) - knee) > 0.2, 'the joints are those of that time');
+  await until('and the picture is', async () => (await picture(page)) !== drawn);
+  await until('and the state', async () => (await active(page)) === 'squat');
+  check(true, 'a record is scrubbed: numbers, picture and state follow');
+  await view.stop();
+}
+
+run(async () => {
+  check_size();
+  const record = `${folder}/page.mcap`;
+  const sim = (port) => start(['sim', scenario('squat'), '--duration', '600', `--live=${port}`, '--live-token', 'test', '--no-record', '--no-ctl'], live_address);
+  const recorded = start(['sim', scenario('squat'), '--duration', '3', '--record', record], /record:/);
+  await recorded.begun;
+  await until('the record is there', () => recorded.child.exitCode !== null && existsSync(record));
+
+  const first = sim(0);
+  const [, url, port] = await first.begun;
+  const browser = await chromium.launch({ executablePath: process.env.KADANS_CHROMIUM ?? 'chromium', args });
+  try {
+    const page = await browser.newPage({ viewport: { width: 1366, height: 768 } });
+    const problems = [];
+    page.on('pageerror', (error) => problems.push(error.stack));
+    await page.goto(url);
+    await check_live(page, port);
+
+    const id = await page.evaluate(() => globalThis.kadans.id);
+    await first.stop();
+    await until('the page sees that it is gone', () => page.evaluate(() => globalThis.kadans.status !== ''));
+    const second = sim(port);
+    await second.begun;
+    await until('it connects again', () => page.evaluate((was) => globalThis.kadans.status === '' && globalThis.kadans.id !== was, id));
+    const end_s = await page.evaluate(() => globalThis.kadans.end_s);
+    await until('values come again', () => page.evaluate((was) => globalThis.kadans.end_s > was && globalThis.kadans.end_s < 60, end_s));
+    check(true, 'it connects again after the server was away');
+    await second.stop();
+
+    await check_record(page, record);
+    check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
+  } finally {
+    await browser.close();
+  }
+});

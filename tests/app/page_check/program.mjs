@@ -1,0 +1,63 @@
+// The program under test: started, awaited, stopped; and conditions that are awaited, not slept for.
+import { spawn } from 'node:child_process';
+
+export const [kadans, project, folder] = process.argv.slice(2);
+const patience_ms = 20_000;
+const running = new Set();
+
+export function check(truth, what) {
+  if (!truth) throw new Error(`not so: ${what}`);
+  console.log(`ok    ${what}`);
+}
+
+// Resolves with the first line on stderr or stdout that fits, as its match.
+export function start(args, line) {
+  const child = spawn(kadans, args, { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'] });
+  running.add(child);
+  child.once('exit', () => running.delete(child));
+  let said = '';
+  const begun = new Promise((resolve, reject) => {
+    const hear = (bytes) => {
+      said += bytes;
+      const found = said.match(line);
+      if (found) resolve(found);
+    };
+    child.stdout.on('data', hear);
+    child.stderr.on('data', hear);
+    child.once('exit', (code) => reject(new Error(`kadans ${args.join(' ')} ended with ${code}: ${said}`)));
+    setTimeout(() => reject(new Error(`kadans ${args.join(' ')} did not begin: ${said}`)), patience_ms).unref();
+  });
+  const stop = () =>
+    new Promise((resolve) => {
+      if (child.exitCode !== null || child.signalCode !== null) return resolve();
+      child.once('exit', resolve);
+      child.kill('SIGINT');
+    });
+  return { child, begun, stop };
+}
+
+export const scenario = (name) => `${project}/config/scenarios/${name}.json`;
+export const live_address = /live on (http:\/\/127\.0\.0\.1:(\d+)\/\?token=(\w+))/;
+
+// Asks again until it is so.
+export async function until(what, ask) {
+  const end = Date.now() + patience_ms;
+  for (;;) {
+    const answer = await ask();
+    if (answer) return answer;
+    if (Date.now() > end) throw new Error(`never so: ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+}
+
+export async function run(checks) {
+  try {
+    await checks();
+  } catch (error) {
+    console.error(error);
+    process.exitCode = 1;
+  } finally {
+    for (const child of running) child.kill('SIGKILL');
+  }
+  process.exit();
+}

@@ -1,0 +1,105 @@
+// The page: robot and plots in the middle, signals on the left, one of five panels on the right, time below.
+import { useEffect, useRef, useState } from 'preact/hooks';
+import { keys, listen_to_keys } from './keyboard.js';
+import { BehaviorPanel } from './panels/behavior_panel.jsx';
+import { LogPanel } from './panels/log_panel.jsx';
+import { ParametersPanel } from './panels/parameters_panel.jsx';
+import { Plots } from './panels/plots.jsx';
+import { RobotPanel } from './panels/robot_panel.jsx';
+import { rungs, SafetyPanel } from './panels/safety_panel.jsx';
+import { ScrubBar } from './panels/scrub_bar.jsx';
+import { SignalList } from './panels/signal_list.jsx';
+import { TimingPanel } from './panels/timing_panel.jsx';
+import { TopBar } from './panels/top_bar.jsx';
+import { useSession } from './watching.js';
+
+const tabs = [['Behavior', BehaviorPanel], ['Parameters', ParametersPanel], ['Safety', SafetyPanel], ['Timing', TimingPanel], ['Log', LogPanel]];
+const first_plots = [['plant.base.height_m', 'base.height_m'], ['joint.l_knee.position_rad', 'joint.r_knee.position_rad'], ['base.pitch_rad', 'base.roll_rad']];
+
+export function first_theme() {
+  const wanted = new URLSearchParams(location.search).get('theme') ?? localStorage.getItem('kadans.theme');
+  if (wanted === 'dark' || wanted === 'light') return wanted;
+  return matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
+}
+
+// Plots that somebody made stay; else some that most robots have.
+function usePlots(session) {
+  const [plots, set_plots] = useState(() => JSON.parse(localStorage.getItem('kadans.plots') ?? 'null'));
+  const known = first_plots.map((names) => names.filter((name) => session.signals.has(name)).slice(0, 2)).filter((names) => names.length > 0);
+  const chosen = plots ?? known.slice(0, 2);
+  const change = (next) => {
+    localStorage.setItem('kadans.plots', JSON.stringify(next));
+    set_plots(next);
+  };
+  return [chosen, change];
+}
+
+function Help({ close }) {
+  return (
+    <dialog open class="help" onClick={close}>
+      <h2>Keys</h2>
+      <dl>{keys.map(([key, what]) => <div key={key}><dt><kbd>{key}</kbd></dt><dd>{what}</dd></div>)}</dl>
+      <p>Drag a signal into the plots. In a plot: click to go there, drag to zoom, double-click for all.</p>
+    </dialog>
+  );
+}
+
+function Tabs({ session, tab, set_tab }) {
+  useSession(session, 3);
+  const level = session.value('safety.level');
+  return (
+    <nav class="tabs" role="tablist">
+      {tabs.map(([name], i) => (
+        <button key={name} role="tab" aria-selected={i === tab} onClick={() => set_tab(i)}>
+          {name}{name === 'Safety' && level > 0 && <i class={`alert level${level}`} title={rungs[level]} />}
+        </button>
+      ))}
+    </nav>
+  );
+}
+
+export function App({ session, frames, open }) {
+  const [theme, set_theme] = useState(first_theme);
+  const [tab, set_tab] = useState(() => Number(new URLSearchParams(location.search).get('tab') ?? 0));
+  const [help, set_help] = useState(false);
+  const [plots, set_plots] = usePlots(session);
+  const search_box = useRef();
+  const latest = useRef();
+  latest.current = { session, theme };
+  useSession(session, 1);
+  useEffect(() => {
+    document.documentElement.dataset.theme = theme;
+    localStorage.setItem('kadans.theme', theme);
+  }, [theme]);
+  const turn = () => set_theme((now) => (now === 'dark' ? 'light' : 'dark'));
+  useEffect(
+    () =>
+      listen_to_keys({
+        session: () => latest.current.session,
+        tab: set_tab,
+        find: () => search_box.current?.focus(),
+        look: () => globalThis.kadans_stage?.look_from_start(),
+        theme: turn,
+        help: (shown) => set_help((now) => shown ?? !now),
+      }),
+    [],
+  );
+  const add = (name) => set_plots(plots.length > 0 && !plots.at(-1).includes(name) && plots.at(-1).length < 3 ? [...plots.slice(0, -1), [...plots.at(-1), name]] : [...plots, [name]]);
+  const Panel = tabs[tab][1];
+  return (
+    <div class="page">
+      <TopBar {...{ session, theme, turn, open }} help={() => set_help(!help)} />
+      <SignalList {...{ session, add, search_box }} />
+      <main>
+        <RobotPanel {...{ session, theme, frames }} />
+        <Plots {...{ session, plots, set_plots, theme, frames }} />
+      </main>
+      <aside>
+        <Tabs {...{ session, tab, set_tab }} />
+        <div class="panel" role="tabpanel"><Panel key={tab} session={session} /></div>
+      </aside>
+      <ScrubBar {...{ session, frames }} />
+      {help && <Help close={() => set_help(false)} />}
+    </div>
+  );
+}

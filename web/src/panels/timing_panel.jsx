@@ -1,0 +1,50 @@
+// How punctual the run is: histograms of ticks and of what behaviors cost.
+import { useMemo } from 'preact/hooks';
+import { column_values, histogram, intervals_us } from '../data/histogram.js';
+import { number, useSession } from '../watching.js';
+
+function Bars({ title, unit, data }) {
+  if (!data) return null;
+  const top = Math.log1p(Math.max(...data.counts));
+  const width = 100 / data.counts.length;
+  return (
+    <figure class="histogram">
+      <figcaption>{title}<small>{unit}</small></figcaption>
+      <svg viewBox="0 0 100 36" preserveAspectRatio="none" role="img" aria-label={title}>
+        {data.counts.map((count, i) => {
+          const height = (34 * Math.log1p(count)) / top;
+          return <rect key={i} x={i * width + 0.15} y={36 - height} width={width - 0.3} height={height} />;
+        })}
+      </svg>
+      <p class="edges"><span>{number(data.low)}</span><span>counts, logarithmic</span><span>{number(data.high)}</span></p>
+      <p class="figures">median <b>{number(data.median)}</b> 99 % <b>{number(data.p99)}</b> max <b>{number(data.max)}</b> of {data.count}</p>
+    </figure>
+  );
+}
+
+// What a live run tells: {name: {unit, low, high, counts, median, p99, max, count}}.
+const LiveTiming = ({ timing }) => Object.entries(timing).map(([name, data]) => <Bars key={name} title={name} unit={data.unit} data={data} />);
+
+export function TimingPanel({ session }) {
+  useSession(session, 2);
+  const rows = [...session.topics.values()].reduce((most, topic) => Math.max(most, topic.count), 0);
+  const pictures = useMemo(() => {
+    const found = [];
+    const joints = session.topics.get('/joint') ?? [...session.topics.values()][0];
+    if (joints && !session.timing) found.push({ title: 'Time between rows', unit: 'µs', data: histogram(intervals_us(joints)) });
+    for (const [name, signal] of session.signals) {
+      if (!/^behavior\..*\.(instructions|gc_pause_ns)$/.test(name)) continue;
+      const data = histogram(column_values(signal));
+      if (data && data.max > 0) found.push({ title: name, unit: signal.unit, data }); // in virtual time a pause is no time
+    }
+    return found;
+  }, [session, Math.floor(rows / 500), session.timing === null]);
+  return (
+    <div class="timing">
+      <h3>Ticks</h3>
+      <p class="sum">{number(session.value('safety.missed_ticks'))} missed, {number(session.value('engine.commands.applied'))} commands applied, {number(session.value('engine.commands.refused'))} refused</p>
+      {session.timing && <LiveTiming timing={session.timing} />}
+      {pictures.map((picture) => <Bars key={picture.title} {...picture} />)}
+    </div>
+  );
+}

@@ -1,0 +1,99 @@
+// The robot from its URDF, posed from the signals of a session: joints as measured, the base as the model knows it or,
+// on a real robot, as it is estimated. Also its centre of mass, from the inertias of the same URDF.
+import { Euler, Group, Quaternion, Vector3 } from 'three';
+import URDFLoader from 'urdf-loader';
+
+const gravity_m_s2 = 9.81;
+const numbers = (text) => (text ?? '0 0 0').trim().split(/\s+/).map(Number);
+
+function masses_of(robot) {
+  const masses = [];
+  for (const link of Object.values(robot.links)) {
+    const inertial = [...(link.urdfNode?.children ?? [])].find((child) => child.nodeName === 'inertial');
+    const mass = inertial?.querySelector('mass');
+    if (!mass) continue;
+    const origin = inertial.querySelector('origin')?.getAttribute('xyz');
+    masses.push({ link, kg: Number(mass.getAttribute('value')), at: new Vector3(...numbers(origin)) });
+  }
+  return masses;
+}
+
+export class RobotModel {
+  // `mesh_base`: where package:// leads to.
+  constructor(urdf, mesh_base) {
+    const loader = new URDFLoader();
+    loader.packages = (name) => `${mesh_base}${name}`;
+    this.robot = loader.parse(urdf);
+    this.root = new Group();
+    this.root.add(this.robot);
+    this.joints = Object.values(this.robot.joints).filter((joint) => joint.jointType !== 'fixed');
+    this.masses = masses_of(this.robot);
+    this.turn = new Quaternion();
+    this.euler = new Euler();
+    this.robot.traverse((part) => {
+      if (!part.isMesh) return;
+      part.castShadow = true;
+      part.receiveShadow = true;
+      if (part.material.isMeshPhongMaterial) {
+        part.material.shininess = 18;
+        part.material.specular?.setHex(0x222222);
+      }
+    });
+  }
+
+  link(name) {
+    return this.robot.links[name];
+  }
+
+  pose(session, t) {
+    for (const joint of this.joints) {
+      const position = session.value(`joint.${joint.name}.position_rad`, t);
+      if (Number.isFinite(position)) joint.setJointValue(position);
+    }
+    const or = (first, second, last) => {
+      const value = session.value(first, t);
+      if (Number.isFinite(value)) return value;
+      const other = second ? session.value(second, t) : NaN;
+      return Number.isFinite(other) ? other : last;
+    };
+    this.root.position.set(
+      or('plant.base.x_m', null, 0),
+      or('plant.base.y_m', null, 0),
+      or('plant.base.height_m', 'base.height_m', 0.9),
+    );
+    const yaw = or('plant.base.yaw_rad', 'base.yaw_rad', 0);
+    this.euler.set(or('base.roll_rad', null, 0), or('base.pitch_rad', null, 0), yaw, 'ZYX');
+    this.root.quaternion.setFromEuler(this.euler);
+    this.root.updateMatrixWorld(true);
+  }
+
+  // As it is posed now.
+  centre_of_mass(to) {
+    const part = new Vector3();
+    let kg = 0;
+    to.set(0, 0, 0);
+    for (const mass of this.masses) {
+      to.addScaledVector(part.copy(mass.at).applyMatrix4(mass.link.matrixWorld), mass.kg);
+      kg += mass.kg;
+    }
+    return kg > 0 ? to.divideScalar(kg) : to;
+  }
+
+  // Centre of mass and divergent component of motion (its place plus its speed over the pendulum's rate); leaves the
+  // robot posed at t.
+  balance(session, t, com, dcm) {
+    const dt_s = 0.02;
+    const before = new Vector3();
+    const first = session.start_s;
+    this.pose(session, Math.max(first, t - dt_s));
+    this.centre_of_mass(before);
+    this.pose(session, t);
+    this.centre_of_mass(com);
+    const passed_s = Math.min(dt_s, t - first);
+    dcm.copy(com).setZ(0);
+    if (passed_s <= 0 || com.z <= 0.05) return;
+    const per_rate = Math.sqrt(com.z / gravity_m_s2) / passed_s;
+    dcm.x += (com.x - before.x) * per_rate;
+    dcm.y += (com.y - before.y) * per_rate;
+  }
+}

@@ -1,0 +1,92 @@
+// The place where the robot stands: light, ground, camera. Draws when told to; knows nothing of time.
+import {
+  AmbientLight, Color, DirectionalLight, GridHelper, HemisphereLight, Mesh, PCFShadowMap, PerspectiveCamera,
+  PlaneGeometry, Scene, ShadowMaterial, Vector3, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+const themes = {
+  light: { back: 0xeef1f4, grid: 0xc9d1d9, lines: 0xdde3e8, sun: 2.1, sky: 1.5, shadow: 0.16 },
+  dark: { back: 0x14191f, grid: 0x35404b, lines: 0x232b34, sun: 1.7, sky: 0.9, shadow: 0.45 },
+};
+
+export class Stage {
+  constructor(canvas) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(32, 1, 0.02, 60);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.minDistance = 0.3;
+    this.controls.maxDistance = 15;
+    this.target = new Vector3(0, 0, 0.6);
+    this.add_lights();
+    this.ground = new Mesh(new PlaneGeometry(40, 40), new ShadowMaterial());
+    this.ground.receiveShadow = true;
+    this.scene.add(this.ground);
+    this.look_from_start();
+  }
+
+  add_lights() {
+    this.sky = new HemisphereLight(0xffffff, 0x8a8f96, 1);
+    this.sky.position.set(0, 0, 1);
+    this.sun = new DirectionalLight(0xffffff, 2);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.radius = 3;
+    this.sun.shadow.bias = -0.0008;
+    Object.assign(this.sun.shadow.camera, { left: -1.4, right: 1.4, top: 1.4, bottom: -1.4, near: 0.5, far: 9 });
+    this.scene.add(this.sky, this.sun, this.sun.target, new AmbientLight(0xffffff, 0.25));
+  }
+
+  set_theme(name) {
+    const theme = themes[name];
+    this.scene.background = new Color(theme.back);
+    if (this.grid) this.scene.remove(this.grid);
+    this.grid = new GridHelper(20, 80, theme.grid, theme.lines);
+    this.grid.rotation.x = Math.PI / 2;
+    this.grid.position.z = -0.001;
+    this.scene.add(this.grid);
+    this.sun.intensity = theme.sun;
+    this.sky.intensity = theme.sky;
+    this.ground.material.opacity = theme.shadow;
+  }
+
+  look_from_start() {
+    this.controls.target.copy(this.target);
+    this.camera.position.copy(this.target).add(new Vector3(2.5, 1.7, 0.62));
+    this.controls.update();
+  }
+
+  // Keeps `point` where it is in the picture, sideways; height stays.
+  follow(point) {
+    const dx = point.x - this.target.x;
+    const dy = point.y - this.target.y;
+    this.target.x += dx;
+    this.target.y += dy;
+    for (const at of [this.controls.target, this.camera.position]) at.set(at.x + dx, at.y + dy, at.z);
+    this.sun.target.position.set(point.x, point.y, 0.4);
+    this.sun.position.set(point.x + 1.2, point.y + 1.6, 4.2);
+  }
+
+  resize(width, height, ratio = Math.min(2, globalThis.devicePixelRatio)) {
+    if (this.width === width && this.height === height) return;
+    [this.width, this.height] = [width, height];
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+  }
+
+  draw() {
+    this.controls.update();
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  dispose() {
+    this.controls.dispose();
+    this.renderer.dispose();
+  }
+}
