@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "kadans/plant/udp/udp_plant.h"
 #include "kadans/telemetry/recorder.h"
 #include "live_threads.h"
 
@@ -14,7 +15,8 @@ struct LiveResult {
   const ControlTask& control;
   const BehaviorEngine& behaviors;
   const ControlEngine& engine;
-  const PlantTask& plant;
+  const PlantTask* plant = nullptr;  // of a model
+  const UdpPlant* udp_plant = nullptr;
   const Recorder* recorder = nullptr;
   double duration_s = 0;
   double start_ms = 0;  // from the start of the process to the first control tick

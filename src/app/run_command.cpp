@@ -14,13 +14,13 @@
 #include "kadans/app/assembly.h"
 #include "kadans/config/project_root.h"
 #include "kadans/realtime/machine.h"
-#include "kadans/realtime/memory_lock.h"
 #include "kadans/realtime/rights.h"
 #include "kadans/realtime/service_notifier.h"
 #include "leaving.h"
 #include "live_log.h"
 #include "live_report.h"
 #include "live_threads.h"
+#include "real_time_start.h"
 #include "terminal.h"
 #include "version.h"
 
@@ -29,25 +29,18 @@ namespace {
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
-constexpr std::size_t heap_reserve_bytes = std::size_t{2} << 20U;
 
 ScenarioConfig scenario_of(const RunOptions& options) {
   ScenarioConfig scenario;
   scenario.file = scenario.robot = options.robot;
   scenario.name = "run";
-  scenario.plant = options.plant == "ideal" ? PlantKind::ideal : PlantKind::bullet;
+  scenario.plant = options.plant == "udp"     ? PlantKind::udp
+                   : options.plant == "ideal" ? PlantKind::ideal
+                                              : PlantKind::bullet;
+  scenario.peer = options.peer;
   scenario.seed = options.seed.value_or(1);
   if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
   return scenario;
-}
-
-// False when the run must not go on without.
-bool rights_suffice(const RunOptions& options) {
-  if (options.virtual_time) return true;
-  const std::vector<std::string> missing = missing_rights(read_rights("/"), control_priority);
-  for (const std::string& right : missing) print_error((options.soft ? "going on without " : "missing ") + right);
-  if (!missing.empty() && !options.soft) print_error("--soft goes on without, late as the system likes");
-  return missing.empty() || options.soft;
 }
 
 LiveTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
@@ -99,7 +92,7 @@ class RecordTask final : public Task {
 // The truth of the model, for the record: on the control thread, whose row it becomes part of, after the tick.
 class TruthTask final : public BesideTick {
  public:
-  explicit TruthTask(const RunParts& parts) : truth_(parts.truth), control_(parts.control) {}
+  TruthTask(TruthSignals& truth, ControlEngine& control) : truth_(truth), control_(control) {}
   void beside_tick(std::int64_t time_ns) override {
     truth_.update(1e-9 * static_cast<double>(time_ns), control_.row());
   }
@@ -116,17 +109,22 @@ class LiveRun {
         scenario_(scenario_of(options)),
         link_(std::make_unique<PlantExchange>()),
         assembly_(scenario_, scenario_.seed, log_, link_.get()),
-        parts_(assembly_.parts()),
-        truth_(parts_),
-        plant_(*link_, assembly_.model(), assembly_.robot().engine.control_period_ns()),
+        parts_{assembly_.control(), assembly_.behaviors()},
+        truth_(assembly_.truth() == nullptr ? nullptr
+                                            : std::make_unique<TruthTask>(*assembly_.truth(), parts_.control)),
+        plant_(assembly_.model() == nullptr
+                   ? nullptr
+                   : std::make_unique<PlantTask>(*link_, *assembly_.model(),
+                                                 assembly_.robot().engine.control_period_ns())),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
                  assembly_.host(), parts_.behaviors, parts_.control.exchange()) {}
 
   int run() {
     start_record();
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
-    if (!timing.virtual_time) (void)lock_memory(heap_reserve_bytes);  // without the right, which has been told
-    LiveThreads threads(timing, {control_, behaviors_, plant_, recorder_ ? record_.get() : nullptr});
+    if (!timing.virtual_time) lock_program(plant_ != nullptr);
+    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->connect();
+    LiveThreads threads(timing, {control_, behaviors_, plant_.get(), record_.get()});
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
     notifier_.ready("drives " + assembly_.robot().name);
@@ -136,11 +134,13 @@ class LiveRun {
     threads.stop();
     ActuationFrame off;
     off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
-    assembly_.model().write(off);
+    assembly_.plant().write(off);
+    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->leave();
     tell(threads.supervisor().now_ns());
     if (recorder_ && !recorder_->close()) print_error("the record is not complete: " + recorder_->error());
-    LiveResult result{threads,         control_,   parts_.behaviors, parts_.control, plant_,
-                      recorder_.get(), left_at_s_, start_ms,         ended,          failed_};
+    LiveResult result{
+        threads,         control_,   parts_.behaviors, parts_.control, plant_.get(), assembly_.udp_plant(),
+        recorder_.get(), left_at_s_, start_ms,         ended,          failed_};
     result.failed = result.failed || log_.has_errors();
     std::fputs(live_text(result).c_str(), stdout);
     if (options_.json) std::puts(live_json(result).c_str());
@@ -232,11 +232,14 @@ class LiveRun {
   RunLog log_{&live_log_, kept_lines};
   std::unique_ptr<PlantExchange> link_;
   Assembly assembly_;
-  RunParts parts_;
-  TruthTask truth_;
-  PlantTask plant_;
+  struct {
+    ControlEngine& control;
+    BehaviorEngine& behaviors;
+  } parts_;
+  std::unique_ptr<TruthTask> truth_;  // of a model
+  std::unique_ptr<PlantTask> plant_;  // likewise
   Leaving leaving_;
-  ControlTask control_{parts_.control, &truth_};
+  ControlTask control_{parts_.control, truth_.get()};
   BehaviorTask behaviors_{parts_.behaviors, &leaving_};
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RecordTask> record_;
@@ -247,7 +250,11 @@ class LiveRun {
 }  // namespace
 
 int run_live(const RunOptions& options) {
-  if (!rights_suffice(options)) return exit_usage;
+  if (options.virtual_time && options.plant == "udp") {
+    print_error("--threads-on-virtual-time: a plant on another machine has its own time");
+    return exit_usage;
+  }
+  if (!options.virtual_time && !rights_suffice(control_priority, options.soft)) return exit_usage;
   LiveRun run(options);
   catch_interrupts();
   return run.run();
