@@ -11,14 +11,23 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t heap_reserve_bytes = std::size_t{2} << 20U;
+constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{2} << 20U;
 
-// What reads files and terminals before the loop, or in other commands; then the model.
-constexpr std::array<std::string_view, 12> unused{
-    "libsqlite3.",   "libedit.",   "libtinfo.",          "libbsd.",           "libmd.",
-    "liburdfdom_",   "libtinyxml", "libconsole_bridge.", "libBulletDynamics", "libBulletCollision",
-    "libLinearMath", "libzstd."};
-constexpr std::size_t unused_with_model = 8;
+// What works before the loop and in other commands: files, terminals, streams, exceptions; then the model's.
+constexpr std::array<std::string_view, 13> unused{"libstdc++.",
+                                                  "libsqlite3.",
+                                                  "libedit.",
+                                                  "libtinfo.",
+                                                  "libbsd.",
+                                                  "libmd.",
+                                                  "liburdfdom_",
+                                                  "libtinyxml",
+                                                  "libconsole_bridge.",
+                                                  "libBulletDynamics",
+                                                  "libBulletCollision",
+                                                  "libLinearMath",
+                                                  "libzstd."};
+constexpr std::size_t unused_with_model = 9;
 
 }  // namespace
 
@@ -31,7 +40,8 @@ bool rights_suffice(int priority, bool soft) {
 
 void lock_program(bool with_model) noexcept {
   const std::span<const std::string_view> all(unused);
-  (void)lock_memory(heap_reserve_bytes, with_model ? all.first(unused_with_model) : all);
+  (void)lock_memory(with_model ? heap_reserve_of_model_bytes : heap_reserve_bytes,
+                    with_model ? all.first(unused_with_model) : all);
 }
 
 }  // namespace kadans

@@ -1,11 +1,14 @@
 #include "kadans/realtime/memory_lock.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
+#include <link.h>
 #include <malloc.h>
 #include <sys/mman.h>
 
@@ -14,38 +17,84 @@ namespace {
 
 constexpr std::size_t page = 4096;
 
-// A line of /proc/self/maps: "7f12a000-7f12b000 r-xp 00000000 fe:00 1234   /usr/lib/libm.so.6".
-struct Mapping {
+struct Range {
   std::uintptr_t begin = 0, end = 0;
-  bool accessible = false;
-  std::string_view file;  // without its folder; "" for memory of no file
 };
 
-bool parse(std::string_view line, Mapping& mapping) noexcept {
-  unsigned long long begin = 0, end = 0;
-  char rights[5]{};
-  if (std::sscanf(line.data(), "%llx-%llx %4s", &begin, &end, rights) != 3) return false;
-  const std::size_t slash = line.rfind('/');
-  const bool ours = slash != std::string_view::npos || line.find('[') == std::string_view::npos ||
-                    line.find("[heap]") != std::string_view::npos || line.find("[stack]") != std::string_view::npos;
-  mapping = {static_cast<std::uintptr_t>(begin), static_cast<std::uintptr_t>(end), ours && rights[0] != '-',
-             slash == std::string_view::npos ? "" : line.substr(slash + 1)};
-  return true;
+// What may stay out of memory until it is touched, in pages.
+struct LeftOut {
+  std::span<const std::string_view> unused;
+  std::array<Range, 256> ranges;
+  std::size_t count = 0;
+
+  void add(std::uintptr_t begin, std::uintptr_t end) noexcept {
+    begin = (begin + page - 1) / page * page;
+    if (count < ranges.size() && begin < end) ranges[count++] = {begin, end};
+  }
+};
+
+// Of an unused library all; of the others the tables that only an exception reads: they end the segment that they are
+// in.
+int leave_out(dl_phdr_info* info, std::size_t, void* target) noexcept {
+  LeftOut& out = *static_cast<LeftOut*>(target);
+  const char* const slash = std::strrchr(info->dlpi_name, '/');
+  const std::string_view file = slash == nullptr ? info->dlpi_name : slash + 1;
+  const bool unused = std::ranges::any_of(out.unused, [&](std::string_view name) { return file.starts_with(name); });
+  const std::span segments(info->dlpi_phdr, info->dlpi_phnum);
+  const auto tables = std::ranges::find(segments, ElfW(Word){PT_GNU_EH_FRAME}, &ElfW(Phdr)::p_type);
+  for (const ElfW(Phdr) & segment : segments) {
+    if (segment.p_type != PT_LOAD) continue;
+    const std::uintptr_t begin = info->dlpi_addr + segment.p_vaddr, end = begin + segment.p_memsz;
+    if (unused) {
+      out.add(begin, end);
+    } else if (tables != segments.end() && segment.p_flags == PF_R) {
+      const std::uintptr_t at = info->dlpi_addr + tables->p_vaddr;
+      if (at >= begin && at < end) out.add(at, end);
+    }
+  }
+  return 0;
 }
 
-// Everything mapped but for the unused libraries comes into memory now, and stays.
+int lock(Range range) noexcept {
+  if (range.begin >= range.end) return 0;
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): the system writes it as a number
+  return mlock(reinterpret_cast<const void*>(range.begin), range.end - range.begin) == 0 ? 0 : errno;
+}
+
+// The parts of a mapping that are not left out; `out` ascends.
+int lock_rest(Range mapping, std::span<const Range> out) noexcept {
+  int refused = 0;
+  for (const Range& range : out) {
+    if (range.end <= mapping.begin || range.begin >= mapping.end) continue;
+    refused = std::max(refused, lock({mapping.begin, range.begin}));
+    mapping.begin = std::min(mapping.end, (range.end + page - 1) / page * page);
+  }
+  return std::max(refused, lock(mapping));
+}
+
+// A line of /proc/self/maps: "7f12a000-7f12b000 r-xp 00000000 fe:00 1234   /usr/lib/libm.so.6". What the kernel lends
+// ("[vdso]") is always there.
+bool parse(const char* line, Range& mapping) noexcept {
+  unsigned long long begin = 0, end = 0;
+  char rights[5]{};
+  if (std::sscanf(line, "%llx-%llx %4s", &begin, &end, rights) != 3) return false;
+  mapping = {static_cast<std::uintptr_t>(begin), static_cast<std::uintptr_t>(end)};
+  return rights[0] == 'r' && std::strstr(line, "[v") == nullptr;
+}
+
+// Everything mapped but for what is left out comes into memory now, and stays.
 int lock_used(std::span<const std::string_view> unused) noexcept {
+  LeftOut out{.unused = unused, .ranges = {}};
+  dl_iterate_phdr(leave_out, &out);
+  const std::span<Range> ranges(out.ranges.data(), out.count);
+  std::ranges::sort(ranges, {}, &Range::begin);
   std::FILE* const maps = std::fopen("/proc/self/maps", "re");
   if (maps == nullptr) return errno;
   int refused = 0;
   char line[512];
-  Mapping mapping;
-  while (refused == 0 && std::fgets(line, sizeof line, maps) != nullptr) {
-    if (!parse(line, mapping) || !mapping.accessible) continue;
-    const auto fits = [&](std::string_view name) { return mapping.file.starts_with(name); };
-    if (std::ranges::any_of(unused, fits)) continue;
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): it is written as a number
-    if (mlock(reinterpret_cast<const void*>(mapping.begin), mapping.end - mapping.begin) != 0) refused = errno;
+  Range mapping;
+  while (std::fgets(line, sizeof line, maps) != nullptr) {
+    if (parse(line, mapping)) refused = std::max(refused, lock_rest(mapping, ranges));
   }
   (void)std::fclose(maps);
   return refused;

@@ -8,9 +8,9 @@
 namespace kadans {
 
 // Before the threads are started, when all is built. The heap keeps `reserve_bytes` ready and gives nothing back to the
-// system; then everything mapped, and all to come, stays in memory. Shared libraries whose file names begin like one of
-// `unused`, which no real-time thread calls, are left out: of them stays what is touched. Returns 0, or the errno of
-// what was refused.
+// system; then everything mapped, and all to come, stays in memory. With `unused`, shared libraries whose file names
+// begin like one of them, which no real-time thread calls, and the tables that only exceptions read are left out: of
+// those stays what is touched. Returns 0, or the errno of what was refused.
 [[nodiscard]] int lock_memory(std::size_t reserve_bytes, std::span<const std::string_view> unused = {}) noexcept;
 
 }  // namespace kadans

@@ -63,6 +63,7 @@ bool UdpPlant::welcomed() {
       welcome_ = true;
     } else if (head.kind == WireKind::sensors) {
       sampled_ = take(datagram) || sampled_;
+      held_ = newest_;
     }
   }
   return welcome_ && sampled_;
@@ -125,7 +126,7 @@ void UdpPlant::read(SensorFrame& sensors) noexcept {
     answered_ = std::min(more_.answered, written_);
     const std::uint64_t age = written_ - answered_;
     round_trip_ticks_ = static_cast<double>(age);
-    const bool good = age <= round_trip_max_ticks_ && taken < tick_takes_max;
+    const bool good = age <= round_trip_max_ticks_ && taken <= piled_up;
     if (good) held_ = newest_;
     if (!good) ++statistics_.late;
   }

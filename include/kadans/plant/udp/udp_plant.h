@@ -4,8 +4,8 @@
 // too old, the last sample is held as it is. Its readings are then not new ones, so the estimator counts how long each
 // sensor has been silent and the safety layer goes by that: up to safety.silent_ticks_max ticks pass as if nothing
 // were, then the sensors are silent and the ladder follows. Age is counted in actuations sent, so neither side needs
-// the other's clock, and ticks that the control thread itself missed make nothing old. After a gap so long that more
-// came than one tick takes, nothing is used: it lay too long.
+// the other's clock, and ticks that the control thread itself missed make nothing old. When more than a few samples
+// came at once, after a gap, the newest of them may have lain for long behind a full buffer: the next tick's counts.
 //
 // One owner, the control thread; read and write make one or two system calls each that do not block.
 #pragma once
@@ -46,7 +46,7 @@ class UdpPlant final : public Plant {
   double round_trip_ticks() const noexcept { return round_trip_ticks_; }
 
  private:
-  static constexpr std::size_t tick_takes_max = 4 * DatagramSocket::batch_max;
+  static constexpr std::size_t tick_takes_max = 4 * DatagramSocket::batch_max, piled_up = 8;
 
   bool take(Bytes datagram) noexcept;
   bool is_good(Bytes datagram, WireHead& head) noexcept;
