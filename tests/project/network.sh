@@ -16,7 +16,7 @@ work=$(mktemp -d)
 here=kadans-$$-control there=kadans-$$-plant
 finish() {
   for pid in $(jobs -p); do kill "$pid" 2>/dev/null || true; done
-  wait
+  wait || true
   ip netns del "$here" 2>/dev/null || true
   ip netns del "$there" 2>/dev/null || true
   rm -rf "$work"
@@ -31,13 +31,33 @@ for side in "$here kadans0 10.77.0.1" "$there kadans1 10.77.0.2"; do
   ip -n "$space" address add "$address/24" dev "$device"
   ip -n "$space" link set "$device" up
 done
-weather() { # LOSS%: in each direction
-  ip netns exec "$here" tc qdisc replace dev kadans0 root netem delay 1ms 0.5ms loss "$1" duplicate 2% &&
-    ip netns exec "$there" tc qdisc replace dev kadans1 root netem delay 1ms 0.5ms loss "$1" duplicate 2%
+ip -n "$there" link set lo up
+# In both directions; 0.5 ms of jitter lets datagrams overtake each other.
+netem() { # LOSS%
+  ip netns exec "$here" tc qdisc replace dev kadans0 root netem delay 1ms 0.5ms loss "$1%" duplicate 2% &&
+    ip netns exec "$there" tc qdisc replace dev kadans1 root netem delay 1ms 0.5ms loss "$1%" duplicate 2%
 }
-weather 5% 2>"$work/why" || skip "no netem in this kernel: $(cat "$work/why")"
+if netem 5 2>"$work/why"; then
+  port=7100
+  echo 0 >"$work/stall"
+else
+  echo "no netem in this kernel, a relay in its place: $(grep -i error "$work/why")"
+  port=7200
+  ip netns exec "$there" python3 "$source/tests/project/lossy_relay.py" 10.77.0.2 7100 127.0.0.1 "$port" \
+    0.05 0.02 0.001 0.0005 "$work/stall" &
+fi
 
-cd "$source"
+# Bounds for a machine with other work to do: a stall of a few milliseconds is not what is tested here.
+mkdir "$work/project"
+cp -r "$source"/{config,models,behaviors} "$work/project"
+cd "$work/project"
+python3 - <<'END'
+import json
+robot = json.load(open("config/tulip/robot.json"))
+robot["safety"]["silent_ticks_max"] = 30
+robot["plant"]["udp"] = {"peer": "10.77.0.2:7100", "round_trip_max_s": 0.05, "watchdog_s": 0.1}
+json.dump(robot, open("config/tulip/robot.json", "w"), indent=2)
+END
 field() { python3 -c 'import json, sys
 value = json.loads(open(sys.argv[1]).read().splitlines()[-1])
 for key in sys.argv[2].split("."): value = value[key]
@@ -46,40 +66,46 @@ expect() { # WHAT CONDITION
   python3 -c "import sys; sys.exit(not ($2))" || { echo "wrong: $1: $2"; cat "$work"/*.err; exit 1; }
 }
 plant() {
-  ip netns exec "$there" "$kadans" plant config/tulip/robot.json --listen 10.77.0.2:7100 --soft --once --json \
+  ip netns exec "$there" "$kadans" plant config/tulip/robot.json --listen ":$port" --soft --once --json \
     >"$work/plant.json" 2>"$work/plant.err" &
 }
 drive() {
-  ip netns exec "$here" "$kadans" run config/tulip/robot.json --plant udp --peer 10.77.0.2:7100 --soft --json "$@" \
+  ip netns exec "$here" "$kadans" run config/tulip/robot.json --plant udp --soft --json "$@" \
     >"$work/run.json" 2>"$work/run.err"
 }
 
 plant
+plant=$!
 drive --play squat --duration 8 || true
-wait
+wait "$plant"
+python3 -c 'import json, sys; print(json.loads(open(sys.argv[1]).read().splitlines()[-1])["link"])' "$work/run.json"
 expect "datagrams were lost" "$(field "$work/run.json" link.lost) > 100"
 expect "datagrams came twice" "$(field "$work/run.json" link.duplicates) > 50"
 expect "no datagram was garbage" "$(field "$work/run.json" link.refused) == 0"
 expect "the plant was driven" "$(field "$work/plant.json" link.received) > 5000"
-# Other work on this machine may keep either side from its beat; that is told, and is not what is tested here.
-if [ "$(field "$work/run.json" threads.control.missed)" -lt 20 ]; then
-  expect "the robot squatted" "$(field "$work/run.json" passed) and $(field "$work/run.json" faults) <= 20"
+# Whoever keeps the control thread or the relay from its work for long is told, and is not what is tested here.
+missed=$(field "$work/run.json" threads.control.missed)
+if [ "$missed" -lt 20 ] && [ "$(cat "$work/stall")" -lt 20 ]; then
+  expect "the robot squatted" "$(field "$work/run.json" passed)"
 else
-  echo "control missed $(field "$work/run.json" threads.control.missed) ticks: the machine is too busy to ask more"
+  echo "control missed $missed ticks, the relay stood for $(cat "$work/stall") ms: too busy a machine to squat on"
 fi
 
-weather 0%
 plant
+plant=$!
 drive --play squat --duration 6 &
+drive=$!
 sleep 3
 ip -n "$here" link set kadans0 down
-wait
+wait "$drive" || true
+wait "$plant"
 expect "the ladder was gone down" "'$(field "$work/run.json" safety_level)' == 'off'"
 expect "the run says that it failed" "not $(field "$work/run.json" passed)"
 expect "the sensors were silent" "$(grep -c sensor_silent "$work/run.err") > 0"
 expect "the plant's watchdog took the joints" "$(field "$work/plant.json" releases) >= 1"
 expect "the plant ended the session by itself" "'fell silent' in '$(field "$work/plant.json" ended)'"
 
+ip -n "$here" link set kadans0 up
 drive --duration 1 && exit 1
 grep -q "does not answer within 5 s" "$work/run.err"
-echo "squatted through 5 % loss, went down the ladder without a cable, said that nobody answers"
+echo "driven through 5 % loss, went down the ladder without a cable, said that nobody answers"
