@@ -27,9 +27,13 @@ struct LeftOut {
   std::array<Range, 256> ranges;
   std::size_t count = 0;
 
-  void add(std::uintptr_t begin, std::uintptr_t end) noexcept {
+  // What was touched of it so far goes too, if nobody can have written to it.
+  void add(std::uintptr_t begin, std::uintptr_t end, bool written) noexcept {
     begin = (begin + page - 1) / page * page;
-    if (count < ranges.size() && begin < end) ranges[count++] = {begin, end};
+    if (count == ranges.size() || begin >= end) return;
+    ranges[count++] = {begin, end};
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader tells it as a number
+    if (!written) (void)madvise(reinterpret_cast<void*>(begin), (end - begin) / page * page, MADV_DONTNEED);
   }
 };
 
@@ -46,10 +50,10 @@ int leave_out(dl_phdr_info* info, std::size_t, void* target) noexcept {
     if (segment.p_type != PT_LOAD) continue;
     const std::uintptr_t begin = info->dlpi_addr + segment.p_vaddr, end = begin + segment.p_memsz;
     if (unused) {
-      out.add(begin, end);
+      out.add(begin, end, (segment.p_flags & PF_W) != 0);
     } else if (tables != segments.end() && segment.p_flags == PF_R) {
       const std::uintptr_t at = info->dlpi_addr + tables->p_vaddr;
-      if (at >= begin && at < end) out.add(at, end);
+      if (at >= begin && at < end) out.add(at, end, false);
     }
   }
   return 0;
@@ -82,12 +86,13 @@ bool parse(const char* line, Range& mapping) noexcept {
   return rights[0] == 'r' && std::strstr(line, "[v") == nullptr;
 }
 
-// Everything mapped but for what is left out comes into memory now, and stays.
+// Everything mapped but for what is left out comes into memory now; that does when it is touched. All of it stays.
 int lock_used(std::span<const std::string_view> unused) noexcept {
   LeftOut out{.unused = unused, .ranges = {}};
   dl_iterate_phdr(leave_out, &out);
   const std::span<Range> ranges(out.ranges.data(), out.count);
   std::ranges::sort(ranges, {}, &Range::begin);
+  if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0) return errno;
   std::FILE* const maps = std::fopen("/proc/self/maps", "re");
   if (maps == nullptr) return errno;
   int refused = 0;
@@ -109,7 +114,6 @@ int lock_memory(std::size_t reserve_bytes, std::span<const std::string_view> unu
   for (std::size_t i = 0; reserve != nullptr && i < reserve_bytes; i += page) reserve[i] = 0;
   std::free(const_cast<char*>(reserve));
   if (unused.empty()) return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
-  if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0) return errno;
   const int refused = lock_used(unused);
   return mlockall(MCL_FUTURE) == 0 ? refused : errno;
 }
