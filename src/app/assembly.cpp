@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "kadans/config/project_root.h"
 #include "kadans/estimate/signals.h"
@@ -71,8 +72,12 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
     throw InputError({.file = robot_.config.file, .message = error.what()});
   }
   exchange_ = std::make_unique<EngineExchange>();
-  truth_ =
-      std::make_unique<TruthSignals>(*plant_, catalog, feet_of(variant_.plant), feet_settle_s, variant_.plant.world);
+  if (seen_model_ != nullptr) {
+    truth_ = std::make_unique<TruthSignals>(*seen_model_, catalog, feet_of(variant_.plant), feet_settle_s,
+                                            variant_.plant.world);
+  } else {
+    udp_plant_->declare_signals(catalog.signals);
+  }
   if (outside == nullptr) host_ = make_script_host(scenario, robot_.config.safe, catalog, seed, log);
   upkeep_first_ = catalog.signals.size();
   if (outside != nullptr) outside->attach(catalog, safe_posture_of(robot_.config.safe));
@@ -113,16 +118,44 @@ void Assembly::start_in_pose() {
   for (const auto& [joint, position_rad] : pose->position_rad) variant_.plant.position_rad[joint] = position_rad;
 }
 
-void Assembly::make_plant(std::uint64_t seed) {
-  if (scenario_.plant == PlantKind::ideal) {
-    model_plant_ = std::make_unique<IdealPlant>(variant_.model, variant_.plant);
-  } else {
-    model_plant_ = std::make_unique<BulletPlant>(variant_.model, variant_.plant, seed);
+std::unique_ptr<ModelPlant> make_model(PlantKind kind, const RobotModel& model, const PlantSettings& settings,
+                                       std::uint64_t seed) {
+  if (kind == PlantKind::ideal) return std::make_unique<IdealPlant>(model, settings);
+  return std::make_unique<BulletPlant>(model, settings, seed);
+}
+
+PlantLayout plant_layout(const RobotConfig& robot) {
+  PlantLayout layout{.robot = robot.name,
+                     .joints = robot.model.joint_names(),
+                     .feet = {},
+                     .period_ns = robot.engine.control_period_ns()};
+  for (const FootSettings& foot : robot.plant.feet) layout.feet.push_back(foot.link);
+  return layout;
+}
+
+void Assembly::make_udp_plant() {
+  UdpSettings settings = robot_.config.udp;
+  if (!scenario_.peer.empty()) settings.peer = scenario_.peer;
+  if (settings.peer.empty()) {
+    throw InputError(
+        {.file = robot_.config.file,
+         .message = "says no plant.udp.peer: name the machine that serves the plant with --peer HOST:PORT"});
   }
+  std::random_device random;
+  const std::uint64_t session = (std::uint64_t{random()} << 32U) | random();
+  udp_plant_ = std::make_unique<UdpPlant>(settings, plant_layout(robot_.config),
+                                          DatagramSocket::connected(settings.peer), session);
+  plant_ = udp_plant_.get();
+}
+
+void Assembly::make_plant(std::uint64_t seed) {
+  if (scenario_.plant == PlantKind::udp) return make_udp_plant();
+  model_plant_ = make_model(scenario_.plant, variant_.model, variant_.plant, seed);
   faulty_plant_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed, *model_plant_);
   model_ = faulty_plant_ ? static_cast<ModelPlant*>(faulty_plant_.get()) : model_plant_.get();
   if (link_ != nullptr) linked_plant_ = std::make_unique<LinkedPlant>(*link_, *model_);
-  plant_ = linked_plant_ ? static_cast<ModelPlant*>(linked_plant_.get()) : model_;
+  seen_model_ = linked_plant_ ? static_cast<ModelPlant*>(linked_plant_.get()) : model_;
+  plant_ = seen_model_;
 }
 
 BehaviorHost& Assembly::played() noexcept {
@@ -143,7 +176,7 @@ void Assembly::filter(SnapshotFilter& filter) {
 }
 
 RunParts Assembly::parts() noexcept {
-  return {.plant = *plant_,
+  return {.plant = *seen_model_,
           .control = *control_,
           .behaviors = *behaviors_,
           .lockstep = *lockstep_,

@@ -40,7 +40,10 @@ ScenarioConfig live_scenario(const RunOptions& options) {
   ScenarioConfig scenario;
   scenario.file = scenario.robot = options.robot;
   scenario.name = "run";
-  scenario.plant = options.plant == "ideal" ? PlantKind::ideal : PlantKind::bullet;
+  scenario.plant = options.plant == "udp"     ? PlantKind::udp
+                   : options.plant == "ideal" ? PlantKind::ideal
+                                              : PlantKind::bullet;
+  scenario.peer = options.peer;
   scenario.seed = options.seed.value_or(1);
   if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
   return scenario;

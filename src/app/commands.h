@@ -61,6 +61,7 @@ int run_check(const CheckOptions& options);
 struct RunOptions {
   std::string robot;
   std::string plant = "bullet";
+  std::string peer;    // of a udp plant; "" = the robot's own
   std::string play;    // a list; "" = nothing, the robot holds
   std::string record;  // "" = none
   std::optional<double> duration_s;
@@ -83,6 +84,19 @@ struct RunOptions {
 int run_live(const RunOptions& options);
 // What run_live starts for behaviors in a process of their own: robot, play and seed count.
 int run_behavior_process(const RunOptions& options);
+
+struct PlantOptions {
+  std::string robot;
+  std::string listen;
+  std::string plant = "bullet";
+  std::uint64_t seed = 1;
+  bool soft = false;  // also without the rights to be punctual
+  bool once = false;  // ends with the first session
+  int cpu = -1;       // -1: as `kadans run`
+  bool json = false;
+};
+void add_plant(CLI::App& app, PlantOptions& options);
+int run_plant(const PlantOptions& options);
 
 struct JitterOptions {
   double seconds = 60;  // of our own samples; cyclictest takes as long again

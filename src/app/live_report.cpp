@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "udp_report.h"
+
 namespace kadans {
 namespace {
 
@@ -91,11 +93,12 @@ std::string live_text(const LiveResult& result) {
                   1e-6 * static_cast<double>(result.recorder->file_bytes()));
     all += text.data();
   }
-  if (result.plant.lost_periods() > 0) {
+  if (result.plant != nullptr && result.plant->lost_periods() > 0) {
     std::snprintf(text.data(), text.size(), "  the model was too slow: %llu ms did not pass for it\n",
-                  whole(result.plant.lost_periods()));
+                  whole(result.plant->lost_periods()));
     all += text.data();
   }
+  if (result.udp_plant != nullptr) all += "  link: " + udp_text(result.udp_plant->statistics()) + "\n";
   return all;
 }
 
@@ -118,7 +121,7 @@ std::string live_json(const LiveResult& result) {
              {{"sent", result.behaviors.commands().sent()},
               {"applied", result.engine.inbox().state().applied},
               {"refused", refused(result)}}},
-            {"model_lost_periods", result.plant.lost_periods()},
+            {"model_lost_periods", result.plant != nullptr ? result.plant->lost_periods() : 0},
             {"threads", threads}};
   if (result.process != nullptr) {
     const ProcessHost& process = *result.process;
@@ -128,6 +131,7 @@ std::string live_json(const LiveResult& result) {
                                 {"answer_us", json_of(process.answer_cost())},
                                 {"outage_us", json_of(process.outage())}};
   }
+  if (result.udp_plant != nullptr) json["link"] = udp_json(result.udp_plant->statistics());
   if (result.recorder != nullptr) {
     json["record"] = {{"rows", result.recorder->rows()},
                       {"dropped", result.recorder->dropped()},

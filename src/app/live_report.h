@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "kadans/plant/udp/udp_plant.h"
 #include "kadans/script/process/process_host.h"
 #include "kadans/telemetry/recorder.h"
 #include "live_threads.h"
@@ -15,7 +16,8 @@ struct LiveResult {
   const ControlTask& control;
   const BehaviorEngine& behaviors;
   const ControlEngine& engine;
-  const PlantTask& plant;
+  const PlantTask* plant = nullptr;  // of a model
+  const UdpPlant* udp_plant = nullptr;
   const Recorder* recorder = nullptr;
   const ProcessHost* process = nullptr;  // of the behaviors
   double duration_s = 0;

@@ -32,13 +32,15 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
        .priority = priority(behavior_priority),
        .stack_bytes = std::size_t{1} << 20U},
       tasks.behaviors, timing.spin_ns);
-  add({.name = "plant",
-       .period_ns = period_ns,
-       .first_ns = plant_first_ns,
-       .priority = priority(plant_priority),
-       .cpu = timing.virtual_time ? -1 : timing.cpu,
-       .stack_bytes = std::size_t{1} << 20U},
-      tasks.plant, 0);
+  if (tasks.plant != nullptr) {
+    add({.name = "plant",
+         .period_ns = period_ns,
+         .first_ns = plant_first_ns,
+         .priority = priority(plant_priority),
+         .cpu = timing.virtual_time ? -1 : timing.cpu,
+         .stack_bytes = std::size_t{1} << 20U},
+        *tasks.plant, 0);
+  }
   if (tasks.record == nullptr) return;
   // A machine busy for seconds must not cost rows: the ring holds one or two.
   add({.name = "record", .period_ns = record_period_ns, .priority = priority(record_priority)}, *tasks.record, 0);

@@ -20,7 +20,7 @@ inline constexpr int control_priority = 90, plant_priority = 80, behavior_priori
 struct LiveTasks {
   ControlTask& control;
   BehaviorTask& behaviors;
-  PlantTask& plant;
+  PlantTask* plant = nullptr;  // of a model
   Task* record = nullptr;
 };
 

@@ -76,8 +76,10 @@ void add_run(CLI::App& app, RunOptions& options) {
   CLI::App* run =
       app.add_subcommand("run", "Drive a robot, or a model of it, on the wall clock until SIGINT or SIGTERM");
   run->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
-  run->add_option("--plant", options.plant, "What is driven: bullet (default) or ideal")
-      ->check(CLI::IsMember({"bullet", "ideal"}));
+  run->add_option("--plant", options.plant, "What is driven: bullet (default), ideal, or udp: another machine's")
+      ->check(CLI::IsMember({"bullet", "ideal", "udp"}));
+  run->add_option("--peer", options.peer, "Where `kadans plant` runs (default: the configuration's plant.udp.peer)")
+      ->type_name("HOST:PORT");
   run->add_option("--play", options.play, "What to play: \"squat, wave\" (default: nothing, the robot holds)")
       ->type_name("LIST");
   run->add_option("--duration", options.duration_s, "Seconds to run (default: until it is told to stop)")
@@ -209,6 +211,8 @@ int run(int argc, char** argv) {
   add_run(app, live);
   RunOptions played;
   add_behavior_process(app, played);
+  PlantOptions plant;
+  add_plant(app, plant);
   JitterOptions jitter;
   add_jitter(app, jitter);
   CtlOptions ctl;
@@ -235,6 +239,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("test")) return run_test(test);
   if (app.got_subcommand("run")) return run_live(live);
   if (app.got_subcommand("behavior-process")) return run_behavior_process(played);
+  if (app.got_subcommand("plant")) return run_plant(plant);
   if (app.got_subcommand("jitter")) return run_jitter(jitter);
   if (app.got_subcommand("ctl")) return run_ctl(app, ctl);
   if (app.got_subcommand("completion")) return run_completion(app, completion);

@@ -15,7 +15,6 @@
 #include "kadans/app/assembly.h"
 #include "kadans/config/project_root.h"
 #include "kadans/realtime/machine.h"
-#include "kadans/realtime/memory_lock.h"
 #include "kadans/realtime/rights.h"
 #include "kadans/realtime/service_notifier.h"
 #include "kadans/remote/behavior_side.h"
@@ -25,6 +24,7 @@
 #include "live_log.h"
 #include "live_report.h"
 #include "live_threads.h"
+#include "real_time_start.h"
 #include "terminal.h"
 #include "version.h"
 
@@ -33,7 +33,6 @@ namespace {
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
-constexpr std::size_t heap_reserve_bytes = std::size_t{2} << 20U;
 
 Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const RobotConfig& robot) {
   namespace fs = std::filesystem;
@@ -54,15 +53,6 @@ CtlPlace place_of(const RunOptions& options) {
   CtlPlace place = options.ctl;
   place.wanted = place.wanted && (!options.virtual_time || !place.folder.empty());
   return place;
-}
-
-// False when the run must not go on without.
-bool rights_suffice(const RunOptions& options) {
-  if (options.virtual_time) return true;
-  const std::vector<std::string> missing = missing_rights(read_rights("/"), control_priority);
-  for (const std::string& right : missing) print_error((options.soft ? "going on without " : "missing ") + right);
-  if (!missing.empty() && !options.soft) print_error("--soft goes on without, late as the system likes");
-  return missing.empty() || options.soft;
 }
 
 LiveTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
@@ -102,7 +92,7 @@ std::string environment(const char* name) {
 // The truth of the model, for the record: on the control thread, whose row it becomes part of, after the tick.
 class TruthTask final : public BesideTick {
  public:
-  explicit TruthTask(const RunParts& parts) : truth_(parts.truth), control_(parts.control) {}
+  TruthTask(TruthSignals& truth, ControlEngine& control) : truth_(truth), control_(control) {}
   void beside_tick(std::int64_t time_ns) override {
     truth_.update(1e-9 * static_cast<double>(time_ns), control_.row());
   }
@@ -120,9 +110,13 @@ class LiveRun {
         link_(std::make_unique<PlantExchange>()),
         process_(options.behaviors == "process" ? start_behavior_process(options, log_) : nullptr),
         assembly_(scenario_, scenario_.seed, log_, link_.get(), process_.get()),
-        parts_(assembly_.parts()),
-        truth_(parts_),
-        plant_(*link_, assembly_.model(), assembly_.robot().engine.control_period_ns()),
+        parts_{assembly_.control(), assembly_.behaviors()},
+        truth_(assembly_.truth() == nullptr ? nullptr
+                                            : std::make_unique<TruthTask>(*assembly_.truth(), parts_.control)),
+        plant_(assembly_.model() == nullptr
+                   ? nullptr
+                   : std::make_unique<PlantTask>(*link_, *assembly_.model(),
+                                                 assembly_.robot().engine.control_period_ns())),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
                  assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
@@ -132,8 +126,9 @@ class LiveRun {
     if (!options_.record.empty()) record_side_.start(options_.record);
     const bool may_record = !options_.record.empty() || place_of(options_).wanted;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
-    if (!timing.virtual_time) (void)lock_memory(heap_reserve_bytes);  // without the right, which has been told
-    LiveThreads threads(timing, {control_, behaviors_, plant_, may_record ? &record_side_ : nullptr});
+    if (!timing.virtual_time) lock_program(plant_ != nullptr);
+    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->connect();
+    LiveThreads threads(timing, {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr});
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
     ctl_.start();
@@ -149,11 +144,22 @@ class LiveRun {
     threads.stop();
     ActuationFrame off;
     off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
-    assembly_.model().write(off);
+    assembly_.plant().write(off);
+    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->leave();
     tell(threads.supervisor().now_ns());
     if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
-    LiveResult result{threads, control_, parts_.behaviors, parts_.control, plant_, record_side_.recorder(),
-                      process_.get(), left_at_s_, start_ms, ended, failed_};
+    LiveResult result{threads,
+                      control_,
+                      parts_.behaviors,
+                      parts_.control,
+                      plant_.get(),
+                      assembly_.udp_plant(),
+                      record_side_.recorder(),
+                      process_.get(),
+                      left_at_s_,
+                      start_ms,
+                      ended,
+                      failed_};
     result.failed = result.failed || log_.has_errors();
     std::fputs(live_text(result).c_str(), stdout);
     if (options_.json) std::puts(live_json(result).c_str());
@@ -248,9 +254,12 @@ class LiveRun {
   std::unique_ptr<PlantExchange> link_;
   std::unique_ptr<ProcessHost> process_;  // of the behaviors
   Assembly assembly_;
-  RunParts parts_;
-  TruthTask truth_;
-  PlantTask plant_;
+  struct {
+    ControlEngine& control;
+    BehaviorEngine& behaviors;
+  } parts_;
+  std::unique_ptr<TruthTask> truth_;  // of a model
+  std::unique_ptr<PlantTask> plant_;  // likewise
   Leaving leaving_;
   Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog()};
   ControlSide control_side_{instance_, parts_.control.safety()};
@@ -262,7 +271,7 @@ class LiveRun {
                               &leaving_};
   CtlService ctl_{place_of(options_), instance_};
   LiveService live_{options_.live, instance_, assembly_};
-  ControlTask control_{parts_.control, &truth_};
+  ControlTask control_{parts_.control, truth_.get()};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;
   bool failed_ = false;
@@ -271,7 +280,11 @@ class LiveRun {
 }  // namespace
 
 int run_live(const RunOptions& options) {
-  if (!rights_suffice(options)) return exit_usage;
+  if (options.virtual_time && options.plant == "udp") {
+    print_error("--threads-on-virtual-time: a plant on another machine has its own time");
+    return exit_usage;
+  }
+  if (!options.virtual_time && !rights_suffice(control_priority, options.soft)) return exit_usage;
   LiveRun run(options);
   catch_interrupts();
   return run.run();

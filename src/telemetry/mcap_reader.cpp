@@ -5,8 +5,8 @@
 
 #include <zstd.h>
 
+#include "kadans/signal/crc32.h"
 #include "kadans/signal/input_error.h"
-#include "kadans/telemetry/crc32.h"
 
 namespace kadans {
 namespace {

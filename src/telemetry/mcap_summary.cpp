@@ -2,7 +2,7 @@
 #include <array>
 #include <utility>
 
-#include "kadans/telemetry/crc32.h"
+#include "kadans/signal/crc32.h"
 #include "kadans/telemetry/mcap_writer.h"
 #include "mcap_record.h"
 

@@ -3,9 +3,9 @@
 #include <doctest/doctest.h>
 #include <zstd.h>
 
+#include "kadans/signal/crc32.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
-#include "kadans/telemetry/crc32.h"
 #include "kadans/telemetry/mcap_writer.h"
 #include "scratch_file.h"
 

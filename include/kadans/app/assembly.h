@@ -13,6 +13,7 @@
 #include "kadans/control/control_object_types.h"
 #include "kadans/engine/lockstep.h"
 #include "kadans/plant/plant.h"
+#include "kadans/plant/udp/udp_plant.h"
 #include "kadans/realtime/plant_link.h"
 #include "kadans/scenario/disturbances.h"
 #include "kadans/scenario/faulty_host.h"
@@ -44,13 +45,19 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const SafeConfig& safe,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept = {});
+// A model of the robot on its own. `kind` is bullet or ideal.
+std::unique_ptr<ModelPlant> make_model(PlantKind kind, const RobotModel& model, const PlantSettings& settings,
+                                       std::uint64_t seed);
+// What a plant over the network must have in common with this robot.
+PlantLayout plant_layout(const RobotConfig& robot);
 
 class Assembly {
  public:
   // Reads the robot and the behaviors that the scenario names. Throws InputError with everything that is wrong. The log
   // must outlive the assembly, and so must `link`: with it the model is for a thread of its own, and the engines see
   // its other end. With `outside`, which must outlive it too, the scenario's behaviors play in a process of their own,
-  // which has been started with them.
+  // which has been started with them. When the scenario's plant is udp there is no model: no parts(), no model(), no
+  // truth().
   Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
            ProcessHost* outside = nullptr);
 
@@ -62,7 +69,12 @@ class Assembly {
   // Before the run: takes what somebody saves. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() { host_->watch(); }
   RunParts parts() noexcept;
-  ModelPlant& model() noexcept { return *model_; }  // faults included
+  ControlEngine& control() noexcept { return *control_; }
+  BehaviorEngine& behaviors() noexcept { return *behaviors_; }
+  Plant& plant() noexcept { return *plant_; }                  // what the engine sees
+  ModelPlant* model() noexcept { return model_; }              // faults included; nullptr: there is none
+  TruthSignals* truth() noexcept { return truth_.get(); }      // likewise
+  UdpPlant* udp_plant() noexcept { return udp_plant_.get(); }  // not connected; nullptr: there is a model
   // What was set and drawn for this run.
   const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
@@ -75,6 +87,7 @@ class Assembly {
   void vary(std::uint64_t seed);
   void start_in_pose();
   void make_plant(std::uint64_t seed);
+  void make_udp_plant();
   void make_behaviors();
   BehaviorHost& played() noexcept;
 
@@ -89,7 +102,9 @@ class Assembly {
   std::unique_ptr<FaultyPlant> faulty_plant_;  // around it, when something of it fails
   ModelPlant* model_ = nullptr;                // the outer of the two
   std::unique_ptr<LinkedPlant> linked_plant_;  // when the model is on another thread
-  ModelPlant* plant_ = nullptr;                // what the engine sees
+  ModelPlant* seen_model_ = nullptr;           // this, or the model
+  std::unique_ptr<UdpPlant> udp_plant_;        // when the plant is on another machine
+  Plant* plant_ = nullptr;                     // what the engine sees
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;
   std::unique_ptr<Estimator> estimator_;

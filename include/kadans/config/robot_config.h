@@ -18,6 +18,7 @@
 #include "kadans/estimate/settings.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/settings.h"
+#include "kadans/plant/udp/settings.h"
 #include "kadans/safety/settings.h"
 
 namespace kadans {
@@ -53,6 +54,7 @@ struct RobotConfig {
   RobotModel model;
   EngineSettings engine;
   PlantSettings plant;
+  UdpSettings udp;
   EstimateSettings estimate;
   SafetySettings safety;
   std::vector<ObjectConfig> objects;

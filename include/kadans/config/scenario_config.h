@@ -17,7 +17,7 @@
 
 namespace kadans {
 
-enum class PlantKind : std::uint8_t { bullet, ideal };
+enum class PlantKind : std::uint8_t { bullet, ideal, udp };  // udp: live runs only, not in a file
 
 struct ScenarioConfig {
   std::string file;
@@ -25,6 +25,7 @@ struct ScenarioConfig {
   std::string doc;
   std::string robot;  // path of the robot's configuration, resolved
   PlantKind plant = PlantKind::bullet;
+  std::string peer;  // not in the file: of a udp plant; "": the robot's own
   double duration_s = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> tags;

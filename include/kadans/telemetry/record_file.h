@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-#include "kadans/telemetry/crc32.h"
+#include "kadans/signal/crc32.h"
 
 namespace kadans {
 

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "kadans/telemetry/byte_order.h"
-#include "kadans/telemetry/crc32.h"
+#include "kadans/signal/byte_order.h"
+#include "kadans/signal/crc32.h"
 
 namespace kadans {
 namespace {

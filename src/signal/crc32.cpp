@@ -1,4 +1,4 @@
-#include "kadans/telemetry/crc32.h"
+#include "kadans/signal/crc32.h"
 
 #include <array>
 

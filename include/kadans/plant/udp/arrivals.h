@@ -1,0 +1,52 @@
+// What became of the datagrams of the other side, by their sequence numbers: the newest wins, the rest is counted.
+//
+// A number that is left out counts as lost until it comes after all, late, within the last 64; a number that came twice
+// is a duplicate. Plain counts, owned by the thread that receives; others read them once it has ended.
+#pragma once
+
+#include <cstdint>
+
+namespace kadans {
+
+struct UdpStatistics {
+  std::uint32_t sent = 0;
+  std::uint32_t unsent = 0;     // the system would not take them
+  std::uint32_t received = 0;   // in order or not, without duplicates
+  std::uint32_t lost = 0;       // never came
+  std::uint32_t reordered = 0;  // came behind a newer one: not used
+  std::uint32_t duplicates = 0;
+  std::uint32_t late = 0;     // the newest, but too old to count as new
+  std::uint32_t refused = 0;  // garbage, another robot's, another session's, a stranger's
+};
+
+class Arrivals {
+ public:
+  // Whether it is newer than all before; a sequence counts from 1.
+  bool is_newest(std::uint64_t sequence, UdpStatistics& statistics) noexcept {
+    if (sequence > newest_) {
+      const std::uint64_t step = sequence - newest_;
+      seen_ = step < 64 ? seen_ << step : 0;
+      seen_ |= 1U;
+      newest_ = sequence;
+      statistics.lost += static_cast<std::uint32_t>(step - 1);
+      ++statistics.received;
+      return true;
+    }
+    const std::uint64_t behind = newest_ - sequence;
+    const std::uint64_t bit = behind < 64 ? std::uint64_t{1} << behind : 0;
+    if (bit == 0 || (seen_ & bit) != 0) {
+      ++statistics.duplicates;
+      return false;
+    }
+    seen_ |= bit;
+    if (statistics.lost > 0) --statistics.lost;
+    ++statistics.received;
+    ++statistics.reordered;
+    return false;
+  }
+
+ private:
+  std::uint64_t newest_ = 0, seen_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,56 @@
+// A socket for datagrams, and a batch of what came to it. Receiving and sending never block, allocate or throw: they
+// are all that the tick asks of the system.
+//
+// One owner, one thread at a time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <sys/socket.h>
+
+#include "kadans/plant/udp/wire.h"
+
+namespace kadans {
+
+struct PeerAddress {
+  sockaddr_storage address{};
+  socklen_t size = 0;  // 0: has no name, is at the other end
+
+  bool operator==(const PeerAddress& other) const noexcept;
+  std::string text() const;  // "10.0.0.2:7000"
+};
+
+class DatagramSocket {
+ public:
+  static constexpr std::size_t batch_max = 16;
+
+  explicit DatagramSocket(int descriptor);  // takes it over
+  // "host:port", "[::1]:7000", ":7000" for every address of this machine. Throws InputError that says what
+  // is wrong with the place, or what the system said.
+  static DatagramSocket listening(const std::string& place);
+  static DatagramSocket connected(const std::string& place);
+  ~DatagramSocket();
+  DatagramSocket(DatagramSocket&& other) noexcept;
+  DatagramSocket& operator=(DatagramSocket&&) = delete;
+
+  // Sleeps until something came, or for so long. Before the loop only.
+  void wait(int milliseconds) const noexcept;
+  // How many came, at most batch_max; they stay until the next call.
+  std::size_t receive() noexcept;
+  Bytes datagram(std::size_t index) const noexcept;  // one that was too long for any of ours is empty
+  const PeerAddress& from(std::size_t index) const noexcept;
+  // False when the system does not take it. Without an address, or with one that has no name, to the other end.
+  bool send(Bytes datagram) const noexcept;
+  bool send(Bytes datagram, const PeerAddress& to) const noexcept;
+
+ private:
+  struct Batch;
+  int descriptor_ = -1;
+  std::unique_ptr<Batch> batch_;
+};
+
+}  // namespace kadans

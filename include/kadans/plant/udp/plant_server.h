@@ -1,0 +1,77 @@
+// The plant's end: a model, or hardware behind the same seam, for one control engine at a time on another machine.
+//
+// The first who greets with the right robot is the peer of a session; whatever comes from elsewhere is refused. Time
+// begins for the plant with the peer's first actuation, so that a model does not fall before it is driven. From then on
+// a beat takes what has come, applies the newest actuation, lets a period pass and sends the sample. Without an
+// actuation for watchdog_s the plant damps its joints itself, as drives do when their bus is silent, until there is one
+// again; after peer_timeout_s, or when the peer says goodbye, the session is over.
+//
+// Threads: await() before a session, beat() in it; statistics() after it.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/plant/plant.h"
+#include "kadans/plant/udp/arrivals.h"
+#include "kadans/plant/udp/datagram_socket.h"
+#include "kadans/plant/udp/settings.h"
+#include "kadans/plant/udp/wire.h"
+
+namespace kadans {
+
+class PlantServer {
+ public:
+  // Throws std::invalid_argument.
+  PlantServer(const UdpSettings& settings, const PlantLayout& layout, DatagramSocket socket);
+
+  // Answers what came, after waiting for it for so long; true once there is a peer: a session began.
+  bool await(int milliseconds) noexcept;
+
+  struct Session {
+    UdpStatistics link;
+    std::uint32_t releases = 0;      // times that the watchdog took the joints
+    std::int64_t answer_max_ns = 0;  // oldest sample that an actuation was told to answer, by the plant's clock
+    std::int64_t answer_sum_ns = 0;
+    std::uint64_t answers = 0;
+    bool left = false;  // the peer said goodbye; else it fell silent
+    double answer_mean_ns() const noexcept {
+      return answers == 0 ? 0 : static_cast<double>(answer_sum_ns) / static_cast<double>(answers);
+    }
+  };
+  // `periods` passed since the last beat. False: the session is over. Throws what the model's step throws.
+  bool beat(ModelPlant& model, std::uint32_t periods);
+  const Session& session() const noexcept { return session_; }
+  const PeerAddress& peer() const noexcept { return peer_; }
+  bool released() const noexcept { return released_; }
+
+ private:
+  static constexpr std::size_t beat_takes_max = 4 * DatagramSocket::batch_max;
+
+  void take_all() noexcept;
+  void take(Bytes datagram, const PeerAddress& from) noexcept;
+  bool greeted(const WireHead& head, PlantWire::Check check, Bytes datagram, const PeerAddress& from) noexcept;
+  void answer(WireKind kind, WireRefusal refusal, std::uint64_t session, const PeerAddress& to) noexcept;
+  void take_actuation(const WireHead& head, Bytes datagram) noexcept;
+  void begin(std::uint64_t session, const PeerAddress& from) noexcept;
+  const ActuationFrame& damping(const PlantTruth& truth) noexcept;
+
+  UdpSettings settings_;
+  PlantWire wire_;
+  DatagramSocket socket_;
+  std::int64_t period_ns_;
+
+  bool in_session_ = false, answered_stranger_ = false;
+  PeerAddress peer_;
+  std::uint64_t session_number_ = 0, sent_ = 0;
+  std::uint64_t newest_actuation_ = 0;
+  std::int64_t silent_ns_ = 0;  // since the newest actuation
+  bool driven_ = false;         // there was one
+  bool released_ = false;
+  ActuationFrame actuation_, damping_;
+  SensorFrame sensors_;
+  Arrivals arrivals_;
+  Session session_;
+  Datagram out_{};
+};
+
+}  // namespace kadans

@@ -1,0 +1,106 @@
+// The datagrams between a control engine and a plant on another machine. Little-endian, no padding, one length for each
+// kind and robot:
+//
+//   head      u32 "KDNP", u16 version, u8 kind, u8 refusal, u64 layout, u64 session, u64 sequence, i64 time_ns
+//   payload   by kind
+//   u32       CRC-32 over all before it
+//
+//   kind       from      payload
+//   hello      control   greeting: i64 period_ns, u32 joints, u32 feet, 32 characters of the robot's name
+//   welcome    plant     greeting
+//   refusal    plant     greeting; the head says why
+//   actuation  control   a joint: f64 effort_Nm, f64 position_rad, f64 velocity_rad_s, u8 mode
+//   sensors    plant     u64 answered; u8 released; imu: 6 f64, u32; a joint: 3 f64, u32; a foot: 4 f64, u32
+//   bye        control   none
+//
+// `layout` is a hash of the joints' and feet's names in their order, so that robots that differ refuse each other.
+// `session` is drawn by the control side for each run: what is left of an earlier one is refused. `sequence` counts the
+// datagrams of one side from 1. `time_ns` is the plant's clock on both sides: of the sampling, and of the newest sample
+// that the control side had when it sent an actuation. `answered` is the newest actuation that the sample was made
+// under. A greeting looks the same in every version.
+//
+// Encoding and decoding allocate nothing and throw nothing; what comes from outside is believed only after check().
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+inline constexpr std::uint16_t wire_version = 1;
+inline constexpr std::size_t wire_head_bytes = 40, wire_robot_bytes = 32;
+// No datagram of ours is longer.
+inline constexpr std::size_t wire_bytes_max = wire_head_bytes + 9 + 52 + 28 * max_joints + 36 * max_feet + 4;
+
+enum class WireKind : std::uint8_t { none, hello, welcome, refusal, actuation, sensors, bye };
+enum class WireRefusal : std::uint8_t { none, version, layout, period, busy };
+
+struct WireHead {
+  WireKind kind = WireKind::none;
+  WireRefusal refusal = WireRefusal::none;
+  std::uint64_t layout = 0;
+  std::uint64_t session = 0;
+  std::uint64_t sequence = 0;
+  std::int64_t time_ns = 0;
+};
+
+struct WireGreeting {
+  std::int64_t period_ns = 0;
+  std::uint32_t joints = 0, feet = 0;
+  std::array<char, wire_robot_bytes> robot{};  // what is left of it is 0
+};
+
+// What both sides must agree on.
+struct PlantLayout {
+  std::string robot;
+  std::vector<std::string> joints, feet;  // names, in the order of the frames
+  std::int64_t period_ns = 1'000'000;
+};
+
+struct SensorsOnWire {
+  std::uint64_t answered = 0;  // sequence of an actuation; 0: none yet
+  bool released = false;       // the plant's watchdog has the joints
+};
+
+using Datagram = std::array<std::byte, wire_bytes_max>;
+using Bytes = std::span<const std::byte>;
+
+class PlantWire {
+ public:
+  // Throws std::invalid_argument when there are more joints or feet than frames hold.
+  explicit PlantWire(const PlantLayout& layout);
+
+  std::uint64_t layout() const noexcept { return layout_; }
+  const WireGreeting& greeting() const noexcept { return greeting_; }
+
+  // The datagram, in `into`.
+  Bytes greet(const WireHead& head, Datagram& into) const noexcept;  // hello, welcome, refusal
+  Bytes bye(const WireHead& head, Datagram& into) const noexcept;
+  Bytes actuation(const WireHead& head, const ActuationFrame& frame, Datagram& into) const noexcept;
+  Bytes sensors(const WireHead& head, const SensorsOnWire& more, const SensorFrame& frame,
+                Datagram& into) const noexcept;
+
+  // Garbage has the wrong magic, length or sum, or a kind or mode that is none.
+  enum class Check : std::uint8_t { good, garbage, other_version, other_layout };
+  Check check(Bytes datagram, WireHead& head) const noexcept;
+  // Of a datagram that was good (a greeting: that was no garbage).
+  static WireGreeting greeting_in(Bytes datagram) noexcept;
+  void actuation_in(Bytes datagram, ActuationFrame& frame) const noexcept;
+  SensorsOnWire sensors_in(Bytes datagram, SensorFrame& frame) const noexcept;
+
+ private:
+  std::size_t length(WireKind kind) const noexcept;  // 0: of none
+  std::byte* put_head(const WireHead& head, Datagram& into) const noexcept;
+  static Bytes seal(Datagram& into, const std::byte* end) noexcept;
+
+  std::uint64_t layout_ = 0;
+  WireGreeting greeting_;
+};
+
+}  // namespace kadans

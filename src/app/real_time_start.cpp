@@ -1,0 +1,47 @@
+#include "real_time_start.h"
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "kadans/realtime/memory_lock.h"
+#include "kadans/realtime/rights.h"
+#include "terminal.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{2} << 20U;
+
+// What works before the loop and in other commands: files, terminals, streams, exceptions; then the model's.
+constexpr std::array<std::string_view, 13> unused{"libstdc++.",
+                                                  "libsqlite3.",
+                                                  "libedit.",
+                                                  "libtinfo.",
+                                                  "libbsd.",
+                                                  "libmd.",
+                                                  "liburdfdom_",
+                                                  "libtinyxml",
+                                                  "libconsole_bridge.",
+                                                  "libBulletDynamics",
+                                                  "libBulletCollision",
+                                                  "libLinearMath",
+                                                  "libzstd."};
+constexpr std::size_t unused_with_model = 9;
+
+}  // namespace
+
+bool rights_suffice(int priority, bool soft) {
+  const std::vector<std::string> missing = missing_rights(read_rights("/"), priority);
+  for (const std::string& right : missing) print_error((soft ? "going on without " : "missing ") + right);
+  if (!missing.empty() && !soft) print_error("--soft goes on without, late as the system likes");
+  return missing.empty() || soft;
+}
+
+void lock_program(bool with_model) noexcept {
+  const std::span<const std::string_view> all(unused);
+  (void)lock_memory(with_model ? heap_reserve_of_model_bytes : heap_reserve_bytes,
+                    with_model ? all.first(unused_with_model) : all);
+}
+
+}  // namespace kadans
