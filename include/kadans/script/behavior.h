@@ -53,7 +53,8 @@ class Behavior {
 
   // Behavior thread. False once it is over: finished or stopped by an error.
   bool tick(const Snapshot& snapshot, CommandSender& commands) noexcept;
-  // Behavior thread, shortly before a tick, or never: fetches what the tick is going to need; nothing of the script runs.
+  // Behavior thread, shortly before a tick, or never: fetches what the tick is going to need; nothing of the script
+  // runs.
   void prepare(const Snapshot& newest) noexcept;
   // Behavior thread: leaves all states, in a transaction of its own.
   void stop(const Snapshot& snapshot, CommandSender& commands) noexcept;
