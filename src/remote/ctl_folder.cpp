@@ -75,8 +75,9 @@ CtlSockets::CtlSockets(const Settings& settings) : folder_(fs::absolute(settings
   fs::create_directories(folder_, failed);
   if (failed) fail(folder_, "cannot be made: " + failed.message());
   struct stat found {};
-  if (lstat(folder_.c_str(), &found) != 0 || !S_ISDIR(found.st_mode) || (found.st_uid != getuid() && getuid() != 0))
-    fail(folder_, "is no folder of this user, so no sockets are made in it");
+  const bool folder = lstat(folder_.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+  if (!folder || (found.st_uid != getuid() && found.st_uid != 0))
+    fail(folder_, "is no folder of this user's or the system's, so no sockets are made in it");
   try {
     lock();
     listen_as(Role::read, settings.operators);

@@ -19,7 +19,8 @@ Json change_json(const ParameterChange& change) {
 
 }  // namespace
 
-CtlRequests::CtlRequests(Instance& instance, InstancePort& port) : instance_(instance), port_(port) {
+CtlRequests::CtlRequests(Instance& instance, InstancePort& port, const CtlCounts& counts)
+    : instance_(instance), port_(port), counts_(counts) {
   port_.want_signals(row_every_ticks);
 }
 
@@ -81,11 +82,7 @@ std::string CtlRequests::answered(CtlSession& session, const Answer* answer) {
       return refusal("the behavior thread does not answer; estop works without it");
     if (answer == nullptr) {
       const Answer none;
-      const std::string verb = request.verb->name;
-      if (verb != "status") return told(session, request, none);
-      Json json = status_json(instance_, port_.status());
-      json["behaviors_error"] = "the behavior thread does not answer";
-      return line_of(json);
+      return std::string_view(request.verb->name) == "status" ? status(nullptr) : told(session, request, none);
     }
     if (!answer->done && answer->text.empty() && !answer->incomplete) return refusal("refused");
     if (!answer->done && !answer->incomplete) return refusal(answer->text);
@@ -99,9 +96,7 @@ std::string CtlRequests::told(const CtlSession& session, const CtlRequest& reque
   const std::string verb = request.verb->name;
   Json json{{"ok", true}};
   if (verb == "status") {
-    json = status_json(instance_, port_.status());
-    json["paused"] = answer.paused;
-    json["behaviors"] = behaviors_json(answer);
+    return status(&answer);
   } else if (verb == "list") {
     json["items"] = list_json(request.text("what"), instance_, port_.status(), answer);
   } else if (verb == "get") {
@@ -120,6 +115,19 @@ std::string CtlRequests::told(const CtlSession& session, const CtlRequest& reque
                  {"leaves", answer.leaves}});
   } else if (!answer.text.empty()) {
     json["text"] = answer.text;
+  }
+  return line_of(json);
+}
+
+std::string CtlRequests::status(const Answer* report) {
+  Json json = status_json(instance_, port_.status());
+  json["clients"] = {
+      {"served", counts_.served.load()}, {"refused", counts_.refused.load()}, {"dropped", counts_.dropped.load()}};
+  if (report == nullptr) {
+    json["behaviors_error"] = "the behavior thread does not answer";
+  } else {
+    json["paused"] = report->paused;
+    json["behaviors"] = behaviors_json(*report);
   }
   return line_of(json);
 }

@@ -27,7 +27,7 @@ CtlServer::CtlServer(Instance& instance, const CtlSockets& sockets, const Settin
     : sockets_(sockets),
       settings_(settings),
       port_(instance.open_port()),
-      requests_(instance, port_),
+      requests_(instance, port_, counts_),
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
 
 CtlServer::~CtlServer() {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 #include "kadans/telemetry/run_description.h"
 
 namespace kadans {

@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kadans/remote/live_hub.h"
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 
 namespace kadans {
 

@@ -31,6 +31,8 @@ TEST_CASE("status tells of the robot, its ticks go on, and nothing plays") {
   CHECK(first["control_sets"] == Json::array({"posture"}));
   CHECK(first["behaviors"].empty());
   CHECK(first["record"].is_null());
+  CHECK(first["clients"]["served"] > 0);
+  CHECK(first["clients"]["dropped"] == 0);
   CHECK(first["configuration"] == live.project.configuration().string());
   const Json later = live.ask_until({{"verb", "status"}}, [](const Json& a) { return a["tick"] > 1000; });
   CHECK(later["time_s"] > 1.0);

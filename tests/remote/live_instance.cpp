@@ -38,7 +38,7 @@ return k.behavior 'nod' { initial = 'a', k.state 'a' { { after = P.hold_s, to = 
 
 constexpr const char* waits = R"(local k = require 'kadans'
 local P = k.params { level = { 1, min = 0, max = 5, unit = 'm', doc = 'a level' } }
-return k.behavior 'wait' { initial = 'a', k.state 'a' { endless = true, step = function() local x = P.level end } }
+return k.behavior 'wait' { initial = 'a', k.state 'a' { endless = true, during = function() local x = P.level end } }
 )";
 
 Instance::Facts facts_of(const Project& project) {

@@ -17,7 +17,7 @@ struct CtlRequest;
 
 class CtlRequests {
  public:
-  CtlRequests(Instance& instance, InstancePort& port);
+  CtlRequests(Instance& instance, InstancePort& port, const CtlCounts& counts);
   ~CtlRequests();
   CtlRequests(const CtlRequests&) = delete;
   CtlRequests& operator=(const CtlRequests&) = delete;
@@ -44,6 +44,7 @@ class CtlRequests {
   bool known_here(const CtlRequest& request) const;
   std::string at_once(CtlSession& session, const CtlRequest& request);
   std::string send(CtlSession& session, const CtlRequest& request);
+  std::string status(const Answer* report);
   std::string watch(CtlSession& session, const CtlRequest& request);
   std::string faults();
   std::string told(const CtlSession& session, const CtlRequest& request, const Answer& answer);
@@ -52,6 +53,7 @@ class CtlRequests {
 
   Instance& instance_;
   InstancePort& port_;
+  const CtlCounts& counts_;
   std::map<std::uint64_t, CtlRequest> asked_;  // by session
   std::vector<std::uint64_t> leaving_;         // whose consoles are to be closed
   std::map<std::pair<FaultCode, std::uint16_t>, Seen> faults_;

@@ -35,9 +35,6 @@ class CtlServer {
     std::int64_t answer_max_ns = 10'000'000'000;  // of the behavior thread
     std::int64_t report_max_ns = 2'000'000'000;   // when it is only asked what plays
   };
-  struct Counts {
-    std::atomic<std::uint32_t> served{0}, refused{0}, dropped{0};
-  };
 
   // Before the loop; opens a port. Instance and sockets must outlive it.
   CtlServer(Instance& instance, const CtlSockets& sockets, const Settings& settings);
@@ -47,7 +44,7 @@ class CtlServer {
 
   void start();  // throws std::system_error
   void stop() noexcept;
-  const Counts& counts() const noexcept { return counts_; }  // any thread
+  const CtlCounts& counts() const noexcept { return counts_; }  // any thread
 
  private:
   struct Guest {
@@ -72,9 +69,9 @@ class CtlServer {
   Settings settings_;
   WallClock clock_;
   InstancePort& port_;
+  CtlCounts counts_;
   CtlRequests requests_;
   std::vector<Guest> guests_;
-  Counts counts_;
   std::uint64_t next_number_ = 1;
   std::int64_t now_ns_ = 0, deaf_until_ns_ = 0;
   int wake_ = -1;

@@ -4,6 +4,7 @@
 // keeps nobody but itself, and what waits for it is one answer and one sample. Server thread.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,6 +13,13 @@
 #include "kadans/signal/signal.h"
 
 namespace kadans {
+
+// Of all clients so far. Written by the server's thread, read by any.
+struct CtlCounts {
+  std::atomic<std::uint32_t> served{0};   // that found a place
+  std::atomic<std::uint32_t> refused{0};  // that found none
+  std::atomic<std::uint32_t> dropped{0};  // too slow, or too much
+};
 
 class CtlSession {
  public:

@@ -26,7 +26,8 @@ std::string options_of(const CLI::App& app) {
 
 // One line of a case for each command with its path: "  'ctl fault') echo 'list clear';;".
 void add_cases(const CLI::App& app, const std::string& path, bool options, std::string& text) {
-  const std::string words = options ? options_of(app) : subcommands_of(app);
+  std::string words = options ? options_of(app) : subcommands_of(app);
+  if (options && path.starts_with("ctl ")) words += " --socket --json";  // as ctl itself, before the verb or after
   if (!words.empty()) text += "    '" + path + "') echo '" + words + "';;\n";
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     add_cases(*command, path + (path.empty() ? "" : " ") + command->get_name(), options, text);

@@ -101,6 +101,54 @@ int talk(const Verb& verb, const CtlOptions& options) {
   return exit_passed;
 }
 
+// "record start" under record.
+CLI::App* add(CLI::App& to, const std::string& words) {
+  const std::size_t blank = words.find(' ');
+  CLI::App* verb = to.add_subcommand(blank == std::string::npos ? words : words.substr(blank + 1), doc_of(words));
+  return verb->fallthrough();
+}
+
+void add_looking(CLI::App& ctl, CtlOptions& options) {
+  add(ctl, "status");
+  CLI::App* list = add(ctl, "list");
+  list->add_flag("--names", options.names, "Their names alone, one a line");
+  list->add_option("what", options.what, "behaviors, sets, objects, parameters or signals")
+      ->required()
+      ->check(CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals"}));
+  add(ctl, "get")->add_option("name", options.name)->required()->type_name("NAME");
+  CLI::App* watched = add(ctl, "watch");
+  watched->add_option("signals", options.signals)->required()->type_name("SIGNAL...");
+  watched->add_option("--rate", options.rate_hz, "Samples a second at most (default: 10)")
+      ->check(CLI::Range(0.01, 1000.0));
+  watched->add_option("--count", options.count, "Ends after so many samples")->check(CLI::Range(1L, 1'000'000'000L));
+}
+
+void add_operating(CLI::App& ctl, CtlOptions& options) {
+  CLI::App* play = add(ctl, "play");
+  play->add_option("list", options.list)->required()->type_name("LIST");
+  play->add_flag("--replace", options.replace, "In place of what plays");
+  for (const char* plain : {"pause", "resume", "stop", "estop"}) add(ctl, plain);
+  add(ctl, "switch")->add_option("set", options.name)->required()->type_name("SET");
+  CLI::App* fault = ctl.add_subcommand("fault", "Faults: list, clear");
+  fault->require_subcommand(1)->fallthrough();
+  add(*fault, "fault list");
+  add(*fault, "fault clear");
+  CLI::App* record = ctl.add_subcommand("record", "Records: start, stop");
+  record->require_subcommand(1)->fallthrough();
+  add(*record, "record start")
+      ->add_option("file", options.name, "Its name (default: robot and time)")
+      ->type_name("FILE");
+  add(*record, "record stop");
+}
+
+void add_developing(CLI::App& ctl, CtlOptions& options) {
+  CLI::App* set = add(ctl, "set");
+  set->add_option("name", options.name)->required()->type_name("NAME");
+  set->add_option("value", options.value)->required()->type_name("VALUE");
+  for (const char* plain : {"undo", "save", "repl"}) add(ctl, plain);
+  add(ctl, "reload")->add_option("name", options.name)->type_name("NAME");
+}
+
 }  // namespace
 
 void add_ctl(CLI::App& app, CtlOptions& options) {
@@ -109,42 +157,9 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
   ctl->add_option("--socket", options.socket, "Its folder of sockets, or one socket (default: where they usually are)")
       ->type_name("PATH");
   ctl->add_flag("--json", options.json, "Print the answer as JSON, samples as one object a line");
-  const auto add = [&](CLI::App* to, const std::string& words) {
-    const std::size_t blank = words.find(' ');
-    CLI::App* verb = to->add_subcommand(blank == std::string::npos ? words : words.substr(blank + 1), doc_of(words));
-    return verb->fallthrough();
-  };
-  add(ctl, "status");
-  CLI::App* list = add(ctl, "list");
-  list->add_flag("--names", options.names, "Their names alone, one a line");
-  list->add_option("what", options.what, "behaviors, sets, objects, parameters or signals")
-      ->required()
-      ->check(CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals"}));
-  add(ctl, "get")->add_option("name", options.name)->required()->type_name("NAME");
-  CLI::App* set = add(ctl, "set");
-  set->add_option("name", options.name)->required()->type_name("NAME");
-  set->add_option("value", options.value)->required()->type_name("VALUE");
-  for (const char* plain : {"undo", "save", "pause", "resume", "stop", "estop", "repl"}) add(ctl, plain);
-  CLI::App* play = add(ctl, "play");
-  play->add_option("list", options.list)->required()->type_name("LIST");
-  play->add_flag("--replace", options.replace, "In place of what plays");
-  add(ctl, "reload")->add_option("name", options.name)->type_name("NAME");
-  add(ctl, "switch")->add_option("set", options.name)->required()->type_name("SET");
-  CLI::App* watched = add(ctl, "watch");
-  watched->add_option("signals", options.signals)->required()->type_name("SIGNAL...");
-  watched->add_option("--rate", options.rate_hz, "Samples a second at most (default: 10)")
-      ->check(CLI::Range(0.01, 1000.0));
-  watched->add_option("--count", options.count, "Ends after so many samples")->check(CLI::Range(1L, 1'000'000'000L));
-  CLI::App* fault = ctl->add_subcommand("fault", "Faults: list, clear");
-  fault->require_subcommand(1)->fallthrough();
-  add(fault, "fault list");
-  add(fault, "fault clear");
-  CLI::App* record = ctl->add_subcommand("record", "Records: start, stop");
-  record->require_subcommand(1)->fallthrough();
-  add(record, "record start")
-      ->add_option("file", options.name, "Its name (default: robot and time)")
-      ->type_name("FILE");
-  add(record, "record stop");
+  add_looking(*ctl, options);
+  add_operating(*ctl, options);
+  add_developing(*ctl, options);
   ctl->footer("Exit codes: 0 done, 1 refused, 2 wrong usage or no instance. docs/ctl.md tells of roles and sockets.");
 }
 

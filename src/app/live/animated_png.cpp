@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 #include "kadans/telemetry/crc32.h"
 
 namespace kadans {
