@@ -124,7 +124,7 @@ class LiveRun {
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
     if (!options_.record.empty()) record_side_.start(options_.record);
-    const bool may_record = !options_.record.empty() || place_of(options_).wanted;
+    const bool may_record = !options_.record.empty() || place_of(options_).wanted || options_.live.wanted();
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->connect();

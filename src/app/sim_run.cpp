@@ -212,7 +212,7 @@ void SimRun::start_record() {
   const RobotModel& model = assembly_.robot().model;
   (void)recorder_->describe_run(inputs_);
   (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
-  (void)recorder_->describe_parts(run_description(assembly_.robot(), assembly_.catalog(), assembly_.host()), 0);
+  (void)recorder_->describe_parts(run_description(assembly_.robot(), assembly_.catalog(), assembly_.own_host()), 0);
   late_log_.set(&recorder_->events());
   if (!remote_) assembly_.record_to(recorder_.get());
 }

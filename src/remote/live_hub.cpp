@@ -16,6 +16,21 @@ constexpr std::uint32_t report_call = 1, saved_call = 2;
 
 }  // namespace
 
+bool LivePace::push(const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  if (pushes_.size() == pushes_max) return false;
+  pushes_.push_back(what);
+  pushed_.store(true, std::memory_order_release);
+  return true;
+}
+
+std::vector<std::string> LivePace::take_pushes() {
+  if (!pushed_.load(std::memory_order_acquire)) return {};
+  const std::lock_guard lock(mutex_);
+  pushed_.store(false, std::memory_order_relaxed);
+  return std::exchange(pushes_, {});
+}
+
 LiveHub::LiveHub(Parts parts)
     : p_(std::move(parts)), channels_(p_.instance, p_.texts), assets_(p_.texts, p_.urdf_file) {
   const ParameterTable& table = p_.instance.catalog().parameters;
@@ -107,7 +122,7 @@ std::string LiveHub::save(const std::vector<ParameterChange>& changes) {
   return std::to_string(changes.size()) + " parameters stand in " + configuration.file().filename().string();
 }
 
-bool LiveHub::act(const std::string& verb, double value) {
+bool LiveHub::act(const std::string& verb, const std::string& text, double value) {
   if (verb == "estop") {
     p_.instance.stop_now();
     return true;
@@ -119,6 +134,8 @@ bool LiveHub::act(const std::string& verb, double value) {
     p_.pace->held = false;
   } else if (verb == "step") {
     p_.pace->steps += 1;
+  } else if (verb == "push") {
+    return p_.pace->push(text);
   } else if (verb == "speed" && value >= 0.01 && value <= 100) {
     p_.pace->speed = value;
   } else {

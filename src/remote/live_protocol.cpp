@@ -36,7 +36,7 @@ std::string session_id() { return std::to_string(getpid()); }
 std::string verbs_text(bool paced) {
   std::string text = "estop";
   for (const auto& [verb, kind] : orders) text += " " + std::string(verb);
-  return text + (paced ? " hold go step speed" : "");
+  return text + (paced ? " hold go step speed push" : "");
 }
 
 std::optional<Order::Kind> order_of(std::string_view verb) {

@@ -50,10 +50,10 @@ Json chart_of(const Behavior& behavior) {
   return {{"states", states}, {"transitions", transitions}};
 }
 
-Json behaviors_of(const ScriptHost& host) {
+Json behaviors_of(const ScriptHost* host) {
   Json behaviors = Json::array();
-  for (std::size_t i = 0; i < host.size(); ++i) {
-    const Behavior& behavior = host.behavior(i);
+  for (std::size_t i = 0; host != nullptr && i < host->size(); ++i) {
+    const Behavior& behavior = host->behavior(i);
     Json parameters = Json::array();
     for (const ScriptParameter& p : behavior.parameters()) {
       parameters.push_back({{"name", p.name},
@@ -129,7 +129,7 @@ Json parameters_of(const Catalog& catalog) {
 
 }  // namespace
 
-std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost& host) {
+std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host) {
   const Json description{{"robot", robot_of(robot)},
                          {"sets", sets_of(catalog)},
                          {"objects", objects_of(catalog)},

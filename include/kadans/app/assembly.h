@@ -65,6 +65,7 @@ class Assembly {
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
   const ScriptHost& host() const noexcept { return *host_; }  // when behaviors do not play outside
   ScriptHost& host() noexcept { return *host_; }
+  const ScriptHost* own_host() const noexcept { return host_.get(); }  // nullptr when they do
   OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
   // Before the run: takes what somebody saves. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() { host_->watch(); }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,11 +16,22 @@
 
 namespace kadans {
 
-// Pace of a simulation, from its clients to its thread. Null where time cannot be held.
+// What clients ask of a simulation, from the server's thread to its own. Null where there is none.
 struct LivePace {
+  static constexpr std::size_t pushes_max = 8;
   std::atomic<double> speed{1};
   std::atomic<bool> held{false};
   std::atomic<std::uint32_t> steps{0};  // to take while it is held
+
+  // Server's thread. False: too many wait.
+  [[nodiscard]] bool push(const std::string& what);
+  // The simulation's: "torso=0,2,0", an impulse in Ns; none wait mostly, and then this is one load.
+  std::vector<std::string> take_pushes();
+
+ private:
+  std::atomic<bool> pushed_{false};
+  std::mutex mutex_;
+  std::vector<std::string> pushes_;
 };
 
 class LiveClient;
@@ -63,7 +75,7 @@ class LiveHub {
   // `call`: what the client knows its answer by. False: too many orders wait.
   [[nodiscard]] bool send(Order order, std::uint64_t client, std::uint32_t call);
   // What needs no order: the emergency stop and the pace. False: `verb` is no such thing.
-  [[nodiscard]] bool act(const std::string& verb, double value);
+  [[nodiscard]] bool act(const std::string& verb, const std::string& text, double value);
   bool can_pace() const noexcept { return p_.pace != nullptr; }
 
  private:

@@ -14,8 +14,9 @@
 
 namespace kadans {
 
-// Before the loop, or between two behavior ticks: it reads parameters' values and charts.
-std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost& host);
+// Before the loop, or between two behavior ticks: it reads parameters' values and charts. Without a host, of behaviors
+// that play in a process of their own, their charts are not told.
+std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host);
 
 extern const char* const description_schema;
 

@@ -1,6 +1,7 @@
 #include "ctl/sim_remote.h"
 
 #include "kadans/config/project_root.h"
+#include "run_request.h"
 #include "terminal.h"
 #include "version.h"
 
@@ -45,6 +46,8 @@ void InstanceLog::message(std::int64_t time_ns, Severity severity, const std::st
 
 SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs)
     : parts_(assembly.parts()),
+      model_(assembly.robot().model),
+      log_(logs.all),
       told_(logs.told),
       instance_(facts_of(scenario, assembly.robot()), assembly.catalog()),
       control_side_(instance_, parts_.control.safety()),
@@ -72,7 +75,24 @@ void SimRemote::begin(RecordSink* own, const std::string& own_file) {
 
 void SimRemote::tick(double, std::span<const double>) {}
 
+// Before the step that begins now.
+void SimRemote::push(const RunMark& mark) {
+  const double time_s = 1e-9 * static_cast<double>(mark.time_ns);
+  for (const std::string& what : pace_.take_pushes()) {
+    try {
+      if (pushes_.size() == LivePace::pushes_max) pushes_.erase(pushes_.begin());
+      pushes_.emplace_back(std::vector{parse_push(what, time_s)}, model_, "push");
+      log_.message(mark.time_ns, BehaviorLog::Severity::info, "live", "push " + what + " Ns");
+    } catch (const InputError& error) {
+      log_.message(mark.time_ns, BehaviorLog::Severity::warning, "live", error.what());
+    }
+  }
+  for (const Pushes& pushes : pushes_)
+    pushes.apply(parts_.plant, time_s, 1e-9 * static_cast<double>(parts_.lockstep.control_period_ns()));
+}
+
 void SimRemote::between_ticks(const RunMark& mark) {
+  push(mark);
   behavior_side_.beside_tick(mark.time_ns);
   if (published_++ % publish_every_ticks != 0) return;
   (void)record_side_.beat({.due_ns = mark.time_ns});

@@ -9,6 +9,7 @@
 #include "kadans/remote/behavior_side.h"
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/record_side.h"
+#include "kadans/scenario/pushes.h"
 #include "kadans/scenario/run.h"
 #include "live/live_service.h"
 
@@ -56,7 +57,11 @@ class SimRemote final : public RunObserver {
   void between_ticks(const RunMark& mark) override;
 
  private:
+  void push(const RunMark& mark);
+
   RunParts parts_;
+  const RobotModel& model_;
+  BehaviorLog& log_;
   InstanceLog& told_;
   Instance instance_;
   ControlSide control_side_;
@@ -65,6 +70,7 @@ class SimRemote final : public RunObserver {
   CtlService service_;
   LivePace pace_;
   LiveService live_;
+  std::vector<Pushes> pushes_;  // the newest, of clients
   std::uint32_t published_ = 0;
 };
 

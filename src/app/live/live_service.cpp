@@ -24,11 +24,14 @@ RobotTexts robot_texts(const Assembly& assembly) {
   const RobotConfig& robot = assembly.robot();
   return {.name = robot.model.name,
           .urdf = read_text_file(robot.model.file),
-          .description = run_description(robot, assembly.catalog(), assembly.host())};
+          .description = run_description(robot, assembly.catalog(), assembly.own_host())};
 }
 
 LiveService::LiveService(const LivePlace& place, Instance& instance, const Assembly& assembly, LivePace* pace) {
   if (!place.wanted()) return;
+  if (assembly.own_host() == nullptr)
+    throw InputError(
+        InputProblem{.file = "--live", .message = "shows behaviors of this process: leave out --behaviors process"});
   hub_ = std::make_unique<LiveHub>(LiveHub::Parts{.instance = instance,
                                                   .port = instance.open_port(),
                                                   .texts = robot_texts(assembly),

@@ -11,7 +11,7 @@
 
 #include "kadans/config/fields.h"
 #include "kadans/remote/page_files.h"
-#include "live/animated_png.h"
+#include "kadans/telemetry/animated_png.h"
 #include "live/chromium.h"
 #include "live/page_commands.h"
 #include "terminal.h"

@@ -1,6 +1,7 @@
 // The robot in 3D at the time that is looked at, with what bears it.
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { BalanceMarks, mark_colors } from '../robot/balance_marks.js';
+import { PushHand } from '../robot/push_hand.js';
 import { RobotModel } from '../robot/robot_model.js';
 import { Stage } from '../robot/stage.js';
 
@@ -52,6 +53,9 @@ export function RobotPanel({ session, theme, frames }) {
     stage.current = new Stage(canvas.current);
     show.current = new Show(stage.current);
     globalThis.kadans_stage = stage.current;
+    const pushed = () => latest.current.session.remote?.writes && latest.current.session.remote.verbs.has('push');
+    const push = (link, impulse_Ns) => latest.current.session.remote.command('push', { text: `${link}=${impulse_Ns.map((part) => part.toFixed(3)).join(',')}` });
+    new PushHand(stage.current, () => (pushed() ? show.current.model : null), push);
     const draw = () => {
       const { clientWidth, clientHeight } = canvas.current.parentElement;
       if (clientWidth === 0 || clientHeight === 0) return;
@@ -82,6 +86,7 @@ export function RobotPanel({ session, theme, frames }) {
             <i style={{ background: css(color) }} />{label}
           </button>
         ))}
+        {session.remote?.writes && session.remote.verbs.has('push') && <span class="tip">shift and drag a link: push</span>}
         <button class="mark" title="Look from the start again (f)" onClick={() => stage.current.look_from_start()}>Reset view</button>
       </div>
     </section>

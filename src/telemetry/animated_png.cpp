@@ -1,4 +1,4 @@
-#include "live/animated_png.h"
+#include "kadans/telemetry/animated_png.h"
 
 #include <cstdint>
 #include <stdexcept>
