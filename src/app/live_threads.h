@@ -15,7 +15,9 @@
 
 namespace kadans {
 
-inline constexpr int control_priority = 90, plant_priority = 80, behavior_priority = 40, record_priority = 20;
+// The model stands for hardware, which waits for nobody: whatever keeps it from its step must keep the control thread
+// too, or time would pass for control alone and every sensor would fall silent.
+inline constexpr int control_priority = 90, plant_priority = 92, behavior_priority = 40, record_priority = 20;
 
 struct LiveTasks {
   ControlTask& control;

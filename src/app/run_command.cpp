@@ -50,7 +50,7 @@ LiveTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
   return {.control_period_ns = period_ns,
           .behavior_period_ns = engine.behavior_divisor() * period_ns,
           .virtual_time = options.virtual_time,
-          .real_time = read_rights("/").priority(control_priority),
+          .real_time = read_rights("/").priority(plant_priority),
           .keep_awake = options.keep_awake && !one_cpu,
           .spin_ns = options.sleep_only || one_cpu ? 0 : std::llround(1e3 * spin_us),
           .cpu = options.cpu >= 0 ? options.cpu : real_time_cpu("/")};
@@ -254,7 +254,7 @@ int run_live(const RunOptions& options) {
     print_error("--threads-on-virtual-time: a plant on another machine has its own time");
     return exit_usage;
   }
-  if (!options.virtual_time && !rights_suffice(control_priority, options.soft)) return exit_usage;
+  if (!options.virtual_time && !rights_suffice(plant_priority, options.soft)) return exit_usage;
   LiveRun run(options);
   catch_interrupts();
   return run.run();
