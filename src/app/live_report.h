@@ -5,6 +5,7 @@
 #include <string>
 
 #include "kadans/plant/udp/udp_plant.h"
+#include "kadans/script/process/process_host.h"
 #include "kadans/telemetry/recorder.h"
 #include "live_threads.h"
 
@@ -18,6 +19,7 @@ struct LiveResult {
   const PlantTask* plant = nullptr;  // of a model
   const UdpPlant* udp_plant = nullptr;
   const Recorder* recorder = nullptr;
+  const ProcessHost* process = nullptr;  // of the behaviors
   double duration_s = 0;
   double start_ms = 0;  // from the start of the process to the first control tick
   std::string ended;    // why: "told to stop", "duration", or what failed

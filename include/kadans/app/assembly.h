@@ -20,6 +20,7 @@
 #include "kadans/scenario/faulty_plant.h"
 #include "kadans/scenario/quantities.h"
 #include "kadans/scenario/run.h"
+#include "kadans/script/process/process_host.h"
 #include "kadans/script/script_host.h"
 
 namespace kadans {
@@ -45,18 +46,26 @@ std::unique_ptr<ModelPlant> make_model(PlantKind kind, const RobotModel& model, 
                                        std::uint64_t seed);
 // What a plant over the network must have in common with this robot.
 PlantLayout plant_layout(const RobotConfig& robot);
+// The host of a scenario's behaviors. Throws InputError.
+std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const SafeConfig& safe,
+                                             const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
+                                             std::span<const std::byte> kept = {});
 
 class Assembly {
  public:
   // Reads the robot and the behaviors that the scenario names. Throws InputError with everything that is wrong. The log
   // must outlive the assembly, and so must `link`: with it the model is for a thread of its own, and the engines see
-  // its other end. When the scenario's plant is udp there is no model: no parts(), no model(), no truth().
-  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr);
+  // its other end. When the scenario's plant is udp there is no model: no parts(), no model(), no truth(). With
+  // `outside`, which must outlive it too, the scenario's behaviors play in a process of their own, which has been
+  // started with them.
+  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
+           ProcessHost* outside = nullptr);
 
   const RobotConfig& robot() const noexcept { return robot_.config; }
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
-  const ScriptHost& host() const noexcept { return *host_; }
+  const ScriptHost& host() const noexcept { return *host_; }  // when behaviors do not play outside
   ScriptHost& host() noexcept { return *host_; }
+  OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
   // Before the run: takes what somebody saves. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() { host_->watch(); }
   RunParts parts() noexcept;
@@ -80,10 +89,12 @@ class Assembly {
   void make_plant(std::uint64_t seed);
   void make_udp_plant();
   void make_behaviors();
+  BehaviorHost& played() noexcept;
 
   const ScenarioConfig& scenario_;
   RunLog& log_;
   PlantExchange* link_;
+  ProcessHost* outside_;
   Robot robot_;
   PlantVariant variant_;
   std::vector<QuantityValue> quantities_;
