@@ -128,8 +128,8 @@ class LiveRun {
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->connect();
     LiveThreads threads(timing, {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr});
-    const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
+    const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     ctl_.start();
     notifier_.ready("drives " + assembly_.robot().name);
     const std::string ended = watch(threads);
