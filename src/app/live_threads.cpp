@@ -5,13 +5,15 @@
 namespace kadans {
 namespace {
 
-constexpr std::int64_t start_ns = 10'000'000;  // for the threads to come up
+constexpr std::int64_t start_ns = 1'000'000;  // from the last thread's coming up to time 0
 constexpr std::int64_t record_period_ns = 20'000'000;
 
 }  // namespace
 
 LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
-    : timing_(timing), origin_ns_(WallClock().now_ns() + start_ns), supervisor_wait_(make_wait(0)) {
+    : timing_(timing),
+      line_(2 + std::size_t{tasks.plant != nullptr} + std::size_t{tasks.record != nullptr}, start_ns),
+      supervisor_wait_(timing.virtual_time ? virtual_time_.make_wait() : nullptr) {
   const auto priority = [&](int wanted) { return timing.real_time && !timing.virtual_time ? wanted : 0; };
   const std::int64_t period_ns = timing.control_period_ns;
   // On the wall clock the model is half a period behind, so that what it is told and what it says is always as old; and
@@ -48,7 +50,7 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
 
 std::unique_ptr<Wait> LiveThreads::make_wait(std::int64_t spin_ns) {
   if (timing_.virtual_time) return virtual_time_.make_wait();
-  return std::make_unique<PosixWait>(spin_ns, origin_ns_);
+  return std::make_unique<PosixWait>(spin_ns, line_);
 }
 
 void LiveThreads::add(const TaskSettings& settings, Task& task, std::int64_t spin_ns) {
@@ -61,7 +63,14 @@ void LiveThreads::start() {
     if (timing_.keep_awake) awake_.emplace(timing_.cpu);
     (void)leave_cpu(timing_.cpu);  // and so do the threads that are started here
   }
-  for (const auto& thread : threads_) thread->start();
+  try {
+    for (const auto& thread : threads_) thread->start();
+  } catch (...) {
+    for (const auto& thread : threads_) thread->stop();
+    line_.open();
+    throw;
+  }
+  if (!timing_.virtual_time) supervisor_wait_ = std::make_unique<PosixWait>(0, line_.origin_ns());
 }
 
 void LiveThreads::stop() noexcept {

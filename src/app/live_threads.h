@@ -10,12 +10,15 @@
 #include "kadans/realtime/keep_awake.h"
 #include "kadans/realtime/plant_link.h"
 #include "kadans/realtime/posix_wait.h"
+#include "kadans/realtime/start_line.h"
 #include "kadans/realtime/task_thread.h"
 #include "kadans/realtime/virtual_time.h"
 
 namespace kadans {
 
-inline constexpr int control_priority = 90, plant_priority = 80, behavior_priority = 40, record_priority = 20;
+// The model stands for hardware, which waits for nobody: whatever keeps it from its step must keep the control thread
+// too, or time would pass for control alone and every sensor would fall silent.
+inline constexpr int control_priority = 90, plant_priority = 92, behavior_priority = 40, record_priority = 20;
 
 struct LiveTasks {
   ControlTask& control;
@@ -35,7 +38,7 @@ struct LiveTiming {
 
 class LiveThreads {
  public:
-  // The tasks must outlive it. Time 0 is a little later: when start() is through.
+  // The tasks must outlive it. Time 0 is a little later than when all threads are up.
   LiveThreads(const LiveTiming& timing, const LiveTasks& tasks);
 
   void start();  // throws std::system_error
@@ -47,14 +50,15 @@ class LiveThreads {
   const TaskThread& behaviors() const noexcept { return *threads_[1]; }
   const std::vector<std::unique_ptr<TaskThread>>& all() const noexcept { return threads_; }
   const KeepAwake* keep_awake() const noexcept { return awake_ ? &*awake_ : nullptr; }
-  std::int64_t origin_ns() const noexcept { return origin_ns_; }  // time 0 on CLOCK_MONOTONIC
+  // Time 0 on CLOCK_MONOTONIC, on the wall clock and once started.
+  std::int64_t origin_ns() const noexcept { return timing_.virtual_time ? WallClock().now_ns() : line_.origin_ns(); }
 
  private:
   void add(const TaskSettings& settings, Task& task, std::int64_t spin_ns);
   std::unique_ptr<Wait> make_wait(std::int64_t spin_ns);
 
   LiveTiming timing_;
-  std::int64_t origin_ns_;
+  StartLine line_;
   VirtualTime virtual_time_;
   std::unique_ptr<Wait> supervisor_wait_;
   std::vector<std::unique_ptr<Wait>> waits_;

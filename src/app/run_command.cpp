@@ -62,7 +62,7 @@ LiveTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
   return {.control_period_ns = period_ns,
           .behavior_period_ns = engine.behavior_divisor() * period_ns,
           .virtual_time = options.virtual_time,
-          .real_time = read_rights("/").priority(control_priority),
+          .real_time = read_rights("/").priority(plant_priority),
           .keep_awake = options.keep_awake && !one_cpu,
           .spin_ns = options.sleep_only || one_cpu ? 0 : std::llround(1e3 * spin_us),
           .cpu = options.cpu >= 0 ? options.cpu : real_time_cpu("/")};
@@ -129,8 +129,8 @@ class LiveRun {
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->connect();
     LiveThreads threads(timing, {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr});
-    const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
+    const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     ctl_.start();
     live_.start({{"Control tick: late", &threads.control().statistics().lateness},
                  {"Control tick: takes", &control_.tick_cost()},
@@ -284,7 +284,7 @@ int run_live(const RunOptions& options) {
     print_error("--threads-on-virtual-time: a plant on another machine has its own time");
     return exit_usage;
   }
-  if (!options.virtual_time && !rights_suffice(control_priority, options.soft)) return exit_usage;
+  if (!options.virtual_time && !rights_suffice(plant_priority, options.soft)) return exit_usage;
   LiveRun run(options);
   catch_interrupts();
   return run.run();

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int priority_wanted = 90;
+constexpr int priority_wanted = 92;
 
 MachineFinding kernel(const fs::path& root) {
   const std::string version = first_line_of(root / "proc/version");

@@ -64,6 +64,21 @@ TEST_CASE("run refuses a wrong list before anything moves") {
   CHECK(has(outcome.err, "did you mean 'squat'"));
 }
 
+TEST_CASE("run and plant say what is wrong with a network before anything moves") {
+  const auto project = project_copy("live_network");
+  const std::string udp = "run config/tulip/robot.json --plant udp --soft";
+  const Outcome nobody = run(udp, project);
+  CHECK(nobody.exit_code == 2);
+  CHECK(has(nobody.err, "says no plant.udp.peer: name the machine that serves the plant with --peer HOST:PORT"));
+  const Outcome nowhere = run(udp + " --peer nowhere", project);
+  CHECK(nowhere.exit_code == 2);
+  CHECK(has(nowhere.err, "'nowhere' must be HOST:PORT"));
+  CHECK(run(udp + " --peer 127.0.0.1:7 --threads-on-virtual-time", project).exit_code == 2);
+  const Outcome plant = run("plant config/tulip/robot.json --listen 127.0.0.1:77777 --soft", project);
+  CHECK(plant.exit_code == 2);
+  CHECK(has(plant.err, "must be HOST:PORT"));
+}
+
 TEST_CASE("doctor tells of any machine whose files it is given") {
   const auto folder = fresh_folder("doctor");
   std::filesystem::create_directories(folder / "machine/sys/kernel");

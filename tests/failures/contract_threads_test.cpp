@@ -109,6 +109,39 @@ TEST_CASE("rows are lost and counted, the record says why, no tick is late" * de
   CHECK(robot.recorder.error().find("File too large") != std::string::npos);
 }
 
+TEST_CASE("both are told how much they missed, no sensor is silent, nothing jumps" *
+          description("the machine is taken from the control thread and the model's alike")) {
+  LiveRobot robot;
+  for (DisturbedWait* wait : {&robot.control_wait, &robot.plant_wait}) {
+    wait->late_from_ns = 200 * tick_ns;
+    wait->late_by_ns = 60 * tick_ns;
+    wait->late_times = 3;
+  }
+  robot.start();
+  const Snapshot& snapshot = robot.run_until(700);
+  CHECK(snapshot.status.safety.level == SafetyLevel::normal);
+  CHECK(snapshot.status.safety.first_fault.code == FaultCode::tick_overrun);
+  CHECK(snapshot.status.safety.fault_count == 1);  // nothing else
+  robot.stop();
+  CHECK(robot.control_thread.statistics().missed.get() == 180);
+  CHECK(robot.plant_task.lost_periods() > 0);
+}
+
+TEST_CASE("silent_ticks_max ticks pass unnoticed, beyond them every sensor is silent: the joints are off, latched" *
+          description("the model's thread alone is kept from its step")) {
+  for (const std::int64_t late_ms : {4, 9}) {
+    LiveRobot robot;
+    robot.plant_wait.late_from_ns = 200 * tick_ns;
+    robot.plant_wait.late_by_ns = late_ms * tick_ns;
+    robot.plant_wait.late_times = 1;
+    robot.start();
+    const SafetyStatus status = robot.run_until(400).status.safety;
+    CHECK(status.level == (late_ms == 4 ? SafetyLevel::normal : SafetyLevel::off));
+    CHECK(status.first_fault.code == (late_ms == 4 ? FaultCode::none : FaultCode::sensor_silent));
+    robot.stop();
+  }
+}
+
 TEST_CASE("the task gives up after 100 wake-ups without time passing, the run ends, the watchdog is not fed" *
           description("the control thread's clock stands still")) {
   LiveRobot robot;

@@ -64,8 +64,8 @@ struct LiveRobot {
 
   VirtualTime time;
   std::unique_ptr<Wait> supervisor = time.make_wait();
-  DisturbedWait control_wait{time.make_wait()};
-  std::unique_ptr<Wait> behavior_wait = time.make_wait(), plant_wait = time.make_wait();
+  DisturbedWait control_wait{time.make_wait()}, plant_wait{time.make_wait()};
+  std::unique_ptr<Wait> behavior_wait = time.make_wait();
   Script script;
   ControlTask control_task{control};
   BehaviorTask behavior_task{behaviors, &script};
@@ -73,7 +73,7 @@ struct LiveRobot {
   TaskThread control_thread{{.name = "control", .first_ns = tick_ns}, control_task, control_wait};
   TaskThread behavior_thread{
       {.name = "behaviors", .period_ns = 10 * tick_ns, .first_ns = 2 * tick_ns}, behavior_task, *behavior_wait};
-  TaskThread plant_thread{{.name = "plant"}, plant_task, *plant_wait};
+  TaskThread plant_thread{{.name = "plant"}, plant_task, plant_wait};
 
   void start() {
     for (TaskThread* thread : threads()) thread->start();

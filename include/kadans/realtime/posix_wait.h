@@ -7,6 +7,7 @@
 // With spin_ns = 0 it is a pure sleep, which is what a machine with one core wants.
 #pragma once
 
+#include "kadans/realtime/start_line.h"
 #include "kadans/realtime/wait.h"
 
 namespace kadans {
@@ -19,12 +20,19 @@ class PosixWait final : public Wait {
   explicit PosixWait(std::int64_t spin_ns = 0, std::int64_t origin_ns = 0) noexcept
       : spin_ns_(spin_ns), origin_ns_(origin_ns) {}
 
+  // Times count from when the line opens; the thread that will wait waits there first, as one of its tasks.
+  PosixWait(std::int64_t spin_ns, StartLine& line) noexcept : spin_ns_(spin_ns), origin_ns_(0), line_(&line) {}
+
+  void begin() noexcept override {
+    if (line_ != nullptr) origin_ns_ = line_->wait();
+  }
   std::int64_t now_ns() const noexcept override;
   void until(std::int64_t time_ns) noexcept override;  // signals do not shorten it
 
  private:
   std::int64_t spin_ns_;
   std::int64_t origin_ns_;
+  StartLine* line_ = nullptr;
 };
 
 }  // namespace kadans

@@ -1,0 +1,34 @@
+// Where tasks that beat together wait until all of them are there; then time begins for them.
+//
+// Threads are started one after the other by one that is not in real time, which a busy machine may keep for seconds
+// between two of them. Without this the first would beat alone meanwhile: a control thread whose model is not yet there
+// sees silent sensors.
+// Threads: each task's calls wait() once; others ask origin_ns() or open() the line.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace kadans {
+
+class StartLine {
+ public:
+  // Time 0 is `lead_ns` after the last of `tasks` came, on CLOCK_MONOTONIC.
+  StartLine(std::size_t tasks, std::int64_t lead_ns) noexcept
+      : missing_(static_cast<std::uint32_t>(tasks)), lead_ns_(lead_ns) {}
+
+  // A task's thread, once: returns time 0 when all are there.
+  std::int64_t wait() noexcept;
+  // Any thread: the same, without being one that is waited for.
+  std::int64_t origin_ns() const noexcept;
+  // Not all will come: nobody waits any more.
+  void open() noexcept;
+
+ private:
+  std::atomic<std::uint32_t> missing_;
+  std::int64_t lead_ns_;
+  std::atomic<std::int64_t> origin_ns_{0};  // 0: not yet known
+};
+
+}  // namespace kadans
