@@ -111,14 +111,19 @@ function floor.fold(joints)
   return steps, turns
 end
 
--- Weight over the feet, the hands just bear.
-function floor.bear(turns) return timed(turned(even(bear), turns), bear[1]) end
+local function leaning(frame, lean)
+  return even { frame[1], frame[2], frame[3], frame[4] + lean, frame[5] }
+end
 
--- From there to standing: points of one smooth curve. An arm that came the other way round goes down in front.
-function floor.rise(turns)
+-- Weight over the feet, the hands just bear; `lean` rad further back in the ankles.
+function floor.bear(turns, lean) return timed(turned(leaning(bear, lean), turns), bear[1]) end
+
+-- From there to standing: points of one smooth curve, the last one without `lean`. An arm that came the other way round
+-- goes down in front.
+function floor.rise(turns, lean)
   local points = {}
   for i, frame in ipairs(rise) do
-    local pose = even(frame)
+    local pose = leaning(frame, i < #rise and lean or 0)
     for joint, offset in pairs(turns) do
       local first, last = bear[5] + offset, rise[#rise][5]
       pose[joint] = first + (last - first) * i / #rise

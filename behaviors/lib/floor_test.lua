@@ -34,11 +34,13 @@ describe("floor", function()
   end)
 
   it("ends the rise in the pose stand, whichever way the arms came", function()
-    local points = floor.rise { l_shoulder_pitch = -2 * math.pi, r_shoulder_pitch = 0 }
+    local points = floor.rise({ l_shoulder_pitch = -2 * math.pi, r_shoulder_pitch = 0 }, 0.1)
     local last = points[#points][1]
     expect(last.l_shoulder_pitch).to_be_near(-0.2)
     expect(last.r_shoulder_pitch).to_be_near(-0.2)
     expect(last.l_hip_pitch).to_be_near(-0.15)
+    expect(last.l_ankle_pitch).to_be_near(-0.194)
+    expect(points[1][1].l_ankle_pitch).to_be_near(0.166)
     expect(#points).to_be_below(17)
   end)
 

@@ -7,6 +7,7 @@ local floor = require "floor"
 
 local P = k.params {
   tries       = { 3, min = 1, max = 10, doc = "how often it tries" },
+  rolls       = { 2, min = 1, max = 10, doc = "how often it rolls in one try" },
   still_s     = { 0.6, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins: torque is back by then" },
   still_rad_s = { 0.5, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
   patience_s  = { 2.0, min = 0.1, max = 20, unit = "s", doc = "longest wait to lie still" },
@@ -14,7 +15,9 @@ local P = k.params {
   steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
   tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
-  balance     = { 1, min = 0, max = 1, doc = "share of the balance's torques while it rises" },
+  balance     = { 0, min = 0, max = 1, doc = "share of the balance's torques while it rises" },
+  lean_rad    = { 0.0, min = -0.2, max = 0.2, unit = "rad", doc = "how far back it leans in the ankles while it rises" },
+  learn_rad   = { 0.08, min = 0, max = 0.2, unit = "rad", doc = "change of that after a fall, away from where it fell" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
 
@@ -42,17 +45,19 @@ end
 local function roll(over)
   return {
     run = function(m, s)
+      m.vars.rolls = m.vars.rolls + 1
       play(m, floor.roll(over, s.joints))
       m.posture:move(floor.lying(), { time_s = 0.3 }):wait()
     end,
     { on = "run.done", when = is "prone", to = "fold" },
+    { on = "run.done", when = function(_, m) return m.vars.rolls < P.rolls end, to = "look", why = "did not roll over" },
     { on = "run.done", to = "again", why = "did not roll over" },
   }
 end
 
 return k.behavior "get_up" {
   controls = "balanced",
-  vars     = { tried = 0, still_s = 0, arms = {} },
+  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, rolls = 0 },
   initial  = "lie",
 
   k.state "at_once" { { after = 0, to = "up" } },
@@ -61,7 +66,7 @@ return k.behavior "get_up" {
   k.state "lie" {
     enter = function(m)
       m:clear_faults()
-      m.vars.still_s = 0
+      m.vars.still_s, m.vars.rolls = 0, 0
       m.posture:set_gains("get_up")
       m.balance:set_parameter("share", 0)
       m.posture:move(floor.lying(), { time_s = 0.4 })
@@ -73,7 +78,9 @@ return k.behavior "get_up" {
     { after = P.patience_s, to = "look" },
   },
   k.state "look" {
-    enter = function(m) m.vars.tried = m.vars.tried + 1 end,
+    enter = function(m)
+      if m.vars.rolls == 0 then m.vars.tried = m.vars.tried + 1 end
+    end,
     { when = stands, to = "steady" },
     { when = is "prone", to = "fold" },
     { when = function(s) return floor.posture(s.base) == "left" or floor.up(s.base).y <= 0 end, to = "roll_left" },
@@ -87,7 +94,7 @@ return k.behavior "get_up" {
       m.vars.arms = turns
       play(m, steps)
       m:wait(P.bear_s)
-      play(m, { floor.bear(turns) })
+      play(m, { floor.bear(turns, P.lean_rad + m.vars.learnt_rad) })
     end,
     { on = "run.done", when = bears, to = "rise" },
     { on = "run.done", to = "again", why = "not on hands and feet" },
@@ -95,14 +102,14 @@ return k.behavior "get_up" {
   k.state "rise" {
     run = function(m)
       m.balance:set_parameter("share", P.balance)
-      m.posture:move_through(floor.rise(m.vars.arms)):wait()
+      m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad)):wait()
     end,
     { on = "run.done", to = "steady" },
-    { when = function(s, m) return m.time_s > 1 and floor.up(s.base).z < 0.3 end, to = "again", why = "fell" },
+    { when = function(s, m) return m.time_s > 1 and floor.up(s.base).z < 0.3 end, to = "fell" },
   },
   k.state "steady" {
     initial = "sways",
-    { when = function(s) return s.base.tilt_rad > 0.8 end, to = "again", why = "fell" },
+    { when = function(s) return s.base.tilt_rad > 0.8 end, to = "fell" },
     k.state "sways" {
       { when = stands, to = "stands" },
       { after = P.sway_s, to = "again", why = "does not stand" },
@@ -112,6 +119,12 @@ return k.behavior "get_up" {
       { when = function(_, m) return m.vars.tried == 1 end, after = P.steady_s, to = "at_once" },
       { after = P.steady_s, to = "up" },
     },
+  },
+  k.state "fell" {
+    enter = function(m, s)
+      m.vars.learnt_rad = m.vars.learnt_rad + (floor.up(s.base).x < 0 and P.learn_rad or -P.learn_rad)
+    end,
+    { after = 0, to = "again" },
   },
   k.state "again" {
     { when = function(_, m) return m.vars.tried >= P.tries end, to = "failed" },
