@@ -147,8 +147,8 @@ class LiveRun {
     assembly_.model().write(off);
     tell(threads.supervisor().now_ns());
     if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
-    LiveResult result{threads, control_, parts_.behaviors, parts_.control, plant_, record_side_.recorder(),
-                      process_.get(), left_at_s_, start_ms, ended, failed_};
+    LiveResult result{threads,        control_,   parts_.behaviors, parts_.control, plant_, record_side_.recorder(),
+                      process_.get(), left_at_s_, start_ms,         ended,          failed_};
     result.failed = result.failed || log_.has_errors();
     std::fputs(live_text(result).c_str(), stdout);
     if (options_.json) std::puts(live_json(result).c_str());
@@ -253,7 +253,8 @@ class LiveRun {
                           control_side_,
                           record_log_,
                           {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}}};
-  BehaviorSide behavior_side_{{instance_, assembly_.host(), parts_.behaviors, parts_.control.exchange(), echo_, log_},
+  BehaviorSide behavior_side_{{instance_, process_ ? nullptr : &assembly_.host(), process_.get(), parts_.behaviors,
+                               parts_.control.exchange(), echo_, log_},
                               &leaving_};
   CtlService ctl_{place_of(options_), instance_};
   ControlTask control_{parts_.control, &truth_};
