@@ -13,13 +13,15 @@ constexpr ScriptLimits console_limits{.tick_instructions = 200'000,
 }  // namespace
 
 Console& BehaviorSide::console_of(const Order& order) {
+  if (p_.host == nullptr)
+    throw InputError({.message = "there is no console while behaviors play in a process of their own"});
   const auto found = consoles_.find(order.client);
   if (found != consoles_.end()) return *found->second;
   if (consoles_.size() == consoles_max) throw InputError({.message = "all consoles are taken"});
   const Instance::Facts& facts = p_.instance.facts();
   return *(consoles_[order.client] = std::make_unique<Console>(
                Console::Settings{.root = facts.root, .folders = facts.folders, .limits = console_limits},
-               p_.instance.catalog(), p_.host));
+               p_.instance.catalog(), *p_.host));
 }
 
 void BehaviorSide::evaluate(const Order& order, Answer& answer) {

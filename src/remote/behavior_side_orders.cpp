@@ -35,7 +35,8 @@ void check_range(const std::string& name, const std::string& unit, double value,
 }  // namespace
 
 void BehaviorSide::report(Answer& answer) const {
-  const ScriptHost& host = p_.host;
+  if (p_.host == nullptr) return report_process(answer);
+  const ScriptHost& host = *p_.host;
   answer.paused = host.paused();
   for (std::size_t i = 0; i < host.size(); ++i) {
     const Behavior& behavior = host.behavior(i);
@@ -49,20 +50,36 @@ void BehaviorSide::report(Answer& answer) const {
   }
 }
 
+// What a process tells of its behaviors while it plays.
+void BehaviorSide::report_process(Answer& answer) const {
+  const ProcessHost& process = *p_.process;
+  answer.paused = process.paused();
+  for (std::size_t i = 0; i < process.names().size(); ++i) {
+    answer.behaviors.push_back({.name = process.names()[i],
+                                .state = process.down() ? "" : "state " + std::to_string(process.state(i)),
+                                .outcome = "",
+                                .error = process.down() ? "its process stays down" : "",
+                                .lane = 0,
+                                .over = process.down() || process.finished(),
+                                .parameters = {}});
+  }
+}
+
 // To the behaviors; the next tick carries it out.
 void BehaviorSide::give(const Order& order) {
   const PlayOrder::Kind kind = kind_of(order.kind);
   if (kind == PlayOrder::Kind::reload && order.text.empty()) {
     p_.echo.listen();
-    for (std::size_t i = 0; i < p_.host.size(); ++i) {
-      if (!p_.host.over(i)) p_.host.order({.kind = kind, .behavior = {p_.host.behavior(i).name(), {}}});
+    for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
+      if (!p_.host->over(i)) p_.host->order({.kind = kind, .behavior = {p_.host->behavior(i).name(), {}}});
     }
-    return;
+    if (p_.host != nullptr) return;
+    throw InputError({.message = "behaviors play in a process of their own: name the one to be read again"});
   }
   PlayOrder given{.kind = kind, .behavior = {kind == PlayOrder::Kind::reload ? order.text : "", {}}};
   if (kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace)
     given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
-  p_.host.order(given);
+  orders().order(given);
   p_.echo.listen();
 }
 
@@ -104,8 +121,8 @@ ParameterChange BehaviorSide::change_of(const Order& order) const {
     return {order.text, before, order.value};
   }
   std::vector<std::string> names = table.names();
-  for (std::size_t i = 0; i < p_.host.size(); ++i) {
-    const Behavior& behavior = p_.host.behavior(i);
+  for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
+    const Behavior& behavior = p_.host->behavior(i);
     for (const ScriptParameter& own : behavior.parameters()) {
       names.push_back(behavior.name() + "." + own.name);
       if (names.back() != order.text) continue;
@@ -122,8 +139,8 @@ void BehaviorSide::begin_change(Pending& pending, const ParameterChange& change)
     pending.lasting = true;
     return send(pending, {.kind = CommandKind::set_parameter, .index = *id, .value = change.now});
   }
-  for (std::size_t i = 0; i < p_.host.size(); ++i) {
-    Behavior& behavior = p_.host.behavior(i);
+  for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
+    Behavior& behavior = p_.host->behavior(i);
     const std::string own = behavior.name() + ".";
     if (change.name.starts_with(own) && behavior.set_parameter(change.name.substr(own.size()), change.now)) return;
   }

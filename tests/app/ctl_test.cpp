@@ -93,6 +93,24 @@ TEST_CASE("ctl says what it could not do, with the reason, by its exit code") {
   CHECK(read(project / "code") == "1\n");  // the robot was held
 }
 
+TEST_CASE("ctl commands a run whose behaviors play in a process of their own, and says what it cannot do there") {
+  const auto project = project_copy("ctl_process");
+  REQUIRE(beside(project, live + " --behaviors process",
+                 "ctl status && ctl set posture.l_knee.kp_Nm_per_rad 123 && ctl pause && ctl status && ctl resume\n"
+                 "ctl reload; echo $?\n"
+                 "ctl set squat.hold_s 2; echo $?\n"
+                 "echo '1 + 1' | ctl repl; echo $?\n"
+                 "ctl reload squat && ctl stop\n") == 0);
+  const std::string said = read(project / "said"), wrong = read(project / "wrong");
+  CHECK_MESSAGE(read(project / "code") == "0\n", wrong);
+  CHECK(has(said, "squat in state "));
+  CHECK(has(said, "paused; squat"));
+  CHECK(has(said, std::string(kp) + ": "));
+  CHECK(has(wrong, "name the one to be read again"));
+  CHECK(has(wrong, "unknown parameter 'squat.hold_s'"));
+  CHECK(has(wrong, "there is no console while behaviors play in a process of their own"));
+}
+
 TEST_CASE("ctl finds a simulation too, and says where it looked when there is none") {
   const auto project = project_copy("ctl_sim");
   REQUIRE(

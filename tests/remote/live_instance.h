@@ -51,7 +51,7 @@ struct LiveInstance {
   Instance instance;
   ControlSide control_side{instance, robot.safety};
   RecordSide record_side{instance, control_side, record_log, {}};
-  BehaviorSide behavior_side{{instance, host, robot.behaviors, *robot.exchange, echo, echo}};
+  BehaviorSide behavior_side{{instance, &host, nullptr, robot.behaviors, *robot.exchange, echo, echo}};
   CtlSockets sockets{{.folder = project.root / "ctl"}};
   std::unique_ptr<CtlServer> server;
   Supervisor supervisor{instance, *robot.exchange, robot.safety, record_side};

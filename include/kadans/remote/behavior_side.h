@@ -16,6 +16,7 @@
 #include "kadans/remote/instance.h"
 #include "kadans/remote/tuning.h"
 #include "kadans/script/console.h"
+#include "kadans/script/process/process_host.h"
 #include "kadans/script/script_host.h"
 
 namespace kadans {
@@ -24,7 +25,8 @@ class BehaviorSide final : public BesideTick {
  public:
   struct Parts {
     Instance& instance;
-    ScriptHost& host;
+    ScriptHost* host;      // where behaviors play: here
+    ProcessHost* process;  // or there; the other is nullptr
     BehaviorEngine& engine;
     EngineExchange& exchange;
     EchoLog& echo;     // between the behaviors and `log`'s readers
@@ -57,6 +59,8 @@ class BehaviorSide final : public BesideTick {
   void say(std::int64_t time_ns, const std::string& who, const std::string& what);
 
   // behavior_side_orders.cpp
+  OrderTaker& orders() const noexcept { return p_.host != nullptr ? static_cast<OrderTaker&>(*p_.host) : *p_.process; }
+  void report_process(Answer& answer) const;
   void report(Answer& answer) const;
   void give(const Order& order);
   void begin_change(Pending& pending, const ParameterChange& change);

@@ -62,7 +62,8 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
   if (!names) refuse("it tells no names");
   if (ChildAnswer::fingerprint(child_->link) != fingerprint_) refuse("the robot's files changed meanwhile");
   play_.declare(catalog.signals);
-  for (const std::string& name : *names) behaviors_.emplace_back().declare_numbered(catalog.signals, name);
+  names_ = *names;
+  for (const std::string& name : names_) behaviors_.emplace_back().declare_numbered(catalog.signals, name);
   play_.phase.store(behaviors_.empty() ? 0 : 1, std::memory_order_relaxed);
   phase_ = Phase::playing;
 }
@@ -73,6 +74,7 @@ void ProcessHost::order(const PlayOrder& order) {
   if (bytes.size() > BehaviorLink::order_bytes) throw InputError({.message = "the order is too long"});
   if (phase_ == Phase::down) throw InputError({.message = "the behaviors' process is down"});
   orders_.emplace_back(bytes.bytes().begin(), bytes.bytes().end());
+  stopping_ = order.kind == PlayOrder::Kind::stop;
 }
 
 void ProcessHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -149,8 +151,9 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
   answer_cost_.add(clock_.now_ns() - asked_wall_ns_);
   if (!answer_.tell_lines(link, log_, asked_for_ns_)) return false;
   if (!answer_.take_commands(link) || !answer_.take_kept(link, kept_)) return false;
-  // Unless somebody else commanded since, when the robot is being left: the numbers would not fit any more.
-  if (commands.last_sequence() == asked_sequence_) answer_.send_on(commands, asked_for_ns_);
+  // A late answer whose numbers do not fit any more, since somebody else commanded meanwhile: what it sends counts, if
+  // nobody wants behaviors to stop; its motions go by the transaction that has their number.
+  if (commands.last_sequence() == asked_sequence_ || !stopping_) answer_.send_on(commands, asked_for_ns_);
   ChildAnswer::take_status(link, play_, behaviors_);
   if (asked_order_) orders_.pop_front();
   order_deaths_ = 0;

@@ -60,6 +60,13 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   // What is wrong in it the log will say; throws InputError only on one that is too long.
   void order(const PlayOrder& order) override;
 
+  // Of the behaviors that it was started with; the number of the innermost active state of each.
+  const std::vector<std::string>& names() const noexcept { return names_; }
+  std::uint32_t state(std::size_t behavior) const noexcept {
+    return behaviors_[behavior].state.load(std::memory_order_relaxed);
+  }
+  bool paused() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 2; }
+  bool finished() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 0; }
   bool down() const noexcept { return phase_ == Phase::down; }
   std::uint64_t deaths() const noexcept { return policy_.deaths(); }
   std::uint64_t takeovers() const noexcept { return takeovers_; }
@@ -92,8 +99,10 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   ChildAnswer answer_;
   std::optional<std::vector<std::byte>> kept_{std::in_place};  // empty: it has not ticked yet
   PlayStatus play_;
+  std::vector<std::string> names_;
   std::deque<BehaviorStatus> behaviors_;
   std::deque<std::vector<std::byte>> orders_;
+  bool stopping_ = false;  // the last of them was to stop
   WallClock clock_;
 
   std::int64_t now_ns_ = 0;         // of the engine's clock
