@@ -53,6 +53,7 @@ struct Played {
   }
   Played(const Played&) = delete;
   Played& operator=(const Played&) = delete;
+  void prepare() { behavior->prepare(snapshot); }
   void tick() {
     (void)behavior->tick(snapshot, sender);
     snapshot.time_ns += 10'000'000;
