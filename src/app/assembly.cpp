@@ -22,6 +22,16 @@ std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
   return feet;
 }
 
+// The eyes of a gaze object; it has been made, so its options are there.
+GazeTruth::Eyes eyes_of(const ObjectConfig& object) {
+  GazeTruth::Eyes eyes{.object = object.name, .left = {}, .right = {}};
+  for (const TextEntry& option : object.options) {
+    if (option.key == "left_eye") eyes.left = option.text;
+    if (option.key == "right_eye") eyes.right = option.text;
+  }
+  return eyes;
+}
+
 // The behaviors' names are known once they are loaded.
 void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
   const std::vector<std::string> names = host.names();
@@ -66,6 +76,9 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   exchange_ = std::make_unique<EngineExchange>();
   truth_ =
       std::make_unique<TruthSignals>(*plant_, catalog, feet_of(variant_.plant), feet_settle_s, variant_.plant.world);
+  for (const ObjectConfig& object : robot_.config.objects) {
+    if (object.type.name == "gaze") truth_->watch(catalog, eyes_of(object));
+  }
   host_ = make_host(scenario, robot_.config.safe, catalog, seed, log);
   upkeep_first_ = catalog.signals.size();
   host_->declare_signals(catalog.signals);
