@@ -1,14 +1,15 @@
--- Targets that the head cannot look at, or hardly: behind it, above it, beside it along the eyes' axis, very near. It goes
--- as near as it comes, and ends looking ahead again.
+-- Targets that the head cannot look at, or hardly: under its back, behind it, above it, beside it along the eyes' axis,
+-- very near. It goes as near as it comes, and ends looking ahead again.
 local k = require "kadans"
 
 local P = k.params {
-  rest_s = { 2.0, min = 0.5, max = 60, unit = "s", doc = "time at each target" },
+  rest_s = { 3.0, min = 0.5, max = 60, unit = "s", doc = "time at each target" },
 }
 
 local targets = {
-  { x = -1.0, y = 0.0, z = 0.22, name = "behind" },
+  { x = -0.4, y = 0.0, z = -0.3, name = "under its back" },
   { x = 1.08, y = 0.0, z = 0.22, name = "ahead" },
+  { x = -1.0, y = 0.0, z = 0.22, name = "behind" },
   { x = 0.08, y = 0.0, z = 1.22, name = "above" },
   { x = 0.08, y = 1.0, z = 0.22, name = "beside" },
   { x = 0.2, y = 0.0, z = 0.22, name = "near" },

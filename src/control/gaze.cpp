@@ -19,6 +19,9 @@ constexpr double rates_hold_s = 0.1;
 constexpr double missed_rad = 0.015;     // from which the target counts as missed ...
 constexpr double missed_progress = 0.2;  // ... when the eyes come nearer with less than this share of the gain ...
 constexpr std::int64_t missed_ns = 100'000'000;  // ... for so long
+constexpr double same_target_m = 0.05;
+constexpr double back_per_s = 6;  // how fast the joints go back to the middle
+constexpr double back_rad = 0.1;  // where they are near enough to it
 constexpr const char* direction_names[] = {"x", "y", "z"};
 
 std::size_t link_of(const ObjectSetup& setup, const std::string& option, const char* meaning) {
@@ -212,7 +215,7 @@ void Gaze::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
 // Within the joint's limits, and near where it is; a reference that is already beyond comes no farther.
 void Gaze::integrate(Part& part, double velocity_rad_s, double position_rad, double dt_s) noexcept {
   JointState& s = part.state;
-  const double fastest = part.axis.velocity_max_rad_s, lead = part.config.lead_max_rad;
+  const double fastest = part.law.velocity_max_rad_s, lead = part.config.lead_max_rad;
   s.velocity_rad_s = std::clamp(velocity_rad_s, -fastest, fastest);
   const double lowest = std::max(part.axis.lower_rad, position_rad - lead);
   const double highest = std::min(part.axis.upper_rad, position_rad + lead);
@@ -227,13 +230,40 @@ void Gaze::update(const Snapshot& snapshot) {
   solver_.settings() = aim.settings;
   for (std::size_t i = 0; i < solver_.size(); ++i) solver_.law(i) = aim.laws[i];
   if (aim.activation == 0 || !solver_.solve(seen_rad_, aim.target, draft_.solution)) return;
-  const GazeSolver::Solution& s = draft_.solution;
-  const bool stalled = std::max(s.left_rad, s.right_rad) > missed_rad && s.progress < missed_progress;
-  if (!stalled) stalled_since_ns_ = snapshot.time_ns;
-  draft_.unreachable = stalled && snapshot.time_ns - stalled_since_ns_ >= missed_ns;
+  draft_.unreachable = stalled(snapshot.time_ns, aim.target.point_m);
+  if (retry_.going_back) go_back();
   draft_.activation = aim.activation;
   draft_.time_ns = snapshot.time_ns;
   rates_.publish(draft_);
+}
+
+// Whether the eyes come no nearer. The first time for a target the joints shall go back to the middle.
+bool Gaze::stalled(std::int64_t time_ns, const Vec3& target_m) noexcept {
+  const GazeSolver::Solution& s = draft_.solution;
+  double moved_m = 0;
+  for (std::size_t i = 0; i < 3; ++i) moved_m = std::hypot(moved_m, target_m[i] - retry_.target_m[i]);
+  if (moved_m > same_target_m) retry_.tried = retry_.going_back = false;
+  const bool misses = std::max(s.left_rad, s.right_rad) > missed_rad && s.progress < missed_progress;
+  if (!misses || retry_.going_back) retry_.moved_ns = time_ns;
+  if (time_ns - retry_.moved_ns >= missed_ns && !retry_.tried) {
+    retry_.tried = retry_.going_back = true;
+    retry_.target_m = target_m;
+  }
+  return retry_.going_back || time_ns - retry_.moved_ns >= missed_ns;
+}
+
+// All joints towards their middle, as fast as the slowest may.
+void Gaze::go_back() noexcept {
+  double share = 1, farthest_rad = 0;
+  for (std::size_t i = 0; i < solver_.size(); ++i) {
+    const double position_rad = seen_rad_[solver_.joint(i)];
+    const double velocity_rad_s = draft_.solution.velocity_rad_s[i] = -back_per_s * position_rad;
+    farthest_rad = std::max(farthest_rad, std::abs(position_rad));
+    if (std::abs(velocity_rad_s) * share > solver_.law(i).velocity_max_rad_s)
+      share = solver_.law(i).velocity_max_rad_s / std::abs(velocity_rad_s);
+  }
+  for (std::size_t i = 0; i < solver_.size(); ++i) draft_.solution.velocity_rad_s[i] *= share;
+  if (farthest_rad < back_rad) retry_.going_back = false;
 }
 
 void Gaze::set_point(std::uint32_t channel, double value, double duration_s) noexcept {

@@ -99,11 +99,18 @@ void GazeSolver::see(const Target& target) noexcept {
       write(jacobian_.col(static_cast<Eigen::Index>(i)), rotate_inverse(pose.orientation, moved), -1);
     }
   }
-  // Behind the head both eyes go round on the same side.
-  constexpr double behind_rad = std::numbers::pi / 2;
-  if (std::min(std::abs(error_[1]), std::abs(error_[3])) < behind_rad || error_[1] * error_[3] > 0) return;
-  const double side = error_[1] + error_[3] < 0 ? -1 : 1;
-  for (const Eigen::Index row : {1, 3}) error_[row] = side * std::abs(error_[row]);
+  go_round();
+}
+
+// To a target behind the head both eyes go on one side: that which is shorter for the eye that is nearer to it, else
+// they would each pull the neck to the other's side, and it would stand still.
+void GazeSolver::go_round() noexcept {
+  constexpr double pi = std::numbers::pi;
+  double& left = error_[1];
+  double& right = error_[3];
+  if (std::min(std::abs(left), std::abs(right)) < pi / 2 || left * right > 0) return;
+  double& farther = std::abs(left) > std::abs(right) ? left : right;
+  farther += farther < 0 ? 2 * pi : -2 * pi;
 }
 
 double GazeSolver::damping2() const noexcept {

@@ -12,13 +12,16 @@
 // or a neck that lags behind its slow motors, moves the gaze little. What the base does is not seen: the target moves
 // with it. Nothing here carries the neck's weight: compose with a gravity_compensation ("sum").
 //
+// The way downhill may end at a limit from where the joints are, although from the middle it would not: when the eyes
+// come no nearer, the head goes back to its middle once and tries again, then stays as near as it comes.
+//
 // Options     head: the link that carries the eyes; left_eye, right_eye: links that look along their x axes. Required.
 // Set-points  x_m, y_m, z_m: the target in the base frame, reached by a minimum-jerk motion in the time given; 0 is a
 //             jump, so the eyes make a saccade. x_m_s, y_m_s, z_m_s: the velocity with which it goes on from there; for
 //             0.25 s, then the target stands unless told again.
 // Parameters  those of GazeSolver: gain_per_s, damping, damping_singular, null_per_s; vor_gain; a JointConfig a joint.
 // Signals     the target as it is now; left_error_rad, right_error_rad as the high level saw them; unreachable: the
-//             eyes are as near as they come; scaled, at_limit: speed, position limits hold back; a JointState a joint.
+//             eyes come no nearer; scaled, at_limit: speed, position limits hold back; a JointState a joint.
 // Start       from the drives' last set-points, or from the measured state with a fading torque; the target is a point
 //             1 m ahead of the eyes.
 // Not finite  a joint that is not measured gets an actuation that is not finite, which the safety layer stops; without
@@ -99,12 +102,19 @@ class Gaze final : public ControlObject {
   void look_ahead(const JointStates& joints) noexcept;
   void move_target(double dt_s) noexcept;
   static void integrate(Part& part, double velocity_rad_s, double position_rad, double dt_s) noexcept;
+  bool stalled(std::int64_t time_ns, const Vec3& target_m) noexcept;
+  void go_back() noexcept;
   double reflex_rad_s(std::size_t i, const Rates& rates, const JointStates& joints) const noexcept;
 
-  GazeSolver solver_;                  // behavior thread
-  std::vector<double> seen_rad_;       // behavior thread
-  Rates draft_;                        // behavior thread
-  std::int64_t stalled_since_ns_ = 0;  // behavior thread
+  GazeSolver solver_;             // behavior thread
+  std::vector<double> seen_rad_;  // behavior thread
+  Rates draft_;                   // behavior thread
+  struct Retry {
+    std::int64_t moved_ns = 0;  // when the eyes last came nearer, or were there
+    bool tried = false, going_back = false;
+    Vec3 target_m{};  // for which it was tried
+  };
+  Retry retry_;  // behavior thread
   Latest<Rates> rates_;
   Latest<Aim> aim_;
   GazeSolver start_solver_;  // control thread, as all below

@@ -71,6 +71,7 @@ class GazeSolver {
   GazeSolver(const RobotModel& model, const GazeLinks& links, const std::vector<std::size_t>& joints);
 
   std::size_t size() const noexcept { return joints_.size(); }
+  std::size_t joint(std::size_t i) const noexcept { return joints_[i].joint; }  // in the model
   bool of_eye(std::size_t i) const noexcept { return joints_[i].of_eye; }
   JointLaw& law(std::size_t i) noexcept { return joints_[i].law; }
   Settings& settings() noexcept { return settings_; }
@@ -96,6 +97,7 @@ class GazeSolver {
   };
   Bounds bounds(const Part& part, double position_rad) const noexcept;
   void see(const Target& target) noexcept;
+  void go_round() noexcept;
   double damping2() const noexcept;
   void lead(const std::vector<double>& position_rad, double damping2, Solution& solution) const noexcept;
   void centre(const std::vector<double>& position_rad, double damping2, Solution& solution) const noexcept;
