@@ -31,6 +31,19 @@ install(FILES LICENSE third_party_notes.md DESTINATION "${CMAKE_INSTALL_DOCDIR}"
 
 if(TARGET kadans)
   install(TARGETS kadans)
+  # What shells need to complete its command line, by the program itself.
+  foreach(place IN ITEMS "bash|bash-completion/completions/kadans" "zsh|zsh/site-functions/_kadans")
+    string(REPLACE "|" ";" place "${place}")
+    list(GET place 0 shell)
+    list(GET place 1 file)
+    install(CODE "
+      execute_process(COMMAND \"$<TARGET_FILE:kadans>\" completion ${shell} OUTPUT_VARIABLE script RESULT_VARIABLE failed)
+      if(failed)
+        message(WARNING \"no completion for ${shell}: \${failed}\")
+      else()
+        file(WRITE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/${file}\" \"\${script}\")
+      endif()")
+  endforeach()
   if(TARGET kadans-tune)
     install(TARGETS kadans-tune)
   endif()

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ctl/ctl_service.h"
 #include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -27,6 +28,7 @@ struct SimOptions : RunRequest {
   std::vector<std::string> push;         // with it
   std::vector<std::string> branches;     // "hard: push torso=0,3,0"
   std::optional<double> hash_every_s;
+  CtlPlace ctl;  // always with realtime, else where a folder is named
 };
 void add_sim(CLI::App& app, SimOptions& options);
 int run_sim(const SimOptions& options);
@@ -68,8 +70,15 @@ struct RunOptions {
   int cpu = -1;        // of the control thread; -1: an isolated one, else the last
   bool verbose = false;
   bool json = false;
+  std::string behaviors = "thread";    // where they play; or "process"
+  double behaviors_patience_s = 0;     // with a process that does not answer; 0: the default
+  std::uint32_t behaviors_deaths = 0;  // in a row, before it stays down; 0: the default
+  double behaviors_memory_MB = 256;    // more than it has when it begins to play
+  CtlPlace ctl;  // on virtual time only where a folder is named
 };
 int run_live(const RunOptions& options);
+// What run_live starts for behaviors in a process of their own: robot, play and seed count.
+int run_behavior_process(const RunOptions& options);
 
 struct JitterOptions {
   double seconds = 60;  // of our own samples; cyclictest takes as long again

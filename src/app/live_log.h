@@ -8,24 +8,23 @@ namespace kadans {
 
 class LiveLog final : public BehaviorLog {
  public:
-  // Before the loop.
-  void record_to(BehaviorLog* record) noexcept { record_ = record; }
+  explicit LiveLog(BehaviorLog& record) noexcept : record_(record) {}
 
   // Behavior thread.
   void transition(const Transition& transition) override {
     told_.transition(transition);
-    if (record_ != nullptr) record_->transition(transition);
+    record_.transition(transition);
   }
   void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
     told_.message(time_ns, severity, behavior, text);
-    if (record_ != nullptr) record_->message(time_ns, severity, behavior, text);
+    record_.message(time_ns, severity, behavior, text);
   }
 
   EventLog& told() noexcept { return told_; }  // supervisor: pops
 
  private:
   EventLog told_;
-  BehaviorLog* record_ = nullptr;
+  BehaviorLog& record_;
 };
 
 }  // namespace kadans

@@ -6,6 +6,7 @@
 
 #include "behavior_command.h"
 #include "commands.h"
+#include "ctl/ctl_command.h"
 #include "kadans/signal/nearest_name.h"
 #include "repl_command.h"
 #include "replay_command.h"
@@ -31,6 +32,7 @@ constexpr const char* examples =
     "change\n"
     "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
     "  kadans run config/tulip/robot.json --play squat    drive the robot, or its model, on the wall clock\n"
+    "  kadans ctl status                                  how a running robot is; 'kadans ctl --help' lists the rest\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
     "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
     "\n"
@@ -93,8 +95,32 @@ void add_run(CLI::App& app, RunOptions& options) {
   run->add_option("--cpu", options.cpu, "CPU of the control thread (default: an isolated one, else the last)")
       ->type_name("N")
       ->check(CLI::Range(0, 1023));
+  run->add_option("--behaviors", options.behaviors,
+                  "Where behaviors play: in a thread (default), or in a process of their own that may die")
+      ->check(CLI::IsMember({"thread", "process"}));
+  run->add_option("--behaviors-patience", options.behaviors_patience_s,
+                  "How long their process may be silent before it is killed (default: 0.3; on virtual time 10)")
+      ->type_name("S")
+      ->check(CLI::Range(0.01, 1000.0));
+  run->add_option("--behaviors-deaths", options.behaviors_deaths,
+                  "After how many deaths in a row their process stays down (default: 8)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1'000'000'000));
+  run->add_option("--behaviors-memory", options.behaviors_memory_MB,
+                  "What their process may take while it plays, above what it has then (default: 256)")
+      ->type_name("MB")
+      ->check(CLI::Range(1.0, 1e6));
+  add_ctl_place(*run, options.ctl);
   run->add_flag("--json", options.json, "End with one JSON object on a line of its own");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
+}
+
+// Not for people: `run` starts it.
+void add_behavior_process(CLI::App& app, RunOptions& options) {
+  CLI::App* process = app.add_subcommand("behavior-process", "")->group("");
+  process->add_option("robot", options.robot)->required();
+  process->add_option("--play", options.play);
+  process->add_option("--seed", options.seed);
 }
 
 void add_jitter(CLI::App& app, JitterOptions& options) {
@@ -135,15 +161,18 @@ void add_new(CLI::App& app, NewControlObjectOptions& options) {
   object->add_flag("--plugin", options.plugin, "As a plug-in instead of a program of its own");
 }
 
-// "kadans smi": the word that was meant.
-std::string hint(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return {};
+// "kadans smi", "kadans ctl stauts": the word that was meant.
+std::string hint(const CLI::App& app, int argc, char** argv, const std::string& before = {}) {
+  int at = 1;
+  while (at < argc && argv[at][0] == '-') at += std::string_view(argv[at]) == "--socket" ? 2 : 1;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_name() == argv[1]) return {};
+    if (at < argc && command->get_name() == argv[at])
+      return hint(*command, argc - at, argv + at, before + command->get_name() + " ");
     names.push_back(command->get_name());
   }
-  return "unknown command '" + std::string(argv[1]) + "'" + did_you_mean(argv[1], names);
+  if (at >= argc || names.empty()) return {};
+  return "unknown command '" + before + argv[at] + "'" + did_you_mean(argv[at], names);
 }
 
 int run(int argc, char** argv) {
@@ -175,8 +204,14 @@ int run(int argc, char** argv) {
   add_params(app, params);
   RunOptions live;
   add_run(app, live);
+  RunOptions played;
+  add_behavior_process(app, played);
   JitterOptions jitter;
   add_jitter(app, jitter);
+  CtlOptions ctl;
+  add_ctl(app, ctl);
+  CompletionOptions completion;
+  add_completion(app, completion);
   DoctorOptions doctor;
   add_doctor(app, doctor);
   NewControlObjectOptions new_object;
@@ -192,7 +227,10 @@ int run(int argc, char** argv) {
   }
   if (app.got_subcommand("test")) return run_test(test);
   if (app.got_subcommand("run")) return run_live(live);
+  if (app.got_subcommand("behavior-process")) return run_behavior_process(played);
   if (app.got_subcommand("jitter")) return run_jitter(jitter);
+  if (app.got_subcommand("ctl")) return run_ctl(app, ctl);
+  if (app.got_subcommand("completion")) return run_completion(app, completion);
   if (app.got_subcommand("doctor")) return run_doctor(doctor);
   if (app.got_subcommand("replay")) return run_replay(replay);
   if (app.got_subcommand("sweep")) return run_sweep(sweep);

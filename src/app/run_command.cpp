@@ -10,6 +10,7 @@
 
 #include <unistd.h>
 
+#include "behavior_process.h"
 #include "commands.h"
 #include "kadans/app/assembly.h"
 #include "kadans/config/project_root.h"
@@ -17,6 +18,9 @@
 #include "kadans/realtime/memory_lock.h"
 #include "kadans/realtime/rights.h"
 #include "kadans/realtime/service_notifier.h"
+#include "kadans/remote/behavior_side.h"
+#include "kadans/remote/control_side.h"
+#include "kadans/remote/record_side.h"
 #include "leaving.h"
 #include "live_log.h"
 #include "live_report.h"
@@ -31,14 +35,25 @@ constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
 constexpr std::size_t heap_reserve_bytes = std::size_t{2} << 20U;
 
-ScenarioConfig scenario_of(const RunOptions& options) {
-  ScenarioConfig scenario;
-  scenario.file = scenario.robot = options.robot;
-  scenario.name = "run";
-  scenario.plant = options.plant == "ideal" ? PlantKind::ideal : PlantKind::bullet;
-  scenario.seed = options.seed.value_or(1);
-  if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
-  return scenario;
+Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const RobotConfig& robot) {
+  namespace fs = std::filesystem;
+  const fs::path record(options.record);
+  return {.name = robot.name,
+          .mode = options.virtual_time ? "run on virtual time" : "run",
+          .version = version,
+          .configuration = fs::absolute(robot.file).lexically_normal(),
+          .root = project_root(scenario.file),
+          .folders = folders_of(scenario),
+          .records = fs::absolute(record.has_parent_path() ? record.parent_path() : fs::current_path()),
+          .control_period_s = robot.engine.control_period_s,
+          .behavior_period_s = robot.engine.behavior_period_s};
+}
+
+// Many runs on virtual time may go on at once, so there nobody is found without having been asked to be.
+CtlPlace place_of(const RunOptions& options) {
+  CtlPlace place = options.ctl;
+  place.wanted = place.wanted && (!options.virtual_time || !place.folder.empty());
+  return place;
 }
 
 // False when the run must not go on without.
@@ -84,18 +99,6 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-class RecordTask final : public Task {
- public:
-  explicit RecordTask(Recorder& recorder) : recorder_(recorder) {}
-  bool beat(const Beat&) override {
-    (void)recorder_.drain();  // a disk that fails is told at the end; the robot goes on
-    return true;
-  }
-
- private:
-  Recorder& recorder_;
-};
-
 // The truth of the model, for the record: on the control thread, whose row it becomes part of, after the tick.
 class TruthTask final : public BesideTick {
  public:
@@ -113,34 +116,39 @@ class LiveRun {
  public:
   explicit LiveRun(const RunOptions& options)
       : options_(options),
-        scenario_(scenario_of(options)),
+        scenario_(live_scenario(options)),
         link_(std::make_unique<PlantExchange>()),
-        assembly_(scenario_, scenario_.seed, log_, link_.get()),
+        process_(options.behaviors == "process" ? start_behavior_process(options, log_) : nullptr),
+        assembly_(scenario_, scenario_.seed, log_, link_.get(), process_.get()),
         parts_(assembly_.parts()),
         truth_(parts_),
         plant_(*link_, assembly_.model(), assembly_.robot().engine.control_period_ns()),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
-                 assembly_.host(), parts_.behaviors, parts_.control.exchange()) {}
+                 assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
   int run() {
-    start_record();
+    assembly_.record_to(&control_side_);
+    if (!options_.record.empty()) record_side_.start(options_.record);
+    const bool may_record = !options_.record.empty() || place_of(options_).wanted;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) (void)lock_memory(heap_reserve_bytes);  // without the right, which has been told
-    LiveThreads threads(timing, {control_, behaviors_, plant_, recorder_ ? record_.get() : nullptr});
+    LiveThreads threads(timing, {control_, behaviors_, plant_, may_record ? &record_side_ : nullptr});
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     threads.start();
+    ctl_.start();
     notifier_.ready("drives " + assembly_.robot().name);
     const std::string ended = watch(threads);
     notifier_.stopping();
     leave(threads);
+    ctl_.stop();
     threads.stop();
     ActuationFrame off;
     off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
     assembly_.model().write(off);
     tell(threads.supervisor().now_ns());
-    if (recorder_ && !recorder_->close()) print_error("the record is not complete: " + recorder_->error());
-    LiveResult result{threads,         control_,   parts_.behaviors, parts_.control, plant_,
-                      recorder_.get(), left_at_s_, start_ms,         ended,          failed_};
+    if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
+    LiveResult result{threads, control_, parts_.behaviors, parts_.control, plant_, record_side_.recorder(),
+                      process_.get(), left_at_s_, start_ms, ended, failed_};
     result.failed = result.failed || log_.has_errors();
     std::fputs(live_text(result).c_str(), stdout);
     if (options_.json) std::puts(live_json(result).c_str());
@@ -148,17 +156,6 @@ class LiveRun {
   }
 
  private:
-  void start_record() {
-    if (options_.record.empty()) return;
-    recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
-    if (!recorder_->open(options_.record)) throw InputError({.message = recorder_->error()});
-    (void)recorder_->describe(
-        "run", {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}});
-    live_log_.record_to(&recorder_->events());
-    assembly_.record_to(recorder_.get());
-    record_ = std::make_unique<RecordTask>(*recorder_);
-  }
-
   // Until somebody or something ends the run; says what.
   std::string watch(LiveThreads& threads) {
     Wait& wait = threads.supervisor();
@@ -208,6 +205,7 @@ class LiveRun {
   void tell(std::int64_t time_ns) {
     Event event;
     while (live_log_.told().pop(time_ns, event)) {
+      instance_.tell(event);
       const bool message = event.kind == Event::Kind::message;
       if (!options_.verbose && (!message || event.severity != BehaviorLog::Severity::error)) continue;
       const Transition& t = event.transition;
@@ -217,29 +215,49 @@ class LiveRun {
     }
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) {
+      instance_.tell(fault);
       if (fault.code == FaultCode::tick_overrun) continue;
-      const auto& joints = assembly_.robot().model.joints;
-      std::fprintf(stderr, "%9.2f s  fault %s%s%s: %g, limit %g\n", 1e-9 * static_cast<double>(time_ns),
-                   name(fault.code), fault.joint < joints.size() ? " at " : "",
-                   fault.joint < joints.size() ? joints[fault.joint].name.c_str() : "", fault.value, fault.limit);
+      std::fprintf(stderr, "%9.2f s  fault %s\n", 1e-9 * static_cast<double>(time_ns),
+                   fault_text(fault, assembly_.robot().model).c_str());
     }
+    publish();
+  }
+
+  void publish() {
+    const Snapshot& snapshot = parts_.control.exchange().snapshot.read(1);
+    instance_.publish({.tick = snapshot.tick,
+                       .time_ns = snapshot.time_ns,
+                       .safety = snapshot.status.safety,
+                       .control_sets = snapshot.control_sets,
+                       .commands_refused = snapshot.commands_refused,
+                       .record = record_side_.status()});
   }
 
   const RunOptions& options_;
   ScenarioConfig scenario_;
   ServiceNotifier notifier_{environment("NOTIFY_SOCKET")};
-  LiveLog live_log_;
-  RunLog log_{&live_log_, kept_lines};
+  RecordLog record_log_;
+  LiveLog live_log_{record_log_};
+  EchoLog echo_{&live_log_};
+  RunLog log_{&echo_, kept_lines};
   std::unique_ptr<PlantExchange> link_;
+  std::unique_ptr<ProcessHost> process_;  // of the behaviors
   Assembly assembly_;
   RunParts parts_;
   TruthTask truth_;
   PlantTask plant_;
   Leaving leaving_;
+  Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog()};
+  ControlSide control_side_{instance_, parts_.control.safety()};
+  RecordSide record_side_{instance_,
+                          control_side_,
+                          record_log_,
+                          {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}}};
+  BehaviorSide behavior_side_{{instance_, assembly_.host(), parts_.behaviors, parts_.control.exchange(), echo_, log_},
+                              &leaving_};
+  CtlService ctl_{place_of(options_), instance_};
   ControlTask control_{parts_.control, &truth_};
-  BehaviorTask behaviors_{parts_.behaviors, &leaving_};
-  std::unique_ptr<Recorder> recorder_;
-  std::unique_ptr<RecordTask> record_;
+  BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;
   bool failed_ = false;
 };

@@ -92,6 +92,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
   sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e6));
+  add_ctl_place(*sim, options.ctl);
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");
   sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
 }

@@ -81,6 +81,12 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
   } else {
     inputs_ = inputs_for(request_, scenario_, assembly_, seed_, duration_s_, options_.watch);
   }
+  const bool reachable = options_.ctl.wanted && (options_.realtime || !options_.ctl.folder.empty());
+  if (reachable && !continuation_) {
+    inputs_.run["ctl"] = "yes";
+    remote_ = std::make_unique<SimRemote>(options_.ctl, scenario_, assembly_,
+                                          SimRemote::Logs{told_, echo_, record_log_, log_});
+  }
   if (options_.hash_every_s) trail_ = std::make_unique<HashTrail>(*options_.hash_every_s);
   if (!options_.checkpoints.empty())
     checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_));
@@ -95,6 +101,11 @@ int SimRun::run() {
   if (options_.realtime) observers.push_back(&pace);
   if (trail_) observers.push_back(trail_.get());
   if (checkpoints_) observers.push_back(checkpoints_.get());
+  if (remote_) {
+    remote_->begin(recorder_.get(), record_);
+    observers.push_back(remote_.get());
+    if (!recorder_) late_log_.set(&record_log_);
+  }
   if (options_.watch) {
     assembly_.watch_behaviors();
     late_log_.show();
@@ -190,7 +201,7 @@ void SimRun::start_record() {
   (void)recorder_->describe_run(inputs_);
   (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
   late_log_.set(&recorder_->events());
-  assembly_.record_to(recorder_.get());
+  if (!remote_) assembly_.record_to(recorder_.get());
 }
 
 void SimRun::finish_record(const RunResult& result) {

@@ -8,6 +8,7 @@
 
 #include "checkpoint.h"
 #include "commands.h"
+#include "ctl/sim_remote.h"
 #include "hash_trail.h"
 #include "kadans/app/assembly.h"
 #include "kadans/scenario/report.h"
@@ -67,7 +68,9 @@ class SimRun final : public RunObserver {
   std::uint64_t seed_;
   double duration_s_;
   LateLog late_log_;
-  RunLog log_{&late_log_};
+  InstanceLog told_{&late_log_};
+  EchoLog echo_{&told_};
+  RunLog log_{&echo_};
   Assembly assembly_;
   Checks checks_;
   Metrics metrics_;
@@ -86,6 +89,8 @@ class SimRun final : public RunObserver {
   bool reached_ = false, parted_ = false;
   bool split_ = false;  // this process has split into the branches and is done
   ProcessSplit processes_;
+  RecordLog record_log_;
+  std::unique_ptr<SimRemote> remote_;
   HashTrail way_{checkpoint_trail_s};
 };
 

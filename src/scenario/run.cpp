@@ -61,7 +61,10 @@ class Run {
     const RunMark mark{parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()};
     for (RunObserver* observer : observers_) observer->between_ticks(mark);
     Fault fault;
-    while (parts_.control.safety().log().try_pop(fault)) result_.faults.push_back(fault);
+    while (parts_.control.safety().log().try_pop(fault)) {
+      result_.faults.push_back(fault);
+      for (RunObserver* observer : observers_) observer->fault(fault);
+    }
   }
 
   const RunParts& parts_;

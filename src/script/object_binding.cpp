@@ -35,12 +35,12 @@ ParameterId read_parameter(lua_State* state, int index, const ObjectInfo& object
   return 0;
 }
 
-// object:parameter(name) -> number: its value now.
+// object:parameter(name) -> number: what it was set to last.
 int parameter(lua_State* state) {
   std::uint32_t number = 0;
   const ObjectInfo& object = check_object(state, number);
   const ParameterId id = read_parameter(state, 2, object);
-  return lua_pushnumber(state, bindings_of(state).catalog->parameters.get(id)), 1;
+  return lua_pushnumber(state, bindings_of(state).catalog->parameters.newest(id)), 1;
 }
 
 // object:set_parameter(name, value) -> true | nil, "queue_full".

@@ -27,13 +27,15 @@ ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_
     throw std::invalid_argument("parameter " + parameter.name + " is declared twice");
   }
   *value = parameter.initial;
-  entries_.push_back({std::move(parameter), value, owner});
+  const OneWriter<double> newest(parameter.initial);
+  entries_.push_back({std::move(parameter), value, owner, newest});
   return id;
 }
 
 bool ParameterTable::set(ParameterId id, double value) noexcept {
   if (!accepts(id, value)) return false;
   *entries_[id].value = value;
+  entries_[id].newest.set(value);
   return true;
 }
 

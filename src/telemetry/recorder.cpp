@@ -17,7 +17,8 @@ Recorder::Recorder(const SignalTable& signals, const RecorderSettings& settings)
     : signal_count_(signals.size()),
       precision_(settings.precision),
       ring_(std::make_unique<Rows>()),
-      file_(settings.file) {
+      file_settings_(settings.file),
+      file_(std::make_unique<McapWriter>(settings.file)) {
   if (head_size + signal_count_ > Rows::capacity()) throw std::invalid_argument("too many signals for the record");
   choose_topics(signals, settings);
 }
@@ -41,33 +42,47 @@ void Recorder::choose_topics(const SignalTable& signals, const RecorderSettings&
 }
 
 bool Recorder::open(const std::string& path) {
-  if (!file_.open(path)) return false;
+  if (opened_) start_anew();
+  opened_ = true;
+  if (!file_->open(path)) return false;
   for (Topic& topic : topics_) {
-    const std::uint16_t schema = file_.add_schema(topic.signals.type, "ros2msg", topic.signals.definition);
-    topic.channel =
-        file_.add_channel(topic.signals.topic, "cdr", schema,
-                          {{"signals", topic.signals.description}, {"every_ticks", std::to_string(topic.every_ticks)}});
+    const std::uint16_t schema = file_->add_schema(topic.signals.type, "ros2msg", topic.signals.definition);
+    topic.channel = file_->add_channel(
+        topic.signals.topic, "cdr", schema,
+        {{"signals", topic.signals.description}, {"every_ticks", std::to_string(topic.every_ticks)}});
   }
-  log_channel_ = file_.add_channel("/log", "json", file_.add_schema("foxglove.Log", "jsonschema", log_schema));
-  transition_channel_ =
-      file_.add_channel("/transitions", "json", file_.add_schema("kadans.Transition", "jsonschema", transition_schema));
+  log_channel_ = file_->add_channel("/log", "json", file_->add_schema("foxglove.Log", "jsonschema", log_schema));
+  transition_channel_ = file_->add_channel("/transitions", "json",
+                                           file_->add_schema("kadans.Transition", "jsonschema", transition_schema));
   return true;
 }
 
-bool Recorder::describe_run(const RunInputs& inputs) { return write_inputs(file_, inputs); }
+// What came since the last file was closed belongs to none.
+void Recorder::start_anew() {
+  file_ = std::make_unique<McapWriter>(file_settings_);
+  ring_->drop(ring_->size());
+  while (events_.pop(end_of_time_ns, event_)) {
+  }
+  rows_ = lost_ = 0;
+  last_time_ns_ = 0;
+  dropped_.store(0, std::memory_order_relaxed);
+  reported_drops_ = dropped_events();
+}
 
-bool Recorder::describe(const std::string& name, const TextMap& facts) { return file_.add_metadata(name, facts); }
+bool Recorder::describe_run(const RunInputs& inputs) { return write_inputs(*file_, inputs); }
+
+bool Recorder::describe(const std::string& name, const TextMap& facts) { return file_->add_metadata(name, facts); }
 
 bool Recorder::describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns) {
-  if (!file_.attach(name + ".urdf", "application/xml", time_ns, bytes_of(urdf))) return false;
-  const std::uint16_t channel = file_.add_channel("/robot_description", "cdr",
-                                                  file_.add_schema("std_msgs/msg/String", "ros2msg", "string data\n"));
+  if (!file_->attach(name + ".urdf", "application/xml", time_ns, bytes_of(urdf))) return false;
+  const std::uint16_t channel = file_->add_channel(
+      "/robot_description", "cdr", file_->add_schema("std_msgs/msg/String", "ros2msg", "string data\n"));
   ByteWriter payload;  // the CDR head, then the string with its closing zero
   payload.put(std::uint32_t{0x0100});
   payload.put(static_cast<std::uint32_t>(urdf.size() + 1));
   payload.put(bytes_of(urdf));
   payload.put(std::uint8_t{0});
-  return file_.write(channel, 0, time_ns, payload.bytes());
+  return file_->write(channel, 0, time_ns, payload.bytes());
 }
 
 void Recorder::record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept {
@@ -103,7 +118,7 @@ void Recorder::write_row(std::uint64_t tick, std::int64_t time_ns) {
                            [this](SignalId id) { return ring_->peek(head_size + id); });
     payload_.resize(cdr_bytes(values_.size(), precision_));
     write_cdr(payload_, values_, precision_);
-    written = file_.write(topic.channel, static_cast<std::uint32_t>(tick), time_ns, payload_) && written;
+    written = file_->write(topic.channel, static_cast<std::uint32_t>(tick), time_ns, payload_) && written;
   }
   ++rows_;
   if (!written) ++lost_;
@@ -118,7 +133,7 @@ void Recorder::write_event(const Event& event) {
   const std::uint16_t channel = event.kind == Event::Kind::transition ? transition_channel_ : log_channel_;
   const std::string json = json_of(event);
   // A file that failed is told by error(); there is nothing else to do about it here.
-  (void)file_.write(channel, 0, event.transition.time_ns, bytes_of(json));
+  (void)file_->write(channel, 0, event.transition.time_ns, bytes_of(json));
 }
 
 void Recorder::report_drops() {
@@ -136,12 +151,12 @@ void Recorder::report_drops() {
 
 bool Recorder::close() {
   (void)drain();
-  if (file_.is_open() && error().empty()) {
-    (void)file_.add_metadata("recorder", {{"rows", std::to_string(rows_)},
-                                          {"dropped_rows", std::to_string(dropped())},
-                                          {"dropped_events", std::to_string(dropped_events())}});
+  if (file_->is_open() && error().empty()) {
+    (void)file_->add_metadata("recorder", {{"rows", std::to_string(rows_)},
+                                           {"dropped_rows", std::to_string(dropped())},
+                                           {"dropped_events", std::to_string(dropped_events())}});
   }
-  return file_.close();
+  return file_->close();
 }
 
 }  // namespace kadans

@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 Outcome run(const std::string& arguments, const fs::path& where) {
   const fs::path out = where / "stdout.txt", err = where / "stderr.txt";
   const std::string command = "cd '" + where.string() +
-                              "' && XDG_STATE_HOME=\"$PWD/state\" '" KADANS_BINARY_DIR "/kadans' </dev/null " +
+                              "' && XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/session\" '" KADANS_BINARY_DIR
+                              "/kadans' </dev/null " +
                               arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
   const int status = std::system(command.c_str());  // NOLINT: the shell is the point
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

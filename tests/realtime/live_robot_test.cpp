@@ -29,6 +29,27 @@ TEST_CASE("Engines and model on three threads reach the set-points that a behavi
   CHECK(robot.plant_task.lost_periods() == 0);
 }
 
+TEST_CASE("The behavior thread sees parameters while the control thread sets them") {
+  LiveRobot robot;
+  const ParameterId kp = robot.catalog.parameters.find("posture.hip.kp_Nm_per_rad").value();
+  CommandSender& sender = robot.behaviors.sender();
+  double last = 40;
+  bool in_order = true;
+  robot.script.at = [&](std::int64_t time_ns) {
+    const double now = robot.catalog.parameters.newest(kp);
+    in_order = in_order && (now == last || now == last + 1);
+    last = now;
+    sender.begin(time_ns);
+    (void)sender.add({.kind = CommandKind::set_parameter, .index = kp, .value = now + 1});
+    (void)sender.commit();
+  };
+  robot.start();
+  (void)robot.run_until(500);
+  robot.stop();
+  CHECK(in_order);
+  CHECK(last >= 80);
+}
+
 TEST_CASE("A behavior thread that dies leaves the robot held, then damped, then off") {
   LiveRobot robot;
   robot.script.at = [](std::int64_t time_ns) {

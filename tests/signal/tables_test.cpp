@@ -36,6 +36,18 @@ TEST_CASE("a parameter sets its owner's variable to the initial value when it is
   CHECK(table.info(id).unit == "Nm/rad");
 }
 
+TEST_CASE("what other threads see of a parameter is what was set last, not what its owner made of it") {
+  ParameterTable table;
+  double kp = -1;
+  const ParameterId id = table.add(gain("posture.kp"), &kp);
+  CHECK(table.newest(id) == 50);
+  CHECK(table.set(id, 60));
+  CHECK(table.newest(id) == 60);
+  CHECK_FALSE(table.set(id, 201));
+  kp = 70;
+  CHECK(table.newest(id) == 60);
+}
+
 TEST_CASE("a parameter takes every value of its range, ends included, and nothing else") {
   ParameterTable table;
   double kp = 0;

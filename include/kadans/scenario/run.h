@@ -40,6 +40,8 @@ class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void tick(double time_s, std::span<const double> row) = 0;
+  // What the safety layer found in a tick.
+  virtual void fault(const Fault& fault) { (void)fault; }
   // After each tick and its step of the plant; what it changes holds from the next tick on.
   virtual void between_ticks(const RunMark& mark) { (void)mark; }
   virtual bool stop_asked() const { return false; }

@@ -1,5 +1,6 @@
 // The parameter table: every tunable of the control side, declared once. Names are for people, configuration and
-// scripts; the tick addresses parameters by number. The value itself lives in its owner, a control object or a filter.
+// scripts; the tick addresses parameters by number. The value itself lives in its owner, a control object or a filter,
+// where the control thread alone may touch it; the table keeps a copy of what was set last for all other threads.
 #pragma once
 
 #include <cmath>
@@ -10,6 +11,8 @@
 #include <string_view>
 #include <unordered_map>
 #include <vector>
+
+#include "kadans/exchange/one_writer.h"
 
 namespace kadans {
 
@@ -41,6 +44,8 @@ class ParameterTable {
   [[nodiscard]] bool set(ParameterId id, double value) noexcept;
   // Control thread, or one that runs in lockstep with it; id < size().
   double get(ParameterId id) const noexcept { return *entries_[id].value; }
+  // Any thread: what was set last; id < size(). Each number is whole, but not all are of the same tick.
+  double newest(ParameterId id) const noexcept { return entries_[id].newest.get(); }
   std::uint32_t owner(ParameterId id) const noexcept { return entries_[id].owner; }
 
   // Any thread: the declarations do not change once the loop runs.
@@ -55,6 +60,7 @@ class ParameterTable {
     Parameter info;
     double* value;
     std::uint32_t owner;
+    OneWriter<double> newest;
   };
   std::vector<Entry> entries_;
   std::unordered_map<std::string, ParameterId> ids_;

@@ -42,7 +42,7 @@ class Recorder final : public RecordSink {
   // Before the loop, when all signals are declared. Throws std::invalid_argument on a topic that is not there.
   explicit Recorder(const SignalTable& signals, const RecorderSettings& settings = {});
 
-  // False: error() says why. Replaces a file of that name.
+  // False: error() says why. Replaces a file of that name. After close() another one may be opened.
   [[nodiscard]] bool open(const std::string& path);
   // After open(), before the first row: what is needed to make this run again.
   [[nodiscard]] bool describe_run(const RunInputs& inputs);
@@ -61,8 +61,8 @@ class Recorder final : public RecordSink {
   // Drains and completes the file. Nothing may be recorded meanwhile.
   [[nodiscard]] bool close();
 
-  const std::string& error() const noexcept { return file_.error(); }
-  std::uint64_t file_bytes() const noexcept { return file_.file_bytes(); }
+  const std::string& error() const noexcept { return file_->error(); }
+  std::uint64_t file_bytes() const noexcept { return file_->file_bytes(); }
   std::uint64_t rows() const noexcept { return rows_; }  // drained
   std::uint64_t lost() const noexcept { return lost_; }  // of them, not written because the file had failed
   std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }  // the ring was full
@@ -85,6 +85,7 @@ class Recorder final : public RecordSink {
   void write_events(std::int64_t until_ns);
   void write_event(const Event& event);
   void report_drops();
+  void start_anew();
 
   std::size_t signal_count_;
   Precision precision_;
@@ -94,7 +95,9 @@ class Recorder final : public RecordSink {
   std::atomic<std::uint32_t> dropped_{0};
   EventLog events_;
 
-  McapWriter file_;
+  McapSettings file_settings_;
+  std::unique_ptr<McapWriter> file_;
+  bool opened_ = false;
   std::uint16_t log_channel_ = 0, transition_channel_ = 0;
   std::vector<double> values_;      // of one message
   std::vector<std::byte> payload_;  // the same, encoded

@@ -1,0 +1,81 @@
+// The behavior thread's part of an instance: carries out orders before a tick, between two ticks of the behaviors. What
+// goes to the control thread is one transaction an order, and is answered when the control engine has applied or
+// refused it; what a behavior has to do with is answered when the next tick is over. Every change is logged with who
+// asked for it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kadans/engine/behavior_engine.h"
+#include "kadans/realtime/engine_tasks.h"
+#include "kadans/remote/echo_log.h"
+#include "kadans/remote/instance.h"
+#include "kadans/remote/tuning.h"
+#include "kadans/script/console.h"
+#include "kadans/script/script_host.h"
+
+namespace kadans {
+
+class BehaviorSide final : public BesideTick {
+ public:
+  struct Parts {
+    Instance& instance;
+    ScriptHost& host;
+    BehaviorEngine& engine;
+    EngineExchange& exchange;
+    EchoLog& echo;     // between the behaviors and `log`'s readers
+    BehaviorLog& log;  // where changes are told; what is said there passes the echo
+  };
+  static constexpr std::size_t consoles_max = 4;
+
+  // Everything must outlive it. `next` is called after it in every tick.
+  explicit BehaviorSide(const Parts& parts, BesideTick* next = nullptr) : p_(parts), next_(next) {}
+
+  void beside_tick(std::int64_t time_ns) override;
+
+ private:
+  // An order that is on its way.
+  struct Pending {
+    std::unique_ptr<OrderCase> order;
+    OrderQueue* from;
+    std::int64_t asked_ns;
+    std::uint32_t sequence = 0;  // of its transaction; 0: it waits for the end of a tick
+    ParameterChange change{};    // of set_parameter and undo
+    bool lasting = false;
+  };
+
+  void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
+  bool carry_out_now(const Order& order, Answer& answer);
+  void begin(Pending& pending);
+  void settle(std::int64_t time_ns);
+  bool settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns);
+  void finish(Pending& pending);
+  void say(std::int64_t time_ns, const std::string& who, const std::string& what);
+
+  // behavior_side_orders.cpp
+  void report(Answer& answer) const;
+  void give(const Order& order);
+  void begin_change(Pending& pending, const ParameterChange& change);
+  ParameterChange change_of(const Order& order) const;
+  void send(Pending& pending, const Command& command);
+  std::string told(const Order& order, bool& done);  // by lines_
+
+  // behavior_side_console.cpp
+  void evaluate(const Order& order, Answer& answer);
+  Console& console_of(const Order& order);
+
+  Parts p_;
+  BesideTick* next_;
+  std::vector<Pending> pending_;
+  TuningHistory tuning_;
+  std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client
+  std::vector<double> parameters_;
+  std::vector<EchoLog::Line> lines_;  // said in the last tick, when an order was carried out in it
+  std::int64_t time_ns_ = 0;
+};
+
+}  // namespace kadans

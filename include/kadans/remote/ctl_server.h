@@ -1,0 +1,83 @@
+// Serves `kadans ctl` and whoever speaks as it does: JSON objects, one a line, over the sockets of ctl_folder.h. A
+// thread of its own at normal priority, which touches nothing of the engines but through its port (instance.h).
+//
+//   {"verb":"set","name":"posture.l_knee.kp_Nm_per_rad","value":50}
+//   {"ok":true,"name":"posture.l_knee.kp_Nm_per_rad","before":40,"now":50}
+//   {"ok":false,"error":"..."}
+//
+// docs/ctl.md lists the verbs. A line has at most 64 kB; a client has one request under way at a time. Who sends half a
+// line, or does not read, for too long is dropped and counted; who finds no place is told so. Of each role there may be
+// so many clients that those of another still find room.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pthread.h>
+
+#include "kadans/engine/clock.h"
+#include "kadans/remote/ctl_requests.h"
+#include "kadans/remote/ctl_session.h"
+#include "kadans/remote/instance.h"
+
+namespace kadans {
+
+class CtlServer {
+ public:
+  struct Settings {
+    std::array<std::size_t, 3> clients_max{32, 16, 16};  // by role
+    std::int64_t half_line_max_ns = 5'000'000'000;
+    std::int64_t unread_max_ns = 5'000'000'000;
+    std::int64_t answer_max_ns = 10'000'000'000;  // of the behavior thread
+    std::int64_t report_max_ns = 2'000'000'000;   // when it is only asked what plays
+  };
+
+  // Before the loop; opens a port. Instance and sockets must outlive it.
+  CtlServer(Instance& instance, const CtlSockets& sockets, const Settings& settings);
+  ~CtlServer();  // stops
+  CtlServer(const CtlServer&) = delete;
+  CtlServer& operator=(const CtlServer&) = delete;
+
+  void start();  // throws std::system_error
+  void stop() noexcept;
+  const CtlCounts& counts() const noexcept { return counts_; }  // any thread
+
+ private:
+  struct Guest {
+    std::unique_ptr<CtlSession> session;
+    bool gone = false;
+  };
+
+  static void* enter(void* self);
+  void run();
+  void wait();
+  void accept_all(Role role);
+  bool has_room(Role role) const noexcept;
+  void serve(Guest& guest, short events);
+  void answer_requests(Guest& guest);
+  void take_answers();
+  void send_samples();
+  void expire();
+  void drop(Guest& guest, const std::string& why);
+  int patience_ms() const noexcept;
+
+  const CtlSockets& sockets_;
+  Settings settings_;
+  WallClock clock_;
+  InstancePort& port_;
+  CtlCounts counts_;
+  CtlRequests requests_;
+  std::vector<Guest> guests_;
+  std::uint64_t next_number_ = 1;
+  std::int64_t now_ns_ = 0, deaf_until_ns_ = 0;
+  int wake_ = -1;
+  pthread_t thread_{};
+  bool running_ = false;
+  std::atomic<bool> stop_{false};
+};
+
+}  // namespace kadans

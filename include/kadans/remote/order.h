@@ -1,0 +1,102 @@
+// What somebody outside asks of a running instance, and what comes back. An order travels as a case: made by the thread
+// of the client, carried out and answered by the thread that owns what it changes, freed where it was made. The rings
+// carry pointers, so no side waits for the other and an order may be as long as it is.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kadans/exchange/ring.h"
+#include "kadans/script/script_parameter.h"
+#include "kadans/signal/parameter.h"
+
+namespace kadans {
+
+struct ParameterChange {
+  std::string name;
+  double before = 0, now = 0;
+};
+
+struct Order {
+  enum class Kind : std::uint8_t {
+    // Behavior thread.
+    report,   // what plays: Answer::behaviors
+    play,     // `text` = list; behind what plays
+    replace,  // the same in its place
+    pause,
+    resume,
+    stop,
+    reload,         // `text` = name; "" = all that play
+    switch_set,     // `text` = name
+    set_parameter,  // `text` = name, of the table or BEHAVIOR.NAME; `value`
+    undo,           // takes the newest set_parameter back
+    changes,        // Answer::changes: what set_parameter changed since the start or the last `saved`
+    saved,          // `changes` stand in the configuration now
+    clear_faults,
+    line,           // `text` for the console of this client
+    complete,       // `text` = the beginning of a line
+    leave_console,  // the client is gone
+    // Record thread.
+    record_start,  // `text` = file
+    record_stop,
+  };
+  Kind kind = Kind::report;
+  std::string text{};
+  double value = 0;
+  std::string who{};         // for the log: "uid 1000 (develop)"
+  std::uint64_t client = 0;  // whose console
+  std::vector<ParameterChange> changes{};
+};
+
+struct BehaviorReport {
+  std::string name, state, outcome, error;
+  std::uint32_t lane = 0;
+  bool over = false;
+  std::vector<ScriptParameter> parameters;
+};
+
+struct Answer {
+  std::uint64_t number = 0;  // of the order
+  bool done = false;
+  std::string text;  // not done: why; else what there is to say
+  std::vector<BehaviorReport> behaviors{};
+  bool paused = false;
+  std::vector<ParameterChange> changes{};
+  std::vector<std::string> words{};  // of a completion, in place of what begins at `begin`
+  std::size_t begin = 0;
+  bool incomplete = false, writes = false, leaves = false;  // a console's
+};
+
+struct OrderCase {
+  Order order;
+  Answer answer;
+};
+
+// From one client's thread to one that carries out, and back. At most `orders_waiting_max` are on their way.
+inline constexpr std::size_t orders_waiting_max = 15;
+
+class OrderQueue {
+ public:
+  OrderQueue() = default;
+  ~OrderQueue();
+  OrderQueue(const OrderQueue&) = delete;
+  OrderQueue& operator=(const OrderQueue&) = delete;
+
+  // Client's thread. False: too many wait.
+  [[nodiscard]] bool ask(std::unique_ptr<OrderCase> order);
+  std::unique_ptr<OrderCase> answered() noexcept;  // nullptr: none
+
+  // The thread that carries out.
+  std::unique_ptr<OrderCase> take() noexcept;  // nullptr: none
+  void answer(std::unique_ptr<OrderCase> order) noexcept;
+
+ private:
+  using Cases = Ring<OrderCase*, 16>;
+  Cases asked_, answered_;
+  std::size_t on_their_way_ = 0;  // client's
+};
+
+}  // namespace kadans

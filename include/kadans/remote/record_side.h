@@ -1,0 +1,69 @@
+// The record thread's part of an instance: writes what waits, and starts and stops records while the loop goes on.
+//
+// The recorder is made with the first record and stays, so a row that is on its way when a record ends finds it still
+// there; it is thrown away when the next one begins. A file is never overwritten at the wish of a client, and lies in
+// the instance's folder of records.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "kadans/realtime/task_thread.h"
+#include "kadans/remote/control_side.h"
+#include "kadans/remote/instance.h"
+#include "kadans/telemetry/recorder.h"
+
+namespace kadans {
+
+// Hands on what behaviors say while there is a record. Behavior thread, but for to().
+class RecordLog final : public BehaviorLog {
+ public:
+  void to(BehaviorLog* log) noexcept { log_.store(log, std::memory_order_release); }
+  void transition(const Transition& transition) override {
+    if (BehaviorLog* log = log_.load(std::memory_order_acquire); log != nullptr) log->transition(transition);
+  }
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
+    if (BehaviorLog* log = log_.load(std::memory_order_acquire); log != nullptr)
+      log->message(time_ns, severity, behavior, text);
+  }
+
+ private:
+  std::atomic<BehaviorLog*> log_{nullptr};
+};
+
+class RecordSide final : public Task {
+ public:
+  // All must outlive it. `facts` stand in every record, under "run".
+  RecordSide(Instance& instance, ControlSide& control, RecordLog& log, TextMap facts)
+      : instance_(instance), control_(control), log_(log), facts_(std::move(facts)) {}
+
+  // Record thread, or before the loop and after it. Throws InputError when there can be none.
+  void start(const std::string& file);
+  [[nodiscard]] bool stop();  // false: recorder()->error() says why the record is not complete
+  // Before the loop: somebody else has a record that goes on to the end.
+  void leave_to(RecordSink& own, const std::string& file);
+  bool beat(const Beat&) override;
+
+  // Supervisor.
+  const RecordStatus& status() noexcept { return status_.read(); }
+  // After the loop; nullptr: there was no record.
+  const Recorder* recorder() const noexcept { return recorder_.get(); }
+
+ private:
+  void carry_out(OrderCase& order);
+  std::filesystem::path file_for(const std::string& name) const;
+  void publish();
+
+  Instance& instance_;
+  ControlSide& control_;
+  RecordLog& log_;
+  TextMap facts_;
+  std::unique_ptr<Recorder> recorder_;
+  std::string file_;     // "": none is open
+  bool others_ = false;  // and it is not ours
+  Latest<RecordStatus> status_;
+};
+
+}  // namespace kadans

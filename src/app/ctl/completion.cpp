@@ -1,0 +1,114 @@
+// `kadans completion`: what shells need to complete the command line. The commands and options come from the program
+// itself; names of parameters, signals and behaviors from the instance that runs, when somebody asks for them.
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "ctl/ctl_command.h"
+
+namespace kadans {
+namespace {
+
+std::string subcommands_of(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names += (names.empty() ? "" : " ") + command->get_name();
+  return names;
+}
+
+std::string options_of(const CLI::App& app) {
+  std::string names;
+  for (const CLI::Option* option : app.get_options([](const CLI::Option* one) { return !one->get_lnames().empty(); })) {
+    for (const std::string& name : option->get_lnames()) names += (names.empty() ? "--" : " --") + name;
+  }
+  return names;
+}
+
+// One line of a case for each command with its path: "  'ctl fault') echo 'list clear';;".
+void add_cases(const CLI::App& app, const std::string& path, bool options, std::string& text) {
+  std::string words = options ? options_of(app) : subcommands_of(app);
+  if (options && path.starts_with("ctl ")) words += " --socket --json";  // as ctl itself, before the verb or after
+  if (!words.empty()) text += "    '" + path + "') echo '" + words + "';;\n";
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    add_cases(*command, path + (path.empty() ? "" : " ") + command->get_name(), options, text);
+}
+
+// In zsh `path` is PATH. The part that both shells understand. "$1" is the commands typed so far, then come options for
+// ctl.
+constexpr const char* names_function = R"sh(
+_kadans_names() {
+  local at=$1
+  shift
+  case $at in
+    'ctl set') kadans ctl "$@" list parameters --names;;
+    'ctl get') kadans ctl "$@" list parameters --names; kadans ctl "$@" list signals --names;;
+    'ctl watch') kadans ctl "$@" list signals --names;;
+    'ctl switch') kadans ctl "$@" list sets --names;;
+    'ctl play'|'ctl reload') kadans ctl "$@" list behaviors --names;;
+    'ctl list') echo 'behaviors sets objects parameters signals';;
+    'completion') echo 'bash zsh';;
+  esac 2>/dev/null
+}
+)sh";
+
+// Goes through the words before the one that is completed; leaves the commands and the options that lead to the
+// instance.
+constexpr const char* walk = R"sh(
+  local at= before= word= socket=
+  for word in "${typed[@]}"; do
+    if [[ $before == --socket ]]; then socket=$word
+    elif [[ $word != -* && " $(_kadans_commands "$at") " == *" $word "* ]]; then at="$at${at:+ }$word"; fi
+    before=$word
+  done
+  local -a to=()
+  if [[ -n $socket ]]; then to=(--socket "$socket"); fi
+  local choice=
+  if [[ $current == -* ]]; then choice=$(_kadans_options "$at")
+  elif [[ $before != --* || $before == --replace || $before == --json ]]; then choice="$(_kadans_commands "$at") $(_kadans_names "$at" "${to[@]}")"; fi
+)sh";
+
+constexpr const char* bash_tail = R"sh(
+  COMPREPLY=($(compgen -W "$choice" -- "$current"))
+  if [[ ${#COMPREPLY[@]} -eq 0 && $current != -* ]]; then COMPREPLY=($(compgen -f -- "$current")); fi
+}
+complete -o filenames -F _kadans kadans
+)sh";
+
+constexpr const char* zsh_tail = R"sh(
+  local -a choices
+  choices=(${=choice})
+  if (( ${#choices} )); then compadd -- "${choices[@]}"; else _files; fi
+}
+if [[ $funcstack[1] == _kadans ]]; then _kadans "$@"; elif (( $+functions[compdef] )); then compdef _kadans kadans; fi
+)sh";
+
+}  // namespace
+
+void add_completion(CLI::App& app, CompletionOptions& options) {
+  CLI::App* completion = app.add_subcommand("completion", "Print what a shell needs to complete this command line");
+  completion->add_option("shell", options.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
+  completion->footer(
+      "eval \"$(kadans completion bash)\" in ~/.bashrc; an installed program's is in its place already.");
+}
+
+int run_completion(const CLI::App& app, const CompletionOptions& options) {
+  const bool bash = options.shell == "bash";
+  std::string text = bash ? "" : "#compdef kadans\n";
+  text += "# Completion for kadans, made by 'kadans completion " + options.shell + "'.\n";
+  text += "_kadans_commands() {\n  case $1 in\n";
+  add_cases(app, "", false, text);
+  text += "  esac\n}\n\n_kadans_options() {\n  case $1 in\n";
+  add_cases(app, "", true, text);
+  text += "  esac\n}\n";
+  text += names_function;
+  text += bash ? "\n_kadans() {\n  local current=${COMP_WORDS[COMP_CWORD]}\n"
+                 "  local -a typed=(\"${COMP_WORDS[@]:1:COMP_CWORD-1}\")"
+               : "\n_kadans() {\n  local current=${words[CURRENT]}\n"
+                 "  local -a typed=(\"${(@)words[2,CURRENT-1]}\")";
+  text += walk;
+  text += bash ? bash_tail : zsh_tail;
+  std::fputs(text.c_str(), stdout);
+  return 0;
+}
+
+}  // namespace kadans

@@ -1,0 +1,17 @@
+// Answers of a running instance, for people.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace kadans {
+
+using Json = nlohmann::json;
+
+// `words`: the verb on the command line, "record stop". Ends with a newline, or is empty.
+std::string answer_text(const std::string& words, const Json& answer);
+std::string watch_head(const Json& answer);  // with a newline
+std::string watch_line(const Json& sample);  // without
+
+}  // namespace kadans

@@ -1,0 +1,84 @@
+#include "ctl/sim_remote.h"
+
+#include "kadans/config/project_root.h"
+#include "terminal.h"
+#include "version.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::uint32_t publish_every_ticks = 20;
+
+Instance::Facts facts_of(const ScenarioConfig& scenario, const RobotConfig& robot) {
+  return {.name = robot.name,
+          .mode = "simulation of " + scenario.name,
+          .version = version,
+          .configuration = std::filesystem::absolute(robot.file).lexically_normal(),
+          .root = project_root(scenario.file),
+          .folders = folders_of(scenario),
+          .records = std::filesystem::current_path(),
+          .control_period_s = robot.engine.control_period_s,
+          .behavior_period_s = robot.engine.behavior_period_s};
+}
+
+}  // namespace
+
+void InstanceLog::transition(const Transition& transition) {
+  if (instance_ != nullptr) {
+    event_.kind = Event::Kind::transition;
+    event_.transition = transition;
+    instance_->tell(event_);
+  }
+  next_->transition(transition);
+}
+
+void InstanceLog::message(std::int64_t time_ns, Severity severity, const std::string& behavior,
+                          const std::string& text) {
+  if (instance_ != nullptr) {
+    event_ = {.kind = Event::Kind::message, .severity = severity, .text = text};
+    event_.transition.time_ns = time_ns;
+    event_.transition.behavior = behavior;
+    instance_->tell(event_);
+  }
+  next_->message(time_ns, severity, behavior, text);
+}
+
+SimRemote::SimRemote(const CtlPlace& place, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs)
+    : parts_(assembly.parts()),
+      told_(logs.told),
+      instance_(facts_of(scenario, assembly.robot()), assembly.catalog()),
+      control_side_(instance_, parts_.control.safety()),
+      record_side_(instance_, control_side_, logs.record, {{"robot", scenario.robot}, {"kadans", version}}),
+      behavior_side_({instance_, assembly.host(), parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),
+      service_(place, instance_) {
+  assembly.record_to(&control_side_);
+}
+
+SimRemote::~SimRemote() {
+  service_.stop();
+  told_.tell(nullptr);
+  if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
+}
+
+void SimRemote::begin(RecordSink* own, const std::string& own_file) {
+  told_.tell(&instance_);
+  if (own != nullptr) record_side_.leave_to(*own, own_file);
+  service_.start();
+}
+
+void SimRemote::tick(double, std::span<const double>) {}
+
+void SimRemote::between_ticks(const RunMark& mark) {
+  behavior_side_.beside_tick(mark.time_ns);
+  if (published_++ % publish_every_ticks != 0) return;
+  (void)record_side_.beat({});
+  const Snapshot& snapshot = parts_.control.state();
+  instance_.publish({.tick = snapshot.tick,
+                     .time_ns = snapshot.time_ns,
+                     .safety = snapshot.status.safety,
+                     .control_sets = snapshot.control_sets,
+                     .commands_refused = snapshot.commands_refused,
+                     .record = record_side_.status()});
+}
+
+}  // namespace kadans

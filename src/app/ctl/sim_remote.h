@@ -1,0 +1,63 @@
+// A simulation seen from outside: the parts of an instance (kadans/remote/instance.h) that are threads in a live run,
+// played in turn by the one thread of the simulation, between its ticks.
+#pragma once
+
+#include <optional>
+
+#include "ctl/ctl_service.h"
+#include "kadans/app/assembly.h"
+#include "kadans/remote/behavior_side.h"
+#include "kadans/remote/control_side.h"
+#include "kadans/remote/record_side.h"
+#include "kadans/scenario/run.h"
+
+namespace kadans {
+
+// Tells the instance what is said; before there is one, nobody.
+class InstanceLog final : public BehaviorLog {
+ public:
+  explicit InstanceLog(BehaviorLog* next) noexcept : next_(next) {}
+  void tell(Instance* instance) noexcept { instance_ = instance; }
+  void transition(const Transition& transition) override;
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
+
+ private:
+  BehaviorLog* next_;
+  Instance* instance_ = nullptr;
+  Event event_;
+};
+
+class SimRemote final : public RunObserver {
+ public:
+  struct Logs {
+    InstanceLog& told;
+    EchoLog& echo;
+    RecordLog& record;
+    BehaviorLog& all;
+  };
+  // All must outlive it. Takes the place of the assembly's record sink: `own` is the simulation's record, if it has
+  // one.
+  SimRemote(const CtlPlace& place, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs);
+  ~SimRemote() override;
+  SimRemote(const SimRemote&) = delete;
+  SimRemote& operator=(const SimRemote&) = delete;
+
+  // Before the first tick.
+  void begin(RecordSink* own, const std::string& own_file);
+
+  void tick(double time_s, std::span<const double> row) override;
+  void fault(const Fault& fault) override { instance_.tell(fault); }
+  void between_ticks(const RunMark& mark) override;
+
+ private:
+  RunParts parts_;
+  InstanceLog& told_;
+  Instance instance_;
+  ControlSide control_side_;
+  RecordSide record_side_;
+  BehaviorSide behavior_side_;
+  CtlService service_;
+  std::uint32_t published_ = 0;
+};
+
+}  // namespace kadans

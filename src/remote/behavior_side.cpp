@@ -1,0 +1,176 @@
+#include "kadans/remote/behavior_side.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "kadans/config/fields.h"
+#include "kadans/engine/refusal_text.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::int64_t control_answers_in_ns = 1'000'000'000;
+
+bool names_transaction(const Snapshot& snapshot, std::uint32_t sequence, Refusal& refusal) {
+  const auto found = std::ranges::find(snapshot.refusals, sequence, &Refusal::sequence);
+  if (found == snapshot.refusals.end()) return false;
+  refusal = *found;
+  return true;
+}
+
+}  // namespace
+
+void BehaviorSide::beside_tick(std::int64_t time_ns) {
+  time_ns_ = time_ns;
+  settle(time_ns);
+  for (const auto& port : p_.instance.ports()) {
+    while (std::unique_ptr<OrderCase> order = port->behaviors_.take())
+      carry_out(std::move(order), port->behaviors_, time_ns);
+  }
+  if (next_ != nullptr) next_->beside_tick(time_ns);
+}
+
+void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns) {
+  try {
+    if (carry_out_now(order->order, order->answer)) {
+      order->answer.done = true;
+      return from.answer(std::move(order));
+    }
+    Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns};
+    try {
+      begin(pending);
+    } catch (...) {
+      order = std::move(pending.order);
+      throw;
+    }
+    pending_.push_back(std::move(pending));
+  } catch (const std::exception& error) {
+    order->answer.text = error.what();
+    from.answer(std::move(order));
+  }
+}
+
+// False: it takes its time. Throws why not.
+bool BehaviorSide::carry_out_now(const Order& order, Answer& answer) {
+  switch (order.kind) {
+    case Order::Kind::report:
+      report(answer);
+      return true;
+    case Order::Kind::changes:
+      answer.changes = tuning_.unsaved();
+      return true;
+    case Order::Kind::saved:
+      tuning_.saved(order.changes);
+      for (const ParameterChange& change : order.changes)
+        say(time_ns_, order.who, "saved " + change.name + " = " + number_text(change.now));
+      return true;
+    case Order::Kind::complete: {
+      Console::Completion found = console_of(order).complete(order.text);
+      answer.begin = found.begin;
+      answer.words = std::move(found.words);
+      return true;
+    }
+    case Order::Kind::leave_console:
+      consoles_.erase(order.client);
+      if (consoles_.empty()) p_.instance.want_console_row(false);
+      return true;
+    default:
+      return false;
+  }
+}
+
+// What is not answered at once.
+void BehaviorSide::begin(Pending& pending) {
+  const Order& order = pending.order->order;
+  switch (order.kind) {
+    case Order::Kind::switch_set:
+      return send(pending, {.kind = CommandKind::switch_set, .index = p_.instance.set_named(order.text)});
+    case Order::Kind::clear_faults:
+      return send(pending, {.kind = CommandKind::clear_faults});
+    case Order::Kind::set_parameter:
+      return begin_change(pending, change_of(order));
+    case Order::Kind::undo: {
+      const ParameterChange* last = tuning_.newest();
+      if (last == nullptr) throw InputError({.message = "there is nothing to undo"});
+      return begin_change(pending, {last->name, last->now, last->before});
+    }
+    case Order::Kind::line:
+      p_.instance.want_console_row(true);
+      (void)console_of(order);
+      return;  // evaluated when there is a row of signals
+    default:
+      return give(order);
+  }
+}
+
+void BehaviorSide::settle(std::int64_t time_ns) {
+  if (pending_.empty()) return;
+  const Snapshot& snapshot = p_.exchange.snapshot.read(0);
+  lines_ = p_.echo.take();
+  std::erase_if(pending_, [&](Pending& pending) {
+    if (!settled(pending, snapshot, time_ns)) return false;
+    pending.from->answer(std::move(pending.order));
+    return true;
+  });
+}
+
+bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns) {
+  const Order& order = pending.order->order;
+  Answer& answer = pending.order->answer;
+  const bool late = time_ns - pending.asked_ns > control_answers_in_ns;
+  if (order.kind == Order::Kind::line) {
+    if (p_.instance.console_row().values.empty() && !late) return false;
+    evaluate(order, answer);
+    return true;
+  }
+  if (pending.sequence == 0) {
+    answer.done = true;
+    if (order.kind == Order::Kind::set_parameter || order.kind == Order::Kind::undo) {
+      finish(pending);
+    } else {
+      answer.text = told(order, answer.done);
+    }
+    return true;
+  }
+  Refusal refusal;
+  if (names_transaction(snapshot, pending.sequence, refusal)) {
+    answer.text = refusal_text(refusal, p_.instance.catalog());
+    return true;
+  }
+  if (snapshot.transactions_applied >= pending.sequence) {
+    finish(pending);
+    return true;
+  }
+  if (late) answer.text = "the control thread did not take it within a second";
+  return late;
+}
+
+// The control engine, or the behavior, has taken it.
+void BehaviorSide::finish(Pending& pending) {
+  const Order& order = pending.order->order;
+  Answer& answer = pending.order->answer;
+  answer.done = true;
+  const ParameterChange& change = pending.change;
+  switch (order.kind) {
+    case Order::Kind::switch_set:
+      return say(time_ns_, order.who, "switched to control set " + order.text);
+    case Order::Kind::clear_faults:
+      return say(time_ns_, order.who, "cleared the faults");
+    case Order::Kind::undo:
+      tuning_.drop();
+      break;
+    default:
+      tuning_.note(change, pending.lasting);
+  }
+  answer.changes = {change};
+  say(time_ns_, order.who,
+      (order.kind == Order::Kind::undo ? "undid " : "set ") + change.name + ": " + number_text(change.before) + " -> " +
+          number_text(change.now));
+}
+
+void BehaviorSide::say(std::int64_t time_ns, const std::string& who, const std::string& what) {
+  p_.log.message(time_ns, BehaviorLog::Severity::info, "ctl", who.empty() ? what : who + " " + what);
+}
+
+}  // namespace kadans

@@ -1,0 +1,133 @@
+// Orders: what plays, control sets, parameters.
+#include <algorithm>
+#include <cmath>
+
+#include "kadans/config/fields.h"
+#include "kadans/remote/behavior_side.h"
+
+namespace kadans {
+namespace {
+
+// What the supervisor's list calls it.
+PlayOrder::Kind kind_of(Order::Kind kind) {
+  switch (kind) {
+    case Order::Kind::play:
+      return PlayOrder::Kind::play;
+    case Order::Kind::replace:
+      return PlayOrder::Kind::replace;
+    case Order::Kind::pause:
+      return PlayOrder::Kind::pause;
+    case Order::Kind::resume:
+      return PlayOrder::Kind::resume;
+    case Order::Kind::reload:
+      return PlayOrder::Kind::reload;
+    default:
+      return PlayOrder::Kind::stop;
+  }
+}
+
+void check_range(const std::string& name, const std::string& unit, double value, double min, double max) {
+  if (value >= min && value <= max) return;
+  throw InputError({.message = name + " = " + number_text(value) + " is outside its range " + number_text(min) + ".." +
+                               number_text(max) + (unit.empty() ? "" : " " + unit)});
+}
+
+}  // namespace
+
+void BehaviorSide::report(Answer& answer) const {
+  const ScriptHost& host = p_.host;
+  answer.paused = host.paused();
+  for (std::size_t i = 0; i < host.size(); ++i) {
+    const Behavior& behavior = host.behavior(i);
+    answer.behaviors.push_back({.name = behavior.name(),
+                                .state = behavior.state(),
+                                .outcome = behavior.outcome(),
+                                .error = behavior.failed() ? behavior.error().text() : "",
+                                .lane = host.lane(i),
+                                .over = host.over(i),
+                                .parameters = behavior.parameters()});
+  }
+}
+
+// To the behaviors; the next tick carries it out.
+void BehaviorSide::give(const Order& order) {
+  const PlayOrder::Kind kind = kind_of(order.kind);
+  if (kind == PlayOrder::Kind::reload && order.text.empty()) {
+    p_.echo.listen();
+    for (std::size_t i = 0; i < p_.host.size(); ++i) {
+      if (!p_.host.over(i)) p_.host.order({.kind = kind, .behavior = {p_.host.behavior(i).name(), {}}});
+    }
+    return;
+  }
+  PlayOrder given{.kind = kind, .behavior = {kind == PlayOrder::Kind::reload ? order.text : "", {}}};
+  if (kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace)
+    given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
+  p_.host.order(given);
+  p_.echo.listen();
+}
+
+// What was said in the tick that carried it out: by the supervisor, or by the behavior that was reloaded.
+std::string BehaviorSide::told(const Order& order, bool& done) {
+  const bool reload = order.kind == Order::Kind::reload;
+  std::string text;
+  for (const EchoLog::Line& line : lines_) {
+    const bool supervisor = line.behavior == "supervisor";
+    if (reload ? supervisor || (!order.text.empty() && line.behavior != order.text) : !supervisor) continue;
+    if (line.severity != BehaviorLog::Severity::info) done = false;
+    text += (text.empty() ? "" : "\n") + (supervisor ? "" : line.behavior + ": ") + line.text;
+  }
+  if (reload && text.empty()) return "no new version: the files are as they were loaded";
+  if (!order.who.empty() && !reload)
+    say(time_ns_, order.who, "asked for " + play_order_names[static_cast<std::size_t>(kind_of(order.kind))]);
+  return text;
+}
+
+void BehaviorSide::send(Pending& pending, const Command& command) {
+  CommandSender& sender = p_.engine.sender();
+  sender.begin(time_ns_);
+  (void)sender.add(command);
+  pending.sequence = sender.commit();
+  if (pending.sequence == 0) throw InputError({.message = "the command queue is full"});
+}
+
+// The name as it is known, and the value now.
+ParameterChange BehaviorSide::change_of(const Order& order) const {
+  if (!std::isfinite(order.value)) throw InputError({.message = "a number is needed"});
+  const ParameterTable& table = p_.instance.catalog().parameters;
+  if (const auto id = table.find(order.text)) {
+    const Parameter& info = table.info(*id);
+    check_range(info.name, info.unit, order.value, info.min, info.max);
+    double before = table.newest(*id);
+    for (const Pending& other : pending_) {
+      if (other.change.name == order.text) before = other.change.now;
+    }
+    return {order.text, before, order.value};
+  }
+  std::vector<std::string> names = table.names();
+  for (std::size_t i = 0; i < p_.host.size(); ++i) {
+    const Behavior& behavior = p_.host.behavior(i);
+    for (const ScriptParameter& own : behavior.parameters()) {
+      names.push_back(behavior.name() + "." + own.name);
+      if (names.back() != order.text) continue;
+      check_range(order.text, own.unit, order.value, own.min, own.max);
+      return {order.text, own.value, order.value};
+    }
+  }
+  throw InputError({.message = unknown_name("parameter", order.text, names)});
+}
+
+void BehaviorSide::begin_change(Pending& pending, const ParameterChange& change) {
+  pending.change = change;
+  if (const auto id = p_.instance.catalog().parameters.find(change.name)) {
+    pending.lasting = true;
+    return send(pending, {.kind = CommandKind::set_parameter, .index = *id, .value = change.now});
+  }
+  for (std::size_t i = 0; i < p_.host.size(); ++i) {
+    Behavior& behavior = p_.host.behavior(i);
+    const std::string own = behavior.name() + ".";
+    if (change.name.starts_with(own) && behavior.set_parameter(change.name.substr(own.size()), change.now)) return;
+  }
+  throw InputError({.message = change.name + " is not there any more"});
+}
+
+}  // namespace kadans

@@ -1,0 +1,150 @@
+#include "ctl_json.h"
+
+#include <unistd.h>
+
+#include "kadans/config/problems.h"
+#include "kadans/control/set_partition.h"
+
+namespace kadans {
+namespace {
+
+// JSON has no infinity: a range without an end has no such key.
+void put_finite(Json& to, const char* key, double value) {
+  if (std::isfinite(value)) to[key] = value;
+}
+
+Json own_parameter(const std::string& name, const ScriptParameter& own) {
+  return {{"name", name},       {"unit", own.unit},       {"min", own.min}, {"max", own.max},
+          {"value", own.value}, {"default", own.initial}, {"doc", own.doc}};
+}
+
+Json parameters_json(const Catalog& catalog, const Answer& report) {
+  Json all = Json::array();
+  for (ParameterId id = 0; id < catalog.parameters.size(); ++id) {
+    const Parameter& info = catalog.parameters.info(id);
+    Json one{{"name", info.name},
+             {"unit", info.unit},
+             {"value", catalog.parameters.newest(id)},
+             {"default", info.initial},
+             {"doc", info.doc}};
+    put_finite(one, "min", info.min);
+    put_finite(one, "max", info.max);
+    all.push_back(std::move(one));
+  }
+  for (const BehaviorReport& behavior : report.behaviors) {
+    for (const ScriptParameter& own : behavior.parameters)
+      all.push_back(own_parameter(behavior.name + "." + own.name, own));
+  }
+  return all;
+}
+
+Json signals_json(const SignalTable& table) {
+  Json all = Json::array();
+  for (SignalId id = 0; id < table.size(); ++id) {
+    const Signal& info = table.info(id);
+    all.push_back({{"name", info.name}, {"unit", info.unit}, {"doc", info.doc}});
+  }
+  return all;
+}
+
+Json objects_json(const Catalog& catalog) {
+  Json all = Json::array();
+  for (const ObjectInfo& object : catalog.objects) {
+    Json one{{"name", object.name}, {"type", object.type}, {"joints", Json::array()}, {"presets", Json::array()}};
+    for (const std::size_t joint : object.joints) one["joints"].push_back(catalog.model->joints[joint].name);
+    for (const Preset& preset : object.presets) one["presets"].push_back(preset.name);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+Json sets_json(const Catalog& catalog, SetMask active) {
+  Json all = Json::array();
+  for (std::uint32_t set = 0; set < catalog.sets.size(); ++set) {
+    Json one{{"name", catalog.sets[set].name}, {"active", (active & set_bit(set)) != 0}, {"objects", Json::array()}};
+    for (const std::uint32_t object : catalog.sets[set].objects) one["objects"].push_back(catalog.objects[object].name);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+// What could be played, then what plays.
+Json all_behaviors_json(const Instance& instance, const Answer& report) {
+  Json all = behaviors_json(report);
+  for (const std::string& name : playable_names(instance.facts().folders)) {
+    const bool there = std::ranges::any_of(report.behaviors, [&](const BehaviorReport& b) { return b.name == name; });
+    if (!there) all.push_back({{"name", name}, {"plays", false}});
+  }
+  return all;
+}
+
+Json record_json(const RecordStatus& record) {
+  if (!record.goes_on) return nullptr;
+  return {{"file", record.file.data()},
+          {"rows", record.rows},
+          {"bytes", record.bytes},
+          {"dropped", record.dropped},
+          {"failed", record.failed}};
+}
+
+}  // namespace
+
+std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string refusal(const std::string& why) { return line_of({{"ok", false}, {"error", why}}); }
+
+Json behaviors_json(const Answer& report) {
+  Json all = Json::array();
+  for (const BehaviorReport& behavior : report.behaviors) {
+    Json one{{"name", behavior.name}, {"plays", !behavior.over}, {"lane", behavior.lane}};
+    if (!behavior.state.empty()) one["state"] = behavior.state;
+    if (!behavior.outcome.empty()) one["outcome"] = behavior.outcome;
+    if (!behavior.error.empty()) one["error"] = behavior.error;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+Json fault_json(const Fault& fault, const RobotModel& model) {
+  Json json{{"code", name(fault.code)}, {"tick", fault.tick}, {"text", fault_text(fault, model)}};
+  put_finite(json, "value", fault.value);
+  put_finite(json, "limit", fault.limit);
+  if (fault.joint < model.joints.size()) json["joint"] = model.joints[fault.joint].name;
+  return json;
+}
+
+Json status_json(const Instance& instance, const InstanceStatus& status) {
+  const Instance::Facts& facts = instance.facts();
+  const Catalog& catalog = instance.catalog();
+  Json sets = Json::array();
+  for (std::uint32_t set = 0; set < catalog.sets.size(); ++set) {
+    if ((status.control_sets & set_bit(set)) != 0) sets.push_back(catalog.sets[set].name);
+  }
+  Json safety{{"level", name(status.safety.level)}, {"faults", status.safety.fault_count}};
+  if (status.safety.fault_count > 0) safety["first"] = fault_json(status.safety.first_fault, *catalog.model);
+  return {{"ok", true},
+          {"name", facts.name},
+          {"mode", facts.mode},
+          {"version", facts.version},
+          {"pid", getpid()},
+          {"configuration", facts.configuration.string()},
+          {"tick", status.tick},
+          {"time_s", 1e-9 * static_cast<double>(status.time_ns)},
+          {"safety", std::move(safety)},
+          {"control_sets", std::move(sets)},
+          {"commands_refused", status.commands_refused},
+          {"record", record_json(status.record)}};
+}
+
+Json list_json(const std::string& what, const Instance& instance, const InstanceStatus& status, const Answer& report) {
+  const Catalog& catalog = instance.catalog();
+  if (what == "behaviors") return all_behaviors_json(instance, report);
+  if (what == "parameters") return parameters_json(catalog, report);
+  if (what == "signals") return signals_json(catalog.signals);
+  if (what == "objects") return objects_json(catalog);
+  if (what == "sets") return sets_json(catalog, status.control_sets);
+  const std::vector<std::string> kinds{"behaviors", "sets", "objects", "parameters", "signals"};
+  throw InputError({.message = unknown_name("kind of list", what, kinds)});
+}
+
+}  // namespace kadans

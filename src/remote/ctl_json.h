@@ -1,0 +1,25 @@
+// Tables and answers as the JSON that ctl's clients read.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "kadans/remote/instance.h"
+
+namespace kadans {
+
+using Json = nlohmann::json;
+
+std::string line_of(const Json& json);  // without a newline, whatever bytes the texts hold
+std::string refusal(const std::string& why);
+
+Json behaviors_json(const Answer& report);
+Json status_json(const Instance& instance, const InstanceStatus& status);
+Json fault_json(const Fault& fault, const RobotModel& model);
+
+// Everything of a kind: "behaviors", "sets", "objects", "parameters", "signals". The report counts for behaviors and
+// parameters; the status for sets. Throws InputError on another kind.
+Json list_json(const std::string& what, const Instance& instance, const InstanceStatus& status, const Answer& report);
+
+}  // namespace kadans

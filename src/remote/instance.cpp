@@ -1,0 +1,97 @@
+#include "kadans/remote/instance.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "kadans/config/problems.h"
+
+namespace kadans {
+
+OrderQueue::~OrderQueue() {
+  for (Cases* cases : {&asked_, &answered_}) {
+    for (OrderCase* left = nullptr; cases->try_pop(left);) delete left;
+  }
+}
+
+bool OrderQueue::ask(std::unique_ptr<OrderCase> order) {
+  if (on_their_way_ == orders_waiting_max || !asked_.try_push(order.get())) return false;
+  (void)order.release();  // now the ring's
+  ++on_their_way_;
+  return true;
+}
+
+std::unique_ptr<OrderCase> OrderQueue::answered() noexcept {
+  OrderCase* order = nullptr;
+  if (answered_.try_pop(order)) --on_their_way_;
+  return std::unique_ptr<OrderCase>(order);
+}
+
+std::unique_ptr<OrderCase> OrderQueue::take() noexcept {
+  OrderCase* order = nullptr;
+  (void)asked_.try_pop(order);
+  return std::unique_ptr<OrderCase>(order);
+}
+
+void OrderQueue::answer(std::unique_ptr<OrderCase> order) noexcept {
+  if (answered_.try_push(order.get())) (void)order.release();  // there is room for all that were asked
+}
+
+std::uint64_t InstancePort::send(Order order) {
+  const bool to_records = order.kind == Order::Kind::record_start || order.kind == Order::Kind::record_stop;
+  auto asked = std::make_unique<OrderCase>();
+  asked->order = std::move(order);
+  asked->answer.number = sent_ + 1;
+  if (!(to_records ? records_ : behaviors_).ask(std::move(asked))) return 0;
+  return ++sent_;
+}
+
+bool InstancePort::next(Answer& answer) {
+  std::unique_ptr<OrderCase> answered = behaviors_.answered();
+  if (!answered) answered = records_.answered();
+  if (!answered) return false;
+  answer = std::move(answered->answer);
+  return true;
+}
+
+std::uint32_t Instance::set_named(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const ControlSetInfo& set : catalog_.sets) names.push_back(set.name);
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) throw InputError({.message = unknown_name("control set", name, names)});
+  return static_cast<std::uint32_t>(found - names.begin());
+}
+
+InstancePort& Instance::open_port() {
+  if (ports_.size() == ports_max) throw std::logic_error("an instance has no more ports");
+  return *ports_.emplace_back(std::make_unique<InstancePort>(catalog_.signals.size()));
+}
+
+void Instance::publish(const InstanceStatus& status) noexcept {
+  for (const auto& port : ports_) port->status_.publish(status);
+}
+
+void Instance::tell(const Event& event) {
+  const Transition& t = event.transition;
+  for (const auto& port : ports_) {
+    if (event.kind == Event::Kind::transition) {
+      port->events_.transition(t);
+    } else {
+      port->events_.message(t.time_ns, event.severity, t.behavior, event.text);
+    }
+  }
+}
+
+void Instance::tell(const Fault& fault) noexcept {
+  for (const auto& port : ports_) (void)port->faults_.try_push(fault);  // its server counts by itself
+}
+
+std::string fault_text(const Fault& fault, const RobotModel& model) {
+  const bool of_joint = fault.joint < model.joints.size();
+  char numbers[64];
+  std::snprintf(numbers, sizeof numbers, ": %g, limit %g", fault.value, fault.limit);
+  return name(fault.code) + (of_joint ? " at " + model.joints[fault.joint].name : std::string()) + numbers;
+}
+
+}  // namespace kadans

@@ -1,0 +1,169 @@
+// `kadans ctl` and its completion as a person uses them, beside a run on virtual time and a simulation.
+#include <cstdlib>
+#include <filesystem>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+using namespace kadans::program;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string program = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
+const char* const kp = "posture.l_knee.kp_Nm_per_rad";
+
+// Runs `commands` while `started` goes on in the background, found in the folder c; `ctl` stands for the program's.
+int beside(const fs::path& project, const std::string& started, const std::string& commands) {
+  write(project / "beside.sh",
+        "export XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/none\"\n"
+        "kadans() { '" +
+            program +
+            "' \"$@\"; }\n"
+            "ctl() { kadans ctl --socket c \"$@\"; }\n"
+            "'" +
+            program + "' " + started +
+            " --ctl c >out 2>err &\n"
+            "run=$!\n"
+            "until ctl status >/dev/null 2>&1; do kill -0 $run || exit 9; done\n" +
+            commands + "\nkill -TERM $run; wait $run; echo $? >code; wait\n");
+  return std::system(("cd '" + project.string() + "' && bash beside.sh >said 2>wrong").c_str());  // NOLINT: the point
+}
+
+const std::string live = "run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time -v";
+
+}  // namespace
+
+TEST_CASE("ctl looks into a run, commands it and tunes it, and the run ends as if nothing had been") {
+  const auto project = project_copy("ctl_run");
+  const std::string robot = read(project / "config/tulip/robot.json");
+  REQUIRE(beside(project, live,
+                 "ctl status && ctl status --json >status.json\n"
+                 "ctl list parameters | grep l_knee.kp\n"
+                 "ctl get posture.l_knee.kp_Nm_per_rad >before\n"
+                 "ctl set posture.l_knee.kp_Nm_per_rad 123\n"
+                 "ctl get posture.l_knee.kp_Nm_per_rad\n"
+                 "ctl save\n"
+                 "ctl undo\n"
+                 "ctl watch joint.l_knee.position_rad --rate 1000 --count 3\n"
+                 "printf '1 + 1\\n:status\\n' | ctl repl\n"
+                 "ctl record start seen.mcap; ctl record stop\n"
+                 "ctl fault list\n"
+                 "ctl stop\n") == 0);
+  const std::string said = read(project / "said"), wrong = read(project / "wrong");
+  CHECK_MESSAGE(read(project / "code") == "0\n", wrong);
+  CHECK_MESSAGE(wrong.empty(), wrong);
+  CHECK(has(said, "tulip (run on virtual time, process "));
+  CHECK(has(said, "safety   normal"));
+  CHECK(has(said, "squat in "));
+  CHECK(has(said, "\n123 Nm/rad\n"));
+  CHECK(has(said, std::string(kp) + ": 123 -> "));
+  CHECK(has(said, "time_s\tjoint.l_knee.position_rad\n"));
+  CHECK(has(said, "\n2\n"));
+  CHECK(has(said, "seen.mcap"));
+  CHECK(has(said, "safety level normal, 0 faults"));
+  CHECK(Json::parse(read(project / "status.json"))["safety"]["level"] == "normal");
+  const std::string saved = read(project / "config/tulip/robot.json");
+  CHECK(saved != robot);
+  CHECK(has(saved, "l_knee.kp_Nm_per_rad\": 123"));
+  CHECK(run("check config/tulip/robot.json", project).exit_code == 0);
+  CHECK(has(read(project / "err"), "ctl: uid "));  // every change is told
+}
+
+TEST_CASE("ctl says what it could not do, with the reason, by its exit code") {
+  const auto project = project_copy("ctl_refused");
+  REQUIRE(beside(project, live,
+                 "ctl set posture.l_knee.kp 1; echo $?\n"
+                 "ctl set posture.l_knee.kp_Nm_per_rad -1; echo $?\n"
+                 "ctl undo; echo $?\n"
+                 "ctl switch postur; echo $?\n"
+                 "ctl stauts; echo $?\n"
+                 "printf 'nonsense(\\n)\\nx.y.z\\n' | ctl repl; echo $?\n"
+                 "kadans ctl --socket c/develop estop; echo $?\n") == 0);
+  CHECK(read(project / "said") == "1\n1\n1\n1\n2\n1\n0\n");
+  const std::string wrong = read(project / "wrong");
+  CHECK(has(wrong, "unknown parameter 'posture.l_knee.kp', did you mean"));
+  CHECK(has(wrong, "is outside its range 0.."));
+  CHECK(has(wrong, "there is nothing to undo"));
+  CHECK(has(wrong, "unknown control set 'postur', did you mean 'posture'?"));
+  CHECK(has(wrong, "unknown command 'ctl stauts', did you mean 'status'?"));
+  CHECK(read(project / "code") == "1\n");  // the robot was held
+}
+
+TEST_CASE("ctl finds a simulation too, and says where it looked when there is none") {
+  const auto project = project_copy("ctl_sim");
+  REQUIRE(
+      beside(
+          project, "sim config/scenarios/squat.json --realtime --duration 1000 --watch",
+          "ctl status; ctl pause; ctl set posture.l_knee.kp_Nm_per_rad 80; ctl status; ctl record stop; ctl estop\n") ==
+      0);
+  const std::string said = read(project / "said");
+  CHECK(has(said, "simulation of squat"));
+  CHECK(has(said, "paused; squat"));
+  CHECK(has(said, " -> 80\n"));
+  CHECK(has(said, "record   squat.mcap"));
+  CHECK(has(read(project / "wrong"), "was begun with this run and ends with it"));
+  CHECK(read(project / "code") == "130\n");
+  const Outcome none = run("ctl --socket c status", project);
+  CHECK(none.exit_code == 2);
+  CHECK(has(none.err, "no running instance found; looked in c"));
+}
+
+TEST_CASE("a second run at the same place is refused before anything moves") {
+  const auto project = project_copy("ctl_second");
+  REQUIRE(
+      beside(
+          project, live,
+          "kadans run config/tulip/robot.json --threads-on-virtual-time --duration 1 --ctl c; echo $?; ctl status") ==
+      0);
+  CHECK(has(read(project / "said"), "2\ntulip"));
+  CHECK(has(read(project / "wrong"), "another instance is reached here already"));
+}
+
+TEST_CASE("bash completes verbs, options, and names from the run") {
+  const auto project = project_copy("ctl_bash");
+  write(
+      project / "complete.bash",
+      "kadans() { '" + program +
+          "' \"$@\"; }\neval \"$(kadans completion bash)\"\n"
+          "try() { COMP_WORDS=(kadans \"$@\"); COMP_CWORD=$#; COMPREPLY=(); _kadans; echo \"$*: ${COMPREPLY[*]}\"; }\n"
+          "try ctl st; try ct; try ctl fault ''; try ctl list s; try ctl play --re\n"
+          "try ctl --socket c set posture.l_knee.kp_; try ctl --socket c watch safety.lev\n"
+          "try ctl --socket c switch post; try ctl --socket c play squ; try ctl --socket gone set posture.\n"
+          "try completion ''\n");
+  REQUIRE(beside(project, live, "bash complete.bash") == 0);
+  const std::string said = read(project / "said");
+  CHECK_MESSAGE(has(said, "ctl st: status stop\n"), said);
+  CHECK(has(said, "ct: ctl\n"));
+  CHECK(has(said, "ctl fault : list clear\n"));
+  CHECK(has(said, "ctl list s: sets signals\n"));
+  CHECK(has(said, "ctl play --re: --replace\n"));
+  CHECK(has(said, std::string("set posture.l_knee.kp_: ") + kp + "\n"));
+  CHECK(has(said, "watch safety.lev: safety.level\n"));
+  CHECK(has(said, "switch post: posture\n"));
+  CHECK(has(said, "play squ: squat"));
+  CHECK(has(said, "gone set posture.: \n"));
+  CHECK(has(said, "completion : bash zsh\n"));
+  CHECK(read(project / "wrong").empty());
+}
+
+TEST_CASE("zsh completes verbs, and names from the run" *
+          doctest::skip(std::system("command -v zsh >/dev/null") != 0)) {
+  const auto project = project_copy("ctl_zsh");
+  write(project / "complete.zsh",
+        "kadans() { '" + program +
+            "' \"$@\" }\neval \"$(kadans completion zsh)\"\n"
+            "compadd() { shift; echo \"${(@)argv[(R)${words[CURRENT]}*]}\" }\n"
+            "_files() { echo files }\n"
+            "try() { local -a words=(kadans \"$@\"); local CURRENT=$(( $# + 1 )); echo -n \"$*: \"; _kadans }\n"
+            "try ctl st; try ctl --socket c set posture.l_knee.kp_; try check ''\n");
+  REQUIRE(beside(project, live, "zsh -f complete.zsh") == 0);
+  const std::string said = read(project / "said");
+  CHECK_MESSAGE(has(said, std::string("set posture.l_knee.kp_: ") + kp + "\n"), said);
+  CHECK(has(said, "ctl st: "));
+  CHECK(has(said, "check : files\n"));
+  CHECK_MESSAGE(read(project / "wrong").empty(), read(project / "wrong"));
+}

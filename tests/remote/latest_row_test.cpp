@@ -1,0 +1,62 @@
+#include "kadans/remote/latest_row.h"
+
+#include <array>
+#include <thread>
+
+#include <doctest/doctest.h>
+
+#include "kadans/testing/allocation_count.h"
+
+using kadans::LatestRow;
+
+TEST_CASE("nothing is copied unless it is wanted, and then each n-th row") {
+  LatestRow row(2);
+  const std::array<double, 2> values{1, 2};
+  row.publish(10, 100, values);
+  CHECK(row.read().values.empty());
+  row.want(5);
+  row.publish(11, 110, values);
+  CHECK(row.read().values.empty());
+  row.publish(15, 150, values);
+  CHECK(row.read().tick == 15);
+  CHECK(row.read().time_ns == 150);
+  CHECK(row.read().values[1] == 2);
+  row.publish(20, 200, std::array<double, 1>{7});
+  CHECK(row.read().tick == 15);  // not its length
+}
+
+TEST_CASE("publishing a row does not allocate") {
+  LatestRow row(3);
+  row.want(1);
+  const std::array<double, 3> values{1, 2, 3};
+  const kadans::testing::AllocationCount heap;
+  row.publish(1, 1, values);
+  const double last = row.read().values[2];
+  const long allocations = heap.count();
+  CHECK(allocations == 0);
+  CHECK(last == 3);
+}
+
+TEST_CASE("a reader beside the writer sees whole rows, newer each time") {
+  LatestRow row(64);
+  row.want(1);
+  constexpr std::uint64_t rows = 20'000;
+  std::thread writer([&row] {
+    std::array<double, 64> values{};
+    for (std::uint64_t tick = 1; tick <= rows; ++tick) {
+      values.fill(static_cast<double>(tick));
+      row.publish(tick, 0, values);
+    }
+  });
+  std::uint64_t last = 0;
+  bool whole = true, ordered = true;
+  while (last < rows) {
+    const LatestRow::View view = row.read();
+    for (const double value : view.values) whole = whole && value == static_cast<double>(view.tick);
+    ordered = ordered && view.tick >= last;
+    last = view.tick;
+  }
+  writer.join();
+  CHECK(whole);
+  CHECK(ordered);
+}

@@ -1,0 +1,46 @@
+#include "kadans/remote/tuning.h"
+
+#include <doctest/doctest.h>
+
+using namespace kadans;
+
+TEST_CASE("what is unsaved is the way from the configuration to now, whatever the steps") {
+  TuningHistory history;
+  history.note({"kp", 10, 20}, true);
+  history.note({"kp", 20, 30}, true);
+  history.note({"squat.depth_m", 0.1, 0.2}, false);
+  REQUIRE(history.unsaved().size() == 1);
+  CHECK(history.unsaved()[0].before == 10);
+  CHECK(history.unsaved()[0].now == 30);
+  history.drop();
+  CHECK(history.newest()->now == 30);
+  history.drop();
+  CHECK(history.unsaved()[0].now == 20);
+  history.drop();
+  CHECK(history.unsaved().empty());
+  CHECK(history.newest() == nullptr);
+}
+
+TEST_CASE("undoing what was saved is a change again, and a value set while it was saved stays unsaved") {
+  TuningHistory history;
+  history.note({"kp", 10, 20}, true);
+  const auto saving = history.unsaved();
+  history.note({"kp", 20, 25}, true);
+  history.saved(saving);
+  REQUIRE(history.unsaved().size() == 1);
+  CHECK(history.unsaved()[0].before == 20);
+  history.saved(history.unsaved());
+  CHECK(history.unsaved().empty());
+  history.drop();
+  REQUIRE(history.unsaved().size() == 1);
+  CHECK(history.unsaved()[0].before == 25);
+  CHECK(history.unsaved()[0].now == 20);
+}
+
+TEST_CASE("the way back has an end") {
+  TuningHistory history;
+  for (double value = 0; value < 2000; ++value) history.note({"kp", value, value + 1}, true);
+  std::size_t steps = 0;
+  for (; history.newest() != nullptr; ++steps) history.drop();
+  CHECK(steps == TuningHistory::steps_max);
+}
