@@ -23,6 +23,16 @@ std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
   return feet;
 }
 
+// The eyes of a gaze object; it has been made, so its options are there.
+GazeTruth::Eyes eyes_of(const ObjectConfig& object) {
+  GazeTruth::Eyes eyes{.object = object.name, .left = {}, .right = {}};
+  for (const TextEntry& option : object.options) {
+    if (option.key == "left_eye") eyes.left = option.text;
+    if (option.key == "right_eye") eyes.right = option.text;
+  }
+  return eyes;
+}
+
 SafePosture::Settings safe_posture_of(const SafeConfig& safe) {
   return {.pose = safe.pose, .after_s = safe.after_s, .time_s = safe.time_s};
 }
@@ -75,6 +85,9 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   if (seen_model_ != nullptr) {
     truth_ = std::make_unique<TruthSignals>(*seen_model_, catalog, feet_of(variant_.plant), feet_settle_s,
                                             variant_.plant.world);
+    for (const ObjectConfig& object : robot_.config.objects) {
+      if (object.type.name == "gaze") truth_->watch(catalog, eyes_of(object));
+    }
   } else {
     udp_plant_->declare_signals(catalog.signals);
   }

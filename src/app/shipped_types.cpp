@@ -3,6 +3,7 @@
 #include "kadans/control/computed_torque.h"
 #include "kadans/control/dcm_balance.h"
 #include "kadans/control/feedforward_player.h"
+#include "kadans/control/gaze.h"
 #include "kadans/control/gravity_compensation.h"
 #include "kadans/control/joint_cascade.h"
 #include "kadans/control/joint_impedance.h"
@@ -28,6 +29,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   types.add("computed_torque", make_computed_torque);
   types.add("dcm_balance", make_dcm_balance);
   types.add("gravity_compensation", make_gravity_compensation);
+  types.add("gaze", make_gaze);
   types.add("task_impedance", make_task_impedance);
 }
 

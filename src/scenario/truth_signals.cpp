@@ -51,6 +51,11 @@ void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
   }
 }
 
+void TruthSignals::watch(Catalog& catalog, const GazeTruth::Eyes& eyes) {
+  gazes_.push_back(std::make_unique<GazeTruth>(plant_, catalog, eyes));
+  gazes_.back()->declare(catalog.signals);
+}
+
 void TruthSignals::update_limits() noexcept {
   const PlantTruth& truth = plant_.truth();
   state_.position_rad = std::numeric_limits<double>::infinity();
@@ -119,6 +124,7 @@ void TruthSignals::update(double time_s, std::span<const double> row) noexcept {
   update_limits();
   update_feet(time_s);
   world_->update(truth);
+  for (const auto& gaze : gazes_) gaze->update(row);
   state_.reference_height_m = reference_height_m(row);
   state_.reference_error_m = state_.height_m - state_.reference_height_m;
 }

@@ -16,6 +16,7 @@ constexpr std::uint64_t evaluation_instructions = 100'000;
 constexpr std::uint64_t compilation_instructions = 10'000;
 constexpr std::array<std::string_view, 6> lua_words{"and", "or", "not", "true", "false", "nil"};
 constexpr std::array<std::string_view, 9> functions{"abs", "min", "max", "sqrt", "floor", "ceil", "sin", "cos", "deg"};
+constexpr std::string_view tick_before = "last.";
 
 bool starts_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
@@ -42,6 +43,8 @@ struct SignalExpressions::State {
   std::vector<Condition>* conditions = nullptr;
   const std::vector<SignalId>* used = nullptr;
   int values = LUA_NOREF;  // registry: the table of the signals' values, by place in `used`
+  int last = LUA_NOREF;    // registry: that of one tick before
+  bool begun = false;
   double time_s = 0;
   std::span<const double> row;
   const std::string* text = nullptr;  // to compile
@@ -63,6 +66,8 @@ int SignalExpressions::State::compile(lua_State* state) {
   if (self.values == LUA_NOREF) {
     lua_newtable(state);
     self.values = luaL_ref(state, LUA_REGISTRYINDEX);
+    lua_newtable(state);
+    self.last = luaL_ref(state, LUA_REGISTRYINDEX);
   }
   return 0;
 }
@@ -71,15 +76,26 @@ int SignalExpressions::State::evaluate(lua_State* state) {
   auto& self = *static_cast<State*>(lua_touserdata(state, 1));
   lua_rawgeti(state, LUA_REGISTRYINDEX, self.values);
   const int values = lua_gettop(state);
-  for (std::size_t i = 0; i < self.used->size(); ++i) {
-    lua_pushnumber(state, self.row[(*self.used)[i]]);
-    lua_rawseti(state, values, static_cast<int>(i) + 1);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, self.last);
+  const int last = lua_gettop(state);
+  const auto count = static_cast<int>(self.used->size());
+  const auto copy = [&](int from, int to, int i) {
+    lua_rawgeti(state, from, i);
+    lua_rawseti(state, to, i);
+  };
+  for (int i = 1; i <= count; ++i) {
+    if (self.begun) copy(values, last, i);
+    lua_pushnumber(state, self.row[(*self.used)[static_cast<std::size_t>(i) - 1]]);
+    lua_rawseti(state, values, i);
+    if (!self.begun) copy(values, last, i);
   }
+  self.begun = true;
   for (Condition& condition : *self.conditions) {
     lua_rawgeti(state, LUA_REGISTRYINDEX, condition.function);
     lua_pushvalue(state, values);
     lua_pushnumber(state, self.time_s);
-    lua_call(state, 2, 1);
+    lua_pushvalue(state, last);
+    lua_call(state, 3, 1);
     if (!lua_isboolean(state, -1))
       return luaL_error(state, "'%s' gives a %s, wanted true or false", condition.text.c_str(),
                         luaL_typename(state, -1));
@@ -120,7 +136,8 @@ bool SignalExpressions::translate(std::string_view text, Condition& condition, s
       lua += "math." + std::string(word);
       continue;
     }
-    const auto signal = find_signal(signals_, word);
+    const bool before = word.starts_with(tick_before);
+    const auto signal = find_signal(signals_, before ? word.substr(tick_before.size()) : word);
     if (!signal) {
       error = {static_cast<int>(begin) + 1,
                "unknown signal '" + std::string(word) + "'" + did_you_mean(word, signals_.names())};
@@ -129,7 +146,7 @@ bool SignalExpressions::translate(std::string_view text, Condition& condition, s
     if (std::ranges::find(condition.signals, *signal) == condition.signals.end()) condition.signals.push_back(*signal);
     auto place = std::ranges::find(used, *signal);
     if (place == used.end()) place = used.insert(place, *signal);
-    lua += "values[" + std::to_string(place - used.begin() + 1) + "]";
+    lua += (before ? "last[" : "values[") + std::to_string(place - used.begin() + 1) + "]";
   }
   return true;
 }
@@ -147,7 +164,7 @@ bool SignalExpressions::compile(const std::string& lua, Condition& condition, Ex
 
 bool SignalExpressions::add(std::string_view text, std::size_t& index, ExpressionError& error) {
   Condition condition{.text = std::string(text), .signals = {}};
-  std::string lua = "local values, time_s = ...; return (";
+  std::string lua = "local values, time_s, last = ...; return (";
   if (!translate(text, condition, lua, error) || !compile(lua + "\n)", condition, error)) return false;
   for (const SignalId signal : condition.signals) {
     if (std::ranges::find(used_, signal) == used_.end()) used_.push_back(signal);

@@ -40,6 +40,14 @@ TEST_CASE("always holds while every value is within bounds, and tells the worst"
   CHECK(result.at_s == 2);
 }
 
+TEST_CASE("A condition may look at a signal's value one tick before") {
+  const ScenarioCheck check{.name = "steps", .kind = CheckKind::always, .that = "abs(x - last.x) <= 1"};
+  CHECK(judged(check, {5, 6, 5.5, 5}).passed);
+  const CheckResult result = judged(check, {5, 6, 7.5, 7});
+  CHECK_FALSE(result.passed);
+  CHECK(result.at_s == 2);
+}
+
 TEST_CASE("always fails on NaN") {
   const ScenarioCheck check{.name = "n", .kind = CheckKind::always, .signal = "x", .max = 2};
   CHECK_FALSE(judged(check, {0, std::nan(""), 0}).passed);

@@ -7,11 +7,12 @@
 //   plant.limits.speed_share    the largest joint velocity, as a share of its limit
 //   reference.base.height_m     where the base would be if every joint stood at its set-point
 //   reference.base.error_m      plant.base.height_m minus that
-// and those of world_signals.h.
+// and those of world_signals.h, and of gaze_truth.h for eyes that are watched.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "kadans/control/catalog.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/plant/plant.h"
+#include "kadans/scenario/gaze_truth.h"
 #include "kadans/scenario/world_signals.h"
 
 namespace kadans {
@@ -33,6 +35,9 @@ class TruthSignals {
   };
   TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
                const WorldSettings& world = {});
+
+  // Before the run.
+  void watch(Catalog& catalog, const GazeTruth::Eyes& eyes);
 
   // After each step of the plant. `row` holds the signals of the last control tick: the set-points are read from it.
   void update(double time_s, std::span<const double> row) noexcept;
@@ -63,6 +68,7 @@ class TruthSignals {
   State state_;
   std::vector<FootState> feet_;
   std::optional<WorldSignals> world_;
+  std::vector<std::unique_ptr<GazeTruth>> gazes_;
   struct Reference {  // a control object's set-point of a joint
     std::uint32_t object;
     SignalId signal;
