@@ -268,7 +268,7 @@ class LiveRun {
                           record_log_,
                           {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}}};
   BehaviorSide behavior_side_{{instance_, process_ ? nullptr : &assembly_.host(), process_.get(), parts_.behaviors,
-                                parts_.control.exchange(), echo_, log_},
+                               parts_.control.exchange(), echo_, log_},
                               &leaving_};
   CtlService ctl_{place_of(options_), instance_};
   LiveService live_{options_.live, instance_, assembly_};

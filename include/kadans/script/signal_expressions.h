@@ -1,9 +1,9 @@
 // Conditions on signals, written in Lua: "plant.base.height_m > 0.6 and abs(base.pitch_rad) < 0.2".
 //
-// A dotted name is a signal; "plant." may be left out where no other signal bears the shorter name. With "last." in front
-// it is the signal's value one tick before (in the first tick, of that tick). time_s is the time, the functions of `math`
-// are known without their table. All conditions of a run live in one closed-in Lua state, are
-// compiled once and evaluated together, each tick under one budget. One thread at a time.
+// A dotted name is a signal; "plant." may be left out where no other signal bears the shorter name. With "last." in
+// front it is the signal's value one tick before (in the first tick, of that tick). time_s is the time, the functions
+// of `math` are known without their table. All conditions of a run live in one closed-in Lua state, are compiled once
+// and evaluated together, each tick under one budget. One thread at a time.
 #pragma once
 
 #include <memory>
