@@ -52,7 +52,8 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
       instance_(facts_of(scenario, assembly.robot()), assembly.catalog()),
       control_side_(instance_, parts_.control.safety()),
       record_side_(instance_, control_side_, logs.record, {{"robot", scenario.robot}, {"kadans", version}}),
-      behavior_side_({instance_, assembly.host(), parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),
+      behavior_side_(
+          {instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),
       service_(places.ctl, instance_),
       live_(places.live, instance_, assembly, &pace_) {
   record_side_.describe_with(robot_texts(assembly));
