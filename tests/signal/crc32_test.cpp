@@ -1,8 +1,18 @@
 #include "kadans/signal/crc32.h"
 
+#include <string_view>
+
 #include <doctest/doctest.h>
 
 using namespace kadans;
+
+namespace {
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+}  // namespace
 
 TEST_CASE("Crc32 gives the check value of the CRC-32 of zlib") {
   CHECK(crc32(bytes_of("123456789")) == 0xcbf43926U);

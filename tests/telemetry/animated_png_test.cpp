@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "kadans/signal/byte_order.h"
-#include "kadans/telemetry/crc32.h"
+#include "kadans/signal/crc32.h"
 
 using namespace kadans;
 
