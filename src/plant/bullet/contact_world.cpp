@@ -165,6 +165,10 @@ void ContactWorld::add(btMultiBody& body) {
 void ContactWorld::add(btCollisionObject& collider, bool fixed) {
   tree_solver_.add(collider);
   const int everything = btBroadphaseProxy::DefaultFilter | btBroadphaseProxy::StaticFilter;
+  if (btRigidBody* rigid = btRigidBody::upcast(&collider); rigid != nullptr && rigid->getInvMass() > 0) {
+    world_->addRigidBody(rigid, btBroadphaseProxy::DefaultFilter, everything);  // a plain collider never moves
+    return;
+  }
   world_->addCollisionObject(&collider, fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
                              fixed ? btBroadphaseProxy::DefaultFilter : everything);
 }
