@@ -22,6 +22,10 @@ std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
   return feet;
 }
 
+SafePosture::Settings safe_posture_of(const SafeConfig& safe) {
+  return {.pose = safe.pose, .after_s = safe.after_s, .time_s = safe.time_s};
+}
+
 // The behaviors' names are known once they are loaded.
 void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
   const std::vector<std::string> names = host.names();
@@ -32,8 +36,11 @@ void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
   }
 }
 
-std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const SafeConfig& safe, const Catalog& catalog,
-                                      std::uint64_t seed, RunLog& log) {
+}  // namespace
+
+std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const SafeConfig& safe,
+                                             const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
+                                             std::span<const std::byte> kept) {
   ScriptHost::Settings settings;
   settings.root = project_root(scenario.file);
   settings.seed = seed;
@@ -41,16 +48,16 @@ std::unique_ptr<ScriptHost> make_host(const ScenarioConfig& scenario, const Safe
   for (const ScenarioEvent& event : scenario.events) {
     settings.events.push_back({std::llround(event.at_s * 1e9), event.order});
   }
-  settings.safe = {.pose = safe.pose, .after_s = safe.after_s, .time_s = safe.time_s};
+  settings.safe = safe_posture_of(safe);
+  settings.kept = kept;
   auto host = std::make_unique<ScriptHost>(settings, catalog, log);
   verify_events(scenario, *host);
   return host;
 }
 
-}  // namespace
-
-Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link)
-    : scenario_(scenario), log_(log), link_(link), robot_(read_robot(scenario.robot)) {
+Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
+                   ProcessHost* outside)
+    : scenario_(scenario), log_(log), link_(link), outside_(outside), robot_(read_robot(scenario.robot)) {
   control_system_ = make_control_system(robot_);
   Catalog& catalog = control_system_->catalog;
   try {
@@ -66,13 +73,14 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   exchange_ = std::make_unique<EngineExchange>();
   truth_ =
       std::make_unique<TruthSignals>(*plant_, catalog, feet_of(variant_.plant), feet_settle_s, variant_.plant.world);
-  host_ = make_host(scenario, robot_.config.safe, catalog, seed, log);
+  if (outside == nullptr) host_ = make_script_host(scenario, robot_.config.safe, catalog, seed, log);
   upkeep_first_ = catalog.signals.size();
-  host_->declare_signals(catalog.signals);
+  if (outside != nullptr) outside->attach(catalog, safe_posture_of(robot_.config.safe));
+  if (host_) host_->declare_signals(catalog.signals);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
   control_ = std::make_unique<ControlEngine>(robot_.config.engine, *plant_, *estimator_, *safety_, *sets_, catalog,
                                              *exchange_);
-  faulty_host_ = make_faulty_host(scenario, *host_);
+  if (host_) faulty_host_ = make_faulty_host(scenario, *host_);
   disturbances_ = std::make_unique<Disturbances>(scenario, robot_.config.model);
   make_behaviors();
 }
@@ -117,17 +125,20 @@ void Assembly::make_plant(std::uint64_t seed) {
   plant_ = linked_plant_ ? static_cast<ModelPlant*>(linked_plant_.get()) : model_;
 }
 
+BehaviorHost& Assembly::played() noexcept {
+  if (faulty_host_) return *faulty_host_;
+  return outside_ != nullptr ? static_cast<BehaviorHost&>(*outside_) : *host_;
+}
+
 void Assembly::make_behaviors() {
-  BehaviorHost* host = host_.get();
-  if (faulty_host_) host = faulty_host_.get();
-  if (filtered_) host = filtered_.get();
+  BehaviorHost* host = filtered_ ? filtered_.get() : &played();
   lockstep_.reset();
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host);
   lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);
 }
 
 void Assembly::filter(SnapshotFilter& filter) {
-  filtered_ = std::make_unique<FilteredHost>(faulty_host_ ? static_cast<BehaviorHost&>(*faulty_host_) : *host_, filter);
+  filtered_ = std::make_unique<FilteredHost>(played(), filter);
   make_behaviors();
 }
 

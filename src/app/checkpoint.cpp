@@ -1,9 +1,9 @@
 #include "checkpoint.h"
 
-#include <charconv>
 #include <cmath>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -11,14 +11,10 @@ namespace {
 constexpr const char* metadata_name = "checkpoint";
 
 template <typename Number>
-Number number_of(const TextMap& facts, const char* name, int base, const std::string& file) {
+Number fact_of(const TextMap& facts, const char* name, int base, const std::string& file) {
   const auto found = facts.find(name);
-  Number number{};
-  if (found != facts.end()) {
-    const std::string& text = found->second;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
-    if (error == std::errc{} && stop == text.data() + text.size()) return number;
-  }
+  const std::optional<Number> number = found == facts.end() ? std::nullopt : number_of<Number>(found->second, base);
+  if (number) return *number;
   throw InputError({.file = file, .message = std::string("is a damaged checkpoint: no ") + name});
 }
 
@@ -49,23 +45,19 @@ Checkpoint read_checkpoint(const std::string& file) {
   }
   const TextMap& facts = found->second;
   checkpoint.inputs = read_inputs(reader, file);
-  checkpoint.at = {number_of<std::uint64_t>(facts, "tick", 10, file),
-                   number_of<std::int64_t>(facts, "time_ns", 10, file),
-                   number_of<std::uint64_t>(facts, "state_hash", 16, file)};
+  checkpoint.at = {fact_of<std::uint64_t>(facts, "tick", 10, file), fact_of<std::int64_t>(facts, "time_ns", 10, file),
+                   fact_of<std::uint64_t>(facts, "state_hash", 16, file)};
   if (const auto hashes = facts.find("hashes"); hashes != facts.end()) checkpoint.trail = marks_of(hashes->second);
   return checkpoint;
 }
 
 CheckpointOrder parse_checkpoint(const std::string& text) {
   const std::size_t equals = text.find('=');
-  CheckpointOrder order;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + std::min(equals, text.size()), order.at_s);
-  if (equals == std::string::npos || error != std::errc{} || stop != text.data() + equals || !(order.at_s > 0) ||
-      equals + 1 == text.size())
+  const std::optional<double> at_s = number_of<double>(std::string_view(text).substr(0, equals));
+  if (equals == std::string::npos || !at_s || !(*at_s > 0) || equals + 1 == text.size())
     throw InputError(
         {.file = "--checkpoint", .message = "'" + text + "' must be SECONDS=FILE, such as 2.5=crouched.mcap"});
-  order.file = text.substr(equals + 1);
-  return order;
+  return {.at_s = *at_s, .file = text.substr(equals + 1)};
 }
 
 void CheckpointWriter::between_ticks(const RunMark& mark) {

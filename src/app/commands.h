@@ -70,9 +70,15 @@ struct RunOptions {
   int cpu = -1;        // of the control thread; -1: an isolated one, else the last
   bool verbose = false;
   bool json = false;
+  std::string behaviors = "thread";    // where they play; or "process"
+  double behaviors_patience_s = 0;     // with a process that does not answer; 0: the default
+  std::uint32_t behaviors_deaths = 0;  // in a row, before it stays down; 0: the default
+  double behaviors_memory_MB = 256;    // more than it has when it begins to play
   CtlPlace ctl;  // on virtual time only where a folder is named
 };
 int run_live(const RunOptions& options);
+// What run_live starts for behaviors in a process of their own: robot, play and seed count.
+int run_behavior_process(const RunOptions& options);
 
 struct JitterOptions {
   double seconds = 60;  // of our own samples; cyclictest takes as long again

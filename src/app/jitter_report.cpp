@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/signal/number_text.h"
+
 namespace kadans {
 namespace {
 
@@ -25,13 +27,6 @@ constexpr int bar_width = 40;
 
 double us(double ns) { return std::round(ns) / 1000; }
 double us(std::int64_t ns) { return us(static_cast<double>(ns)); }
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -64,15 +59,15 @@ Json json_of(const TickStatistics& statistics) {
 }
 
 std::string row(const char* name, const TickStatistics& s) {
-  std::string text = format("  %-22s %8.2f %8.2f", name, us(s.min_ns()), us(s.mean_ns()));
-  for (const Quantile& quantile : quantiles) text += format(" %8.2f", us(s.percentile_ns(quantile.share)));
-  return text + format(" %9.2f\n", us(s.max_ns()));
+  std::string text = printed("  %-22s %8.2f %8.2f", name, us(s.min_ns()), us(s.mean_ns()));
+  for (const Quantile& quantile : quantiles) text += printed(" %8.2f", us(s.percentile_ns(quantile.share)));
+  return text + printed(" %9.2f\n", us(s.max_ns()));
 }
 
 std::string table(const JitterSample& own, const YardstickSample& yardstick) {
-  std::string text = format("  %-22s %8s %8s", "us", "min", "mean");
-  for (const Quantile& quantile : quantiles) text += format(" %8s", quantile.name);
-  text += format(" %9s\n", "max");
+  std::string text = printed("  %-22s %8s %8s", "us", "min", "mean");
+  for (const Quantile& quantile : quantiles) text += printed(" %8s", quantile.name);
+  text += printed(" %9s\n", "max");
   text += row("lateness", own.statistics.lateness);
   if (yardstick.lateness.count() > 0) text += row("  of cyclictest", yardstick.lateness);
   text += row("jitter", own.statistics.jitter);
@@ -89,14 +84,14 @@ std::string histogram(const TickStatistics& jitter, std::int64_t period_ns) {
     const double share = static_cast<double>(until - before) / total;
     // Logarithmic, so that a thousandth still shows: full bar = all, a quarter less for each tenth.
     const double length = share > 0 ? std::max(1.0, bar_width * (1 + std::log10(share) / 6)) : 0;
-    text +=
-        format("  %-22s %10llu %9.4f %%  ", name.c_str(), static_cast<unsigned long long>(until - before), 100 * share);
+    text += printed("  %-22s %10llu %9.4f %%  ", name.c_str(), static_cast<unsigned long long>(until - before),
+                    100 * share);
     text += std::string(static_cast<std::size_t>(length), '#') + "\n";
     before = until;
   };
   for (const std::int64_t end_us : band_ends_us) {
     const double percent = 1e5 * static_cast<double>(end_us) / static_cast<double>(period_ns);
-    band(format("<= %4lld us, %g %%", static_cast<long long>(end_us), percent), jitter.count_until(end_us * 1000));
+    band(printed("<= %4lld us, %g %%", static_cast<long long>(end_us), percent), jitter.count_until(end_us * 1000));
   }
   band("more", jitter.count());
   return text;
@@ -107,37 +102,37 @@ std::string verdict(const TickStatistics& jitter, std::int64_t period_ns) {
   const double within = static_cast<double>(jitter.count_until(bound_ns)) /
                         static_cast<double>(std::max<std::uint64_t>(jitter.count(), 1));
   const bool all = jitter.max_ns() <= bound_ns;
-  return format("verdict: %.4f %% of the jitter within 1 %% of the period (%g us): %s\n", 100 * within, us(bound_ns),
-                all               ? "every beat keeps the bound"
-                : within >= 0.999 ? "the bound is kept but for single beats"
-                : within >= 0.9   ? "the bound is kept most of the time"
-                                  : "the bound is not kept");
+  return printed("verdict: %.4f %% of the jitter within 1 %% of the period (%g us): %s\n", 100 * within, us(bound_ns),
+                 all               ? "every beat keeps the bound"
+                 : within >= 0.999 ? "the bound is kept but for single beats"
+                 : within >= 0.9   ? "the bound is kept most of the time"
+                                   : "the bound is not kept");
 }
 
 std::string comparison(const JitterRun& run) {
   if (run.yardstick.empty()) return "cyclictest is not there (package rt-tests): nothing to compare with\n";
-  std::string text = format("medians of %zu alternating pairs, lateness in us\n  %-22s", run.own.size(), "");
-  for (const char* name : compared_names) text += format(" %8s", name);
-  text += format("\n  %-22s", "kadans");
+  std::string text = printed("medians of %zu alternating pairs, lateness in us\n  %-22s", run.own.size(), "");
+  for (const char* name : compared_names) text += printed(" %8s", name);
+  text += printed("\n  %-22s", "kadans");
   for (const double share : compared) {
-    text += format(" %8.2f", median_of(run.own, [&](const JitterSample& s) {
-                     return us(s.statistics.lateness.percentile_ns(share));
-                   }));
+    text += printed(" %8.2f", median_of(run.own, [&](const JitterSample& s) {
+                      return us(s.statistics.lateness.percentile_ns(share));
+                    }));
   }
-  text += format("\n  %-22s", "cyclictest");
+  text += printed("\n  %-22s", "cyclictest");
   for (const double share : compared) {
-    text += format(" %8.2f", median_of(run.yardstick,
-                                       [&](const YardstickSample& s) { return us(s.lateness.percentile_ns(share)); }));
+    text += printed(" %8.2f", median_of(run.yardstick,
+                                        [&](const YardstickSample& s) { return us(s.lateness.percentile_ns(share)); }));
   }
-  text += format("\n  %-22s", "ratio");
-  for (const double share : compared) text += format(" %8.3f", ratio(run, share));
+  text += printed("\n  %-22s", "ratio");
+  for (const double share : compared) text += printed(" %8.3f", ratio(run, share));
   return text + "\n";
 }
 
 std::string mode(const JitterRun& run) {
-  std::string text = run.settings.spin_ns > 0 ? format("sleep, then spin %g us", us(run.settings.spin_ns)) : "sleep";
-  text += format(", CPU %d, ", run.settings.cpu);
-  text += run.settings.priority > 0 ? format("SCHED_FIFO %d", run.settings.priority) : "no real-time priority";
+  std::string text = run.settings.spin_ns > 0 ? printed("sleep, then spin %g us", us(run.settings.spin_ns)) : "sleep";
+  text += printed(", CPU %d, ", run.settings.cpu);
+  text += run.settings.priority > 0 ? printed("SCHED_FIFO %d", run.settings.priority) : "no real-time priority";
   text += run.keep_awake ? ", kept awake" : "";
   text += run.latency_held ? ", cpu_dma_latency 0" : "";
   return text + (run.load ? ", under load" : ", no load made");
@@ -171,14 +166,14 @@ YardstickSample together(const std::vector<YardstickSample>& stretches) {
 std::string jitter_text(const JitterRun& run) {
   const JitterSample own = together(run.own);
   const TaskStatistics& s = own.statistics;
-  std::string text =
-      format("%llu beats of %g us: ", static_cast<unsigned long long>(s.lateness.count()), us(run.settings.period_ns)) +
-      mode(run) + "\n\n" + table(own, together(run.yardstick)) + "\n";
-  text += format("  overruns %llu, wakes a period late or more %llu, beats left out %llu\n",
-                 static_cast<unsigned long long>(s.overruns.get()), static_cast<unsigned long long>(s.late_wakes.get()),
-                 static_cast<unsigned long long>(s.missed.get()));
-  text += format("  CPU time: task %.3f s, keep-awake %.3f s\n\n", 1e-9 * static_cast<double>(own.cpu_time_ns),
-                 1e-9 * static_cast<double>(run.keep_awake_ns));
+  std::string text = printed("%llu beats of %g us: ", static_cast<unsigned long long>(s.lateness.count()),
+                             us(run.settings.period_ns)) +
+                     mode(run) + "\n\n" + table(own, together(run.yardstick)) + "\n";
+  text += printed("  overruns %llu, wakes a period late or more %llu, beats left out %llu\n",
+                  static_cast<unsigned long long>(s.overruns.get()),
+                  static_cast<unsigned long long>(s.late_wakes.get()), static_cast<unsigned long long>(s.missed.get()));
+  text += printed("  CPU time: task %.3f s, keep-awake %.3f s\n\n", 1e-9 * static_cast<double>(own.cpu_time_ns),
+                  1e-9 * static_cast<double>(run.keep_awake_ns));
   return text + "jitter\n" + histogram(s.jitter, run.settings.period_ns) + verdict(s.jitter, run.settings.period_ns) +
          "\n" + comparison(run);
 }

@@ -1,11 +1,16 @@
 #include "leaving.h"
 
+#include "kadans/signal/input_error.h"
+
 namespace kadans {
 
 void Leaving::beside_tick(std::int64_t time_ns) {
   if (!asked_.load(std::memory_order_relaxed)) return;
   if (step_ == Step::play) {
-    host_.order({.kind = PlayOrder::Kind::stop});  // carried out in the tick that follows
+    try {
+      host_.order({.kind = PlayOrder::Kind::stop});  // carried out in the tick that follows
+    } catch (const InputError&) {                    // nothing plays any more
+    }
     step_ = Step::leave;
     return;
   }

@@ -5,17 +5,17 @@
 #include <atomic>
 #include <cstdint>
 
+#include "kadans/config/play_order.h"
 #include "kadans/engine/behavior_engine.h"
 #include "kadans/realtime/engine_tasks.h"
 #include "kadans/script/safe_posture.h"
-#include "kadans/script/script_host.h"
 
 namespace kadans {
 
 class Leaving final : public BesideTick {
  public:
   // Throws InputError on an unknown pose.
-  Leaving(const SafePosture::Settings& posture, const Catalog& catalog, ScriptHost& host, BehaviorEngine& behaviors,
+  Leaving(const SafePosture::Settings& posture, const Catalog& catalog, OrderTaker& host, BehaviorEngine& behaviors,
           EngineExchange& exchange)
       : posture_({.pose = posture.pose, .after_s = 0, .time_s = posture.time_s}, catalog),
         host_(host),
@@ -29,7 +29,7 @@ class Leaving final : public BesideTick {
   enum class Step : std::uint8_t { play, leave, move };
 
   SafePosture posture_;
-  ScriptHost& host_;
+  OrderTaker& host_;
   BehaviorEngine& behaviors_;
   EngineExchange& exchange_;
   std::atomic<bool> asked_{false};

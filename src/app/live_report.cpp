@@ -78,6 +78,13 @@ std::string live_text(const LiveResult& result) {
                 whole(result.behaviors.commands().sent()), whole(result.engine.inbox().state().applied),
                 whole(refused(result)));
   all += text.data();
+  if (result.process != nullptr) {
+    const ProcessHost& process = *result.process;
+    all += row("behavior process", process.answer_cost(), "from the request to the answer");
+    std::snprintf(text.data(), text.size(), "  behavior process: died %llu times, replaced %llu times%s\n",
+                  whole(process.deaths()), whole(process.takeovers()), process.down() ? ", is down" : "");
+    all += text.data();
+  }
   if (result.recorder != nullptr) {
     std::snprintf(text.data(), text.size(), "  record: %llu rows, %u dropped, %llu lost, %.1f MB\n",
                   whole(result.recorder->rows()), result.recorder->dropped(), whole(result.recorder->lost()),
@@ -113,6 +120,14 @@ std::string live_json(const LiveResult& result) {
               {"refused", refused(result)}}},
             {"model_lost_periods", result.plant.lost_periods()},
             {"threads", threads}};
+  if (result.process != nullptr) {
+    const ProcessHost& process = *result.process;
+    json["behavior_process"] = {{"deaths", process.deaths()},
+                                {"takeovers", process.takeovers()},
+                                {"down", process.down()},
+                                {"answer_us", json_of(process.answer_cost())},
+                                {"outage_us", json_of(process.outage())}};
+  }
   if (result.recorder != nullptr) {
     json["record"] = {{"rows", result.recorder->rows()},
                       {"dropped", result.recorder->dropped()},

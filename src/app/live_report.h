@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "kadans/script/process/process_host.h"
 #include "kadans/telemetry/recorder.h"
 #include "live_threads.h"
 
@@ -16,6 +17,7 @@ struct LiveResult {
   const ControlEngine& engine;
   const PlantTask& plant;
   const Recorder* recorder = nullptr;
+  const ProcessHost* process = nullptr;  // of the behaviors
   double duration_s = 0;
   double start_ms = 0;  // from the start of the process to the first control tick
   std::string ended;    // why: "told to stop", "duration", or what failed

@@ -1,20 +1,12 @@
 #include "live_threads.h"
 
-#include <sched.h>
+#include "kadans/realtime/placement.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::int64_t start_ns = 10'000'000;  // for the threads to come up
 constexpr std::int64_t record_period_ns = 20'000'000;
-
-// The threads that are started from here on leave the control thread's CPU alone, if there is another.
-void leave_cpu(int cpu) noexcept {
-  cpu_set_t cpus;
-  if (sched_getaffinity(0, sizeof cpus, &cpus) != 0 || CPU_COUNT(&cpus) < 2) return;
-  CPU_CLR(static_cast<std::size_t>(cpu), &cpus);
-  (void)sched_setaffinity(0, sizeof cpus, &cpus);
-}
 
 }  // namespace
 
@@ -24,20 +16,22 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
   const std::int64_t period_ns = timing.control_period_ns;
   // On the wall clock the model is half a period behind, so that what it is told and what it says is always as old; and
   // it shares the control thread's CPU: when the machine takes that away for a while, time passes for neither.
+  const std::int64_t prepare_ns = timing.virtual_time ? 0 : timing.spin_ns / 4;
   const std::int64_t plant_first_ns = timing.virtual_time ? 0 : period_ns / 2;
   add({.name = "control",
        .period_ns = period_ns,
        .first_ns = period_ns,
-       .prepare_ns = timing.virtual_time ? 0 : timing.spin_ns / 4,
+       .prepare_ns = prepare_ns,
        .priority = priority(control_priority),
        .cpu = timing.virtual_time ? -1 : timing.cpu},
       tasks.control, timing.spin_ns);
   add({.name = "behaviors",
        .period_ns = timing.behavior_period_ns,
        .first_ns = 2 * period_ns,
+       .prepare_ns = 2 * prepare_ns,
        .priority = priority(behavior_priority),
        .stack_bytes = std::size_t{1} << 20U},
-      tasks.behaviors, 0);
+      tasks.behaviors, timing.spin_ns);
   add({.name = "plant",
        .period_ns = period_ns,
        .first_ns = plant_first_ns,
@@ -63,7 +57,7 @@ void LiveThreads::add(const TaskSettings& settings, Task& task, std::int64_t spi
 void LiveThreads::start() {
   if (!timing_.virtual_time) {
     if (timing_.keep_awake) awake_.emplace(timing_.cpu);
-    leave_cpu(timing_.cpu);
+    (void)leave_cpu(timing_.cpu);  // and so do the threads that are started here
   }
   for (const auto& thread : threads_) thread->start();
 }

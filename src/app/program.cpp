@@ -95,9 +95,32 @@ void add_run(CLI::App& app, RunOptions& options) {
   run->add_option("--cpu", options.cpu, "CPU of the control thread (default: an isolated one, else the last)")
       ->type_name("N")
       ->check(CLI::Range(0, 1023));
+  run->add_option("--behaviors", options.behaviors,
+                  "Where behaviors play: in a thread (default), or in a process of their own that may die")
+      ->check(CLI::IsMember({"thread", "process"}));
+  run->add_option("--behaviors-patience", options.behaviors_patience_s,
+                  "How long their process may be silent before it is killed (default: 0.3; on virtual time 10)")
+      ->type_name("S")
+      ->check(CLI::Range(0.01, 1000.0));
+  run->add_option("--behaviors-deaths", options.behaviors_deaths,
+                  "After how many deaths in a row their process stays down (default: 8)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1'000'000'000));
+  run->add_option("--behaviors-memory", options.behaviors_memory_MB,
+                  "What their process may take while it plays, above what it has then (default: 256)")
+      ->type_name("MB")
+      ->check(CLI::Range(1.0, 1e6));
   add_ctl_place(*run, options.ctl);
   run->add_flag("--json", options.json, "End with one JSON object on a line of its own");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
+}
+
+// Not for people: `run` starts it.
+void add_behavior_process(CLI::App& app, RunOptions& options) {
+  CLI::App* process = app.add_subcommand("behavior-process", "")->group("");
+  process->add_option("robot", options.robot)->required();
+  process->add_option("--play", options.play);
+  process->add_option("--seed", options.seed);
 }
 
 void add_jitter(CLI::App& app, JitterOptions& options) {
@@ -181,6 +204,8 @@ int run(int argc, char** argv) {
   add_params(app, params);
   RunOptions live;
   add_run(app, live);
+  RunOptions played;
+  add_behavior_process(app, played);
   JitterOptions jitter;
   add_jitter(app, jitter);
   CtlOptions ctl;
@@ -202,6 +227,7 @@ int run(int argc, char** argv) {
   }
   if (app.got_subcommand("test")) return run_test(test);
   if (app.got_subcommand("run")) return run_live(live);
+  if (app.got_subcommand("behavior-process")) return run_behavior_process(played);
   if (app.got_subcommand("jitter")) return run_jitter(jitter);
   if (app.got_subcommand("ctl")) return run_ctl(app, ctl);
   if (app.got_subcommand("completion")) return run_completion(app, completion);

@@ -8,20 +8,11 @@
 #include <elf.h>
 #include <link.h>
 
+#include "kadans/signal/machine_name.h"
 #include "version.h"
 
 namespace kadans {
 namespace {
-
-#if defined(__x86_64__)
-constexpr const char* machine = "x86_64";
-#elif defined(__i386__)
-constexpr const char* machine = "i386";
-#elif defined(__aarch64__)
-constexpr const char* machine = "aarch64";
-#else
-constexpr const char* machine = "other";
-#endif
 
 std::string hexadecimal(std::span<const unsigned char> bytes) {
   std::string text;
@@ -66,7 +57,7 @@ int add_part(dl_phdr_info* info, std::size_t, void* target) {
 }  // namespace
 
 TextMap program_parts() {
-  TextMap parts{{"version", version}, {"machine", machine}};
+  TextMap parts{{"version", version}, {"machine", machine_name()}};
   dl_iterate_phdr(add_part, &parts);
   return parts;
 }

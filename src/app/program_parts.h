@@ -2,7 +2,7 @@
 // library that is loaded. Two programs with the same parts make the same numbers of the same inputs.
 #pragma once
 
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 
 namespace kadans {
 

@@ -1,6 +1,5 @@
 #include "replay_command.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -10,6 +9,7 @@
 
 #include "input_files.h"
 #include "kadans/app/assembly.h"
+#include "kadans/signal/number_text.h"
 #include "kadans/telemetry/record_comparison.h"
 #include "observers.h"
 #include "run_branches.h"
@@ -24,11 +24,7 @@ constexpr std::size_t shown_differences = 12;
 
 std::optional<std::uint64_t> number_in(const TextMap& facts, const char* name) {
   const auto found = facts.find(name);
-  if (found == facts.end()) return std::nullopt;
-  std::uint64_t number = 0;
-  const std::string& text = found->second;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc{} && stop == text.data() + text.size() ? std::optional(number) : std::nullopt;
+  return found == facts.end() ? std::nullopt : number_of<std::uint64_t>(found->second);
 }
 
 // What stands at the front of the record. Throws InputError when it cannot be run again.

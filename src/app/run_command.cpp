@@ -10,6 +10,7 @@
 
 #include <unistd.h>
 
+#include "behavior_process.h"
 #include "commands.h"
 #include "kadans/app/assembly.h"
 #include "kadans/config/project_root.h"
@@ -33,16 +34,6 @@ namespace {
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
 constexpr std::size_t heap_reserve_bytes = std::size_t{2} << 20U;
-
-ScenarioConfig scenario_of(const RunOptions& options) {
-  ScenarioConfig scenario;
-  scenario.file = scenario.robot = options.robot;
-  scenario.name = "run";
-  scenario.plant = options.plant == "ideal" ? PlantKind::ideal : PlantKind::bullet;
-  scenario.seed = options.seed.value_or(1);
-  if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
-  return scenario;
-}
 
 Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const RobotConfig& robot) {
   namespace fs = std::filesystem;
@@ -125,14 +116,15 @@ class LiveRun {
  public:
   explicit LiveRun(const RunOptions& options)
       : options_(options),
-        scenario_(scenario_of(options)),
+        scenario_(live_scenario(options)),
         link_(std::make_unique<PlantExchange>()),
-        assembly_(scenario_, scenario_.seed, log_, link_.get()),
+        process_(options.behaviors == "process" ? start_behavior_process(options, log_) : nullptr),
+        assembly_(scenario_, scenario_.seed, log_, link_.get(), process_.get()),
         parts_(assembly_.parts()),
         truth_(parts_),
         plant_(*link_, assembly_.model(), assembly_.robot().engine.control_period_ns()),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
-                 assembly_.host(), parts_.behaviors, parts_.control.exchange()) {}
+                 assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
   int run() {
     assembly_.record_to(&control_side_);
@@ -155,8 +147,8 @@ class LiveRun {
     assembly_.model().write(off);
     tell(threads.supervisor().now_ns());
     if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
-    LiveResult result{threads,  control_, parts_.behaviors, parts_.control, plant_, record_side_.recorder(), left_at_s_,
-                      start_ms, ended,    failed_};
+    LiveResult result{threads, control_, parts_.behaviors, parts_.control, plant_, record_side_.recorder(),
+                      process_.get(), left_at_s_, start_ms, ended, failed_};
     result.failed = result.failed || log_.has_errors();
     std::fputs(live_text(result).c_str(), stdout);
     if (options_.json) std::puts(live_json(result).c_str());
@@ -249,6 +241,7 @@ class LiveRun {
   EchoLog echo_{&live_log_};
   RunLog log_{&echo_, kept_lines};
   std::unique_ptr<PlantExchange> link_;
+  std::unique_ptr<ProcessHost> process_;  // of the behaviors
   Assembly assembly_;
   RunParts parts_;
   TruthTask truth_;

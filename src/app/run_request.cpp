@@ -1,15 +1,11 @@
 #include "run_request.h"
 
-#include <charconv>
 #include <sstream>
+
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
-
-bool read_number(std::string_view text, double& number) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc{} && stop == text.data() + text.size();
-}
 
 std::string joined(const std::vector<std::string>& lines) {
   std::string text;
@@ -39,10 +35,11 @@ std::string exact_text(double number) {
 
 NumberEntry parse_setting(const std::string& text, const std::string& option) {
   const std::size_t equals = text.find('=');
-  NumberEntry setting{.key = text.substr(0, equals)};
-  if (equals == std::string::npos || !read_number(std::string_view(text).substr(equals + 1), setting.value))
+  const std::string_view after = equals == std::string::npos ? "" : std::string_view(text).substr(equals + 1);
+  const std::optional<double> value = number_of<double>(after);
+  if (!value)
     throw InputError({.file = option, .message = "'" + text + "' must be NAME=NUMBER, such as ground.friction=0.3"});
-  return setting;
+  return {.key = text.substr(0, equals), .value = *value};
 }
 
 ScenarioPush parse_push(const std::string& text, double at_s) {
@@ -53,7 +50,11 @@ ScenarioPush parse_push(const std::string& text, double at_s) {
   std::istringstream numbers(equals == std::string::npos ? "" : text.substr(equals + 1));
   std::size_t count = 0;
   for (std::string number; std::getline(numbers, number, ',') && count < 4; ++count) {
-    if (count == 3 || !read_number(number, push.impulse_Ns[count])) count = 9;
+    const std::optional<double> impulse_Ns = number_of<double>(number);
+    if (count == 3 || !impulse_Ns)
+      count = 9;
+    else
+      push.impulse_Ns[count] = *impulse_Ns;
   }
   if (count != 3)
     throw InputError({.file = "--push", .message = "'" + text + "' must be LINK=X,Y,Z in Ns, such as torso=0,2,0"});
@@ -91,15 +92,10 @@ void put_facts(const RunBranch& branch, TextMap& facts) {
 
 RunRequest request_of(const TextMap& facts, const std::string& record) {
   RunRequest request;
-  const std::string seed = fact(facts, "seed"), duration = fact(facts, "duration_s");
-  std::uint64_t number = 0;
-  const auto [stop, error] = std::from_chars(seed.data(), seed.data() + seed.size(), number);
-  double duration_s = 0;
-  if (error != std::errc{} || stop != seed.data() + seed.size() || !read_number(duration, duration_s) ||
-      !(duration_s > 0))
+  request.seed = number_of<std::uint64_t>(fact(facts, "seed"));
+  request.duration_s = number_of<double>(fact(facts, "duration_s"));
+  if (!request.seed || !request.duration_s || !(*request.duration_s > 0))
     throw InputError({.file = record, .message = "does not say with which seed and for how long it was recorded"});
-  request.seed = number;
-  request.duration_s = duration_s;
   request.play = fact(facts, "play");
   request.set = split(fact(facts, "set"));
   return request;

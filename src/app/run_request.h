@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kadans/config/scenario_config.h"
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 
 namespace kadans {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
@@ -59,8 +58,7 @@ int run_sweep(const SweepOptions& options) {
   const SweepResults results(folder, manifest);
   std::erase_if(cases, [&](const SweepCase& one) { return !shard.holds(one.index) || results.has(one); });
   catch_interrupts();
-  const std::size_t at_once = options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
-  SweepRun(plan, subjects, results, std::move(cases), options.json).run(at_once);
+  SweepRun(plan, subjects, results, std::move(cases), options.json).run(options.jobs);
   const MergedSweep part = part_of(results, shard);
   tell(part, results, shard, options.json);
   if (interrupted()) return exit_interrupted;

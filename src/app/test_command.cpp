@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
-#include <thread>
 
 #include "commands.h"
 #include "job_progress.h"
@@ -73,8 +72,7 @@ class Suite final : public JobWatcher {
                       run.scenario.wall_limit_s});
       if (golden_ != nullptr) jobs.back().arguments.insert(jobs.back().arguments.end(), {"--hash-every", "1"});
     }
-    const std::size_t at_once = options_.jobs > 0 ? options_.jobs : std::max(1U, std::thread::hardware_concurrency());
-    run_jobs(jobs, at_once, *this);
+    run_jobs(jobs, options_.jobs, *this);
     progress_.clear();
     report(failed_runs);
     if (interrupted()) return exit_interrupted;

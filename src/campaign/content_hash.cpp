@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -51,10 +52,6 @@ void ContentHash::add_folder(const fs::path& folder, std::string_view ending) {
   }
 }
 
-std::string ContentHash::hex() const {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value()));
-  return text;
-}
+std::string ContentHash::hex() const { return hash_text(value()); }
 
 }  // namespace kadans

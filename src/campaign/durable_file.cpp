@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "kadans/signal/input_error.h"
+
 namespace kadans {
 namespace {
 
@@ -16,8 +18,10 @@ namespace fs = std::filesystem;
 
 class Descriptor {
  public:
-  Descriptor(const fs::path& path, int flags) : path_(path), file_(open(path.c_str(), flags | O_CLOEXEC, 0644)) {
-    if (file_ < 0) fail("cannot be opened");
+  // `path` is opened, `named` is what complaints are about.
+  Descriptor(const fs::path& path, int flags, const fs::path& named)
+      : path_(named), file_(open(path.c_str(), flags | O_CLOEXEC, 0644)) {
+    if (file_ < 0) fail("cannot be written");
   }
   ~Descriptor() {
     if (file_ >= 0) close(file_);
@@ -47,7 +51,7 @@ class Descriptor {
 
  private:
   [[noreturn]] void fail(const char* what) const {
-    throw std::system_error(errno, std::generic_category(), path_.string() + " " + what);
+    throw InputError({.file = path_.string(), .message = what + (": " + std::generic_category().message(errno))});
   }
   fs::path path_;
   int file_;
@@ -59,17 +63,19 @@ void write_durably(const fs::path& file, std::string_view bytes) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const fs::path temporary = folder / ("." + file.filename().string() + "." + std::to_string(getpid()) + ".part");
   try {
-    const Descriptor descriptor(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+    const Descriptor descriptor(temporary, O_WRONLY | O_CREAT | O_TRUNC, file);
     descriptor.look_like(file);
     descriptor.write_all(bytes);
     descriptor.sync();
-    fs::rename(temporary, file);
+    std::error_code error;
+    fs::rename(temporary, file, error);
+    if (error) throw InputError({.file = file.string(), .message = "cannot be replaced: " + error.message()});
   } catch (...) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
     throw;
   }
-  Descriptor(folder, O_RDONLY | O_DIRECTORY).sync();
+  Descriptor(folder, O_RDONLY | O_DIRECTORY, folder).sync();
 }
 
 }  // namespace kadans

@@ -1,31 +1,22 @@
 #include "kadans/campaign/golden.h"
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 #include <system_error>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/campaign/durable_file.h"
 #include "kadans/config/json_value.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/machine_name.h"
 
 namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-#if defined(__x86_64__)
-constexpr const char* machine = "x86_64";
-#elif defined(__i386__)
-constexpr const char* machine = "i386";
-#elif defined(__aarch64__)
-constexpr const char* machine = "aarch64";
-#else
-constexpr const char* machine = "other";
-#endif
 
 constexpr std::size_t digits_each_s = 8;
 
@@ -77,9 +68,9 @@ GoldenHashes::GoldenHashes(fs::path file) : file_(std::move(file)) {
   } catch (const Json::exception& error) {
     throw InputError({.file = file_.string(), .message = std::string("is no list of golden hashes: ") + error.what()});
   }
-  if (of != machine) {
-    throw InputError(
-        {.file = file_.string(), .message = "holds the hashes of " + of + ", this is " + machine + ": they differ"});
+  if (of != machine_name()) {
+    throw InputError({.file = file_.string(),
+                      .message = "holds the hashes of " + of + ", this is " + machine_name() + ": they differ"});
   }
 }
 
@@ -127,7 +118,7 @@ std::vector<std::string> GoldenHashes::take(const std::vector<RunOutcome>& runs,
 }
 
 void GoldenHashes::write() const {
-  std::string text = "{\n  \"machine\": \"" + std::string(machine) + "\",\n  \"runs\": [\n";
+  std::string text = "{\n  \"machine\": \"" + std::string(machine_name()) + "\",\n  \"runs\": [\n";
   for (const GoldenRun& run : runs_) {
     std::string each_s;
     for (const std::string& hash : run.each_s) each_s += (each_s.empty() ? "" : " ") + hash;
@@ -135,13 +126,7 @@ void GoldenHashes::write() const {
     text += "    " + json.dump() + (&run == &runs_.back() ? "\n" : ",\n");
   }
   text += "  ]\n}\n";
-  const fs::path fresh = file_.string() + ".new";
-  std::ofstream stream(fresh, std::ios::binary);
-  stream << text;
-  stream.close();
-  std::error_code error;
-  if (stream) fs::rename(fresh, file_, error);
-  if (!stream || error) throw InputError({.file = file_.string(), .message = "cannot be written"});
+  write_durably(file_, text);
 }
 
 }  // namespace kadans

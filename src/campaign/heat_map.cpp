@@ -7,19 +7,13 @@
 #include <set>
 
 #include "kadans/config/problems.h"
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::size_t values_max = 24, bins = 10;
 constexpr int field_width = 56, field_height = 36, left = 110, top = 48, bottom = 70, legend = 120;
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[512];
-  const int length = std::snprintf(text, sizeof text, pattern, values...);
-  return {text, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof text) - 1))};
-}
 
 std::string escaped(const std::string& text) {
   std::string safe;
@@ -47,8 +41,8 @@ struct Axis {
     return std::min(bins - 1, static_cast<std::size_t>(share * static_cast<double>(bins)));
   }
   std::string label(std::size_t at) const {
-    if (!values.empty()) return format("%.3g", values[at]);
-    return format("%.3g", low + (high - low) * (static_cast<double>(at) + 0.5) / static_cast<double>(bins));
+    if (!values.empty()) return printed("%.3g", values[at]);
+    return printed("%.3g", low + (high - low) * (static_cast<double>(at) + 0.5) / static_cast<double>(bins));
   }
 };
 
@@ -79,7 +73,7 @@ std::string color(double share) {
   for (std::size_t i = 0; i < 3; ++i)
     parts[i] = static_cast<int>(
         std::lround(points[below][i] + (at - static_cast<double>(below)) * (points[below + 1][i] - points[below][i])));
-  return format("#%02x%02x%02x", parts[0], parts[1], parts[2]);
+  return printed("#%02x%02x%02x", parts[0], parts[1], parts[2]);
 }
 
 class Picture {
@@ -100,13 +94,13 @@ class Picture {
   std::string svg() const {
     const int width = left + static_cast<int>(x_.size()) * field_width + legend;
     const int height = top + static_cast<int>(y_.size()) * field_height + bottom;
-    std::string text = format(
+    std::string text = printed(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
         "font-family=\"sans-serif\" font-size=\"11\" text-anchor=\"middle\">\n",
         width, height);
-    text += format("<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", width, height);
-    text +=
-        format("<text x=\"%d\" y=\"24\" font-size=\"14\" text-anchor=\"start\">", left) + escaped(title_) + "</text>\n";
+    text += printed("<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", width, height);
+    text += printed("<text x=\"%d\" y=\"24\" font-size=\"14\" text-anchor=\"start\">", left) + escaped(title_) +
+            "</text>\n";
     for (std::size_t row = 0; row < y_.size(); ++row) {
       for (std::size_t column = 0; column < x_.size(); ++column) text += field_svg(column, row);
     }
@@ -139,15 +133,16 @@ class Picture {
     const Field& field = fields_[row * x_.size() + column];
     const int x = x_of(column), y = y_of(row);
     if (field.count == 0)
-      return format("<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"#eee\" stroke=\"#fff\"/>\n", x, y,
-                    field_width, field_height);
+      return printed("<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"#eee\" stroke=\"#fff\"/>\n", x, y,
+                     field_width, field_height);
     const double share = high_ > low_ ? (field.mean() - low_) / (high_ - low_) : 1;
     const char* const ink = share > 0.6 ? "#000" : "#fff";
-    return format("<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"%s\" stroke=\"#fff\"/>\n", x, y,
-                  field_width, field_height, color(share).c_str()) +
-           format("<text x=\"%d\" y=\"%d\" fill=\"%s\">%.3g</text>\n", x + field_width / 2, y + 16, ink, field.mean()) +
-           format("<text x=\"%d\" y=\"%d\" fill=\"%s\" font-size=\"9\">%zu</text>\n", x + field_width / 2, y + 29, ink,
-                  field.count);
+    return printed("<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"%s\" stroke=\"#fff\"/>\n", x, y,
+                   field_width, field_height, color(share).c_str()) +
+           printed("<text x=\"%d\" y=\"%d\" fill=\"%s\">%.3g</text>\n", x + field_width / 2, y + 16, ink,
+                   field.mean()) +
+           printed("<text x=\"%d\" y=\"%d\" fill=\"%s\" font-size=\"9\">%zu</text>\n", x + field_width / 2, y + 29, ink,
+                   field.count);
   }
 
   std::string labels() const {
@@ -155,25 +150,25 @@ class Picture {
     std::string text;
     for (std::size_t i = 0; i < x_.size(); ++i)
       text +=
-          format("<text x=\"%d\" y=\"%d\">%s</text>\n", x_of(i) + field_width / 2, bottom_y + 16, x_.label(i).c_str());
+          printed("<text x=\"%d\" y=\"%d\">%s</text>\n", x_of(i) + field_width / 2, bottom_y + 16, x_.label(i).c_str());
     for (std::size_t i = 0; i < y_.size(); ++i)
-      text += format("<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%s</text>\n", left - 8,
-                     y_of(i) + field_height / 2 + 4, y_.label(i).c_str());
+      text += printed("<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%s</text>\n", left - 8,
+                      y_of(i) + field_height / 2 + 4, y_.label(i).c_str());
     const int middle_x = left + static_cast<int>(x_.size()) * field_width / 2;
     const int middle_y = top + static_cast<int>(y_.size()) * field_height / 2;
     text +=
-        format("<text x=\"%d\" y=\"%d\" font-size=\"12\">", middle_x, bottom_y + 40) + escaped(x_.name) + "</text>\n";
-    text += format("<text transform=\"translate(20 %d) rotate(-90)\" font-size=\"12\">", middle_y) + escaped(y_.name) +
+        printed("<text x=\"%d\" y=\"%d\" font-size=\"12\">", middle_x, bottom_y + 40) + escaped(x_.name) + "</text>\n";
+    text += printed("<text transform=\"translate(20 %d) rotate(-90)\" font-size=\"12\">", middle_y) + escaped(y_.name) +
             "</text>\n";
     constexpr int parts = 5;
     const int legend_x = x_of(x_.size()) + 20;
     for (int i = 0; i < parts; ++i) {
       const double share = static_cast<double>(i) / (parts - 1);
       const int y = top + (parts - 1 - i) * 22;
-      text += format("<rect x=\"%d\" y=\"%d\" width=\"18\" height=\"22\" fill=\"%s\"/>\n", legend_x, y,
-                     color(share).c_str());
-      text += format("<text x=\"%d\" y=\"%d\" text-anchor=\"start\">%.3g</text>\n", legend_x + 24, y + 15,
-                     low_ + share * (high_ - low_));
+      text += printed("<rect x=\"%d\" y=\"%d\" width=\"18\" height=\"22\" fill=\"%s\"/>\n", legend_x, y,
+                      color(share).c_str());
+      text += printed("<text x=\"%d\" y=\"%d\" text-anchor=\"start\">%.3g</text>\n", legend_x + 24, y + 15,
+                      low_ + share * (high_ - low_));
     }
     return text;
   }

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <memory>
 #include <system_error>
+#include <thread>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -145,6 +146,7 @@ class Child {
 }  // namespace
 
 void run_jobs(std::span<const Job> jobs, std::size_t at_once, JobWatcher& watcher) {
+  if (at_once == 0) at_once = std::max(1U, std::thread::hardware_concurrency());
   std::vector<std::unique_ptr<Child>> running;
   std::size_t next = 0;
   bool stopped = false;
@@ -154,7 +156,7 @@ void run_jobs(std::span<const Job> jobs, std::size_t at_once, JobWatcher& watche
       next = jobs.size();
       for (const auto& child : running) child->cancel();
     }
-    for (; next < jobs.size() && running.size() < std::max<std::size_t>(at_once, 1); ++next) {
+    for (; next < jobs.size() && running.size() < at_once; ++next) {
       running.push_back(std::make_unique<Child>(jobs[next], next));
     }
     std::vector<pollfd> waited;

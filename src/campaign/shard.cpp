@@ -1,38 +1,33 @@
 #include "kadans/campaign/shard.h"
 
-#include <charconv>
 #include <cstdlib>
 #include <string_view>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
 
-bool whole_number(std::string_view text, std::size_t& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size();
-}
-
 std::optional<std::size_t> variable(const char* name) {
   const char* const text = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread is started
-  std::size_t value = 0;
   if (text == nullptr || *text == '\0') return std::nullopt;
-  if (!whole_number(text, value))
-    throw InputError({.file = name, .message = "is '" + std::string(text) + "', must be a whole number"});
+  const std::optional<std::size_t> value = number_of<std::size_t>(text);
+  if (!value) throw InputError({.file = name, .message = "is '" + std::string(text) + "', must be a whole number"});
   return value;
 }
 
 }  // namespace
 
 Shard parse_shard(const std::string& text) {
-  Shard shard;
   const std::size_t slash = text.find('/');
   const std::string_view all = text;
-  if (slash == std::string::npos || !whole_number(all.substr(0, slash), shard.index) ||
-      !whole_number(all.substr(slash + 1), shard.count) || shard.count == 0) {
+  const auto index = number_of<std::size_t>(all.substr(0, slash));
+  const auto count = number_of<std::size_t>(slash == std::string::npos ? "" : all.substr(slash + 1));
+  if (!index || !count || *count == 0) {
     throw InputError({.file = "--shard", .message = "'" + text + "' must be PART/PARTS, such as 0/4"});
   }
+  const Shard shard{.index = *index, .count = *count};
   if (shard.index >= shard.count) {
     throw InputError({.file = "--shard",
                       .message = "'" + text + "': parts count from 0, the last of " + std::to_string(shard.count) +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "kadans/signal/number_text.h"
 #include "kadans/telemetry/text_plot.h"
 
 namespace kadans {
@@ -11,19 +12,12 @@ namespace {
 constexpr std::size_t plot_columns = 60, plot_rows = 3;
 constexpr std::size_t transitions_shown = 6;
 
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[512];
-  const int length = std::snprintf(text, sizeof text, pattern, values...);
-  return {text, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof text) - 1))};
-}
-
 std::string painted(const SuiteStyle& style, const char* code, const std::string& text) {
   return style.color ? "\033[" + std::string(code) + "m" + text + "\033[0m" : text;
 }
 
 std::string title(const RunOutcome& run) {
-  return run.scenario + format(" (seed %llu)", static_cast<unsigned long long>(run.seed));
+  return run.scenario + printed(" (seed %llu)", static_cast<unsigned long long>(run.seed));
 }
 
 std::string indented(const std::string& text, const char* by) {
@@ -40,18 +34,18 @@ std::string plotted(const EvidenceTrace& trace, const SuiteStyle& style) {
   std::string text = "      " + trace.signal + (trace.unit.empty() ? "" : ", " + trace.unit) + '\n';
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     const bool edge = i == 0 || i + 1 == plot.lines.size();
-    text += "  " + (edge ? format("%11.4g ", i == 0 ? plot.top : plot.bottom) : std::string(12, ' '));
+    text += "  " + (edge ? printed("%11.4g ", i == 0 ? plot.top : plot.bottom) : std::string(12, ' '));
     text += (style.unicode ? "│" : "|") + plot.lines[i] + '\n';
   }
   return text + std::string(15, ' ') +
-         format("%-8.2f%*.2f s\n", trace.from_s, static_cast<int>(plot_columns) - 10, trace.to_s);
+         printed("%-8.2f%*.2f s\n", trace.from_s, static_cast<int>(plot_columns) - 10, trace.to_s);
 }
 
 std::string checks_of(const RunOutcome& run, const SuiteStyle& style) {
   std::string text;
   for (const CheckResult& check : run.checks) {
     if (check.passed) continue;
-    text += "    " + painted(style, "31", check.name) + format(": %g at %.3f s", check.value, check.at_s);
+    text += "    " + painted(style, "31", check.name) + printed(": %g at %.3f s", check.value, check.at_s);
     text += (check.note.empty() ? "" : ", " + check.note) + '\n';
     for (const EvidenceTrace& trace : run.traces) {
       if (trace.check == check.name && !trace.values.empty()) text += plotted(trace, style);
@@ -66,8 +60,8 @@ std::string suite_line(const RunOutcome& run, const SuiteStyle& style) {
   const bool passed = run.status == RunStatus::passed;
   const std::string mark = passed ? painted(style, "32", style.unicode ? "✓" : "ok")
                                   : painted(style, "31;1", style.unicode ? "✗" : "FAILED");
-  std::string text = "  " + mark + " " + title(run) + format("  %.2f s", run.wall_s);
-  if (run.simulated_s > 0 && run.wall_s > 0) text += format(", %.1f times real time", run.simulated_s / run.wall_s);
+  std::string text = "  " + mark + " " + title(run) + printed("  %.2f s", run.wall_s);
+  if (run.simulated_s > 0 && run.wall_s > 0) text += printed(", %.1f times real time", run.simulated_s / run.wall_s);
   return text + (passed ? "" : std::string("  ") + name(run.status)) + '\n';
 }
 
@@ -80,7 +74,7 @@ std::string failure_report(const RunOutcome& run, const SuiteStyle& style) {
   if (!run.quantities.empty()) {
     text += "    with";
     for (const QuantityValue& quantity : run.quantities)
-      text += format(" %s=%.6g", quantity.name.c_str(), quantity.value);
+      text += printed(" %s=%.6g", quantity.name.c_str(), quantity.value);
     text += '\n';
   }
   return text + "    again: " + run.repeat + '\n';
@@ -96,9 +90,9 @@ std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, co
     if (run.status == RunStatus::passed) continue;
     text += (failed++ == 0 ? "\n" : "") + failure_report(run, style);
   }
-  text += format("\n%zu runs, ", runs.size());
-  text += failed == 0 ? painted(style, "32", "all passed") : painted(style, "31;1", format("%zu failed", failed));
-  return text + format(": %.1f s simulated in %.1f s, %.1f s of work\n", simulated_s, wall_s, run_s);
+  text += printed("\n%zu runs, ", runs.size());
+  text += failed == 0 ? painted(style, "32", "all passed") : painted(style, "31;1", printed("%zu failed", failed));
+  return text + printed(": %.1f s simulated in %.1f s, %.1f s of work\n", simulated_s, wall_s, run_s);
 }
 
 }  // namespace kadans

@@ -9,24 +9,18 @@
 #include <nlohmann/json.hpp>
 
 #include "kadans/campaign/statistics.h"
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::size_t worst_shown = 5, missing_shown = 20;
 
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[512];
-  const int length = std::snprintf(text, sizeof text, pattern, values...);
-  return {text, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof text) - 1))};
-}
-
 std::string share_text(std::size_t hits, std::size_t count) {
   const Interval interval = wilson_interval(hits, count);
   const double share = count > 0 ? static_cast<double>(hits) / static_cast<double>(count) : 0;
-  return format("%zu of %zu, %.1f %% (%.1f .. %.1f)", hits, count, 100 * share, 100 * interval.low,
-                100 * interval.high);
+  return printed("%zu of %zu, %.1f %% (%.1f .. %.1f)", hits, count, 100 * share, 100 * interval.low,
+                 100 * interval.high);
 }
 
 std::string scenarios_text(const MergedSweep& sweep) {
@@ -54,9 +48,9 @@ std::string metrics_text(const MergedSweep& sweep) {
       text += ": no run has it\n";
       continue;
     }
-    text += format(": mean %.4g (%.4g .. %.4g), median %.4g, 5..95 %% %.4g .. %.4g, all %.4g .. %.4g", s.mean,
-                   s.mean_interval.low, s.mean_interval.high, s.median, s.low, s.high, s.least, s.greatest);
-    text += (s.count < values.size() ? format(", of %zu runs", s.count) : std::string()) + '\n';
+    text += printed(": mean %.4g (%.4g .. %.4g), median %.4g, 5..95 %% %.4g .. %.4g, all %.4g .. %.4g", s.mean,
+                    s.mean_interval.low, s.mean_interval.high, s.median, s.low, s.high, s.least, s.greatest);
+    text += (s.count < values.size() ? printed(", of %zu runs", s.count) : std::string()) + '\n';
   }
   return text;
 }
@@ -68,7 +62,7 @@ std::string failures_text(const MergedSweep& sweep) {
     ++reasons[std::string(name(row.status)) + (row.failed.empty() ? "" : ": " + row.failed)];
   }
   std::string text;
-  for (const auto& [reason, count] : reasons) text += format("  %6zu  ", count) + reason + '\n';
+  for (const auto& [reason, count] : reasons) text += printed("  %6zu  ", count) + reason + '\n';
   return text;
 }
 
@@ -93,10 +87,10 @@ std::string worst_text(const MergedSweep& sweep) {
   const std::vector<const CaseRow*> rows = worst_rows(sweep);
   std::string text = rows.empty() ? "" : "  worst\n";
   for (const CaseRow* row : rows) {
-    text += format("    case %zu, ", row->index) + row->scenario + ": " + name(row->status);
+    text += printed("    case %zu, ", row->index) + row->scenario + ": " + name(row->status);
     if (!row->failed.empty()) text += ": " + row->failed;
     if (!sweep.manifest.worst.empty())
-      text += ", " + sweep.manifest.worst + format(" %.4g", value_of(*row, sweep.manifest.worst));
+      text += ", " + sweep.manifest.worst + printed(" %.4g", value_of(*row, sweep.manifest.worst));
     text += "\n      again: " + row->repeat + '\n';
   }
   return text;
@@ -146,10 +140,10 @@ std::string sweep_summary(const MergedSweep& sweep) {
   std::string text = manifest.sweep + (manifest.doc.empty() ? "" : ": " + manifest.doc) +
                      "\n  passed: " + share_text(of.passed, of.cases) + '\n' + scenarios_text(sweep);
   if (!manifest.first_try.empty()) text += "  at the first try: " + share_text(of.first_try, of.cases) + '\n';
-  if (std::isfinite(of.median_s)) text += format("  median time: %.3g s\n", of.median_s);
+  if (std::isfinite(of.median_s)) text += printed("  median time: %.3g s\n", of.median_s);
   text += metrics_text(sweep) + failures_text(sweep) + worst_text(sweep);
   if (!sweep.missing.empty())
-    text += format("  missing: %zu of %zu cases: ", sweep.missing.size(), manifest.cases) +
+    text += printed("  missing: %zu of %zu cases: ", sweep.missing.size(), manifest.cases) +
             numbers_text(sweep.missing) + '\n';
   return text;
 }

@@ -2,6 +2,10 @@
 
 namespace kadans {
 
+void BehaviorEngine::prepare() noexcept {
+  if (host_ != nullptr) host_->prepare(exchange_.snapshot.read(0));
+}
+
 void BehaviorEngine::tick(std::int64_t time_ns) {
   const Snapshot& snapshot = exchange_.snapshot.read(0);
   sets_.update(tick_, snapshot);

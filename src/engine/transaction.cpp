@@ -10,7 +10,7 @@ void CommandSender::begin(std::int64_t time_ns) noexcept {
 
 bool CommandSender::add(const Command& command) noexcept {
   // Places in the queue only grow until this producer pushes, so what fits now fits at the commit.
-  const bool fits = overflow_ == 0 && size_ < max_transaction && size_ + 1 <= queue_.free();
+  const bool fits = overflow_ == 0 && size_ < max_transaction && size_ + 1 <= room();
   if (!fits) {
     ++overflow_;
     return false;
@@ -34,9 +34,17 @@ std::uint32_t CommandSender::commit() noexcept {
     refused_ += wanted;
     return 0;
   }
+  if (room_ != SIZE_MAX) room_ -= commands + 1;
   sent_ += wanted;
   committed_ = commands;
   return ++sequence_;
+}
+
+void CommandSender::follow(std::uint32_t last_sequence, std::size_t room) noexcept {
+  discard();
+  committed_ = 0;
+  sequence_ = last_sequence;
+  room_ = room;
 }
 
 void CommandSender::discard() noexcept {

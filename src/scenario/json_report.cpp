@@ -4,17 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "kadans/scenario/report.h"
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
 
 Json fault_json(const Fault& fault, const RobotModel& model) {
   Json json{{"code", name(fault.code)}, {"tick", fault.tick}};
@@ -60,7 +55,7 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   json["realtime_factor"] = result.realtime_factor;
   json["control_ticks"] = result.control_ticks;
   json["behavior_ticks"] = result.behavior_ticks;
-  json["state_hash"] = hex(result.state_hash);
+  json["state_hash"] = hash_text(result.state_hash);
   json["tick_ns"] = {{"median", result.tick.median_ns}, {"p99", result.tick.p99_ns}, {"max", result.tick.max_ns}};
   json["queue"] = {{"sent", result.commands_sent}, {"refused", result.commands_refused}};
   json["faults"] = Json::array();
@@ -76,7 +71,7 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   if (!context.metrics.empty()) json["metrics"] = Json::object();
   for (const MetricValue& metric : context.metrics) json["metrics"][metric.name] = metric.value;
   if (!context.branch.empty()) json["branch"] = context.branch;
-  for (const std::uint64_t hash : context.hashes) json["hashes"].push_back(hex(hash));
+  for (const std::uint64_t hash : context.hashes) json["hashes"].push_back(hash_text(hash));
   if (!result.passed) {
     constexpr std::ptrdiff_t last = 20;
     const std::vector<Transition>& all = context.log.transitions();

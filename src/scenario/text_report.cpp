@@ -3,19 +3,13 @@
 #include <cstdio>
 
 #include "kadans/scenario/report.h"
+#include "kadans/signal/number_text.h"
 #include "kadans/telemetry/text_plot.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::size_t plot_columns = 60, plot_rows = 4;
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[512];
-  const int length = std::snprintf(text, sizeof text, pattern, values...);
-  return {text, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof text) - 1))};
-}
 
 class TextReport {
  public:
@@ -42,7 +36,7 @@ class TextReport {
   void timeline() {
     const char* arrow = style_.unicode ? "→" : "->";
     for (const Transition& t : subject_.log.transitions()) {
-      text_ += dim(format("  %7.2f s  ", 1e-9 * static_cast<double>(t.time_ns)));
+      text_ += dim(printed("  %7.2f s  ", 1e-9 * static_cast<double>(t.time_ns)));
       text_ += t.behavior + ": " + (t.from.empty() ? "" : t.from + " ") + arrow + " " + t.to;
       if (!t.why.empty()) text_ += dim("  (" + t.why + ")");
       text_ += '\n';
@@ -50,7 +44,7 @@ class TextReport {
     for (const LogLine& line : subject_.log.lines()) {
       if (line.severity == BehaviorLog::Severity::error || !style_.verbose) continue;
       const char* mark = line.severity == BehaviorLog::Severity::warning ? "warning: " : "";
-      text_ += dim(format("  %7.2f s  ", 1e-9 * static_cast<double>(line.time_ns))) + line.behavior + ": " + mark +
+      text_ += dim(printed("  %7.2f s  ", 1e-9 * static_cast<double>(line.time_ns))) + line.behavior + ": " + mark +
                line.text + '\n';
     }
     if (!text_.empty()) text_ += '\n';
@@ -63,17 +57,17 @@ class TextReport {
     for (std::size_t i = 0; i < plot.lines.size(); ++i) {
       const bool edge = i == 0 || i + 1 == plot.lines.size();
       const double value = i == 0 ? plot.top : plot.bottom;
-      text_ += edge ? format("  %9.3f ", value) : std::string(12, ' ');
+      text_ += edge ? printed("  %9.3f ", value) : std::string(12, ' ');
       text_ += dim(style_.unicode ? "│" : "|") + plot.lines[i] + '\n';
     }
-    text_ +=
-        std::string(12, ' ') + dim(format("0 s%*.0f s", static_cast<int>(plot_columns) - 4, trace.duration_s)) + "\n\n";
+    text_ += std::string(12, ' ') + dim(printed("0 s%*.0f s", static_cast<int>(plot_columns) - 4, trace.duration_s)) +
+             "\n\n";
   }
 
   static std::string bounds(const ScenarioCheck& check) {
     if (!check.that.empty()) return check.that;
-    if (std::isfinite(check.min) && std::isfinite(check.max)) return format("%g .. %g", check.min, check.max);
-    return std::isfinite(check.min) ? format(">= %g", check.min) : format("<= %g", check.max);
+    if (std::isfinite(check.min) && std::isfinite(check.max)) return printed("%g .. %g", check.min, check.max);
+    return std::isfinite(check.min) ? printed(">= %g", check.min) : printed("<= %g", check.max);
   }
 
   void checks() {
@@ -83,7 +77,7 @@ class TextReport {
       const CheckResult& check = subject_.result.checks[i];
       const std::string mark = check.passed ? green(style_.unicode ? "✓" : "ok") : red(style_.unicode ? "✗" : "FAILED");
       text_ += "  " + mark + " " + check.name + std::string(widest - check.name.size(), ' ');
-      text_ += format("  %11.5g at %6.2f s", check.value, check.at_s) +
+      text_ += printed("  %11.5g at %6.2f s", check.value, check.at_s) +
                dim("   wanted " + bounds(subject_.checks[i]) + (check.note.empty() ? "" : "; " + check.note) + '\n');
     }
   }
@@ -99,22 +93,22 @@ class TextReport {
       const Fault& fault = result.faults[i];
       const std::string joint = fault.joint == no_joint ? "" : " of " + subject_.model.joints.at(fault.joint).name;
       text_ += red("  fault: ") + name(fault.code) + joint +
-               format(" in tick %llu: %g, limit %g (%s)\n", static_cast<unsigned long long>(fault.tick), fault.value,
-                      fault.limit, configuration_key(fault.code));
+               printed(" in tick %llu: %g, limit %g (%s)\n", static_cast<unsigned long long>(fault.tick), fault.value,
+                       fault.limit, configuration_key(fault.code));
     }
-    if (result.faults.size() > shown) text_ += format("  ... and %zu more faults\n", result.faults.size() - shown);
+    if (result.faults.size() > shown) text_ += printed("  ... and %zu more faults\n", result.faults.size() - shown);
   }
 
   void figures() {
     const RunResult& r = subject_.result;
     text_ +=
-        format("\n  %.2f s simulated in %.2f s: %.1f times real time\n", r.duration_s, r.wall_s, r.realtime_factor);
-    text_ += format("  %llu control ticks (median %.2f us, p99 %.2f us), %llu behavior ticks\n",
-                    static_cast<unsigned long long>(r.control_ticks), 1e-3 * r.tick.median_ns, 1e-3 * r.tick.p99_ns,
-                    static_cast<unsigned long long>(r.behavior_ticks));
+        printed("\n  %.2f s simulated in %.2f s: %.1f times real time\n", r.duration_s, r.wall_s, r.realtime_factor);
+    text_ += printed("  %llu control ticks (median %.2f us, p99 %.2f us), %llu behavior ticks\n",
+                     static_cast<unsigned long long>(r.control_ticks), 1e-3 * r.tick.median_ns, 1e-3 * r.tick.p99_ns,
+                     static_cast<unsigned long long>(r.behavior_ticks));
     text_ +=
-        format("  %llu commands sent, %llu refused; state %016llx\n", static_cast<unsigned long long>(r.commands_sent),
-               static_cast<unsigned long long>(r.commands_refused), static_cast<unsigned long long>(r.state_hash));
+        printed("  %llu commands sent, %llu refused; state %016llx\n", static_cast<unsigned long long>(r.commands_sent),
+                static_cast<unsigned long long>(r.commands_refused), static_cast<unsigned long long>(r.state_hash));
     if (!subject_.record.empty()) text_ += "  record: " + subject_.record + '\n';
     text_ += dim("  again:  " + subject_.repeat) + "\n\n";
   }
@@ -123,11 +117,11 @@ class TextReport {
     const RunResult& r = subject_.result;
     const auto failed = std::count_if(r.checks.begin(), r.checks.end(), [](const CheckResult& c) { return !c.passed; });
     if (r.interrupted) {
-      text_ += red("INTERRUPTED") + format(" after %.2f s\n", r.duration_s);
+      text_ += red("INTERRUPTED") + printed(" after %.2f s\n", r.duration_s);
     } else if (r.passed) {
-      text_ += green("PASSED") + format("  %zu checks\n", r.checks.size());
+      text_ += green("PASSED") + printed("  %zu checks\n", r.checks.size());
     } else {
-      text_ += red("FAILED") + format("  %td of %zu checks\n", failed, r.checks.size());
+      text_ += red("FAILED") + printed("  %td of %zu checks\n", failed, r.checks.size());
     }
   }
 

@@ -13,11 +13,33 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t warm_snapshot_bytes = 512;  // its head and the joints
+constexpr const char* rehearsal_text =
+    "local seen = { inner = { value = 1 } } "
+    "local function look(from) return from.inner.value end "
+    "return function(on) local sum = 0 for i = 1, 3 do sum = sum + look(seen) * i end "
+    "if on and sum > 100 then seen.sum = sum end return sum ~= nil and sum < 0 end";
 
 KADANS_TICK_CODE int tick_chart(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
   parts.runner->tick(state, parts.bindings.now_ns);
+  return 0;
+}
+
+// The work of a tick but for the chart: tables filled with what they are going to hold anyway, and a function that uses
+// the interpreter as functions of charts do.
+int rehearse_tick(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  Behavior::Parts::Rehearsal& rehearsal = parts.rehearsal;
+  parts.snapshot_tables.refill(state, *rehearsal.snapshot, rehearsal.now_ns);
+  if (rehearsal.function == LUA_NOREF) {
+    if (luaL_loadstring(state, rehearsal_text) != 0) return lua_error(state);
+    lua_call(state, 0, 1);
+    rehearsal.function = luaL_ref(state, LUA_REGISTRYINDEX);
+  }
+  lua_rawgeti(state, LUA_REGISTRYINDEX, rehearsal.function);
+  lua_pushboolean(state, 1);
+  lua_call(state, 1, 1);
   return 0;
 }
 
@@ -90,13 +112,24 @@ Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog
 
 Behavior::~Behavior() = default;
 
+KADANS_TICK_CODE bool Behavior::Parts::warm(const Snapshot& snapshot) noexcept {
+  if (!warm_up.due()) return false;
+  WarmUp::read(std::as_bytes(std::span(&snapshot, 1)).first<warm_snapshot_bytes>());
+  warm_up.go();
+  snapshot_tables.warm_up();
+  return true;
+}
+
+void Behavior::prepare(const Snapshot& newest) noexcept {
+  if (failed() || finished() || !parts_->warm(newest)) return;
+  parts_->rehearsal.snapshot = &newest;
+  parts_->rehearsal.now_ns = clock_ns(newest);
+  (void)parts_->run(rehearse_tick);
+}
+
 KADANS_TICK_CODE bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
   Parts& parts = *parts_;
-  if (parts.warm_up.due()) {
-    WarmUp::read(std::as_bytes(std::span(&snapshot, 1)).first<warm_snapshot_bytes>());
-    parts.warm_up.go();
-    parts.snapshot_tables.warm_up();
-  }
+  (void)parts.warm(snapshot);
   if (failed() || finished()) return false;
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;
@@ -169,6 +202,7 @@ bool Behavior::post(const std::string& event) noexcept {
 }
 
 const std::string& Behavior::name() const noexcept { return parts_->chart.name; }
+const Behavior::Settings& Behavior::settings() const noexcept { return parts_->settings; }
 const Chart& Behavior::chart() const noexcept { return parts_->chart; }
 KADANS_TICK_CODE bool Behavior::finished() const noexcept { return parts_->runner->finished(); }
 KADANS_TICK_CODE bool Behavior::failed() const noexcept { return parts_->failed; }

@@ -22,14 +22,6 @@ void carry_parameters(Behavior::Parts& fresh, Behavior::Parts& old) noexcept {
   }
 }
 
-// [-0 +1] The `vars` of a machine, from its table.
-void push_vars(lua_State* state, const RunnerTables::Machine& machine) {
-  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.content);
-  lua_pushliteral(state, "vars");
-  lua_rawget(state, -2);
-  lua_remove(state, -2);
-}
-
 // The machine's fresh vars are at the top of `state`, those it had behind them: [-1].
 void overlay(lua_State* state) {
   const int old = lua_gettop(state), vars = old - 1;
@@ -44,23 +36,13 @@ void overlay(lua_State* state) {
 void carry_vars(lua_State* state, const Adoption& adoption, std::size_t from, std::uint16_t to) {
   Behavior::Parts& fresh = adoption.fresh;
   const Chart::Machine& was = adoption.old.chart.machines[from];
-  const Chart::Machine& is = fresh.chart.machines[to];
-  const bool migrates = is.version != was.version && is.migrate != Chart::no_function;
-  if (is.version != was.version && !migrates) return;
+  if (!takes_vars(fresh.chart.machines[to], was.version)) return;
   lua_State* old_state = adoption.old.lua->get();
   luaL_checkstack(state, 16, "vars");
   push_vars(state, fresh.tables.machines[to]);
   push_vars(old_state, adoption.old.tables.machines[from]);
   push_copy_across(old_state, lua_gettop(old_state), state);
-  if (migrates) {
-    core_of(state).called = is.migrate;
-    lua_rawgeti(state, LUA_REGISTRYINDEX, is.migrate);
-    lua_insert(state, -2);
-    lua_pushinteger(state, was.version);
-    lua_call(state, 2, 1);
-    if (!lua_istable(state, -1)) luaL_error(state, "migrate must return the new vars, a table");
-  }
-  overlay(state);
+  give_vars(state, fresh.chart.machines[to], was.version);
   lua_settop(state, 1);
 }
 
@@ -105,6 +87,29 @@ int leave(lua_State* state) {
 }
 
 }  // namespace
+
+void push_vars(lua_State* state, const RunnerTables::Machine& machine) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.content);
+  lua_pushliteral(state, "vars");
+  lua_rawget(state, -2);
+  lua_remove(state, -2);
+}
+
+bool takes_vars(const Chart::Machine& machine, int version) noexcept {
+  return machine.version == version || machine.migrate != Chart::no_function;
+}
+
+void give_vars(lua_State* state, const Chart::Machine& machine, int version) {
+  if (machine.version != version) {
+    core_of(state).called = machine.migrate;
+    lua_rawgeti(state, LUA_REGISTRYINDEX, machine.migrate);
+    lua_insert(state, -2);
+    lua_pushinteger(state, version);
+    lua_call(state, 2, 1);
+    if (!lua_istable(state, -1)) luaL_error(state, "migrate must return the new vars, a table");
+  }
+  overlay(state);
+}
 
 bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,
                     const Snapshot& snapshot, CommandSender& commands) noexcept {

@@ -28,6 +28,8 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void tell_refused() noexcept;  // what the control engine refused since the last time
   // The sets of all active machines that the snapshot does not show are asked for in the next tick.
   void want_sets(const Snapshot& snapshot) noexcept;
+  // Reads what a tick is going to need; false when it was done a moment ago.
+  bool warm(const Snapshot& snapshot) noexcept;
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
 
@@ -43,6 +45,11 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   SnapshotTables snapshot_tables;
   std::unique_ptr<ChartRunner> runner;
   Transition transition;  // reused, so that its strings keep their room
+  struct Rehearsal {
+    const Snapshot* snapshot = nullptr;
+    std::int64_t now_ns = 0;
+    int function = LUA_NOREF;
+  } rehearsal;
   ScriptError error;
   bool failed = false;
   std::uint64_t transactions_refused = 0;
@@ -67,6 +74,13 @@ void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
 // numbers; `old` is not changed. False: fresh.lua->error() says why.
 bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,
                     const Snapshot& snapshot, CommandSender& commands) noexcept;
+// [-0 +1] The `vars` of a machine, from its table.
+void push_vars(lua_State* state, const RunnerTables::Machine& machine);
+// Whether a machine goes on with vars of another version of it.
+bool takes_vars(const Chart::Machine& machine, int version) noexcept;
+// [-1] The machine's own vars are on the stack and those it had, of `version`, on top of them: the own ones become as
+// those. Raises what `migrate` raises.
+void give_vars(lua_State* state, const Chart::Machine& machine, int version);
 // Leaves the states that are marked, in a transaction of its own. False: an exit raised.
 bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
                   CommandSender& commands) noexcept;

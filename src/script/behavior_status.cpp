@@ -15,4 +15,11 @@ void BehaviorStatus::declare(SignalTable& signals, const std::string& name) cons
   signals.add({prefix + "reloads", "", "New versions taken since the start."}, &reloads);
 }
 
+void BehaviorStatus::declare_numbered(SignalTable& signals, const std::string& name) const {
+  std::string free = name;
+  for (int number = 2; signals.find("behavior." + free + ".state"); ++number)
+    free = name + "_" + std::to_string(number);
+  declare(signals, free);
+}
+
 }  // namespace kadans

@@ -48,6 +48,10 @@ void ChartRunner::take_over(lua_State* state, const ChartRunner& old, const std:
   }
   list_active();
   fill_gaps();
+  start_runs(state);
+}
+
+void ChartRunner::start_runs(lua_State* state) {
   for (const StateIndex index : active_) {
     if (chart_.states[index].run != Chart::no_function && !run_[index].run_done) start_run(state, index);
   }

@@ -1,12 +1,11 @@
 // Lines that begin with a colon, and completion.
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <exception>
 #include <iterator>
 
 #include "console_parts.h"
 #include "kadans/signal/nearest_name.h"
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -62,12 +61,10 @@ bool continues_word(char c) {
 }
 
 Console::Reply run_for(const std::string& argument) {
-  double seconds = std::nan("");
-  const auto [end, error] = std::from_chars(argument.data(), argument.data() + argument.size(), seconds);
-  const bool number = error == std::errc{} && end == argument.data() + argument.size();
-  if (!number || !(seconds > 0 && seconds <= run_max_s))
+  const std::optional<double> seconds = number_of<double>(argument);
+  if (!seconds || !(*seconds > 0 && *seconds <= run_max_s))
     return {.text = ":run wants seconds, more than 0: :run 1.5", .error = true};
-  return {.text = {}, .run_s = seconds};
+  return {.text = {}, .run_s = *seconds};
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+
+#include "kadans/signal/byte_order.h"
 
 namespace kadans {
 namespace {
@@ -62,6 +65,32 @@ void MotionsUnderWay::switch_to(std::uint32_t set) noexcept {
 
 void MotionsUnderWay::forget() noexcept {
   for (Motion& motion : motions_) motion.clear();
+}
+
+void MotionsUnderWay::keep(ByteWriter& bytes, std::int64_t now_ns) const {
+  bytes.put(active_);
+  for (SetpointId id = 0; id < motions_.size(); ++id) {
+    if (!under_way(motions_[id], now_ns)) continue;
+    for (const Leg& leg : motions_[id]) {
+      bytes.put<std::uint8_t>(1);
+      bytes.put(id);
+      bytes.put(std::as_bytes(std::span(&leg.command, 1)));
+      bytes.put(leg.end_ns);
+    }
+  }
+  bytes.put<std::uint8_t>(0);
+}
+
+void MotionsUnderWay::restore(ByteReader& bytes) {
+  active_ = bytes.take<SetMask>();
+  while (bytes.take<std::uint8_t>() != 0) {
+    const auto id = bytes.take<SetpointId>();
+    Leg leg;
+    const auto command = bytes.take_bytes(sizeof leg.command);
+    if (!command.empty()) std::memcpy(static_cast<void*>(&leg.command), command.data(), sizeof leg.command);
+    leg.end_ns = bytes.take<std::int64_t>();
+    if (bytes.ok() && id < motions_.size()) motions_[id].push_back(leg);
+  }
 }
 
 bool MotionsUnderWay::any(std::int64_t now_ns) const noexcept {

@@ -1,5 +1,7 @@
 #include "kadans/script/pause.h"
 
+#include "kadans/signal/byte_order.h"
+
 namespace kadans {
 namespace {
 
@@ -15,6 +17,33 @@ void Pause::begin() noexcept {
 void Pause::end() noexcept {
   if (phase_ == Phase::coming) return run_on();
   if (phase_ == Phase::resting) phase_ = Phase::going;
+}
+
+void Pause::keep(ByteWriter& bytes, std::int64_t time_ns) const {
+  bytes.put(static_cast<std::uint8_t>(phase_));
+  if (phase_ != Phase::none) {  // in between these change with every tick
+    bytes.put(stands_ns_);
+    bytes.put(sent_ns_);
+    bytes.put(sequence_);
+    bytes.put<std::uint8_t>(standing_);
+  } else {
+    bytes.put(held_ns_);
+  }
+  motions_.keep(bytes, time_ns - held_ns_);
+}
+
+void Pause::restore(ByteReader& bytes) {
+  const auto phase = bytes.take<std::uint8_t>();
+  phase_ = phase <= static_cast<std::uint8_t>(Phase::sent) ? static_cast<Phase>(phase) : Phase::none;
+  if (phase_ != Phase::none) {
+    stands_ns_ = bytes.take<std::int64_t>();
+    sent_ns_ = bytes.take<std::int64_t>();
+    sequence_ = bytes.take<std::uint32_t>();
+    standing_ = bytes.take<std::uint8_t>() != 0;
+  } else {
+    held_ns_ = bytes.take<std::int64_t>();
+  }
+  motions_.restore(bytes);
 }
 
 void Pause::run_on() noexcept {

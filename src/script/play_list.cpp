@@ -44,6 +44,11 @@ void PlayList::end_all() noexcept {
   for (Entry& entry : entries_) entry.over = true;
 }
 
+void PlayList::count(std::uint32_t done, std::uint32_t not_done) noexcept {
+  status_.done.store(done, std::memory_order_relaxed);
+  status_.not_done.store(not_done, std::memory_order_relaxed);
+}
+
 void PlayList::publish(bool paused) noexcept {
   std::uint32_t left = 0, playing = 0;
   for (std::size_t i = 0; i < entries_.size(); ++i) {

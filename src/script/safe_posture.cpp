@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hint.h"
+#include "kadans/signal/byte_order.h"
 #include "kadans/signal/input_error.h"
 
 namespace kadans {
@@ -24,6 +25,20 @@ void SafePosture::failed(std::int64_t now_ns, ObjectMask objects) noexcept {
   concerned_ |= objects;
   waiting_ = true;
   due_ns_ = now_ns + std::llround(settings_.after_s * 1e9);
+}
+
+void SafePosture::keep(ByteWriter& bytes) const {
+  bytes.put(concerned_);
+  bytes.put<std::uint8_t>(waiting_);
+  bytes.put<std::uint8_t>(moved_);
+  bytes.put(due_ns_);
+}
+
+void SafePosture::restore(ByteReader& bytes) noexcept {
+  concerned_ = bytes.take<ObjectMask>();
+  waiting_ = bytes.take<std::uint8_t>() != 0 && pose_ != nullptr;
+  moved_ = bytes.take<std::uint8_t>() != 0;
+  due_ns_ = bytes.take<std::int64_t>();
 }
 
 void SafePosture::move(const Snapshot& snapshot, CommandSender& commands, ObjectMask kept) noexcept {

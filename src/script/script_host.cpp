@@ -10,7 +10,8 @@ namespace kadans {
 ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
     : settings_(settings), catalog_(catalog), log_(log), pause_(catalog), safe_(settings.safe, catalog) {
   std::vector<InputProblem> problems;
-  std::vector<PlayList::Entry> first = load(settings.play, true, problems);
+  std::vector<PlayList::Entry> first =
+      settings.kept.empty() ? load(settings.play, true, problems) : load_kept(problems);
   for (const Event& event : settings.events) {
     events_.push_back({event.at_ns, event.order, load(event.order.list, true, problems)});
   }
@@ -58,6 +59,7 @@ std::string ScriptHost::clash(const std::vector<PlayList::Entry>& loaded) const 
 }
 
 void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  if (!settings_.kept.empty()) go_on(snapshot, commands);
   take_orders(snapshot, commands);
   reload_saved(snapshot, commands);
   if (!pause_.holds(snapshot, commands)) {
@@ -68,6 +70,10 @@ void ScriptHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcep
     }
   }
   list_.publish(pause_.paused());
+}
+
+void ScriptHost::prepare(const Snapshot& newest) noexcept {
+  list_.each_in_turn([&](PlayList::Entry& entry) { entry.behavior->prepare(newest); });
 }
 
 void ScriptHost::step(PlayList::Entry& entry, const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -109,11 +115,7 @@ std::vector<std::string> ScriptHost::names() const {
 void ScriptHost::declare_signals(SignalTable& signals) const {
   list_.status().declare(signals);
   const auto declare = [&](const PlayList::Entry& entry) {
-    std::string name = entry.behavior->name();
-    for (int number = 2; signals.find("behavior." + name + ".state"); ++number) {
-      name = entry.behavior->name() + "_" + std::to_string(number);
-    }
-    entry.behavior->status().declare(signals, name);
+    entry.behavior->status().declare_numbered(signals, entry.behavior->name());
   };
   std::ranges::for_each(list_.entries(), declare);
   for (const Due& due : events_) std::ranges::for_each(due.loaded, declare);

@@ -1,7 +1,7 @@
 // A record of MCAP under construction: its opcode at once, its length when the scope ends.
 #pragma once
 
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 #include "kadans/telemetry/mcap_format.h"
 
 namespace kadans {

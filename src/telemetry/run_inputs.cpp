@@ -7,6 +7,7 @@
 #include <zstd.h>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/number_text.h"
 #include "kadans/signal/state_hash.h"
 
 namespace kadans {
@@ -45,12 +46,6 @@ bool climbs(const std::filesystem::path& path) {
 std::string RunInputs::fact(const std::string& name) const {
   const auto found = run.find(name);
   return found == run.end() ? "" : found->second;
-}
-
-std::string hash_text(std::uint64_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
 }
 
 std::string content_hash(std::string_view text) {

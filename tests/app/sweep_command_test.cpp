@@ -86,6 +86,9 @@ TEST_CASE("Shards in any order make the same tables, byte for byte, as one proce
   CHECK(read(folder / "table.db") == db);
   CHECK(read(folder / "map.svg") == map);
   CHECK(last_line(run("merge whole --json", folder).out) == counts);
+  const Outcome nowhere = run("merge whole --csv none/table.csv", folder);
+  CHECK(nowhere.exit_code == 2);
+  CHECK(has(nowhere.err, "none/table.csv: cannot be written: No such file or directory"));
 }
 
 TEST_CASE("A sweep that was killed goes on where it was: at most what was running is lost") {

@@ -71,3 +71,24 @@ TEST_CASE("What was discarded is not sent, and an empty commit sends nothing") {
   CHECK(queue->size() == 0);
   CHECK(sender.sent() == 0);
 }
+
+TEST_CASE(
+    "A sender at the far end of a queue numbers as it is told, and sends no more than there is room for elsewhere") {
+  const auto queue = std::make_unique<CommandQueue>();
+  CommandSender sender(*queue);
+  sender.follow(41, 5);
+  sender.begin(0);
+  REQUIRE(sender.add(switch_to_1));
+  REQUIRE(sender.add(switch_to_1));
+  CHECK(sender.commit() == 42);
+  CHECK(sender.room() == 2);
+  sender.begin(0);
+  REQUIRE(sender.add(switch_to_1));
+  CHECK_FALSE(sender.add(switch_to_1));
+  CHECK(sender.commit() == 0);
+  CHECK(queue->size() == 3);
+  sender.follow(42, 1000);
+  sender.begin(0);
+  REQUIRE(sender.add(switch_to_1));
+  CHECK(sender.commit() == 43);
+}

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 
 using namespace kadans;
 

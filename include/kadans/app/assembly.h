@@ -19,6 +19,7 @@
 #include "kadans/scenario/faulty_plant.h"
 #include "kadans/scenario/quantities.h"
 #include "kadans/scenario/run.h"
+#include "kadans/script/process/process_host.h"
 #include "kadans/script/script_host.h"
 
 namespace kadans {
@@ -39,17 +40,25 @@ struct ControlSystem {
 // Throws InputError at the place in the configuration that is wrong.
 std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 
+// The host of a scenario's behaviors. Throws InputError.
+std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const SafeConfig& safe,
+                                             const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
+                                             std::span<const std::byte> kept = {});
+
 class Assembly {
  public:
   // Reads the robot and the behaviors that the scenario names. Throws InputError with everything that is wrong. The log
   // must outlive the assembly, and so must `link`: with it the model is for a thread of its own, and the engines see
-  // its other end.
-  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr);
+  // its other end. With `outside`, which must outlive it too, the scenario's behaviors play in a process of their own,
+  // which has been started with them.
+  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
+           ProcessHost* outside = nullptr);
 
   const RobotConfig& robot() const noexcept { return robot_.config; }
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
-  const ScriptHost& host() const noexcept { return *host_; }
+  const ScriptHost& host() const noexcept { return *host_; }  // when behaviors do not play outside
   ScriptHost& host() noexcept { return *host_; }
+  OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
   // Before the run: takes what somebody saves. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() { host_->watch(); }
   RunParts parts() noexcept;
@@ -67,10 +76,12 @@ class Assembly {
   void start_in_pose();
   void make_plant(std::uint64_t seed);
   void make_behaviors();
+  BehaviorHost& played() noexcept;
 
   const ScenarioConfig& scenario_;
   RunLog& log_;
   PlantExchange* link_;
+  ProcessHost* outside_;
   Robot robot_;
   PlantVariant variant_;
   std::vector<QuantityValue> quantities_;

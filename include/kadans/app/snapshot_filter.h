@@ -20,6 +20,7 @@ class FilteredHost final : public BehaviorHost {
     filter_.change(seen_);
     host_.tick(seen_, commands);
   }
+  void prepare(const Snapshot& newest) noexcept override { host_.prepare(newest); }
 
  private:
   BehaviorHost& host_;

@@ -32,7 +32,7 @@ class JobWatcher {
   virtual bool stop_asked() const = 0;                // no more are started, those that run are killed
 };
 
-// Returns when all have ended. Throws std::system_error when a process cannot be started. One thread.
+// So many at once, 0: one for each core. Returns when all have ended. Throws std::system_error when a process cannot be started. One thread.
 void run_jobs(std::span<const Job> jobs, std::size_t at_once, JobWatcher& watcher);
 
 }  // namespace kadans

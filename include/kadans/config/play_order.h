@@ -25,6 +25,15 @@ struct PlayOrder {
   std::filesystem::path file{};
 };
 
+// Who takes such orders.
+class OrderTaker {
+ public:
+  virtual ~OrderTaker() = default;
+  // Behavior thread, between ticks: takes effect with the next. Throws InputError, and nothing changes, when something
+  // in it is wrong.
+  virtual void order(const PlayOrder& order) = 0;
+};
+
 // The kinds as they are written in files and on the console.
 inline const std::array<std::string, 6> play_order_names{"play", "replace", "pause", "resume", "stop", "reload"};
 

@@ -17,6 +17,8 @@ class BehaviorEngine {
   BehaviorEngine(ControlSets& sets, EngineExchange& exchange, BehaviorHost* host) noexcept
       : sets_(sets), exchange_(exchange), host_(host), commands_(exchange.commands) {}
 
+  // Behavior thread, shortly before a tick, or never: lets the host fetch what the tick is going to need.
+  void prepare() noexcept;
   // Behavior thread. Throws what the high level of a control object throws.
   void tick(std::int64_t time_ns);
 

@@ -15,6 +15,9 @@ class BehaviorHost {
   // Behavior thread, once a behavior tick. The snapshot holds for the call. Each behavior collects its commands in a
   // transaction of its own from `commands` and commits it.
   virtual void tick(const Snapshot& snapshot, CommandSender& commands) noexcept = 0;
+  // Behavior thread, shortly before a tick, or never. Nothing changes that a tick could tell; what it is going to need is
+  // fetched. The snapshot holds for the call.
+  virtual void prepare(const Snapshot& /*newest*/) noexcept {}
 };
 
 // One change of state of a behavior, for the record and the console.

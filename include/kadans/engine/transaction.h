@@ -1,6 +1,7 @@
 // How commands reach the control engine: collected in a transaction, sent whole or not at all.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,10 @@ class CommandSender {
   // The number of the transaction, from 1; 0 when it was refused; the last number again when nothing was added.
   std::uint32_t commit() noexcept;
   void discard() noexcept;
+  // For the far end of a queue that somebody else empties into another one: the next transaction is number
+  // last_sequence + 1, and until the next call no more commands are sent, headers included, than there is room for.
+  void follow(std::uint32_t last_sequence, std::size_t room) noexcept;
+  std::size_t room() const noexcept { return std::min(room_, queue_.free()); }  // commands, headers included
   // What the last commit() sent; nothing when it sent nothing. Until the next add().
   std::span<const Command> committed() const noexcept { return {batch_.data() + 1, committed_}; }
 
@@ -36,6 +41,7 @@ class CommandSender {
   std::size_t committed_ = 0;
   std::int64_t time_ns_ = 0;
   std::uint32_t sequence_ = 0;
+  std::size_t room_ = SIZE_MAX;
   std::uint64_t sent_ = 0, refused_ = 0;
   std::uint64_t overflow_ = 0;  // commands that did not fit
 };

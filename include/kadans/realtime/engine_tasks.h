@@ -47,6 +47,7 @@ class BehaviorTask final : public Task {
       : engine_(engine), before_(before) {}
 
   bool beat(const Beat& beat) override;  // throws what the high level of a control object throws
+  void prepare() noexcept override { engine_.prepare(); }
 
  private:
   BehaviorEngine& engine_;

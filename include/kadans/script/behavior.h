@@ -31,6 +31,9 @@
 
 namespace kadans {
 
+class ByteReader;
+class ByteWriter;
+
 class Behavior {
  public:
   struct Settings {
@@ -50,6 +53,8 @@ class Behavior {
 
   // Behavior thread. False once it is over: finished or stopped by an error.
   bool tick(const Snapshot& snapshot, CommandSender& commands) noexcept;
+  // Behavior thread, shortly before a tick, or never: fetches what the tick is going to need; nothing of the script runs.
+  void prepare(const Snapshot& newest) noexcept;
   // Behavior thread: leaves all states, in a transaction of its own.
   void stop(const Snapshot& snapshot, CommandSender& commands) noexcept;
   // Behavior thread, between ticks. Reads the files again, the behavior's from `file` when one is given; says in the
@@ -59,6 +64,12 @@ class Behavior {
   Reload reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file = {},
                 SetMask elsewhere = 0) noexcept;
   std::vector<std::filesystem::path> files() const;
+  // Behavior thread, between ticks: what a reload would carry over, as bytes, for another process that goes on where
+  // this one ended. "", or why it cannot be kept: vars hold what is no plain data.
+  std::string keep(ByteWriter& bytes);
+  // Before the first tick: goes on there. False: error() says why.
+  [[nodiscard]] bool go_on(ByteReader& bytes, const Snapshot& snapshot, CommandSender& commands) noexcept;
+  const Settings& settings() const noexcept;  // as they were given, the file as it was last read
   // Behavior thread, between ticks. The clock of the chart, that `after`, m.time_s and motions go by, is from now on so
   // far behind the engine's.
   void hold_clock(std::int64_t held_ns) noexcept;

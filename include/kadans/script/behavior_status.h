@@ -20,6 +20,8 @@ struct BehaviorStatus {
 
   // Before the loop. Declares behavior.<name>.heap_bytes and so on; the name must be new to the table.
   void declare(SignalTable& signals, const std::string& name) const;
+  // The same under the name, or, when that is taken, under the first of name_2, name_3 ... that is free.
+  void declare_numbered(SignalTable& signals, const std::string& name) const;
 };
 
 }  // namespace kadans

@@ -24,6 +24,8 @@ struct lua_State;
 
 namespace kadans {
 
+class ByteReader;
+class ByteWriter;
 struct Motion;
 class WarmUp;
 
@@ -61,6 +63,12 @@ class ChartRunner {
   // What is active, its time, histories and waiting events are taken over; a coroutine cannot be: `run` begins anew,
   // unless it was over. Where an active state is gone, the next tick enters the initial state around it.
   void take_over(lua_State* state, const ChartRunner& old, const std::vector<StateIndex>& map);
+  // The same through another process: keep() before it ends, restore() here before the first tick, then, once the
+  // machines have their vars, start_runs(). False: the bytes are none of keep()'s; the runner is of no use then.
+  void keep(ByteWriter& bytes) const;
+  [[nodiscard]] bool restore(ByteReader& bytes);
+  void start_runs(lua_State* state);
+  void be_at(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
   // Evaluates the guards of all active states, for what they raise.
   void try_guards(lua_State* state);
   // Leaves these states, `exit` innermost first.
@@ -131,6 +139,11 @@ class ChartRunner {
   void fill_gaps() noexcept;
   void fill(StateIndex around, StateIndex entered) noexcept;
   EventId known_event(const ChartRunner& old, EventId event) const noexcept;
+
+  // chart_keeping.cpp
+  void keep_histories(ByteWriter& bytes) const;
+  void restore_state(ByteReader& bytes);
+  void restore_history(ByteReader& bytes);
 
   // chart_calls.cpp
   void set_time(lua_State* state, StateIndex index);

@@ -15,6 +15,9 @@
 
 namespace kadans {
 
+class ByteReader;
+class ByteWriter;
+
 class MotionsUnderWay {
  public:
   explicit MotionsUnderWay(const Catalog& catalog);  // which must outlive it
@@ -22,6 +25,9 @@ class MotionsUnderWay {
   void note(std::span<const Command> transaction, std::int64_t now_ns);  // throws std::bad_alloc
   void forget() noexcept;
   bool any(std::int64_t now_ns) const noexcept;
+  // What is under way, as bytes and back, for another process.
+  void keep(ByteWriter& bytes, std::int64_t now_ns) const;
+  void restore(ByteReader& bytes);
   // Adds to the transaction that all of them stay where they are, coming to rest; or that they go on to their targets,
   // in the time that was left. False: there was no place for it.
   [[nodiscard]] bool rest(std::int64_t now_ns, CommandSender& commands) const noexcept;

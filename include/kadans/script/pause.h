@@ -24,6 +24,10 @@ class Pause {
   // What plays was ended: motions under way come to rest, and there is nothing to go on with. No pause is left.
   void finish(const Snapshot& snapshot, CommandSender& commands) noexcept;
 
+  // As bytes and back, for another process.
+  void keep(ByteWriter& bytes, std::int64_t time_ns) const;
+  void restore(ByteReader& bytes);
+
   bool paused() const noexcept { return phase_ == Phase::coming || phase_ == Phase::resting; }
   std::int64_t held_ns() const noexcept { return held_ns_; }  // how far the charts' clock is behind the engine's
 

@@ -47,6 +47,8 @@ class PlayList {
   void end(Entry& entry) noexcept;
   void end_all() noexcept;
 
+  void count(std::uint32_t done, std::uint32_t not_done) noexcept;  // those of before
+
   bool over() const noexcept {
     return std::all_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.over; });
   }

@@ -11,6 +11,9 @@
 
 namespace kadans {
 
+class ByteReader;
+class ByteWriter;
+
 class SafePosture {
  public:
   struct Settings {
@@ -27,6 +30,10 @@ class SafePosture {
   // Sends the motion for those of them that are active and not `kept`. Tries again in the next tick when the queue is
   // full.
   void move(const Snapshot& snapshot, CommandSender& commands, ObjectMask kept) noexcept;
+  // Who failed is back, or it is for another process to go on; as bytes and back.
+  void forget() noexcept { waiting_ = false, concerned_ = 0; }
+  void keep(ByteWriter& bytes) const;
+  void restore(ByteReader& bytes) noexcept;
   bool moved() const noexcept { return moved_; }
 
  private:

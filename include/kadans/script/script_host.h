@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@
 
 namespace kadans {
 
-class ScriptHost final : public BehaviorHost {
+class ScriptHost final : public BehaviorHost, public OrderTaker {
  public:
   struct Event {
     std::int64_t at_ns = 0;
@@ -36,6 +37,9 @@ class ScriptHost final : public BehaviorHost {
     std::vector<std::string> feet{"left", "right"};
     std::vector<Event> events{};  // in any order
     SafePosture::Settings safe{};
+    // What keep() of another process's host left: plays that in place of `play`, and goes on where it was. Read within
+    // the constructor and the first tick.
+    std::span<const std::byte> kept{};
   };
   // Loads all behaviors, those of events too; throws InputError with every file's problems. Catalog and log must
   // outlive the host.
@@ -43,11 +47,17 @@ class ScriptHost final : public BehaviorHost {
   ~ScriptHost() override;
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
-  // Behavior thread, between ticks: takes effect with the next. Throws InputError, and nothing changes, when something
-  // in it is wrong: a file, an argument, a behavior that does not play.
-  void order(const PlayOrder& order);
+  void prepare(const Snapshot& newest) noexcept override;
+  // What may be wrong in it: a file, an argument, a behavior that does not play.
+  void order(const PlayOrder& order) override;
   // Behavior thread, between ticks: what somebody else has just committed, so that a pause halts its motions too.
   void note(const Snapshot& snapshot, const CommandSender& commands) noexcept { pause_.note(snapshot, commands); }
+
+  // Behavior thread, between ticks: what plays and where it is. "", or why something cannot be kept: nobody can go
+  // on with these bytes then.
+  std::string keep(ByteWriter& bytes, std::int64_t time_ns);
+  // After the first tick: why it could not go on with what was kept; "" when it did.
+  const std::string& lost() const noexcept { return lost_; }
 
   // Before the loop. Reloads what somebody saves; throws std::runtime_error when nothing can be watched.
   void watch();
@@ -85,6 +95,10 @@ class ScriptHost final : public BehaviorHost {
   // Why the loaded ones cannot play beside what is there: "" when they can.
   std::string clash(const std::vector<PlayList::Entry>& loaded) const;
 
+  // script_host_keeping.cpp
+  std::vector<PlayList::Entry> load_kept(std::vector<InputProblem>& problems);
+  void go_on(const Snapshot& snapshot, CommandSender& commands) noexcept;
+
   // script_host_orders.cpp
   void take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept;
   void carry_out(Due& due, const Snapshot& snapshot, CommandSender& commands) noexcept;
@@ -104,6 +118,7 @@ class ScriptHost final : public BehaviorHost {
   std::vector<Due> orders_;  // given since the last tick
   std::unique_ptr<FileWatch> watch_;
   SafePosture safe_;
+  std::string lost_;
 };
 
 }  // namespace kadans

@@ -12,7 +12,7 @@
 
 #include "kadans/engine/behavior_host.h"
 #include "kadans/exchange/ring.h"
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 
 namespace kadans {
 

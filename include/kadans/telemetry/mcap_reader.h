@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 #include "kadans/telemetry/mcap_format.h"
 
 namespace kadans {

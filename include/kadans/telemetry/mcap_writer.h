@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 #include "kadans/telemetry/mcap_format.h"
 #include "kadans/telemetry/record_file.h"
 

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kadans/signal/number_text.h"
 #include "kadans/telemetry/mcap_reader.h"
 #include "kadans/telemetry/mcap_writer.h"
 
@@ -33,9 +34,8 @@ struct RunInputs {
   std::string fact(const std::string& name) const;
 };
 
-// Of a text, or of numbers that somebody else hashed, as text.
+// Of a text, as text.
 std::string content_hash(std::string_view text);
-std::string hash_text(std::uint64_t hash);
 
 // After open(), before the first message.
 [[nodiscard]] bool write_inputs(McapWriter& file, const RunInputs& inputs);

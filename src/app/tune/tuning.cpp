@@ -129,8 +129,7 @@ Tuning::Progress Tuning::evaluate(const std::string& name, const std::vector<Swe
   std::vector<SweepCase> own;
   std::ranges::copy_if(cases, std::back_inserter(own),
                        [&](const SweepCase& one) { return shard_.holds(one.index) && !results.has(one); });
-  const std::size_t at_once = options_.jobs > 0 ? options_.jobs : std::max(1U, std::thread::hardware_concurrency());
-  SweepRun(plan_, subjects_, results, std::move(own), false, JobProgress::Log::terminal_only).run(at_once);
+  SweepRun(plan_, subjects_, results, std::move(own), false, JobProgress::Log::terminal_only).run(options_.jobs);
   const Progress progress = wait_for_others(results, cases);
   if (progress == Progress::complete) rows = merge({results}).rows;
   return progress;

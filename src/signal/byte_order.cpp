@@ -1,4 +1,4 @@
-#include "kadans/telemetry/byte_order.h"
+#include "kadans/signal/byte_order.h"
 
 #include <utility>
 

@@ -1,0 +1,35 @@
+// Numbers as text and back, one way everywhere: no locale decides, and half a number is none.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace kadans {
+
+// As std::printf prints; at most 511 characters.
+template <typename... Values>
+std::string printed(const char* pattern, Values... values) {
+  char text[512];
+  const int length = std::snprintf(text, sizeof text, pattern, values...);
+  return {text, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof text) - 1))};
+}
+
+// A hash as 16 digits.
+inline std::string hash_text(std::uint64_t hash) { return printed("%016llx", static_cast<unsigned long long>(hash)); }
+
+// The number that the whole of the text is; integers to a base.
+template <typename Number, typename... Base>
+std::optional<Number> number_of(std::string_view text, Base... base) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number, base...);
+  return error == std::errc{} && stop == end ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace kadans

@@ -1,0 +1,128 @@
+#include "kadans/script/process/behavior_server.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+
+#include "kadans/script/process/catalog_fingerprint.h"
+#include "kadans/signal/input_error.h"
+#include "play_order_bytes.h"
+
+namespace kadans {
+
+void SpokenLines::begin(std::uint8_t kind, const std::string& behavior) {
+  line_.clear();
+  line_.put(std::uint32_t{0});
+  line_.put(kind);
+  line_.put_string(behavior);
+}
+
+bool SpokenLines::push() {
+  line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
+  const bool fits = link_.lines.try_push(line_.bytes());
+  dropped_ += fits ? 0 : 1;
+  return fits;
+}
+
+void SpokenLines::transition(const Transition& transition) {
+  begin(transition_line, transition.behavior);
+  for (const std::string* text : {&transition.from, &transition.to, &transition.why}) line_.put_string(*text);
+  (void)push();
+}
+
+void SpokenLines::message(std::int64_t time_ns, Severity severity, const std::string& behavior,
+                          const std::string& text) {
+  begin(static_cast<std::uint8_t>(severity), behavior);
+  line_.put_string(text);
+  if (!push() || dropped_ == 0) return;
+  const std::uint64_t dropped = std::exchange(dropped_, 0);
+  message(time_ns, Severity::warning, "supervisor", std::to_string(dropped) + " lines found no place");
+}
+
+BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, SpokenLines& lines,
+                               const Catalog& catalog)
+    : link_(link), bell_(bell), host_(host), lines_(lines), commands_(link.commands) {
+  link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
+  for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
+    const std::string& name = host_.behavior(i).name();
+    std::copy_n(name.begin(), std::min(name.size(), BehaviorLink::name_bytes - 1), link_.ready.names[i].begin());
+  }
+  link_.ready.fingerprint = fingerprint_of(catalog);
+}
+
+int BehaviorServer::serve() {
+  std::atomic_ref(link_.ready.is).store(1, std::memory_order_release);
+  bell_.ring();
+  for (;;) {
+    if (bell_.wait(-1) == Doorbell::Heard::end) return 0;
+    const std::uint32_t number = std::atomic_ref(link_.request.number).load(std::memory_order_acquire);
+    if (number == done_) continue;
+    if (!answer()) return 1;
+    done_ = number;
+    std::atomic_ref(link_.answer.number).store(number, std::memory_order_release);
+    bell_.ring();
+  }
+}
+
+bool BehaviorServer::answer() {
+  snapshot_ = link_.request.snapshot;
+  commands_.follow(link_.request.last_sequence, link_.request.room);
+  take_order();
+  host_.tick(snapshot_, commands_);
+  if (!host_.lost().empty()) {
+    lines_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", "cannot go on: " + host_.lost());
+    return false;
+  }
+  tell_status();
+  keep(snapshot_.time_ns);
+  return true;
+}
+
+void BehaviorServer::take_order() {
+  const std::uint32_t size = link_.request.order_size;
+  if (size == 0 || size > BehaviorLink::order_bytes) return;
+  ByteReader bytes(std::span(link_.request.order).first(size));
+  try {
+    host_.order(kadans::take_order(bytes));
+  } catch (const InputError& error) {
+    lines_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", error.what());
+  }
+}
+
+void BehaviorServer::tell_status() {
+  const auto number = [](const std::atomic<std::uint32_t>& of) { return of.load(std::memory_order_relaxed); };
+  const PlayStatus& play = host_.status();
+  link_.answer.play = {number(play.phase), number(play.playing), number(play.waiting), number(play.done),
+                       number(play.not_done)};
+  for (std::size_t i = 0; i < std::min<std::size_t>(host_.size(), link_.ready.count); ++i) {
+    const BehaviorStatus& status = host_.behavior(i).status();
+    link_.answer.status[i] = {number(status.heap_bytes), number(status.instructions), number(status.gc_pause_ns),
+                              number(status.state), number(status.reloads)};
+  }
+}
+
+// Most ticks change nothing of it.
+void BehaviorServer::keep(std::int64_t time_ns) {
+  kept_.clear();
+  std::string why = host_.keep(kept_, time_ns);
+  if (why.empty() && kept_.size() > KeptState::bytes_max)
+    why = "more than " + std::to_string(KeptState::bytes_max / 1024) + " kB";
+  if (!why.empty()) {
+    kept_.clear();
+    if (why != unkept_) {
+      lines_.message(time_ns, BehaviorLog::Severity::warning, "supervisor",
+                     "the state of what plays would be lost with this process: " + why);
+    }
+  }
+  const bool turned = why.empty() != unkept_.empty();
+  unkept_ = why;
+  const auto bytes = kept_.bytes();
+  link_.answer.kept_changed = !turned && std::ranges::equal(bytes, kept_last_) ? 0 : 1;
+  if (link_.answer.kept_changed == 0) return;
+  kept_last_.assign(bytes.begin(), bytes.end());
+  link_.answer.kept.size = why.empty() ? static_cast<std::uint32_t>(bytes.size()) : KeptState::none;
+  link_.answer.kept.hash = hash_of_kept(bytes.data(), bytes.size());
+  std::ranges::copy(bytes, link_.answer.kept.bytes.begin());
+}
+
+}  // namespace kadans

@@ -1,0 +1,89 @@
+// `kadans run --behaviors process` as a person would call it; what befalls the process is in tests/failures.
+#include <cstdlib>
+#include <filesystem>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+using namespace kadans::program;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string on_virtual_time = " --threads-on-virtual-time --behaviors process ";
+
+Json last_line(const std::string& text) {
+  const auto end = text.find_last_not_of('\n');
+  return Json::parse(text.substr(text.rfind('\n', end) + 1, end));
+}
+
+// The lines of the behaviors until the robot is left, without the times.
+std::string said(const std::string& err) {
+  std::istringstream lines(err);
+  std::string all;
+  for (std::string line; std::getline(lines, line);) {
+    if (has(line, "supervisor: stop")) break;
+    if (has(line, " s  ")) all += line.substr(line.find(" s  ") + 4) + "\n";
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("run with a behavior process squats as with a thread: the same transitions, commands and records") {
+  const auto project = project_copy("process_squat");
+  const std::string squat = "run config/tulip/robot.json --play squat --duration 2.7 -v --json --record r.mcap";
+  const Outcome threads = run(squat + " --threads-on-virtual-time", project);
+  const Outcome process = run(squat + on_virtual_time, project);
+  CHECK_MESSAGE(process.exit_code == 0, process.err);
+  const Json result = last_line(process.out), other = last_line(threads.out);
+  CHECK(result["behavior_process"]["deaths"] == 0);
+  CHECK(result["commands"] == other["commands"]);
+  CHECK(result["commands"]["refused"] == 0);
+  CHECK(result["threads"]["control"]["missed"] == 0);
+  CHECK(result["record"]["rows"] == result["control_ticks"]);
+  CHECK(result["safety_level"] == "off");
+  CHECK(said(process.err) == said(threads.err));
+  CHECK(has(said(process.err), "settle -> squat"));
+}
+
+TEST_CASE(
+    "run with a behavior process ends cleanly on SIGTERM: behaviors leave, the robot is off, no process is left") {
+  const auto project = project_copy("process_term");
+  // Waits for the first transition, then sends the signal to all of the group, as a service manager does.
+  write(project / "term.sh",
+        "mkfifo told\n"
+        "setsid $1 run config/tulip/robot.json --plant ideal --play squat" +
+            on_virtual_time +
+            "-v --json >out 2>told &\n"
+            "exec 3<told; read -r line <&3; kill -TERM -$!; cat <&3 >err; wait $!\n");
+  const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
+  const int status = std::system(("cd '" + project.string() + "' && sh term.sh '" + program + "'").c_str());
+  CHECK(status == 0);
+  const Json result = last_line(read(project / "out"));
+  CHECK(result["ended"] == "told to stop");
+  CHECK(result["safety_level"] == "off");
+  CHECK(result["behavior_process"]["deaths"] == 0);
+  CHECK(has(read(project / "err"), "supervisor: stop"));
+}
+
+TEST_CASE("run refuses a wrong behavior before anything moves, wherever it would play") {
+  const auto project = project_copy("process_wrong");
+  REQUIRE(edit(project / "behaviors/tulip/squat.lua", "to = \"rest\"", "to = \"rset\""));
+  const Outcome outcome = run("run config/tulip/robot.json --play squat --duration 1" + on_virtual_time, project);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "behaviors/tulip/squat.lua:45"));
+  CHECK(has(outcome.err, "did you mean 'rest'"));
+}
+
+TEST_CASE("a script that fails in a behavior process fails as in a thread: that behavior stops, no process dies") {
+  const auto project = project_copy("process_error");
+  REQUIRE(edit(project / "behaviors/tulip/squat.lua", "m.vars.done = m.vars.done + 1", "error('ouch')"));
+  const Outcome outcome =
+      run("run config/tulip/robot.json --plant ideal --play squat --duration 9 --json" + on_virtual_time, project);
+  CHECK(outcome.exit_code == 1);
+  CHECK(has(outcome.err, "squat.lua:43: ouch"));
+  CHECK(last_line(outcome.out)["behavior_process"]["deaths"] == 0);
+}

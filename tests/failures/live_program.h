@@ -1,0 +1,53 @@
+// `kadans run` as a process of its own, what it says, and the process in which it plays behaviors: to be killed.
+#pragma once
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <sys/types.h>
+
+namespace kadans::failures {
+
+class LiveProgram {
+ public:
+  // With its record, out.mcap, in that folder.
+  LiveProgram(const std::filesystem::path& folder, const std::string& arguments);
+  ~LiveProgram();
+  LiveProgram(const LiveProgram&) = delete;
+  LiveProgram& operator=(const LiveProgram&) = delete;
+
+  // Reads on until a line on standard error holds the text. False: the program ended without it.
+  bool says(const std::string& text);
+  // Reads to the end; the JSON object that is the last line of the output, null when there is none.
+  nlohmann::json end();
+  void signal(int number) const { kill(pid_, number); }
+  int exit_code() const noexcept { return exit_code_; }
+  const std::string& heard() const noexcept { return heard_; }
+  std::size_t heard(const std::string& text) const;  // how often
+
+  // Any thread. The process of the behaviors that is alive, other than `other`; waits for one. -1: the program ended.
+  pid_t behavior_process(pid_t other = -1) const;
+  void signal_behavior_process(int number) const {
+    const pid_t pid = behavior_process();
+    if (pid > 1) kill(pid, number);
+  }
+
+  // Of a signal in the record, between two times.
+  struct Range {
+    double min = 0, max = 0;
+  };
+  Range recorded(const std::string& signal, double from_s, double to_s) const;
+
+ private:
+  std::filesystem::path folder_;
+  pid_t pid_ = -1;
+  std::FILE* messages_ = nullptr;
+  std::string heard_;
+  int exit_code_ = -1;
+};
+
+}  // namespace kadans::failures

@@ -1,0 +1,25 @@
+#include "kadans/signal/number_text.h"
+
+#include <doctest/doctest.h>
+
+using namespace kadans;
+
+TEST_CASE("A number is the whole of a text, or there is none") {
+  CHECK(number_of<double>("2.5") == 2.5);
+  CHECK(number_of<int>("-3") == -3);
+  CHECK(number_of<std::uint64_t>("00000000000000ff", 16) == 255U);
+  for (const char* text : {"", " 1", "1 ", "1x", "+1", "0x1"}) CHECK_FALSE(number_of<double>(text));
+  CHECK_FALSE(number_of<std::uint64_t>("-1"));
+  CHECK_FALSE(number_of<std::uint8_t>("256"));
+}
+
+TEST_CASE("A hash has sixteen digits") {
+  CHECK(hash_text(0) == "0000000000000000");
+  CHECK(hash_text(0xfedcba9876543210U) == "fedcba9876543210");
+  CHECK(number_of<std::uint64_t>(hash_text(0x123456789abcdefU), 16) == 0x123456789abcdefU);
+}
+
+TEST_CASE("Printed text longer than its room is cut, not lost") {
+  CHECK(printed("%d of %s", 2, "three") == "2 of three");
+  CHECK(printed("%s", std::string(600, 'x').c_str()).size() == 511);
+}
