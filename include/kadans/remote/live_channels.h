@@ -33,7 +33,7 @@ struct LiveChannel {
 
   std::string topic, encoding, schema_name, schema_encoding, schema;
   bool events = false;
-  std::uint64_t count = 0;           // of messages so far
+  std::uint64_t count = 0;             // of messages so far
   std::deque<LiveMessage> messages{};  // the newest
 
   // The message after the `seen` first ones, or the oldest that is still there; nullptr: there is none. `seen` counts
