@@ -45,6 +45,7 @@ export class Stage {
 
   set_theme(name) {
     const theme = themes[name];
+    this.moved = true;
     this.scene.background = new Color(theme.back);
     if (this.grid) this.scene.remove(this.grid);
     this.grid = new GridHelper(20, 80, theme.grid, theme.lines);
