@@ -77,7 +77,7 @@ struct RunOptions {
   double behaviors_patience_s = 0;     // with a process that does not answer; 0: the default
   std::uint32_t behaviors_deaths = 0;  // in a row, before it stays down; 0: the default
   double behaviors_memory_MB = 256;    // more than it has when it begins to play
-  CtlPlace ctl;  // on virtual time only where a folder is named
+  CtlPlace ctl;                        // on virtual time only where a folder is named
   LivePlace live;
 };
 int run_live(const RunOptions& options);
