@@ -148,7 +148,9 @@ void LiveClient::set_parameters(const J& json) {
       complain(name + ": too many orders wait");
       continue;
     }
-    calls_[call] = {.parameter = name, .parameter_request = json.contains("id") ? json.at("id").dump() : ""};
+    calls_[call] = {.parameter = name,
+                    .parameter_request = json.contains("id") ? json.at("id").dump() : "",
+                    .value = p.at("value")};
   }
 }
 
@@ -207,6 +209,7 @@ void LiveClient::take(std::uint32_t number, const Answer& answer) {
   if (call.save) return save(call.service_call, answer);
   if (call.service) return answer_service(call.service_call, answer.done, answer.text);
   if (!answer.done) complain(answer.text);
+  if (answer.done) hub_.settled(call.parameter, call.value);
   // As it is now, also after a refusal, so that the client's slider goes back.
   const auto now = std::ranges::find(hub_.parameters(), call.parameter, &LiveParameter::name);
   if (now == hub_.parameters().end() || (call.parameter_request.empty() && answer.done)) return;

@@ -47,8 +47,8 @@ void LiveHub::beat() {
   for (Event event; p_.port.next(event);) channels_.take(event);
   const std::int64_t time_ns = p_.port.status().time_ns;
   for (Fault fault; p_.port.next(fault);) channels_.take(fault, time_ns);
-  take_answers();
   changed_.clear();
+  take_answers();
   if (!wanted_) return;
   const LatestRow::View row = p_.port.signals();
   if (!row.values.empty() && row.tick != last_tick_) {
@@ -102,6 +102,12 @@ void LiveHub::note(const std::string& name, double value) {
     known->value = value;
   }
   changed_.push_back({name, value});
+}
+
+void LiveHub::settled(const std::string& name, double value) {
+  note(name, value);
+  const auto reported = std::ranges::find(behaviors_now_, name, &LiveParameter::name);
+  if (reported != behaviors_now_.end()) reported->value = value;  // until the next report says so too
 }
 
 void LiveHub::take_parameters() {

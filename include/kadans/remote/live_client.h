@@ -56,6 +56,7 @@ class LiveClient {
     bool service = false, save = false;
     std::uint32_t service_call = 0;
     std::string parameter{}, parameter_request{};
+    double value = 0;
   };
 
   void say(const std::string& json);

@@ -74,6 +74,8 @@ class LiveHub {
   void leave(std::uint64_t id) { clients_.erase(id); }
   // `call`: what the client knows its answer by. False: too many orders wait.
   [[nodiscard]] bool send(Order order, std::uint64_t client, std::uint32_t call);
+  // An order has set this parameter.
+  void settled(const std::string& name, double value);
   // What needs no order: the emergency stop and the pace. False: `verb` is no such thing.
   [[nodiscard]] bool act(const std::string& verb, const std::string& text, double value);
   bool can_pace() const noexcept { return p_.pace != nullptr; }

@@ -39,8 +39,7 @@ LiveService::LiveService(const LivePlace& place, Instance& instance, const Assem
                                                   .timing = {},
                                                   .pace = pace});
   server_ = std::make_unique<LiveServer>(
-      LiveSettings{.address = place.address, .port = static_cast<std::uint16_t>(place.port), .token = place.token},
-      hub_.get());
+      LiveSettings{.address = place.address, .port = place.port_number(), .token = place.token}, hub_.get());
 }
 
 void LiveService::start(const std::vector<TimingSource>& timing) {

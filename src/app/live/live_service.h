@@ -16,11 +16,12 @@ class App;
 namespace kadans {
 
 struct LivePlace {
-  int port = -1;  // -1: not served; 0: any that is free
+  std::string port;  // "": not served; "0": any that is free
   std::string address = "127.0.0.1";
   std::string token;  // "": a new one
 
-  bool wanted() const noexcept { return port >= 0; }
+  bool wanted() const noexcept { return !port.empty(); }
+  std::uint16_t port_number() const { return static_cast<std::uint16_t>(std::stoul(port)); }
 };
 void add_live_place(CLI::App& command, LivePlace& place);
 

@@ -14,7 +14,7 @@ namespace kadans {
 void add_view(CLI::App& app, ViewOptions& options) {
   CLI::App* view = app.add_subcommand("view", "Show a record in the browser");
   view->add_option("record", options.record, "Record (MCAP)")->required()->type_name("FILE")->check(CLI::ExistingFile);
-  options.live.port = 0;
+  options.live.port = "0";
   view->add_option("--port", options.live.port, "Port (default: one that is free)")->check(CLI::Range(0, 65535));
   view->add_option("--live-address", options.live.address, "Address to listen on (default: this machine alone)")
       ->type_name("IP");
@@ -23,7 +23,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
 int run_view(const ViewOptions& options) {
   if (page_files().empty()) throw InputError({.message = std::string(page_is_missing)});
   const std::string file = std::filesystem::absolute(options.record).string();
-  LiveServer server({.address = options.live.address, .port = static_cast<std::uint16_t>(options.live.port)}, nullptr,
+  LiveServer server({.address = options.live.address, .port = options.live.port_number()}, nullptr,
                     {.file = file, .take_frame = {}});
   catch_interrupts();
   server.start();

@@ -84,7 +84,7 @@ run(async () => {
   const [, url, port] = await first.begun;
   const browser = await chromium.launch({ executablePath: process.env.KADANS_CHROMIUM ?? 'chromium', args });
   try {
-    const page = await browser.newPage({ viewport: { width: 1366, height: 768 } });
+    const page = await browser.newPage({ viewport: { width: 1100, height: 640 } });
     const problems = [];
     page.on('pageerror', (error) => problems.push(error.stack));
     await page.goto(url);

@@ -21,7 +21,7 @@ export function active_states(session, behavior, t) {
   }
   for (const [of, index] of newest) {
     if (of !== null && active.has(states[of].parent)) add(index);
-    if (active.size === 0) add(index);
+    if (active.size <= 1) add(index); // it is over: where it ended
   }
   return active;
 }

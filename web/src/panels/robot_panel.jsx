@@ -46,8 +46,9 @@ export function RobotPanel({ session, theme, frames }) {
   const stage = useRef();
   const show = useRef();
   const [shown, set_shown] = useState(() => new Set(['contacts', 'cop', 'com', 'dcm', 'support']));
+  const drawn = useRef('');
   const latest = useRef();
-  latest.current = { session, shown };
+  latest.current = { session, shown, theme };
 
   useEffect(() => {
     stage.current = new Stage(canvas.current);
@@ -61,6 +62,11 @@ export function RobotPanel({ session, theme, frames }) {
       if (clientWidth === 0 || clientHeight === 0) return;
       stage.current.resize(clientWidth, clientHeight);
       const now = latest.current;
+      const { cursor_s, version } = now.session;
+      const sign = [cursor_s, version, clientWidth, clientHeight, now.theme, ...now.shown].join();
+      if (sign === drawn.current && !stage.current.moved) return; // nothing that moved: let the machine rest
+      drawn.current = sign;
+      stage.current.moved = false;
       show.current.take(now.session);
       show.current.draw(now.session.cursor_s, now.shown);
     };

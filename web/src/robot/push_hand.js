@@ -52,6 +52,7 @@ export class PushHand {
     if (!this.link) return;
     this.aim(event);
     if (!this.ray.ray.intersectPlane(this.plane, this.to)) return;
+    this.stage.moved = true;
     const length = this.impulse().length() / impulse_per_metre_Ns;
     this.arrow.visible = length > 0.02;
     this.arrow.position.copy(this.from);
@@ -64,6 +65,7 @@ export class PushHand {
     const impulse = this.impulse();
     if (impulse.length() > 0.05) this.push(this.link, impulse.toArray());
     this.link = null;
+    this.stage.moved = true;
     this.arrow.visible = false;
     this.stage.controls.enabled = true;
   }

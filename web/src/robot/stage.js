@@ -19,6 +19,8 @@ export class Stage {
     this.camera = new PerspectiveCamera(32, 1, 0.02, 60);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
+    this.moved = true; // by hand, since it was drawn
+    this.controls.addEventListener('change', () => (this.moved = true));
     this.controls.minDistance = 0.3;
     this.controls.maxDistance = 15;
     this.target = new Vector3(0, 0, 0.6);
@@ -43,6 +45,7 @@ export class Stage {
 
   set_theme(name) {
     const theme = themes[name];
+    this.moved = true;
     this.scene.background = new Color(theme.back);
     if (this.grid) this.scene.remove(this.grid);
     this.grid = new GridHelper(20, 80, theme.grid, theme.lines);
@@ -58,6 +61,7 @@ export class Stage {
     this.controls.target.copy(this.target);
     this.camera.position.copy(this.target).add(new Vector3(2.5, 1.7, 0.62));
     this.controls.update();
+    this.moved = true;
   }
 
   // Keeps `point` where it is in the picture, sideways; height stays.
