@@ -74,7 +74,9 @@ TEST_CASE("The shipped schemas are what the readers' field lists say") {
 TEST_CASE("What the readers accept fits the schemas, what the schemas refuse is no shipped file") {
   check_value(Json::parse(robot_schema()), Json::parse(right_robot), "robot");
   check_value(Json::parse(scenario_schema()), Json::parse(right_scenario), "scenario");
-  check_file(robot_schema(), source / "config" / "tulip" / "robot.json");
+  for (const std::string robot : {"head", "jiwiy", "tulip"}) {
+    check_file(robot_schema(), source / "config" / robot / "robot.json");
+  }
   for (const auto& entry : fs::directory_iterator(source / "config" / "scenarios")) {
     if (entry.path().extension() == ".json") check_file(scenario_schema(), entry.path());
   }
