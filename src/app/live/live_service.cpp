@@ -13,7 +13,6 @@ namespace kadans {
 void add_live_place(CLI::App& command, LivePlace& place) {
   command.add_flag("--live{8765}", place.port, "Show it in a browser and to Foxglove's kin; --live=PORT, 0: any")
       ->check(CLI::Range(0, 65535));
-  place.port = -1;  // a flag begins at 0
   command.add_option("--live-address", place.address, "Address to listen on (default: this machine alone)")
       ->type_name("IP");
   command.add_option("--live-token", place.token, "What a client must know to change anything (default: a new one)")
