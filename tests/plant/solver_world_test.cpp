@@ -1,4 +1,4 @@
-// The plant's own solver against Bullet's where the robot meets what moves freely: balls, boxes, a pendulum, a load.
+// The plant's own solver against Bullet's where the robot meets what moves freely: balls and boxes.
 #include <doctest/doctest.h>
 
 #include "solver_pair.h"
@@ -50,17 +50,4 @@ TEST_CASE("A box slides against another and both come to rest the same with both
   CHECK(pair.tree.truth().objects[0].pose.position_m[0] < 0.595);
   CHECK(apart.robot_m < 1e-6);
   CHECK(apart.objects_m < 1e-4);
-}
-
-TEST_CASE("A pendulum pushes TULip, which carries a bag, the same with both solvers") {
-  Robot robot = tulip(Drives::rigid);
-  robot.settings.world.objects = {object(
-      "pendulum", WorldPendulum{.length_m = 1.5, .radius_m = 0.05, .mass_kg = 1, .distance_m = 0.3}, {-0.2, 0, 0.75})};
-  robot.settings.world.payloads = {
-      {.name = "bag", .link = robot.model.links[0].name, .point_m = {0, 0, 0.1}, .mass_kg = 0.5, .from_s = 0.1}};
-  SolverPair pair(robot);
-  const Apart apart = most_apart(pair, 600);
-  CHECK(pair.tree.truth().objects[0].velocity_m_s[0] < 0.2);  // it has hit
-  CHECK(apart.robot_m < 1e-5);
-  CHECK(apart.objects_m < 1e-5);
 }
