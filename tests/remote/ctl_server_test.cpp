@@ -135,12 +135,13 @@ TEST_CASE("watch sends what was asked for, newer each time, until the client lea
   const Json head = Json::parse(client.line().value());
   REQUIRE(head["ok"] == true);
   CHECK(head["signals"][1]["unit"] == "rad");
-  std::uint64_t last = 0;
+  std::int64_t last = -1;
   for (int i = 0; i < 20; ++i) {
     const Json sample = Json::parse(client.line().value());
     CHECK(sample["values"].size() == 2);
-    CHECK(sample["tick"] > last);
-    last = sample["tick"];
+    const std::int64_t tick = sample["tick"];
+    CHECK(tick > last);
+    last = tick;
   }
   CHECK(says(live.ask({{"verb", "watch"}, {"signals", {"safty.level"}}}), "did you mean 'safety.level'"));
 }
