@@ -75,7 +75,7 @@ async function check_record(page, record) {
 run(async () => {
   check_size();
   const record = `${folder}/page.mcap`;
-  const sim = (port) => start(['sim', scenario('squat'), '--duration', '600', `--live=${port}`, '--live-token', 'test', '--no-record', '--no-ctl'], live_address);
+  const sim = (port) => start(['sim', scenario('squat'), '--play', 'squat{repeats=100}', '--duration', '600', `--live=${port}`, '--live-token', 'test', '--no-record', '--no-ctl'], live_address);
   const recorded = start(['sim', scenario('squat'), '--duration', '3', '--record', record], /record:/);
   await recorded.begun;
   await until('the record is there', () => recorded.child.exitCode !== null && existsSync(record));
