@@ -41,7 +41,7 @@ async function check_live(page, port) {
   const before = await page.evaluate(() => globalThis.kadans.parameters.get('posture.l_knee.kp_Nm_per_rad'));
   await slider.focus();
   await page.keyboard.press('PageUp');
-  const other = await page.context().newPage(); // one that asked for nothing: what it sees, the runtime has
+  const other = await page.context().browser().newPage(); // one that asked for nothing: what it sees, the runtime has
   await other.goto(`http://127.0.0.1:${port}/`);
   await until('another client sees it', () => other.evaluate((was) => globalThis.kadans?.parameters.get('posture.l_knee.kp_Nm_per_rad') > was, before));
   check(true, 'a slider changes the parameter in the runtime');
