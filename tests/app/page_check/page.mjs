@@ -1,6 +1,7 @@
 // The page in a real browser: a live run, then its record.
 import { existsSync, readdirSync, statSync } from 'node:fs';
 import { chromium } from 'playwright-core';
+import { WebSocket } from 'ws';
 import { check, folder, live_address, project, run, scenario, start, until } from './program.mjs';
 
 const args = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run', '--disable-dev-shm-usage'];
@@ -17,6 +18,20 @@ const picture = (page) =>
   });
 const value = (page, name) => page.evaluate((signal) => globalThis.kadans.value(signal), name);
 const active = (page) => page.evaluate(() => document.querySelector('.chart .state.active')?.dataset.state ?? '');
+
+// As the runtime tells it to a client that asked for nothing else.
+const parameter = (port, name) =>
+  new Promise((resolve, reject) => {
+    const socket = new WebSocket(`ws://127.0.0.1:${port}/`, ['foxglove.sdk.v1']);
+    socket.on('error', reject);
+    socket.on('open', () => socket.send(JSON.stringify({ op: 'getParameters', parameterNames: [name] })));
+    socket.on('message', (data, binary) => {
+      const told = binary ? {} : JSON.parse(data);
+      if (told.op !== 'parameterValues') return;
+      socket.close();
+      resolve(told.parameters[0]?.value);
+    });
+  });
 
 function check_size() {
   const assets = `${project}/web/dist/assets`;
@@ -41,12 +56,8 @@ async function check_live(page, port) {
   const before = await page.evaluate(() => globalThis.kadans.parameters.get('posture.l_knee.kp_Nm_per_rad'));
   await slider.focus();
   await page.keyboard.press('PageUp');
-  const other = await page.context().newPage(); // one that asked for nothing: what it sees, the runtime has
-  await other.goto(`http://127.0.0.1:${port}/`);
-  await until('another client sees it', () => other.evaluate((was) => globalThis.kadans?.parameters.get('posture.l_knee.kp_Nm_per_rad') > was, before));
+  await until('another client sees it', async () => (await parameter(port, 'posture.l_knee.kp_Nm_per_rad')) > before);
   check(true, 'a slider changes the parameter in the runtime');
-  check(await other.evaluate(() => !globalThis.kadans.remote.writes), 'a page without the token changes nothing');
-  await other.close();
 }
 
 async function check_record(page, record) {
@@ -75,7 +86,7 @@ async function check_record(page, record) {
 run(async () => {
   check_size();
   const record = `${folder}/page.mcap`;
-  const sim = (port) => start(['sim', scenario('squat'), '--duration', '600', `--live=${port}`, '--live-token', 'test', '--no-record', '--no-ctl'], live_address);
+  const sim = (port) => start(['sim', scenario('squat'), '--play', 'squat{repeats=100}', '--duration', '600', `--live=${port}`, '--live-token', 'test', '--no-record', '--no-ctl'], live_address);
   const recorded = start(['sim', scenario('squat'), '--duration', '3', '--record', record], /record:/);
   await recorded.begun;
   await until('the record is there', () => recorded.child.exitCode !== null && existsSync(record));

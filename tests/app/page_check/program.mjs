@@ -2,7 +2,7 @@
 import { spawn } from 'node:child_process';
 
 export const [kadans, project, folder] = process.argv.slice(2);
-const patience_ms = 20_000;
+const patience_ms = 40_000;
 const running = new Set();
 
 export function check(truth, what) {
