@@ -98,8 +98,7 @@ TEST_CASE("DcmBalance counts where the robot is going, not only where it is") {
   bench.lean(0, 0.2);
   const double velocity_m_s = 0.2 * com_height_m;
   CHECK(bench.balance.state().com_x_m == doctest::Approx(0));
-  CHECK(bench.balance.state().dcm_x_m ==
-        doctest::Approx(velocity_m_s * std::sqrt(com_height_m / 9.81)).epsilon(1e-3));
+  CHECK(bench.balance.state().dcm_x_m == doctest::Approx(velocity_m_s * std::sqrt(com_height_m / 9.81)).epsilon(1e-3));
 }
 
 TEST_CASE("DcmBalance keeps its ankles within their bound, and bows only beyond their reach") {
@@ -150,8 +149,8 @@ TEST_CASE("DcmBalance does not allocate") {
 
 TEST_CASE("DcmBalance needs feet, and joints that have a part in balance") {
   const RobotModel model = biped();
-  CHECK_THROWS_WITH_AS(DcmBalance({.model = model, .joints = {0}}),
-                       "it needs the option 'left_foot': a foot's link", OptionError);
+  CHECK_THROWS_WITH_AS(DcmBalance({.model = model, .joints = {0}}), "it needs the option 'left_foot': a foot's link",
+                       OptionError);
   RobotModel other = biped();
   other.joints[0].name = "l_wing";
   CHECK_THROWS_AS(DcmBalance({.model = other, .joints = {0}, .options = feet}), std::invalid_argument);
