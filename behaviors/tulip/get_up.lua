@@ -15,9 +15,8 @@ local P = k.params {
   steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
   tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
-  balance     = { 0, min = 0, max = 1, doc = "share of the balance's torques while it rises" },
   lean_rad    = { 0.0, min = -0.2, max = 0.2, unit = "rad", doc = "how far back it leans in the ankles while it rises" },
-  learn_rad   = { 0.08, min = 0, max = 0.2, unit = "rad", doc = "change of that after a fall, away from where it fell" },
+  learn_rad   = { 0.03, min = 0, max = 0.2, unit = "rad", doc = "change of that after a fall, away from where it fell" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
 
@@ -101,7 +100,6 @@ return k.behavior "get_up" {
   },
   k.state "rise" {
     run = function(m)
-      m.balance:set_parameter("share", P.balance)
       m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad)):wait()
     end,
     { on = "run.done", to = "steady" },
