@@ -8,8 +8,9 @@ describe("saccade", function()
     run:advance(1.6)
     local eye_rad = run.joints.left_eye_pan.position_rad
     run:advance(1.2)
-    expect(run.joints.pan.position_rad + run.joints.left_eye_pan.position_rad).to_be_near(math.rad(15), 0.06)
-    expect(run.joints.pan.position_rad + run.joints.right_eye_pan.position_rad).to_be_near(math.rad(15), 0.1)
+    local left_rad, right_rad = run.joints.left_eye_pan.position_rad, run.joints.right_eye_pan.position_rad
+    expect(run.joints.pan.position_rad + (left_rad + right_rad) / 2).to_be_near(math.rad(15), 0.03)
+    expect(left_rad - right_rad).to_be_near(-0.12, 0.02)  -- the eyes are 0.12 m apart, the target 1 m away
     expect(run.joints.pan.position_rad).to_be_above(0.12)
     expect(eye_rad).to_be_above(run.joints.left_eye_pan.position_rad)
   end)

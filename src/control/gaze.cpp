@@ -11,6 +11,8 @@
 namespace kadans {
 namespace {
 
+constexpr double margin_rad = 0.02;  // of a reference before a position limit
+
 constexpr double ahead_m = 1;            // of the first target
 constexpr double far_m = 20;             // no target is farther
 constexpr double velocity_max_m_s = 20;  // of the target
@@ -212,13 +214,13 @@ void Gaze::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   }
 }
 
-// Within the joint's limits, and near where it is; a reference that is already beyond comes no farther.
+// Short of the joint's limits, so that a drive that overshoots finds no soft stop, and near where it is; a reference that is already beyond comes no farther.
 void Gaze::integrate(Part& part, double velocity_rad_s, double position_rad, double dt_s) noexcept {
   JointState& s = part.state;
   const double fastest = part.law.velocity_max_rad_s, lead = part.config.lead_max_rad;
   s.velocity_rad_s = std::clamp(velocity_rad_s, -fastest, fastest);
-  const double lowest = std::max(part.axis.lower_rad, position_rad - lead);
-  const double highest = std::min(part.axis.upper_rad, position_rad + lead);
+  const double lowest = std::max(part.axis.lower_rad + margin_rad, position_rad - lead);
+  const double highest = std::min(part.axis.upper_rad - margin_rad, position_rad + lead);
   const double free_rad = s.reference_rad + dt_s * s.velocity_rad_s;
   s.reference_rad = std::clamp(free_rad, std::min(lowest, s.reference_rad), std::max(highest, s.reference_rad));
   if (s.reference_rad != free_rad) s.velocity_rad_s = 0;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double near_m = 0.05;        // a target nearer than this counts as so far away
 constexpr double steep = 0.1;          // h / distance from which on a target above an eye turns its yaw less
-constexpr double margin_rad = 0.01;    // before a position limit
+constexpr double margin_rad = 0.03;    // before a position limit
 constexpr double approach_per_s = 20;  // of a position limit
 constexpr double eyes_singular = 0.5;  // volume of what the eyes can do, below which the damping rises; ahead it is 1.4
 

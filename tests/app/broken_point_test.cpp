@@ -24,22 +24,30 @@ struct Breakage {
 
 constexpr const char* robot = "config/tulip/robot.json";
 constexpr const char* stand = "behaviors/tulip/stand.lua";
+constexpr const char* getting_up = "behaviors/tulip/get_up.lua";
+constexpr const char* rises = "set_gains(\"get_up\")";
+constexpr const char* sinks = "set_gains(\"soft\")";
 constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 39> breakages = {{
+constexpr std::array<Breakage, 43> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
     {"foot_sensor_lost", "", "\"sensor_not_finite\"", "\"sensor_stuck\"", "found within 20 ms"},
     {"gaze_pursuit", "behaviors/head/pursue.lua", "P.side_m * w * math.cos", "0 * w * math.cos",
      "the gaze is never 2 degrees off"},
-    {"gaze_pushed", "", "[0, 0.5, 0]", "[0, 10, 0]", "the gaze stays within 2 degrees"},
+    {"gaze_pushed", "config/head/robot.json", "\"gain_per_s\": 18", "\"gain_per_s\": 0.5",
+     "the gaze stays within 2 degrees"},
     {"gaze_saccade", "config/head/robot.json", "\"gain_per_s\": 18", "\"gain_per_s\": 4",
      "settles on what is left within 0.35 s, below 0.5 degrees"},
     {"gaze_unreachable", "behaviors/head/wander.lua", "x = -0.4, y = 0.0, z = -0.3", "x = 1.0, y = 0.0, z = 0.3",
      "what is under its back is told to be out of reach"},
+    {"get_up_left", getting_up, rises, sinks, "stands, height in m"},
+    {"get_up_prone", getting_up, rises, sinks, "stands, height in m"},
+    {"get_up_right", getting_up, rises, sinks, "stands, height in m"},
+    {"get_up_supine", getting_up, rises, sinks, "stands, height in m"},
     {"imu_silent", robot, "\"silent_ticks_max\": 5", "\"silent_ticks_max\": 400", "found within 20 ms"},
     {"jiwiy_sine", "", "[0, 0.001, 0.002]", "[0.03, 0.03, 0.03]", "both joints follow within 5 % and 5 degrees"},
     {"jiwiy_switched", "config/jiwiy/robot.json", "\"velocity_gain_Nms_per_rad\": 0.28",

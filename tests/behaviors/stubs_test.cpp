@@ -22,7 +22,7 @@ TEST_CASE("the table of the API names what the sandbox binds, all of it and noth
 
 TEST_CASE("lua-stubs writes the robot's own names, and an editor's settings") {
   const auto project = program::project_copy("stubs");
-  const auto outcome = program::run("lua-stubs --output editor", project);
+  const auto outcome = program::run("lua-stubs --output editor --robot config/tulip/robot.json", project);
   INFO(outcome.err);
   REQUIRE(outcome.exit_code == 0);
   const std::string stubs = program::read(project / "editor/kadans.lua");

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "kadans/config/robot_config.h"
+#include "kadans/control/control_object_types.h"
+#include "kadans/control/dcm_balance.h"
 #include "kadans/control/joint_pid.h"
 
 namespace kadans {
@@ -17,7 +19,8 @@ struct ControlObjects {
     for (const ObjectConfig& object : config.objects) {
       ObjectInfo& info = catalog.objects.emplace_back();
       info.name = object.name;
-      owners.push_back(make_joint_pid({config.model, object.joints}));
+      const ObjectSetup setup{config.model, object.joints};
+      owners.push_back(object.type.name == "joint_pid" ? make_joint_pid(setup) : make_dcm_balance(setup));
       const auto first = static_cast<ParameterId>(catalog.parameters.size());
       Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);
       owners.back()->declare(declaration);

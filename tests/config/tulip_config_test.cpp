@@ -12,7 +12,7 @@
 namespace kadans {
 namespace {
 
-const std::vector<std::string> types{"joint_pid"};
+const std::vector<std::string> types{"joint_pid", "dcm_balance"};
 const std::string robot_file = KADANS_SOURCE_DIR "/config/tulip/robot.json";
 
 RobotConfig tulip() { return read_robot_config(robot_file, types); }
@@ -41,8 +41,10 @@ TEST_CASE("TULip's configuration drives its twelve motors and leaves the ankle r
   const RobotConfig config = tulip();
   CHECK(config.name == "tulip");
   CHECK(config.model.joints.size() == 14);
-  REQUIRE(config.objects.size() == 1);
+  REQUIRE(config.objects.size() == 2);
   CHECK(config.objects[0].joints.size() == 12);
+  CHECK(config.objects[1].type.name == "dcm_balance");
+  CHECK(config.objects[1].joints.size() == 8);
   const std::size_t ankle = config.model.find_joint("r_ankle_roll").value();
   const std::size_t knee = config.model.find_joint("r_knee").value();
   CHECK(config.plant.drives[ankle].torque_max_Nm == 0);

@@ -69,7 +69,7 @@ TEST_CASE("found in time, the knee alone is off, latched, every torque stays wit
   };
   for (const Row& row :
        {Row{SensorFaultKind::silent, FaultCode::sensor_silent, 0},
-        Row{SensorFaultKind::jump, FaultCode::sensor_jump, 0}, Row{SensorFaultKind::stuck, FaultCode::sensor_stuck, 60},
+        Row{SensorFaultKind::jump, FaultCode::sensor_jump, 0}, Row{SensorFaultKind::stuck, FaultCode::sensor_stuck, 260},
         Row{SensorFaultKind::not_finite, FaultCode::sensor_not_finite, 0}}) {
     CAPTURE(name(row.code));
     TulipRobot robot(1);
