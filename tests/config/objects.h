@@ -19,7 +19,7 @@ struct ControlObjects {
     for (const ObjectConfig& object : config.objects) {
       ObjectInfo& info = catalog.objects.emplace_back();
       info.name = object.name;
-      const ObjectSetup setup{config.model, object.joints};
+      const ObjectSetup setup{config.model, object.joints, object.options};
       owners.push_back(object.type.name == "joint_pid" ? make_joint_pid(setup) : make_dcm_balance(setup));
       const auto first = static_cast<ParameterId>(catalog.parameters.size());
       Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);
