@@ -1,11 +1,12 @@
 // The control objects of a configuration with their tables, as the program makes them.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "kadans/config/robot_config.h"
-#include "kadans/control/control_object_types.h"
 #include "kadans/control/dcm_balance.h"
 #include "kadans/control/joint_pid.h"
 
@@ -19,7 +20,9 @@ struct ControlObjects {
     for (const ObjectConfig& object : config.objects) {
       ObjectInfo& info = catalog.objects.emplace_back();
       info.name = object.name;
-      const ObjectSetup setup{config.model, object.joints, object.options};
+      std::map<std::string, std::string> options;
+      for (const TextEntry& option : object.options) options[option.key] = option.text;
+      const ObjectSetup setup{config.model, object.joints, options};
       owners.push_back(object.type.name == "joint_pid" ? make_joint_pid(setup) : make_dcm_balance(setup));
       const auto first = static_cast<ParameterId>(catalog.parameters.size());
       Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);
