@@ -1,5 +1,6 @@
-// What the plant's step asks of the heap once its first second is over, Bullet's own memory included: nothing, but
-// where in a fall two bodies come near each other for the first time. The count sees every malloc of the thread.
+// What the plant's step asks of the heap once its first second is over, Bullet's own memory included: nothing,
+// also in a fall, where Bullet makes and drops what it knows of two bodies that come near each other. The count sees
+// every malloc of the thread.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -30,7 +31,13 @@ TEST_CASE("A squatting TULip's plant allocates nothing after its first second") 
   CHECK(plant.truth().base.position_m[2] > 0.5);
 }
 
-TEST_CASE("A TULip that falls allocates only where links come near each other, a few hundred times in all") {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool system_memory = true;  // sanitizers look into every block, so none is kept
+#else
+constexpr bool system_memory = false;
+#endif
+
+TEST_CASE("A TULip that falls beside a ball allocates nothing after its first second" * doctest::skip(system_memory)) {
   for (const Vec3& push_N : {Vec3{60, 25, 0}, Vec3{-70, 0, 0}, Vec3{0, 80, 0}}) {
     CAPTURE(push_N[0]);
     Robot robot = tulip(Drives::rigid);
@@ -45,7 +52,7 @@ TEST_CASE("A TULip that falls allocates only where links come near each other, a
       hold.tick(plant);
       if (i >= 1000) allocations += heap.count();
     }
-    CHECK(allocations < 400);
+    CHECK(allocations == 0);
     CHECK(plant.truth().base.position_m[2] < 0.5);
   }
 }

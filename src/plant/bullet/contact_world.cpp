@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bullet_memory.h"
+
 namespace kadans::bullet {
 class SteppedWorld final : public btMultiBodyDynamicsWorld {
  public:
@@ -123,6 +125,7 @@ ContactWorld::ContactWorld(const Options& options, PairMask& mask)
       dispatcher_(&configuration_),
       tree_solver_({.friction = options.solver == ContactSolver::tree_square_friction ? FrictionLaw::pyramid
                                                                                       : FrictionLaw::cone}) {
+  reserve_bullet_memory();
   ground_contact_.register_with(dispatcher_);
   object_contact_.register_with(dispatcher_);
   const bool own = options.solver != ContactSolver::stock;
