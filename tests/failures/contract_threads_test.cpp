@@ -1,9 +1,14 @@
 // Rows of the failure contract that take real threads; on virtual time, so that nothing depends on the machine's speed.
+#include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "kadans/telemetry/recorder.h"
 #include "realtime/live_robot.h"
@@ -65,6 +70,38 @@ class FullDisk {
   rlimit before_{};
 };
 
+// Two threads that do nothing but allocate, touch and free, one that signals the process.
+class Storm {
+ public:
+  Storm() {
+    std::signal(SIGUSR1, [](int) {});
+    for (int i = 0; i < 2; ++i) {
+      threads_.emplace_back([this] {
+        for (std::size_t bytes = 1; !over_; bytes = bytes % 1'000'003 + 4099) {
+          const std::vector<char> block(bytes, 'x');
+          rounds_ += block.back() == 'x' ? 1 : 0;
+        }
+      });
+    }
+    threads_.emplace_back([this] {
+      while (!over_) kill(getpid(), SIGUSR1);
+    });
+  }
+  ~Storm() {
+    over_ = true;
+    for (std::thread& thread : threads_) thread.join();
+    std::signal(SIGUSR1, SIG_DFL);
+  }
+  Storm(const Storm&) = delete;
+  Storm& operator=(const Storm&) = delete;
+  long rounds() const { return rounds_; }
+
+ private:
+  std::atomic<bool> over_{false};
+  std::atomic<long> rounds_{0};
+  std::vector<std::thread> threads_;
+};
+
 std::string record_file(const char* name) {
   return (std::filesystem::temp_directory_path() / ("kadans_" + std::string(name) + ".mcap")).string();
 }
@@ -83,6 +120,36 @@ TEST_CASE("the robot holds, then damps, then is off, as without a heartbeat" *
   CHECK(robot.run_until(500).status.safety.level == SafetyLevel::hold);
   CHECK(robot.run_until(5000).status.safety.level == SafetyLevel::off);
   robot.stop();
+}
+
+TEST_CASE("the robot holds, then damps, then is off, and stays so when the thread goes on" *
+          description("the behavior thread hangs for seconds")) {
+  LiveRobot robot;
+  bool hung = false;
+  robot.script.at = [&](std::int64_t time_ns) {
+    if (time_ns > 300 * tick_ns && !std::exchange(hung, true)) robot.behavior_wait->until(time_ns + 6000 * tick_ns);
+  };
+  robot.start();
+  CHECK(robot.run_until(500).status.safety.level == SafetyLevel::hold);
+  CHECK(robot.run_until(5000).status.safety.level == SafetyLevel::off);
+  CHECK(robot.run_until(8000).status.safety.level == SafetyLevel::off);
+  robot.stop();
+  CHECK(hung);
+  CHECK(robot.control_thread.statistics().missed.get() == 0);
+}
+
+TEST_CASE("no tick is left out, nothing fails" *
+          description("other threads take the CPUs, allocate without end, and signals rain on the process")) {
+  const Storm storm;
+  LiveRobot robot;
+  robot.start();
+  const Snapshot& last = robot.run_until(3000);
+  CHECK(last.status.safety.level == SafetyLevel::normal);
+  CHECK(last.status.safety.fault_count == 0);
+  robot.stop();
+  CHECK(robot.control_task.ticks() >= 3000);
+  CHECK(robot.control_thread.statistics().missed.get() == 0);
+  CHECK(storm.rounds() > 0);
 }
 
 TEST_CASE("rows that do not fit the ring are dropped and counted, no tick is late" *
