@@ -63,6 +63,14 @@ MachineFinding nmi_watchdog(const fs::path& root) {
                  "sysctl kernel.nmi_watchdog=0, or nmi_watchdog=0 on the kernel's command line");
 }
 
+// With it a thread of the idle class is idle within its session only: our keep-awake thread takes its part from others.
+MachineFinding sessions(const fs::path& root) {
+  const bool grouped = first_line_of(root / "proc/sys/kernel/sched_autogroup_enabled") == "1";
+  return finding("sessions", !grouped,
+                 grouped ? "share the CPUs evenly, keep-awake threads included" : "are not told apart",
+                 "not told apart", "sysctl kernel.sched_autogroup_enabled=0, or kadans run --no-keep-awake");
+}
+
 MachineFinding swap(const fs::path& root) {
   const std::string text = text_of(root / "proc/swaps");
   const auto lines = std::ranges::count(text, '\n');
@@ -97,7 +105,7 @@ std::vector<MachineFinding> examine_machine(const fs::path& root, const fs::path
   std::vector<MachineFinding> findings{kernel(root)};
   add_cpu_findings(root, findings);
   findings.insert(findings.end(), {priority(rights), memory(rights), throttling(root), nmi_watchdog(root),
-                                   hypervisor(root), swap(root), disk(root, folder)});
+                                   sessions(root), hypervisor(root), swap(root), disk(root, folder)});
   return findings;
 }
 

@@ -86,6 +86,7 @@ TEST_CASE("Each thing that is in the way is found, with what is, what should be 
            Wrong{"memory lock", "proc/self/limits", "Max locked memory     8388608    8388608\n", "8192 kB"},
            Wrong{"real-time throttling", "proc/sys/kernel/sched_rt_runtime_us", "-1\n", "off"},
            Wrong{"NMI watchdog", "proc/sys/kernel/nmi_watchdog", "1\n", "on"},
+           Wrong{"sessions", "proc/sys/kernel/sched_autogroup_enabled", "1\n", "evenly"},
            Wrong{"hypervisor", "proc/cpuinfo", "flags : fpu hypervisor lahf_lm\n", "virtual"},
            Wrong{"swap", "proc/swaps", "Filename Type\n/dev/sda2 partition\n", "1 in use"},
            Wrong{"disk", "sys/block/sda/queue/rotational", "1\n", "sda"},
@@ -104,7 +105,7 @@ TEST_CASE("Each thing that is in the way is found, with what is, what should be 
 
 TEST_CASE("Files that are not there are no reason to fail") {
   const fs::path nowhere = "/nonexistent/kadans";
-  CHECK(examine_machine(nowhere, nowhere).size() == 12);
+  CHECK(examine_machine(nowhere, nowhere).size() == 13);
   CHECK(real_time_cpu(nowhere) == 0);
 }
 
