@@ -9,7 +9,7 @@
 
 #include "input_files.h"
 #include "kadans/config/experiment_config.h"
-#include "kadans/telemetry/run_description.h"
+#include "kadans/remote/run_description.h"
 #include "live/live_pace.h"
 #include "terminal.h"
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kadans/signal/byte_order.h"
-#include "kadans/telemetry/run_description.h"
+#include "kadans/telemetry/recorder.h"
 
 namespace kadans {
 namespace {

@@ -8,9 +8,21 @@
 #include <utility>
 
 #include "kadans/signal/nearest_name.h"
-#include "kadans/telemetry/run_description.h"
 
 namespace kadans {
+
+const char* const description_schema = R"({
+  "title": "kadans.Description",
+  "description": "Robot, control sets, parameters and charts of a run",
+  "type": "object",
+  "properties": {
+    "robot": { "type": "object" },
+    "sets": { "type": "array" },
+    "objects": { "type": "array" },
+    "parameters": { "type": "array" },
+    "behaviors": { "type": "array" }
+  }
+})";
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 

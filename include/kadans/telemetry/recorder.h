@@ -37,6 +37,9 @@ struct RecorderSettings {
   McapSettings file = {};
 };
 
+// Of /description, as JSON Schema.
+extern const char* const description_schema;
+
 class Recorder final : public RecordSink {
  public:
   // Before the loop, when all signals are declared. Throws std::invalid_argument on a topic that is not there.
@@ -50,7 +53,7 @@ class Recorder final : public RecordSink {
   [[nodiscard]] bool describe(const std::string& name, const TextMap& facts);
   // After open(). Attaches the URDF and publishes it on /robot_description, where viewers look for it.
   [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns);
-  // After open(): run_description.h, on /description.
+  // After open(): what remote/run_description.h makes, on /description.
   [[nodiscard]] bool describe_parts(const std::string& description, std::int64_t time_ns);
 
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;

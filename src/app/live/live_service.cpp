@@ -6,7 +6,7 @@
 
 #include "kadans/config/json_value.h"
 #include "kadans/remote/page_files.h"
-#include "kadans/telemetry/run_description.h"
+#include "kadans/remote/run_description.h"
 
 namespace kadans {
 

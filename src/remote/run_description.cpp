@@ -1,4 +1,4 @@
-#include "kadans/telemetry/run_description.h"
+#include "kadans/remote/run_description.h"
 
 #include <nlohmann/json.hpp>
 
@@ -137,18 +137,5 @@ std::string run_description(const RobotConfig& robot, const Catalog& catalog, co
                          {"behaviors", behaviors_of(host)}};
   return description.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
-
-const char* const description_schema = R"({
-  "title": "kadans.Description",
-  "description": "Robot, control sets, parameters and charts of a run",
-  "type": "object",
-  "properties": {
-    "robot": { "type": "object" },
-    "sets": { "type": "array" },
-    "objects": { "type": "array" },
-    "parameters": { "type": "array" },
-    "behaviors": { "type": "array" }
-  }
-})";
 
 }  // namespace kadans

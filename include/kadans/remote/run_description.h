@@ -18,6 +18,4 @@ namespace kadans {
 // that play in a process of their own, their charts are not told.
 std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host);
 
-extern const char* const description_schema;
-
 }  // namespace kadans
