@@ -214,7 +214,8 @@ void Gaze::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   }
 }
 
-// Short of the joint's limits, so that a drive that overshoots finds no soft stop, and near where it is; a reference that is already beyond comes no farther.
+// Short of the joint's limits, so that a drive that overshoots finds no soft stop, and near where it is; a reference
+// that is already beyond comes no farther.
 void Gaze::integrate(Part& part, double velocity_rad_s, double position_rad, double dt_s) noexcept {
   JointState& s = part.state;
   const double fastest = part.law.velocity_max_rad_s, lead = part.config.lead_max_rad;

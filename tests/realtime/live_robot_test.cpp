@@ -58,6 +58,7 @@ TEST_CASE("A behavior thread that dies leaves the robot held, then damped, then 
   robot.start();
   CHECK(robot.run_until(300).status.safety.level == SafetyLevel::normal);
   CHECK(robot.run_until(500).status.safety.level == SafetyLevel::hold);
+  robot.behavior_thread.join();
   CHECK(robot.behavior_thread.over());
   CHECK(std::string(robot.behavior_thread.failure()) == "a high level failed");
   const SafetySettings& limits = robot.safety.settings();
@@ -100,6 +101,7 @@ TEST_CASE("A control thread whose clock stands still ends, says why, and its tic
   robot.control_wait.frozen_at_ns_ = 250 * tick_ns;
   robot.start();
   (void)robot.run_until(400);
+  robot.control_thread.join();  // time goes on before the thread's last instruction
   CHECK(robot.control_thread.over());
   CHECK(std::string(robot.control_thread.failure()) == "the clock stands still");
   const std::uint64_t ticks = robot.control_task.ticks();
