@@ -30,6 +30,13 @@ void SceneRun::turn() {
   }
 }
 
+void SceneRun::run_in() {
+  for (int i = 0; steps_ >= settle_steps && i < run_in_steps; ++i) {
+    engine_->set_torques(torques(engine_->state()));
+    engine_->step();
+  }
+}
+
 double SceneRun::step_us() const { return median(times_us_); }
 
 double SceneRun::drift_mm() const {

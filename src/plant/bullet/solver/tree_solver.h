@@ -35,7 +35,8 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
  public:
   struct Options {
     FrictionLaw friction = FrictionLaw::cone;
-    btScalar tolerance = 1e-7;  // m/s or rad/s
+    btScalar tolerance =
+        sizeof(btScalar) == sizeof(double) ? 1e-7 : 5e-5F;  // m/s or rad/s; single precision has no less
   };
 
   explicit TreeSolver(const Options& options) : options_(options) {}
