@@ -5,6 +5,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyPoint2Point.h>
 #include <doctest/doctest.h>
 
+#include "body.h"
 #include "contact_world.h"
 #include "tulip_robot.h"
 
@@ -19,6 +20,33 @@ constexpr double dt_s = 1e-3;
 ContactWorld::Options options(ContactSolver solver) {
   return {.gravity_m_s2 = {0, 0, -g}, .solver_iterations = 50, .solver = solver};
 }
+
+// A cube of 2 kg that belongs to a robot, and upon it one of 1 kg that is none of Bullet's multibodies.
+struct LooseCube {
+  explicit LooseCube(ContactSolver solver)
+      : mask(make_pair_mask(robot.model, robot.settings)),
+        body(robot.model, robot.settings),
+        world(options(solver), mask) {
+    body.place(robot.settings);
+    body.add_to(world);
+    compound.addChildShape(btTransform::getIdentity(), &shape);
+    btVector3 moments;
+    compound.calculateLocalInertia(1, moments);
+    loose = std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &compound, moments));
+    loose->setWorldTransform(btTransform(btQuaternion::getIdentity(), {0.02, 0, 0.4}));
+    loose->setGravity({0, 0, -g});
+    loose->setActivationState(DISABLE_DEACTIVATION);
+    world.add(*loose, false);
+  }
+
+  Robot robot = box(2, {0.2, 0.2, 0.2});
+  PairMask mask;
+  Body body;
+  btBoxShape shape{btVector3(0.05, 0.05, 0.05)};
+  btCompoundShape compound{false};
+  std::unique_ptr<btRigidBody> loose;
+  ContactWorld world;
+};
 
 // A multibody of two links that hang from a base, without shapes.
 std::unique_ptr<btMultiBody> hanging(bool ball_joints) {
@@ -63,6 +91,20 @@ struct Hung {
 };
 
 }  // namespace
+
+TEST_CASE("A rigid body that moves freely is left to Bullet's solver, which lets it fall, land and weigh on a robot") {
+  LooseCube tree(ContactSolver::tree), stock(ContactSolver::stock);
+  int apart = 0;
+  for (int i = 0; i < 1500; ++i) {
+    for (LooseCube* cube : {&tree, &stock}) cube->world.step(dt_s);
+    const bool same = tree.loose->getWorldTransform() == stock.loose->getWorldTransform() &&
+                      tree.body.com_frame(0) == stock.body.com_frame(0);
+    apart += same ? 0 : 1;
+  }
+  CHECK(apart == 0);
+  CHECK(tree.loose->getWorldTransform().getOrigin().z() == doctest::Approx(0.25).epsilon(2e-3));
+  CHECK(tree.world.normal_impulse(tree.world.ground()) == doctest::Approx(3 * g * dt_s).epsilon(1e-3));
+}
 
 TEST_CASE("Joints of several degrees of freedom are left to Bullet's solver") {
   const Hung tree(ContactSolver::tree, true, false), stock(ContactSolver::stock, true, false);
