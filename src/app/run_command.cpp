@@ -231,17 +231,7 @@ class LiveRun {
       std::fprintf(stderr, "%9.2f s  fault %s\n", 1e-9 * static_cast<double>(time_ns),
                    fault_text(fault, assembly_.robot().model).c_str());
     }
-    publish();
-  }
-
-  void publish() {
-    const Snapshot& snapshot = parts_.control.exchange().snapshot.read(1);
-    instance_.publish({.tick = snapshot.tick,
-                       .time_ns = snapshot.time_ns,
-                       .safety = snapshot.status.safety,
-                       .control_sets = snapshot.control_sets,
-                       .commands_refused = snapshot.commands_refused,
-                       .record = record_side_.status()});
+    instance_.publish(status_of(parts_.control.exchange().snapshot.read(1), record_side_.status()));
   }
 
   const RunOptions& options_;

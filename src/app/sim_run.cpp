@@ -3,25 +3,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <thread>
 
 #include "input_files.h"
 #include "kadans/config/experiment_config.h"
-#include "kadans/remote/run_description.h"
 #include "live/live_pace.h"
+#include "live/live_service.h"
 #include "terminal.h"
 
 namespace kadans {
 namespace {
 
 constexpr const char* height_signal = "plant.base.height_m";
-
-std::string read_all(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // A run that was asked to be short says nothing about what was to come later: such checks are not judged.
 std::vector<ScenarioCheck> reached_checks(const ScenarioConfig& scenario, double duration_s) {
@@ -209,10 +202,10 @@ void SimRun::start_record() {
     if (!options_.record.empty()) throw InputError({.message = why});
     return print_error(why + "; this run leaves no record");
   }
-  const RobotModel& model = assembly_.robot().model;
+  const RobotTexts texts = robot_texts(assembly_);
   (void)recorder_->describe_run(inputs_);
-  (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
-  (void)recorder_->describe_parts(run_description(assembly_.robot(), assembly_.catalog(), assembly_.own_host()), 0);
+  (void)recorder_->describe_robot(texts.name, texts.urdf, 0);
+  (void)recorder_->describe_parts(texts.description, 0);
   late_log_.set(&recorder_->events());
   if (!remote_) assembly_.record_to(recorder_.get());
 }

@@ -68,6 +68,15 @@ InstancePort& Instance::open_port() {
   return *ports_.emplace_back(std::make_unique<InstancePort>(catalog_.signals.size()));
 }
 
+InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) noexcept {
+  return {.tick = snapshot.tick,
+          .time_ns = snapshot.time_ns,
+          .safety = snapshot.status.safety,
+          .control_sets = snapshot.control_sets,
+          .commands_refused = snapshot.commands_refused,
+          .record = record};
+}
+
 void Instance::publish(const InstanceStatus& status) noexcept {
   for (const auto& port : ports_) port->status_.publish(status);
 }

@@ -12,10 +12,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-Json last_line(const std::string& text) {
-  const auto end = text.find_last_not_of('\n');
-  return Json::parse(text.substr(text.rfind('\n', end) + 1, end));
-}
+Json result_of(const std::string& out) { return Json::parse(last_line(out)); }
 
 }  // namespace
 
@@ -25,7 +22,7 @@ TEST_CASE("run squats on threads, records every tick, and ends with the robot of
       run("run config/tulip/robot.json --play squat --duration 3 --threads-on-virtual-time --record live.mcap --json",
           project);
   CHECK_MESSAGE(outcome.exit_code == 0, outcome.err);
-  const Json result = last_line(outcome.out);
+  const Json result = result_of(outcome.out);
   CHECK(result["passed"] == true);
   CHECK(result["ended"] == "duration over");
   CHECK(result["commands"]["sent"] > 0);
@@ -49,7 +46,7 @@ TEST_CASE("run ends cleanly on SIGTERM: behaviors leave, the robot is off, the r
   const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
   const int status = std::system(("cd '" + project.string() + "' && sh term.sh '" + program + "'").c_str());
   CHECK(status == 0);
-  const Json result = last_line(read(project / "out"));
+  const Json result = result_of(read(project / "out"));
   CHECK(result["ended"] == "told to stop");
   CHECK(result["safety_level"] == "off");
   CHECK(result["record"]["rows"] == result["control_ticks"]);
@@ -97,7 +94,7 @@ TEST_CASE("jitter ends with its figures as one object, and draws them") {
   const Outcome outcome = run("jitter --seconds 0.1 --no-keep-awake --json --svg jitter.svg", folder);
   CHECK(outcome.exit_code == 0);
   CHECK(has(outcome.out, "verdict:"));
-  const Json result = last_line(outcome.out);
+  const Json result = result_of(outcome.out);
   CHECK(result["samples"] == 100);
   for (const char* what : {"lateness_us", "jitter_us", "execution_us"}) {
     for (const char* which : {"p50", "p99", "p999", "max"}) CHECK(result[what][which].is_number());

@@ -51,6 +51,7 @@ struct InstanceStatus {
   std::uint32_t commands_refused = 0;
   RecordStatus record;
 };
+InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) noexcept;
 
 class InstancePort {
  public:

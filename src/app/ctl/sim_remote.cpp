@@ -97,13 +97,7 @@ void SimRemote::between_ticks(const RunMark& mark) {
   behavior_side_.beside_tick(mark.time_ns);
   if (published_++ % publish_every_ticks != 0) return;
   (void)record_side_.beat({.due_ns = mark.time_ns});
-  const Snapshot& snapshot = parts_.control.state();
-  instance_.publish({.tick = snapshot.tick,
-                     .time_ns = snapshot.time_ns,
-                     .safety = snapshot.status.safety,
-                     .control_sets = snapshot.control_sets,
-                     .commands_refused = snapshot.commands_refused,
-                     .record = record_side_.status()});
+  instance_.publish(status_of(parts_.control.state(), record_side_.status()));
 }
 
 }  // namespace kadans
