@@ -11,10 +11,10 @@
 namespace kadans {
 namespace {
 
-constexpr double near_m = 0.05;        // a target nearer than this counts as so far away
-constexpr double steep = 0.1;          // h / distance from which on a target above an eye turns its yaw less
-constexpr double margin_rad = 0.03;    // before a position limit
-constexpr double approach_per_s = 20;  // of a position limit
+constexpr double near_m = 0.05;              // a target nearer than this counts as so far away
+constexpr double steep = 0.1;                // h / distance from which on a target above an eye turns its yaw less
+constexpr double barrier_margin_rad = 0.03;  // before a position limit
+constexpr double approach_per_s = 20;        // of a position limit
 constexpr double eyes_singular = 0.5;  // volume of what the eyes can do, below which the damping rises; ahead it is 1.4
 
 Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
@@ -138,8 +138,8 @@ double GazeSolver::damping2() const noexcept {
 
 GazeSolver::Bounds GazeSolver::bounds(const Part& part, double position_rad) const noexcept {
   const double most = part.law.velocity_max_rad_s;
-  const double below = approach_per_s * (part.limits.lower_rad + margin_rad - position_rad);
-  const double above = approach_per_s * (part.limits.upper_rad - margin_rad - position_rad);
+  const double below = approach_per_s * (part.limits.lower_rad + barrier_margin_rad - position_rad);
+  const double above = approach_per_s * (part.limits.upper_rad - barrier_margin_rad - position_rad);
   return {std::clamp(below, -1e3 * most, most), std::clamp(above, -most, 1e3 * most)};
 }
 
