@@ -12,7 +12,7 @@ struct JointLimits {
   double lower_rad = 0, upper_rad = 0;
   double velocity_max_rad_s = 0;
   double effort_max_Nm = 0;             // 0: passive, never actuated
-  double effort_rate_max_Nm_s = 0;      // of what is asked, from one sample to the next; 0: effort_max in a millisecond
+  double effort_rate_max_Nm_s = 0;      // of what is asked; 0: effort_max in a millisecond
   double power_max_W = 0;               // |torque * velocity|; 0: effort_max times velocity_max
   double continuous_Nm = 0;             // torque that heats the winding just to thermal.hot_C; 0: 0.6 of effort_max
   double thermal_time_constant_s = 60;  // of the winding
