@@ -42,8 +42,7 @@ void tell(void*, const dds_log_data_t* data) {
     told.store(lines_max, std::memory_order_relaxed);
     return;
   }
-  std::fprintf(stderr, "ros2: %s%s", data->message + data->hdrsize,
-               line + 1 == lines_max ? "ros2: no more of this\n" : "");
+  std::fprintf(stderr, "ros2: %s%s", data->message, line + 1 == lines_max ? "ros2: no more of this\n" : "");
 }
 
 }  // namespace

@@ -112,6 +112,7 @@ void Ros2Bridge::stop() noexcept {
   inside_->port.want_signals(0);
   inside_->thread.stop();
   inside_->thread.join();
+  if (!inside_->topics) return;  // it has left already
   inside_->topics.reset();
   if (const char* why = inside_->thread.failure(); *why != '\0') std::fprintf(stderr, "ros2: ended: %s\n", why);
 }
