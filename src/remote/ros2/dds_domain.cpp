@@ -50,7 +50,8 @@ void tell(void*, const dds_log_data_t* data) {
 DdsDomain::DdsDomain(std::uint32_t domain) : api_(dds_api()), number_(domain) {
   const char* const asked = std::getenv("CYCLONEDDS_URI");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   const bool own = asked == nullptr || *asked == '\0';
-  const std::string configuration = std::string(sizes) + "," + (own ? loopback : asked);
+  std::string configuration(sizes);
+  configuration.append(",").append(own ? loopback : asked);
   api_.dds_set_log_sink(tell, nullptr);
   domain_ = checked(api_.dds_create_domain(domain, configuration.c_str()),
                     own ? "cannot be opened" : "cannot be opened with what CYCLONEDDS_URI says");
