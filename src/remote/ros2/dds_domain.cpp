@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 #include "kadans/signal/input_error.h"
 
@@ -10,6 +11,7 @@ namespace kadans {
 namespace {
 
 constexpr int lines_max = 20;
+constexpr std::size_t line_max_bytes = 200;
 constexpr dds_duration_t write_max_ns = 100'000'000;
 
 // Threads and buffers as small as the traffic is: in a run all of it is locked into memory.
@@ -42,7 +44,9 @@ void tell(void*, const dds_log_data_t* data) {
     told.store(lines_max, std::memory_order_relaxed);
     return;
   }
-  std::fprintf(stderr, "ros2: %s%s", data->message, line + 1 == lines_max ? "ros2: no more of this\n" : "");
+  const std::string_view text = std::string_view(data->message, data->size).substr(0, line_max_bytes);
+  const std::string said(text.substr(0, text.find('\n')));
+  std::fprintf(stderr, "ros2: %s%s\n", said.c_str(), line + 1 == lines_max ? "\nros2: no more of this" : "");
 }
 
 }  // namespace
