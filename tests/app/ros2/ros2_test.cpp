@@ -32,6 +32,8 @@ const std::string domain = std::to_string(1 + getpid() % 231);
 int beside(const fs::path& project, const std::string& started, const std::string& commands) {
   write(project / "beside.sh",
         "unset CYCLONEDDS_URI ROS_DOMAIN_ID\n"
+        "export TSAN_OPTIONS=\"suppressions=" KADANS_SOURCE_DIR
+        "/tests/app/ros2/tsan_suppressions.txt $TSAN_OPTIONS\"\n"
         "peer() { '" +
             peer_path + "' " + domain +
             " \"$@\"; }\n"
