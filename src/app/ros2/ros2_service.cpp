@@ -15,7 +15,7 @@ namespace {
 constexpr int domain_max = 232;  // the ports of more would not be ports
 
 std::uint32_t domain_of(const Ros2Place& place) {
-  if (place.domain >= 0) return static_cast<std::uint32_t>(place.domain);
+  if (place.domain != "-1") return static_cast<std::uint32_t>(std::stoul(place.domain));
   const char* const text = std::getenv("ROS_DOMAIN_ID");  // NOLINT(concurrency-mt-unsafe): before any thread
   if (text == nullptr || *text == '\0') return 0;
   int domain = -1;

@@ -14,11 +14,11 @@ class App;
 namespace kadans {
 
 struct Ros2Place {
-  int domain = -2;  // -2: not wanted; -1: as the environment says
+  std::string domain;  // "": not wanted; "-1": as the environment says
   double rate_hz = 100;
   bool commands = false;
 
-  bool wanted() const noexcept { return domain != -2; }
+  bool wanted() const noexcept { return !domain.empty(); }
 };
 void add_ros2_place(CLI::App& command, Ros2Place& place);
 

@@ -30,6 +30,7 @@ class DdsDomain {
   dds_entity_t reader(const dds_topic_descriptor_t& type, const std::string& topic, const DdsQuality& quality = {});
 
   // False: it could not be written, such as when a reader has not taken what came before for 100 ms.
+  // NOLINTNEXTLINE(readability-make-member-function-const): it changes what others see
   bool write(dds_entity_t writer, const void* sample) noexcept { return api_.dds_write(writer, sample) >= 0; }
   // Takes the oldest sample, if one waits and its data are valid, and shows it to `see`. False: none waits.
   template <typename Sample, typename See>
