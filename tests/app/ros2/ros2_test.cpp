@@ -205,6 +205,9 @@ TEST_CASE("orders over DDS are refused unless the run was told to take them") {
 
 TEST_CASE("run and sim say what is wrong with a domain before anything moves") {
   const auto project = project_copy("ros2_wrong");
+  const Outcome unasked = run(live + " --duration 0.1", project);
+  CHECK(unasked.exit_code == 0);
+  CHECK_FALSE(has(unasked.err, "ros2"));
   CHECK(run(live + " --ros2=233", project).exit_code == 2);
   CHECK(run(live + " --ros2-commands", project).exit_code == 2);
   CHECK(run("sim --from x.mcap --ros2", project).exit_code == 2);
