@@ -125,7 +125,7 @@ class LiveRun {
     record_side_.describe_with(robot_texts(assembly_));
     if (!options_.record.empty()) record_side_.start(options_.record);
     const bool may_record =
-        !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() || options_.ros2.wanted();
+        !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() || options_.ros2.commands;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->connect();
