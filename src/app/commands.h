@@ -8,6 +8,7 @@
 
 #include "ctl/ctl_service.h"
 #include "live/live_service.h"
+#include "ros2/ros2_service.h"
 #include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -31,7 +32,8 @@ struct SimOptions : RunRequest {
   std::optional<double> hash_every_s;
   CtlPlace ctl;  // always with realtime, else where a folder is named
   LivePlace live;
-  double speed = 1;  // with it, of the wall clock's
+  Ros2Place ros2;
+  double speed = 1;  // with one of them, of the wall clock's
 };
 void add_sim(CLI::App& app, SimOptions& options);
 int run_sim(const SimOptions& options);
@@ -80,6 +82,7 @@ struct RunOptions {
   double behaviors_memory_MB = 256;    // more than it has when it begins to play
   CtlPlace ctl;                        // on virtual time only where a folder is named
   LivePlace live;
+  Ros2Place ros2;
 };
 int run_live(const RunOptions& options);
 // What run_live starts for behaviors in a process of their own: robot, play and seed count.

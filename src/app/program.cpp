@@ -116,6 +116,7 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->check(CLI::Range(1.0, 1e6));
   add_ctl_place(*run, options.ctl);
   add_live_place(*run, options.live);
+  add_ros2_place(*run, options.ros2);
   run->add_flag("--json", options.json, "End with one JSON object on a line of its own");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
 }

@@ -124,7 +124,8 @@ class LiveRun {
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
     if (!options_.record.empty()) record_side_.start(options_.record);
-    const bool may_record = !options_.record.empty() || place_of(options_).wanted || options_.live.wanted();
+    const bool may_record =
+        !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() || options_.ros2.commands;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     if (assembly_.udp_plant() != nullptr && !assembly_.udp_plant()->connect(interrupted)) return exit_interrupted;
@@ -135,10 +136,12 @@ class LiveRun {
     live_.start({{"Control tick: late", &threads.control().statistics().lateness},
                  {"Control tick: takes", &control_.tick_cost()},
                  {"Behavior tick: takes", &threads.behaviors().statistics().execution}});
+    ros2_.start();
     notifier_.ready("drives " + assembly_.robot().name);
     const std::string ended = watch(threads);
     notifier_.stopping();
     leave(threads);
+    ros2_.stop();
     live_.stop();
     ctl_.stop();
     threads.stop();
@@ -262,6 +265,8 @@ class LiveRun {
                               &leaving_};
   CtlService ctl_{place_of(options_), instance_};
   LiveService live_{options_.live, instance_, assembly_};
+  Ros2Service ros2_{options_.ros2, instance_, assembly_, nullptr,
+                    options_.virtual_time ? -1 : timing_of(options_, assembly_.robot().engine).cpu};
   ControlTask control_{parts_.control, truth_.get()};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;

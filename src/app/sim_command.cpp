@@ -53,6 +53,7 @@ void refuse_wrong_mixtures(const SimOptions& options) {
   if (!options.checkpoints.empty()) refuse_option("--checkpoint", "does not go with --from");
   if (options.watch) refuse_option("--watch", "does not go with --from");
   if (options.live.wanted()) refuse_option("--live", "does not go with --from");
+  if (options.ros2.wanted()) refuse_option("--ros2", "does not go with --from");
   if (!options.branches.empty() && !(options.set.empty() && options.play.empty() && options.push.empty()))
     refuse_option("--branch", "says itself what to set, play and push");
 }
@@ -95,7 +96,8 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->check(CLI::Range(0.001, 1e6));
   add_ctl_place(*sim, options.ctl);
   add_live_place(*sim, options.live);
-  sim->add_option("--speed", options.speed, "With --live: as a multiple of the wall clock's pace")
+  add_ros2_place(*sim, options.ros2);
+  sim->add_option("--speed", options.speed, "With --live or --ros2: as a multiple of the wall clock's pace")
       ->type_name("X")
       ->check(CLI::Range(0.01, 100.0));
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");

@@ -83,10 +83,10 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
 }
 
 void SimRun::make_reachable() {
-  const bool paced = options_.realtime || options_.live.wanted();
-  SimRemote::Places places{options_.ctl, options_.live};
+  const bool paced = options_.realtime || options_.live.wanted() || options_.ros2.wanted();
+  SimRemote::Places places{options_.ctl, options_.live, options_.ros2};
   places.ctl.wanted = places.ctl.wanted && (paced || !options_.ctl.folder.empty());
-  if (!places.ctl.wanted && !places.live.wanted()) return;
+  if (!places.ctl.wanted && !places.live.wanted() && !places.ros2.wanted()) return;
   inputs_.run["ctl"] = "yes";
   remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_, SimRemote::Logs{told_, echo_, record_log_, log_});
   remote_->pace().speed = options_.speed;
@@ -99,7 +99,7 @@ int SimRun::run() {
   std::vector<RunObserver*> observers{&progress, &height_, &evidence_, &metrics_, this};
   Pace pace;
   std::optional<LivePacer> pacer;
-  if (options_.live.wanted() && remote_) {
+  if ((options_.live.wanted() || options_.ros2.wanted()) && remote_) {
     observers.push_back(&pacer.emplace(remote_->pace()));
   } else if (options_.realtime) {
     observers.push_back(&pace);

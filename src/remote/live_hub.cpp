@@ -24,6 +24,23 @@ bool LivePace::push(const std::string& what) {
   return true;
 }
 
+bool LivePace::obey(const std::string& verb, const std::string& text, double value) {
+  if (verb == "hold") {
+    held = true;
+  } else if (verb == "go") {
+    held = false;
+  } else if (verb == "step") {
+    steps += 1;
+  } else if (verb == "push") {
+    return push(text);
+  } else if (verb == "speed" && value >= 0.01 && value <= 100) {
+    speed = value;
+  } else {
+    return false;
+  }
+  return true;
+}
+
 std::vector<std::string> LivePace::take_pushes() {
   if (!pushed_.load(std::memory_order_acquire)) return {};
   const std::lock_guard lock(mutex_);
@@ -133,20 +150,7 @@ bool LiveHub::act(const std::string& verb, const std::string& text, double value
     p_.instance.stop_now();
     return true;
   }
-  if (p_.pace == nullptr) return false;
-  if (verb == "hold") {
-    p_.pace->held = true;
-  } else if (verb == "go") {
-    p_.pace->held = false;
-  } else if (verb == "step") {
-    p_.pace->steps += 1;
-  } else if (verb == "push") {
-    return p_.pace->push(text);
-  } else if (verb == "speed" && value >= 0.01 && value <= 100) {
-    p_.pace->speed = value;
-  } else {
-    return false;
-  }
+  if (p_.pace == nullptr || !p_.pace->obey(verb, text, value)) return false;
   tell_state();
   return true;
 }

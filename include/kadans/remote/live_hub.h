@@ -25,6 +25,8 @@ struct LivePace {
 
   // Server's thread. False: too many wait.
   [[nodiscard]] bool push(const std::string& what);
+  // hold, go, step, speed, push. False: `verb` is no such thing, or it cannot be done.
+  [[nodiscard]] bool obey(const std::string& verb, const std::string& text, double value);
   // The simulation's: "torso=0,2,0", an impulse in Ns; none wait mostly, and then this is one load.
   std::vector<std::string> take_pushes();
 

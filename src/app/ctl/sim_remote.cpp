@@ -55,12 +55,14 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
       behavior_side_(
           {instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),
       service_(places.ctl, instance_),
-      live_(places.live, instance_, assembly, &pace_) {
+      live_(places.live, instance_, assembly, &pace_),
+      ros2_(places.ros2, instance_, assembly, &pace_, -1) {
   record_side_.describe_with(robot_texts(assembly));
   assembly.record_to(&control_side_);
 }
 
 SimRemote::~SimRemote() {
+  ros2_.stop();
   live_.stop();
   service_.stop();
   told_.tell(nullptr);
@@ -72,6 +74,7 @@ void SimRemote::begin(RecordSink* own, const std::string& own_file) {
   if (own != nullptr) record_side_.leave_to(*own, own_file);
   service_.start();
   live_.start({{"Control tick: takes", &parts_.lockstep.control_tick_cost()}});
+  ros2_.start();
 }
 
 void SimRemote::tick(double, std::span<const double>) {}
