@@ -8,6 +8,7 @@
 
 #include "ctl/ctl_service.h"
 #include "live/live_service.h"
+#include "record_options.h"
 #include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -24,6 +25,7 @@ struct SimOptions : RunRequest {
   bool watch = false;
   std::string metrics;                   // plan whose metrics are reported; "" = none
   std::string record;                    // "" = NAME.mcap in the working directory
+  RecordOptions recording;
   std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
   std::string from;                      // a checkpoint; then what is set and played counts from there
   std::vector<std::string> push;         // with it
@@ -64,6 +66,7 @@ struct RunOptions {
   std::string peer;    // of a udp plant; "" = the robot's own
   std::string play;    // a list; "" = nothing, the robot holds
   std::string record;  // "" = none
+  RecordOptions recording;
   std::optional<double> duration_s;
   std::optional<std::uint64_t> seed;
   bool soft = false;          // also without the rights to be punctual
