@@ -25,7 +25,9 @@ std::string dated(const std::string& robot, const char* suffix) {
 }  // namespace
 
 void RecordSide::make_recorder() {
-  if (!recorder_) recorder_ = std::make_unique<Recorder>(instance_.catalog().signals, plan_.settings, plan_.flight);
+  if (recorder_) return;
+  recorder_ = std::make_unique<Recorder>(instance_.catalog().signals, plan_.settings, plan_.flight);
+  told_.store(recorder_.get(), std::memory_order_release);
 }
 
 void RecordSide::begin() {

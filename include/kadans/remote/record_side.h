@@ -65,7 +65,7 @@ class RecordSide final : public Task {
 
   // Supervisor.
   void tell(const Fault& fault) noexcept {
-    if (recorder_) recorder_->fault(fault);
+    if (Recorder* recorder = told_.load(std::memory_order_acquire); recorder != nullptr) recorder->fault(fault);
   }
   const RecordStatus& status() noexcept { return status_.read(); }
   // After the loop; nullptr: there was no record.
@@ -89,8 +89,9 @@ class RecordSide final : public Task {
   std::int64_t time_ns_ = 0, timing_told_ns_ = 0;
   std::atomic<bool> ending_{false};
   std::unique_ptr<Recorder> recorder_;
-  std::string file_;     // "": none is open
-  bool others_ = false;  // and it is not ours
+  std::atomic<Recorder*> told_{nullptr};  // the same, for the supervisor
+  std::string file_;                      // "": none is open
+  bool others_ = false;                   // and it is not ours
   Latest<RecordStatus> status_;
 };
 
