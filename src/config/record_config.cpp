@@ -26,7 +26,10 @@ bool not_in_every_run(const std::string& pattern) {
 
 // What was meant by a pattern without a signal: the nearest name, or the nearest first part of one.
 std::string meant(const std::string& pattern, const std::vector<std::string>& names) {
-  if (pattern.find('*') == std::string::npos) return did_you_mean(pattern, names);
+  if (pattern.find('*') == std::string::npos) {
+    const auto longer = std::ranges::find_if(names, [&](const std::string& name) { return name.starts_with(pattern); });
+    return longer == names.end() ? did_you_mean(pattern, names) : ", did you mean '" + *longer + "'?";
+  }
   std::vector<std::string> starts;
   for (const std::string& name : names) {
     const std::string start = name.substr(0, name.find('.'));

@@ -80,7 +80,8 @@ class Checker {
     if (!this.#decoders.has(channel.id)) {
       this.#decoders.set(channel.id, new MessageReader(parse(text.decode(schema.data), { ros2: true })));
     }
-    return JSON.parse(JSON.stringify(this.#decoders.get(channel.id).readMessage(data)));
+    const plain = (_, field) => (ArrayBuffer.isView(field) ? Array.from(field) : field);
+    return JSON.parse(JSON.stringify(this.#decoders.get(channel.id).readMessage(data), plain));
   }
 }
 
