@@ -57,7 +57,8 @@ std::uint32_t ticks_of(const NumberEntry& entry, const std::string& file, double
 }  // namespace
 
 void record_fields(Fields& f, RecordConfig& record) {
-  f.object("signals", "rate in Hz by a pattern over the signals' names, later ones first; 0: not recorded",
+  f.object("signals",
+           "rate in Hz by a pattern over the signals' names, later entries override earlier ones; 0: not recorded",
            [&](Fields& signals) {
              signals.number_entries(record.signals.rates_Hz, {0, rate_max_Hz, "Hz"},
                                     "the control rate divided by a whole number");
