@@ -275,3 +275,30 @@ TEST_CASE("Recorder: with a thread that drains, every row arrives whole and in o
   }
   CHECK(arrived + recorder.dropped() == rows);
 }
+
+TEST_CASE("Recorder tells all parameters at the start, then each change") {
+  const ScratchFile file;
+  const SignalTable table = small_table();
+  ParameterTable parameters;
+  double stiffness = 0, damping = 0;
+  const auto kp = parameters.add({"knee.kp", "Nm/rad", 0, 100, 40, ""}, &stiffness);
+  parameters.add({"knee.kd", "Nms/rad", 0, 10, 2, ""}, &damping);
+  Recorder recorder(table, {.parameters = &parameters});
+  REQUIRE(recorder.open(file.path()));
+  for (std::uint64_t tick = 3; tick < 100; ++tick) {
+    if (tick == 41) REQUIRE(parameters.set(kp, 55));
+    recorder.record(tick, static_cast<std::int64_t>(tick) * ms, std::array{0.0, 0.0, 0.0});
+    REQUIRE(recorder.drain());
+  }
+  REQUIRE(recorder.close());
+  std::vector<Entry> told;
+  for (Entry& entry : entries_of(file.path())) {
+    if (entry.topic == "/parameters") told.push_back(std::move(entry));
+  }
+  REQUIRE(told.size() == 2);
+  CHECK(told[0].time_ns == 3 * ms);
+  CHECK(told[0].payload.find(R"([{"name":"knee.kp","value":40.0},{"name":"knee.kd","value":2.0}])") !=
+        std::string::npos);
+  CHECK(told[1].time_ns == 50 * ms);
+  CHECK(told[1].payload.find(R"("parameters":[{"name":"knee.kp","value":55.0}])") != std::string::npos);
+}
