@@ -23,8 +23,8 @@ struct SimOptions : RunRequest {
   bool no_record = false;
   bool realtime = false;
   bool watch = false;
-  std::string metrics;                   // plan whose metrics are reported; "" = none
-  std::string record;                    // "" = NAME.mcap in the working directory
+  std::string metrics;  // plan whose metrics are reported; "" = none
+  std::string record;   // "" = NAME.mcap in the working directory
   RecordOptions recording;
   std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
   std::string from;                      // a checkpoint; then what is set and played counts from there
