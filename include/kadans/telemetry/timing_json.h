@@ -13,7 +13,9 @@ struct TimingSource {
   const TickStatistics* statistics;
 };
 
-// {"control tick": {"unit", "low", "high", "counts", "median", "p99", "max", "count"}}, in microseconds. Any thread.
+// {"control tick": {"unit", "low", "high", "counts", "median", "p99", "max", "count", "limits", "within"}}, in
+// microseconds. `within` says how many were at most as long as each of `limits`, always the same ones: the differences
+// between two messages are the histogram of what was between them. Any thread.
 std::string timing_json(const std::vector<TimingSource>& sources);
 inline constexpr const char* timing_schema = R"({"title": "kadans.Timing", "type": "object"})";
 
