@@ -9,6 +9,7 @@
 #include "ctl/ctl_service.h"
 #include "live/live_service.h"
 #include "ros2/ros2_service.h"
+#include "record_options.h"
 #include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -23,8 +24,9 @@ struct SimOptions : RunRequest {
   bool no_record = false;
   bool realtime = false;
   bool watch = false;
-  std::string metrics;                   // plan whose metrics are reported; "" = none
-  std::string record;                    // "" = NAME.mcap in the working directory
+  std::string metrics;  // plan whose metrics are reported; "" = none
+  std::string record;   // "" = NAME.mcap in the working directory
+  RecordOptions recording;
   std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
   std::string from;                      // a checkpoint; then what is set and played counts from there
   std::vector<std::string> push;         // with it
@@ -66,6 +68,7 @@ struct RunOptions {
   std::string peer;    // of a udp plant; "" = the robot's own
   std::string play;    // a list; "" = nothing, the robot holds
   std::string record;  // "" = none
+  RecordOptions recording;
   std::optional<double> duration_s;
   std::optional<std::uint64_t> seed;
   bool soft = false;          // also without the rights to be punctual

@@ -73,6 +73,11 @@ std::string rows_of(const TaskThread& thread) {
   return rows + row("  work", s.execution, "");
 }
 
+// A recorder may be there for its flight recorder alone.
+bool has_record(const LiveResult& result) {
+  return result.recorder != nullptr && (result.recorder->rows() > 0 || !result.recorder->error().empty());
+}
+
 std::uint64_t refused(const LiveResult& result) {
   return result.behaviors.commands().refused() + result.engine.inbox().state().refused;
 }
@@ -99,7 +104,7 @@ std::string live_text(const LiveResult& result) {
                   whole(process.deaths()), whole(process.takeovers()), process.down() ? ", is down" : "");
     all += text.data();
   }
-  if (result.recorder != nullptr) {
+  if (has_record(result)) {
     std::snprintf(text.data(), text.size(), "  record: %llu rows, %u dropped, %llu lost, %.1f MB\n",
                   whole(result.recorder->rows()), result.recorder->dropped(), whole(result.recorder->lost()),
                   1e-6 * static_cast<double>(result.recorder->file_bytes()));
@@ -144,7 +149,7 @@ std::string live_json(const LiveResult& result) {
                                 {"outage_us", json_of(process.outage())}};
   }
   if (result.udp_plant != nullptr) json["link"] = udp_json(result.udp_plant->statistics());
-  if (result.recorder != nullptr) {
+  if (has_record(result)) {
     json["record"] = {{"rows", result.recorder->rows()},
                       {"dropped", result.recorder->dropped()},
                       {"dropped_events", result.recorder->dropped_events()},

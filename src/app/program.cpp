@@ -86,6 +86,7 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e9));
   run->add_option("--record", options.record, "Write a record (default: none)")->type_name("FILE");
+  add_record_options(*run, options.recording);
   run->add_option("--seed", options.seed, "Seed of a model's noise (default: 1)")->type_name("N");
   run->add_flag("--soft", options.soft, "Go on without the rights that real time needs");
   run->add_flag("--threads-on-virtual-time", options.virtual_time,

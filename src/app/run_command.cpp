@@ -123,9 +123,14 @@ class LiveRun {
   int run() {
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
+    RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
+    const bool flies = plan.flight.kept_s > 0;
+    plan.timing = {{"Control tick: takes", &control_.tick_cost()}};
+    record_side_.record_as(std::move(plan));
+    record_side_.begin();
     if (!options_.record.empty()) record_side_.start(options_.record);
-    const bool may_record =
-        !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() || options_.ros2.commands;
+    const bool may_record = flies || !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() ||
+                            options_.ros2.commands;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     if (assembly_.udp_plant() != nullptr && !assembly_.udp_plant()->connect(interrupted)) return exit_interrupted;
@@ -150,7 +155,8 @@ class LiveRun {
     assembly_.plant().write(off);
     if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->leave();
     tell(threads.supervisor().now_ns());
-    if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
+    if (!record_side_.end()) print_error("the record is not complete: " + record_side_.recorder()->error());
+    tell_flights(record_side_.status());
     LiveResult result{threads,
                       control_,
                       parts_.behaviors,
@@ -195,6 +201,7 @@ class LiveRun {
     const SafetySettings& safety = parts_.control.safety().settings();
     const bool held = parts_.control.exchange().snapshot.read(1).status.safety.level >= SafetyLevel::hold;
     failed_ = failed_ || held;
+    record_side_.expect_end();
     if (!failed_) {
       leaving_.ask();
       pass(threads, assembly_.robot().safe.time_s + 0.2);
@@ -230,11 +237,20 @@ class LiveRun {
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) {
       instance_.tell(fault);
+      record_side_.tell(fault);
       if (fault.code == FaultCode::tick_overrun) continue;
       std::fprintf(stderr, "%9.2f s  fault %s\n", 1e-9 * static_cast<double>(time_ns),
                    fault_text(fault, assembly_.robot().model).c_str());
     }
-    instance_.publish(status_of(parts_.control.exchange().snapshot.read(1), record_side_.status()));
+    const RecordStatus record = record_side_.status();
+    tell_flights(record);
+    instance_.publish(status_of(parts_.control.exchange().snapshot.read(1), record));
+  }
+
+  void tell_flights(const RecordStatus& status) {
+    if (status.flights == told_flights_) return;
+    told_flights_ = status.flights;
+    std::fprintf(stderr, "flight record: %s\n", status.flight.data());
   }
 
   const RunOptions& options_;
@@ -270,6 +286,7 @@ class LiveRun {
   ControlTask control_{parts_.control, truth_.get()};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;
+  std::uint32_t told_flights_ = 0;
   bool failed_ = false;
 };
 

@@ -77,6 +77,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
   CLI::Option* record =
       sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
   sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
+  add_record_options(*sim, options.recording);
   CLI::Option* realtime = sim->add_flag("--realtime", options.realtime, "Run at the pace of the wall clock");
   sim->add_flag("--watch", options.watch, "Reload behaviors when their files are saved")->needs(realtime);
   sim->add_option("--checkpoint", options.checkpoints, "Leave a checkpoint at a time, to go on from with --from")

@@ -67,6 +67,7 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
       metrics_(assembly_.catalog().signals,
                options.metrics.empty() ? std::vector<MetricConfig>() : read_metrics(options.metrics), options.metrics),
       height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
+      record_plan_(record_plan(assembly_, options.recording, false)),
       continuation_(std::move(continuation)) {
   if (continuation_) {
     inputs_ = continuation_->from.inputs;
@@ -88,7 +89,8 @@ void SimRun::make_reachable() {
   places.ctl.wanted = places.ctl.wanted && (paced || !options_.ctl.folder.empty());
   if (!places.ctl.wanted && !places.live.wanted() && !places.ros2.wanted()) return;
   inputs_.run["ctl"] = "yes";
-  remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_, SimRemote::Logs{told_, echo_, record_log_, log_});
+  remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_, RecordPlan{record_plan_.settings, {}, {}},
+                                        SimRemote::Logs{told_, echo_, record_log_, log_});
   remote_->pace().speed = options_.speed;
 }
 
@@ -107,7 +109,7 @@ int SimRun::run() {
   if (trail_) observers.push_back(trail_.get());
   if (checkpoints_) observers.push_back(checkpoints_.get());
   if (remote_) {
-    remote_->begin(recorder_.get(), record_);
+    remote_->begin(recorder_.get(), record_.empty() ? "the flight recorder's" : record_);
     observers.push_back(remote_.get());
     if (!recorder_) late_log_.set(&record_log_);
   }
@@ -135,8 +137,10 @@ int SimRun::report(RunResult& result) {
 }
 
 void SimRun::tick(double, std::span<const double>) {
+  if (!recorder_) return;
   // A failing disk is reported when the record is closed; the run goes on.
-  if (recorder_) (void)recorder_->drain();
+  (void)recorder_->drain();
+  if (recorder_->flight() != nullptr && recorder_->flight()->due()) fly();
 }
 
 void SimRun::between_ticks(const RunMark& mark) {
@@ -191,31 +195,58 @@ std::string SimRun::record_name() const {
 }
 
 // A file that was asked for and cannot be written is an error; the usual one is not.
-void SimRun::start_record() {
-  if (options_.no_record) return;
+bool SimRun::open_record() {
+  if (options_.no_record) return false;
   record_ = record_name();
-  recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
-  if (!recorder_->open(record_)) {
-    const std::string why = recorder_->error();
-    recorder_.reset();
-    record_.clear();
-    if (!options_.record.empty()) throw InputError({.message = why});
-    return print_error(why + "; this run leaves no record");
+  if (recorder_->open(record_)) return true;
+  const std::string why = recorder_->error();
+  record_.clear();
+  if (!options_.record.empty()) throw InputError({.message = why});
+  print_error(why + "; this run leaves no record");
+  return false;
+}
+
+void SimRun::start_record() {
+  const bool flies = record_plan_.flight.kept_s > 0;
+  if (options_.no_record && !flies) return;
+  recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals, record_plan_.settings, record_plan_.flight);
+  if (open_record()) {
+    const RobotTexts texts = robot_texts(assembly_);
+    (void)recorder_->describe_run(inputs_);
+    (void)recorder_->describe_robot(texts.name, texts.urdf, 0);
+    (void)recorder_->describe_parts(texts.description, 0);
+  } else if (!flies) {
+    return recorder_.reset();
   }
-  const RobotTexts texts = robot_texts(assembly_);
-  (void)recorder_->describe_run(inputs_);
-  (void)recorder_->describe_robot(texts.name, texts.urdf, 0);
-  (void)recorder_->describe_parts(texts.description, 0);
   late_log_.set(&recorder_->events());
   if (!remote_) assembly_.record_to(recorder_.get());
+}
+
+// A fault latched.
+void SimRun::fly() {
+  FlightRecorder& flight = *recorder_->flight();
+  const std::string file = std::filesystem::path(record_name()).replace_extension(".flight.mcap").string();
+  if (!flight.begin(file)) return print_error(flight.error());
+  const RobotModel& model = assembly_.robot().model;
+  (void)flight.dump().describe_run(inputs_);
+  (void)flight.dump().describe_robot(model.name, read_all(model.file), 0);
+  (void)flight.dump().describe_parts(run_description(assembly_.robot(), assembly_.catalog(), assembly_.own_host()), 0);
 }
 
 void SimRun::finish_record(const RunResult& result) {
   if (!recorder_) return;
   (void)recorder_->drain();
-  (void)recorder_->describe("result", {{"state_hash", hash_text(result.state_hash)},
-                                       {"control_ticks", std::to_string(result.control_ticks)},
-                                       {"passed", result.passed ? "yes" : "no"}});
+  if (FlightRecorder* flight = recorder_->flight(); flight != nullptr) {
+    if (flight->due(true)) fly();
+    flight->finish();
+    if (!flight->error().empty()) print_error("the flight record is not complete: " + flight->error());
+    if (flight->dumps() > 0) std::fprintf(stderr, "flight record: %s\n", flight->file().c_str());
+  }
+  if (recorder_->is_open()) {
+    (void)recorder_->describe("result", {{"state_hash", hash_text(result.state_hash)},
+                                         {"control_ticks", std::to_string(result.control_ticks)},
+                                         {"passed", result.passed ? "yes" : "no"}});
+  }
   if (!recorder_->close()) print_error("the record is not complete: " + recorder_->error());
   if (recorder_->dropped() > 0) print_error(std::to_string(recorder_->dropped()) + " rows are missing in the record");
 }

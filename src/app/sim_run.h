@@ -48,12 +48,17 @@ class SimRun final : public RunObserver {
   int run();
 
   void tick(double time_s, std::span<const double> row) override;
+  void fault(const Fault& fault) override {
+    if (recorder_) recorder_->fault(fault);
+  }
   void between_ticks(const RunMark& mark) override;
   bool stop_asked() const override { return parted_ || split_; }
 
  private:
   void make_reachable();
   void start_record();
+  bool open_record();
+  void fly();
   void finish_record(const RunResult& result);
   std::string record_name() const;
   int report(RunResult& result);
@@ -80,6 +85,7 @@ class SimRun final : public RunObserver {
   TraceObserver height_;
   std::unique_ptr<HashTrail> trail_;
   std::unique_ptr<CheckpointWriter> checkpoints_;
+  RecordPlan record_plan_;
   std::unique_ptr<Recorder> recorder_;
   std::string record_;
 

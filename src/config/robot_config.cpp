@@ -54,6 +54,7 @@ void RobotReader::read(Fields& f) {
   f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });
   f.object("start", "where the robot starts", [&](Fields& e) { start(e); });
   f.object("estimate", "how the estimator is set up", [&](Fields& e) { estimate(e); });
+  f.object("record", "what records hold", [&](Fields& record) { record_fields(record, config_.record); });
   f.object("safety", "limits and reactions of the safety layer", [&](Fields& e) { safety(e); });
   f.object(
       "control", "control objects and control sets", [&](Fields& e) { control(e); }, Need::required);
@@ -96,7 +97,7 @@ std::vector<std::size_t> RobotReader::joints(std::string_view pattern, TextPlace
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
                                    std::span<const std::string> object_types) {
   RobotConfig config;
-  config.file = file;
+  config.file = config.record.signals.file = file;
   Problems problems(file);
   RobotReader reader(config, problems, object_types);
   read_fields(parse_json(text, file), problems, [&](Fields& f) { reader.read(f); });

@@ -39,7 +39,8 @@ void OrderQueue::answer(std::unique_ptr<OrderCase> order) noexcept {
 }
 
 std::uint64_t InstancePort::send(Order order) {
-  const bool to_records = order.kind == Order::Kind::record_start || order.kind == Order::Kind::record_stop;
+  const bool to_records = order.kind == Order::Kind::record_start || order.kind == Order::Kind::record_stop ||
+                          order.kind == Order::Kind::record_dump;
   auto asked = std::make_unique<OrderCase>();
   asked->order = std::move(order);
   asked->answer.number = sent_ + 1;

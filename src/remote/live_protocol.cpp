@@ -22,6 +22,7 @@ constexpr std::array orders{
     std::pair{std::string_view("clear_faults"), Order::Kind::clear_faults},
     std::pair{std::string_view("record_start"), Order::Kind::record_start},
     std::pair{std::string_view("record_stop"), Order::Kind::record_stop},
+    std::pair{std::string_view("record_dump"), Order::Kind::record_dump},
 };
 
 std::vector<std::byte> taken(const ByteWriter& writer) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kadans/config/fields.h"
+#include "kadans/config/record_config.h"
 #include "kadans/control/catalog.h"
 #include "kadans/engine/settings.h"
 #include "kadans/estimate/settings.h"
@@ -65,6 +66,7 @@ struct RobotConfig {
   std::vector<PoseInfo> poses;
   std::string start_pose;
   SafeConfig safe;
+  RecordConfig record;
 };
 
 // Throws InputError with everything that is wrong, the URDF's mistakes included. `object_types`: the types of control

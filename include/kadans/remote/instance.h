@@ -40,6 +40,8 @@ struct RecordStatus {
   std::uint64_t rows = 0, bytes = 0;
   std::uint32_t dropped = 0;
   std::array<char, 256> file{};
+  std::uint32_t flights = 0;       // records that the flight recorder wrote
+  std::array<char, 256> flight{};  // the last of them
 };
 
 // Published by the supervisor some twenty times a second.

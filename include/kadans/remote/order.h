@@ -43,6 +43,7 @@ struct Order {
     // Record thread.
     record_start,  // `text` = file
     record_stop,
+    record_dump,  // `text` = file; what the flight recorder has
   };
   Kind kind = Kind::report;
   std::string text{};

@@ -44,7 +44,8 @@ void InstanceLog::message(std::int64_t time_ns, Severity severity, const std::st
   next_->message(time_ns, severity, behavior, text);
 }
 
-SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs)
+SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan,
+                     const Logs& logs)
     : parts_(assembly.parts()),
       model_(assembly.robot().model),
       log_(logs.all),
@@ -58,6 +59,7 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
       live_(places.live, instance_, assembly, &pace_),
       ros2_(places.ros2, instance_, assembly, &pace_, -1) {
   record_side_.describe_with(robot_texts(assembly));
+  record_side_.record_as(std::move(plan));
   assembly.record_to(&control_side_);
 }
 

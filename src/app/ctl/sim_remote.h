@@ -44,8 +44,9 @@ class SimRemote final : public RunObserver {
     Ros2Place ros2;
   };
   // All must outlive it. Takes the place of the assembly's record sink: `own` is the simulation's record, if it has
-  // one.
-  SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs);
+  // one. `plan`: of records that are asked for.
+  SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan,
+            const Logs& logs);
   ~SimRemote() override;
   SimRemote(const SimRemote&) = delete;
   SimRemote& operator=(const SimRemote&) = delete;
