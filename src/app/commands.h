@@ -8,6 +8,7 @@
 
 #include "ctl/ctl_service.h"
 #include "live/live_service.h"
+#include "report/report_options.h"
 #include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -31,6 +32,7 @@ struct SimOptions : RunRequest {
   std::optional<double> hash_every_s;
   CtlPlace ctl;  // always with realtime, else where a folder is named
   LivePlace live;
+  ReportPlace report;
   double speed = 1;  // with it, of the wall clock's
 };
 void add_sim(CLI::App& app, SimOptions& options);
@@ -49,6 +51,7 @@ struct TestOptions {
   bool golden = false;        // state hashes must be those of the golden file
   bool renew_golden = false;  // write them there instead
   std::string junit;
+  ReportPlace report;
 };
 int run_test(const TestOptions& options);
 

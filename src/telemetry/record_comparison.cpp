@@ -7,18 +7,11 @@
 #include <sstream>
 
 namespace kadans {
-namespace {
-
-bool same(double a, double b) noexcept {
-  return a == b || (a != a && b != b);  // -0 and 0 are equal
-}
 
 bool is_upkeep(const std::string& name) {
   if (!name.starts_with("behavior.")) return false;
   return name.ends_with(".heap_bytes") || name.ends_with(".instructions") || name.ends_with(".gc_pause_ns");
 }
-
-}  // namespace
 
 RecordComparison::RecordComparison(McapReader& record, const SignalTable& signals) : record_(record), table_(signals) {
   advance();
@@ -87,7 +80,7 @@ void RecordComparison::compare_message(std::span<const double> row, std::int64_t
     const SignalId id = topic.signals[i];
     if (id == not_compared) continue;
     const double replayed = full ? row[id] : static_cast<double>(static_cast<float>(row[id]));
-    if (same(topic.values[i], replayed)) continue;
+    if (same_value(topic.values[i], replayed)) continue;
     const Signal& info = table_.info(id);
     found_.push_back({id, {info.name, info.unit, topic.values[i], replayed}});
   }
