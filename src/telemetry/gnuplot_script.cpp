@@ -53,7 +53,6 @@ class Script {
     add(printed("set terminal %s size %d,%d font '%s' background '%s' noenhanced\n", terminal, size.width, height_,
                 format == PlotFormat::svg ? "sans-serif,12" : "DejaVu Sans,9", plot_ink::paper.light));
     add("set encoding utf8\nset multiplot\n");
-    add(printed("set border lc rgb '%s'\nset tics textcolor rgb '%s'\n", plot_ink::frame.light, plot_ink::text.light));
     add(printed("set xrange [%.9g:%.9g]\n", plot.from_s, plot.to_s > plot.from_s ? plot.to_s : plot.from_s + 1));
   }
 
@@ -108,9 +107,7 @@ class Script {
     add(printed("set yrange [%zu:0]\n", count));
     for (std::size_t i = 0; i < plot_.lanes.size(); ++i) lane(plot_.lanes[i], i);
     mark_names();
-    add(printed("plot -1 notitle lc rgb '%s'\nunset object\nunset label\nset border lc rgb '%s'\n",
-                plot_ink::paper.light, plot_ink::frame.light));
-    add("unset arrow\n");
+    add(printed("plot -1 notitle lc rgb '%s'\nunset object\nunset label\n", plot_ink::paper.light));
   }
 
   void lane(const PlotLane& lane, std::size_t row) {
@@ -161,12 +158,14 @@ class Script {
     add(printed("set yrange [%.9g:%.9g]\n", range.low, range.high));
     shades();
     mark_lines();
-    add(printed("set grid lc rgb '%s' lw 0.6 dt 1\n", plot_ink::grid.light));
-    add(std::string("set xtics out nomirror ") + (last ? "format '%g'" : "format ''") + "\n");
-    add("set ytics out nomirror\n");
+    add(printed("set border 3 lc rgb '%s' lw 0.8\n", plot_ink::frame.light));
+    add(std::string("set xtics out nomirror ") + (last ? "format '%g' " : "format '' ") + ink() + "\n");
+    add("set ytics out nomirror format '%g' " + ink() + "\n");
+    add(printed("set grid xtics ytics lt 1 lc rgb '%s' lw 0.6\n", plot_ink::grid.light));
     add(last ? "set xlabel 'time, s' " + ink() + "\n" : "unset xlabel\n");
-    add("set ylabel " + quoted(panel.unit.empty() ? " " : panel.unit) + printed(" at screen %.5f, graph 0.5 ", 0.0) +
-        "\n");
+    if (!panel.unit.empty())
+      add("set label " + quoted(panel.unit) + printed(" at screen %.5f, graph 0.5 center rotate by 90 ", x(16)) +
+          ink() + "\n");
     if (!panel.title.empty())
       add("set label " + quoted(panel.title) + " at graph 0, graph 1 left offset 0,0.7 " + ink() + "\n");
     add(printed("set key at screen %.5f, screen %.5f left top reverse Left samplen 1.4 spacing 1.0 ",
@@ -176,14 +175,16 @@ class Script {
     add("unset object\nunset arrow\nunset label\n");
   }
 
-  // Every other state of the behavior that stands first.
+  // Every other state of the behavior that stands first, of those that can be seen.
   void shades() {
     if (plot_.lanes.empty()) return;
-    const std::vector<PlotBand>& bands = plot_.lanes.front().bands;
-    for (std::size_t i = 1; i < bands.size(); i += 2) {
-      if ((bands[i].to_s - bands[i].from_s) * pixels_a_second() < 0.3) continue;
-      add(printed("set object rect from first %.9g, graph 0 to first %.9g, graph 1 behind fc rgb '%s' ",
-                  bands[i].from_s, bands[i].to_s, plot_ink::shade.light) +
+    bool shaded = true;
+    for (const PlotBand& band : plot_.lanes.front().bands) {
+      if ((band.to_s - band.from_s) * pixels_a_second() < 2) continue;
+      shaded = !shaded;
+      if (!shaded) continue;
+      add(printed("set object rect from first %.9g, graph 0 to first %.9g, graph 1 behind fc rgb '%s' ", band.from_s,
+                  band.to_s, plot_ink::shade.light) +
           "fs solid noborder\n");
     }
   }
