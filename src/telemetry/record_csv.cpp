@@ -52,13 +52,13 @@ bool CsvLines::next(std::string& line) {
     if (!started_) {  // evenly spaced lines begin where they were asked to, when there are values already
       const bool known = std::ranges::any_of(cells_, [](const auto& value) { return value.has_value(); });
       time_ns_ = known && every_ns_ ? span_.from_ns : rows_.time_ns();
+      started_ = true;
     }
-    if (started_ && rows_.time_ns() > time_ns_) {  // the line is whole
+    if (rows_.time_ns() > time_ns_) {  // the line is whole
       write(time_ns_, line);
       time_ns_ = every_ns_ ? time_ns_ + *every_ns_ : rows_.time_ns();
       return true;
     }
-    started_ = true;
     take_row();
   }
   if (!started_ || ended_ || time_ns_ > last_ns_) return false;

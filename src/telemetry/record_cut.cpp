@@ -16,7 +16,6 @@ struct Passage {
   std::uint16_t channel = 0;        // in the new file
   std::vector<std::size_t> places;  // of the values that are kept; empty: the message as it is
   bool rows = false, event = false;
-  bool begun = false;  // in the stretch
   // The last message before the stretch.
   std::uint32_t before_tick = 0;
   std::int64_t before_ns = 0;
@@ -42,7 +41,6 @@ class Cutting {
     put_facts();
     while (rows_.next()) pass();
     if (result_.messages == 0) refuse_empty();
-    put_rows_before();
     check(file_.close());
     result_.file_bytes = file_.file_bytes();
     return result_;
@@ -123,30 +121,14 @@ class Cutting {
       return;
     }
     if (result_.messages == 0) begin(rows_.time_ns());
-    if (way->rows && !way->begun && rows_.time_ns() > begin_ns_) put_before(*way, way->before_ns);
-    way->begun = true;
     put(*way, rows_.tick(), rows_.time_ns(), kept_of(*way));
   }
 
-  // What descriptions say holds from the beginning on.
+  // What holds when the stretch begins. Rows keep their own time; what describes the run has none that matters.
   void begin(std::int64_t time_ns) {
-    begin_ns_ = time_ns;
     for (auto& [id, way] : passages_) {
-      if (way && !way->rows) put_before(*way, time_ns);
+      if (way && !way->before.empty()) put(*way, way->before_tick, way->rows ? way->before_ns : time_ns, way->before);
     }
-  }
-
-  // Signals that stood still: the row that holds has its own time, a little before the beginning.
-  void put_rows_before() {
-    for (auto& [id, way] : passages_) {
-      if (way && way->rows && !way->begun) put_before(*way, way->before_ns);
-    }
-  }
-
-  void put_before(Passage& way, std::int64_t time_ns) {
-    if (way.before.empty()) return;
-    put(way, way.before_tick, time_ns, way.before);
-    way.before.clear();
   }
 
   void put(const Passage& way, std::uint32_t tick, std::int64_t time_ns, std::span<const std::byte> payload) {
@@ -174,7 +156,6 @@ class Cutting {
   std::vector<double> values_;
   std::vector<std::byte> payload_;
   CutRecord result_;
-  std::int64_t begin_ns_ = 0;
 };
 
 }  // namespace

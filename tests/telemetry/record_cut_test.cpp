@@ -32,19 +32,20 @@ TEST_CASE("a cut holds the messages of its time as they were, with facts and att
   const CutRecord made = cut_record(whole, {.span = {30 * ms, 55 * ms}, .signals = {}}, file.path());
   std::vector<std::string> expected = lines_of(whole.file, {30 * ms, 55 * ms});
   std::vector<std::string> got = lines_of(file.path());
-  // The description of the robot holds from the beginning on; it comes first.
-  REQUIRE(got.size() == expected.size() + 1);
-  CHECK(got[0] == R"({"time_s":0.03,"topic":"/description","robot":{"name":"leg"}})");
-  got.erase(got.begin());
+  // What holds from the beginning on comes first.
+  REQUIRE(got.size() == expected.size() + 3);
+  CHECK(got[0] == R"({"time_s":0.029,"topic":"/knee","tick":29,"knee.angle_rad":0.029,"knee.torque_Nm":-29})");
+  CHECK(got[1] == R"({"time_s":0.02,"topic":"/slow","tick":20,"slow.temperature_C":20.2})");
+  CHECK(got[2] == R"({"time_s":0.03,"topic":"/description","robot":{"name":"leg"}})");
+  got.erase(got.begin(), got.begin() + 3);
   CHECK(got == expected);
-  CHECK(made.messages == expected.size() + 1);
+  CHECK(made.messages == expected.size() + 3);
   const RecordOutline cut = outline_of(file.path());
   CHECK(cut.complete);
   CHECK(cut.robot() == "leg");
   CHECK(cut.fact("run", "scenario") == "knee.json");
   CHECK(cut.fact("cut", "from_s") == "0.03");
   CHECK(cut.file_bytes == made.file_bytes);
-  CHECK(cut.topics.size() == 4);  // nothing was said meanwhile, no state changed
 }
 
 TEST_CASE("a cut of some signals holds these alone, under their names and units, in messages that say so") {

@@ -87,7 +87,7 @@ TEST_CASE("a signal that stands still holds its value where one record has a row
   const auto write = [](WrittenRecord& record, bool all, double at_five) {
     const std::uint16_t knee = record.rows({"knee.angle_rad|rad"});
     for (std::uint32_t tick = 0; tick < 10; ++tick) {
-      if (all || tick == 0 || tick == 4 || tick == 5 || tick == 9) record.row(knee, tick, {tick < 5 ? 1 : at_five});
+      if (all || tick == 0 || tick == 5 || tick == 9) record.row(knee, tick, {tick < 5 ? 1 : at_five});
     }
   };
   write(every, true, 2);

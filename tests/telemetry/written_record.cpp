@@ -70,10 +70,10 @@ const std::string& WrittenRecord::path() {
   return file_.path();
 }
 
-void WrittenRecord::cut_short(std::size_t bytes) {
+void WrittenRecord::cut_short() {
   path();
   std::vector<std::byte> all = file_.bytes();
-  all.resize(all.size() - bytes);
+  all.resize(all.size() / 2);
   file_.write(all);
 }
 

@@ -29,7 +29,7 @@ class WrittenRecord {
   // Completes it.
   const std::string& path();
   RecordOutline outline() { return outline_of(path()); }
-  void cut_short(std::size_t bytes);  // at its end
+  void cut_short();  // to half of its bytes
 
  private:
   std::uint16_t json_channel(const std::string& topic, const std::string& schema);
