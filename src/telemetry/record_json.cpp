@@ -90,15 +90,23 @@ bool JsonLines::next(std::string& line) {
   return false;
 }
 
-void JsonLines::write(std::string& line) const {
+const std::vector<std::string>& JsonLines::keys() {
+  const auto [known, added] = keys_.try_emplace(rows_.channel());
+  if (!added) return known->second;
+  for (const Signal& signal : rows_.topic().signals) known->second.push_back("," + quoted(signal.name) + ":");
+  return known->second;
+}
+
+void JsonLines::write(std::string& line) {
   const RecordTopic& topic = rows_.topic();
   line += "{\"time_s\":";
   append_seconds(line, rows_.time_ns());
   line += ",\"topic\":" + quoted(topic.name);
   if (!rows_.values().empty()) {
     line += ",\"tick\":" + std::to_string(rows_.tick());
-    for (std::size_t i = 0; i < topic.signals.size(); ++i) {
-      line += "," + quoted(topic.signals[i].name) + ":";
+    const std::vector<std::string>& names = keys();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      line += names[i];
       append_json_number(line, rows_.values()[i]);
     }
   } else if (topic.is_json()) {

@@ -28,7 +28,6 @@ void add_message(const RecordRows& rows, RecordOutline& outline, TopicOutline& t
   } else if (rows.topic().signals.empty()) {
     StateHash hash;
     hash.add(topic.hash);
-    hash.add(static_cast<std::uint64_t>(time_ns));
     for (const std::byte byte : rows.payload()) hash.add(static_cast<std::uint64_t>(byte));
     topic.hash = hash.value();
   }

@@ -1,7 +1,7 @@
 // A stretch of a record, and some of its signals, as a record of its own: chunks, CRCs, index, schemas, facts and
-// attachments, so that whatever reads records reads it. What holds when the stretch begins is kept: of signals their last
-// row before, with its own time, since a signal that stands still has none for a while; of descriptions (messages of
-// topics that hold neither rows nor events: URDF, parameters) the last one, at the beginning.
+// attachments, so that whatever reads records reads it. What holds when the stretch begins is kept: of signals their
+// last row before, with its own time, since a signal that stands still has none for a while; of descriptions (messages
+// of topics that hold neither rows nor events: URDF, parameters) the last one, at the beginning.
 #pragma once
 
 #include <string>

@@ -31,9 +31,11 @@ class JsonLines {
 
  private:
   bool wanted();
-  void write(std::string& line) const;
+  void write(std::string& line);
+  const std::vector<std::string>& keys();
 
   RecordRows rows_;
+  std::map<std::uint16_t, std::vector<std::string>> keys_;  // of a channel: its signals' names, quoted
   std::vector<std::string> topics_;
   std::vector<bool> met_;  // of the topics
   TimeSpan span_;

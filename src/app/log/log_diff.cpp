@@ -54,15 +54,18 @@ void print_json(const Findings& found) {
   std::puts(json.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
 }
 
+std::string name_of(const SignalParting& parting) {
+  return parting.name + (parting.unit.empty() ? "" : ", " + parting.unit);
+}
+
 void print_first(const RecordDiff& diff) {
   const SignalParting& first = diff.partings.front();
   const auto there = std::ranges::count(diff.partings, first.first_ns, &SignalParting::first_ns);
-  std::printf("they part at %.3f s, in %s:\n  %-44s %18s %18s %12s\n", seconds(first.first_ns),
+  std::printf("they part at %.3f s, in %s:\n  %-50s %18s %18s %12s\n", seconds(first.first_ns),
               plural(static_cast<std::uint64_t>(there), "signal").c_str(), "", "first", "second", "by");
   for (std::size_t i = 0; i < std::min(shown, static_cast<std::size_t>(there)); ++i) {
     const SignalParting& p = diff.partings[i];
-    std::printf("  %-44s %18.12g %18.12g %12.3g %s\n", p.name.c_str(), p.first_a, p.first_b, p.first_b - p.first_a,
-                p.unit.c_str());
+    std::printf("  %-50s %18.12g %18.12g %12.3g\n", name_of(p).c_str(), p.first_a, p.first_b, p.first_b - p.first_a);
   }
   if (static_cast<std::size_t>(there) > shown)
     std::printf("  ... and %zu more\n", static_cast<std::size_t>(there) - shown);
@@ -75,12 +78,11 @@ void print_greatest(const RecordDiff& diff) {
     return p.most / std::max({std::abs(p.most_a), std::abs(p.most_b), 1e-12});
   };
   std::ranges::stable_sort(all, std::ranges::greater{}, share);
-  std::printf("the greatest differences, by their share of the value (%s differ):\n  %-44s %18s %18s %12s\n",
+  std::printf("the greatest differences, by their share of the value (%s differ):\n  %-50s %18s %18s %12s\n",
               plural(all.size(), "signal").c_str(), "", "first", "second", "at");
   for (std::size_t i = 0; i < std::min(shown, all.size()); ++i) {
     const SignalParting& p = all[i];
-    std::printf("  %-44s %18.9g %18.9g %10.3f s %s\n", p.name.c_str(), p.most_a, p.most_b, seconds(p.most_ns),
-                p.unit.c_str());
+    std::printf("  %-50s %18.9g %18.9g %10.3f s\n", name_of(p).c_str(), p.most_a, p.most_b, seconds(p.most_ns));
   }
   if (all.size() > shown) std::printf("  ... and %zu more; --json lists all\n", all.size() - shown);
 }
