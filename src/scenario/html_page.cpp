@@ -28,7 +28,7 @@ pre { background: var(--card); padding: 10px 14px; border-radius: 6px; overflow-
   white-space: pre-wrap; overflow-wrap: anywhere; }
 dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(190px, 1fr)); gap: 10px 24px; margin: 18px 0; }
 dt { color: var(--dim); font-size: 13px; } dd { margin: 0; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
-.film { display: grid; grid-template-columns: repeat(auto-fill, minmax(220px, 1fr)); gap: 12px; }
+.film { display: grid; grid-template-columns: repeat(auto-fill, minmax(260px, 1fr)); gap: 12px; }
 figure { margin: 0; } figcaption { color: var(--dim); font-size: 13px; } figure img { width: 100%; border-radius: 6px;
   border: 1px solid var(--line); }
 .plot { overflow-x: auto; margin-bottom: 12px; } .plot svg { display: block; max-width: 100%; height: auto; min-width: 760px; }

@@ -9,8 +9,7 @@
 namespace kadans {
 namespace {
 
-constexpr int left = 92, legend = 288, gap = 16, title_height = 34, lane_height = 20, mark_height = 16,
-              axis_height = 46;
+constexpr int left = 92, gap = 16, title_height = 34, lane_height = 20, mark_height = 16, axis_height = 46;
 constexpr int line_height = 16, title_gap = 22, points_a_letter = 7;
 
 // In single quotes nothing means anything to gnuplot but the quote, doubled.
@@ -49,6 +48,11 @@ class Script {
   Script(const SignalPlot& plot, PlotFormat format, PlotSize size) : plot_(plot), size_(size) {
     height_ = (plot.title.empty() ? gap : title_height) + lanes_height() + axis_height;
     for (const PlotPanel& panel : plot.panels) height_ += panel_height(panel) + gap + head_of(panel);
+    std::size_t longest = 0;
+    for (const PlotPanel& panel : plot.panels) {
+      for (const PlotLine& line : panel.lines) longest = std::max(longest, line.label.size());
+    }
+    legend_ = std::clamp(static_cast<int>(longest) * points_a_letter + 48, 150, size.width / 2 - left);
     const char* const terminal = format == PlotFormat::svg ? "svg" : "pngcairo";
     add(printed("set terminal %s size %d,%d font '%s' background '%s' noenhanced\n", terminal, size.width, height_,
                 format == PlotFormat::svg ? "sans-serif,12" : "DejaVu Sans,9", plot_ink::paper.light));
@@ -88,11 +92,11 @@ class Script {
     if (plot_.lanes.empty() && plot_.marks.empty()) return 0;
     return lane_height * static_cast<int>(plot_.lanes.size()) + (plot_.marks.empty() ? 0 : mark_height) + gap / 2;
   }
-  double pixels_a_second() const { return (size_.width - left - legend) / std::max(plot_.to_s - plot_.from_s, 1e-9); }
+  double pixels_a_second() const { return (size_.width - left - legend_) / std::max(plot_.to_s - plot_.from_s, 1e-9); }
 
   void place(int top, int height) {
     add(printed("set lmargin at screen %.5f\nset rmargin at screen %.5f\nset tmargin at screen %.5f\n", x(left),
-                x(size_.width - legend), y(top)) +
+                x(size_.width - legend_), y(top)) +
         printed("set bmargin at screen %.5f\n", y(top + height)));
   }
 
@@ -169,7 +173,7 @@ class Script {
     if (!panel.title.empty())
       add("set label " + quoted(panel.title) + " at graph 0, graph 1 left offset 0,0.7 " + ink() + "\n");
     add(printed("set key at screen %.5f, screen %.5f left top reverse Left samplen 1.4 spacing 1.0 ",
-                x(size_.width - legend + 8), y(top - 2)) +
+                x(size_.width - legend_ + 8), y(top - 2)) +
         ink() + "\n");
     lines(panel);
     add("unset object\nunset arrow\nunset label\n");
@@ -217,7 +221,7 @@ class Script {
 
   const SignalPlot& plot_;
   PlotSize size_;
-  int height_ = 0;
+  int height_ = 0, legend_ = 0;
   std::string text_;
 };
 

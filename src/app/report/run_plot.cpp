@@ -17,7 +17,7 @@ struct Usual {
 };
 const std::vector<Usual>& usual_panels() {
   static const std::vector<Usual> all{
-      {"height of the base", {"plant.base.height_m", "base.height_m", "reference.base.height_m"}},
+      {"height of the base", {"plant.base.height_m", "reference.base.height_m"}},
       {"lean of the base", {"plant.base.tilt_rad", "base.tilt_rad"}},
       {"force on the feet", {"plant.foot.*.force_N"}},
       {"how much of the limits is used", {"plant.limits.torque_share", "plant.limits.speed_share"}},
@@ -110,10 +110,18 @@ void add_marks(const RunPage& page, SignalPlot& plot) {
   std::ranges::stable_sort(plot.marks, {}, &PlotMark::time_s);
 }
 
+// Nothing was wrong, nothing touched: nothing to show.
+bool is_zero(const PlotPanel& panel) {
+  return std::ranges::all_of(panel.lines, [](const PlotLine& line) {
+    return std::ranges::all_of(line.points, [](const PlotPoint& point) { return point.value == 0; });
+  });
+}
+
 }  // namespace
 
 SignalPlot run_plot(const RecordOutline& record, const RunPage& page) {
   SignalPlot plot = plot_of(record, wishes_of(record, page.check_signals), {}, 300);
+  std::erase_if(plot.panels, is_zero);
   add_marks(page, plot);
   return plot;
 }
