@@ -213,7 +213,7 @@ class Script {
       add(panel.lines[i].points.empty() ? printed("%.9g NaN\nEOD\n", plot_.from_s) : "EOD\n");
       const std::size_t dashes = i / plot_ink::lines.size() % 4;
       command += printed("%s$d%zu using 1:2 with lines lw 1.4 lc rgb '%s' dt %zu title ", i == 0 ? "" : ", ", i,
-                         plot_ink::lines.at(i % plot_ink::lines.size()), dashes + 1) +
+                         plot_ink::lines.at(i % plot_ink::lines.size()).light, dashes + 1) +
                  quoted(panel.lines[i].label);
     }
     add(command + "\n");
@@ -250,6 +250,7 @@ std::string dark_plot_style() {
                                  plot_ink::fault, plot_ink::push})
     add(color);
   for (const PlotColor& color : plot_ink::states) add(color);
+  for (const PlotColor& color : plot_ink::lines) add(color);
   return style + "}\n";
 }
 
