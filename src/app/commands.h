@@ -8,8 +8,9 @@
 
 #include "ctl/ctl_service.h"
 #include "live/live_service.h"
-#include "ros2/ros2_service.h"
 #include "record_options.h"
+#include "report/report_options.h"
+#include "ros2/ros2_service.h"
 #include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -34,8 +35,9 @@ struct SimOptions : RunRequest {
   std::optional<double> hash_every_s;
   CtlPlace ctl;  // always with realtime, else where a folder is named
   LivePlace live;
+  ReportPlace report;
   Ros2Place ros2;
-  double speed = 1;  // with one of them, of the wall clock's
+  double speed = 1;  // with live or ros2, of the wall clock's
 };
 void add_sim(CLI::App& app, SimOptions& options);
 int run_sim(const SimOptions& options);
@@ -53,6 +55,7 @@ struct TestOptions {
   bool golden = false;        // state hashes must be those of the golden file
   bool renew_golden = false;  // write them there instead
   std::string junit;
+  ReportPlace report;
 };
 int run_test(const TestOptions& options);
 

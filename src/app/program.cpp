@@ -9,6 +9,7 @@
 #include "ctl/ctl_command.h"
 #include "kadans/signal/nearest_name.h"
 #include "live/page_commands.h"
+#include "log/log_command.h"
 #include "repl_command.h"
 #include "replay_command.h"
 #include "stubs_command.h"
@@ -34,6 +35,7 @@ constexpr const char* examples =
     "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
     "  kadans run config/tulip/robot.json --play squat    drive the robot, or its model, on the wall clock\n"
     "  kadans view squat.mcap                             show a record in the browser: robot, plots, states\n"
+    "  kadans log info squat.mcap                         what a record holds; also cat, csv, plot, diff, cut\n"
     "  kadans ctl status                                  how a running robot is; 'kadans ctl --help' lists the rest\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
     "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
@@ -60,6 +62,8 @@ void add_test(CLI::App& app, TestOptions& options) {
                                       "Write the states into that file, and say what that changes");
   renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
   test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
+  add_report_place(*test, options.report, "Leave a page about each run in a folder, and index.html about all",
+                   "failed");
   test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
 }
 
@@ -225,6 +229,8 @@ int run(int argc, char** argv) {
   add_view(app, view);
   RenderOptions render;
   add_render(app, render);
+  LogOptions log;
+  add_log(app, log);
   DoctorOptions doctor;
   add_doctor(app, doctor);
   NewControlObjectOptions new_object;
@@ -247,6 +253,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("completion")) return run_completion(app, completion);
   if (app.got_subcommand("view")) return run_view(view);
   if (app.got_subcommand("render")) return run_render(render);
+  if (app.got_subcommand("log")) return run_log(app, log);
   if (app.got_subcommand("doctor")) return run_doctor(doctor);
   if (app.got_subcommand("replay")) return run_replay(replay);
   if (app.got_subcommand("sweep")) return run_sweep(sweep);

@@ -95,6 +95,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
   sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e6));
+  add_report_place(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
   add_ctl_place(*sim, options.ctl);
   add_live_place(*sim, options.live);
   add_ros2_place(*sim, options.ros2);

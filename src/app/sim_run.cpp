@@ -9,6 +9,7 @@
 #include "kadans/config/experiment_config.h"
 #include "live/live_pace.h"
 #include "live/live_service.h"
+#include "report/run_page.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -127,6 +128,9 @@ int SimRun::report(RunResult& result) {
   result.scenario = scenario_.name;
   result.seed = seed_;
   finish_record(result);
+  for (std::size_t i = 0; i < checks_.size(); ++i) wanted_.push_back(checks_.config(i));
+  traces_ = {height_.trace()};
+  if (options_.report.wanted()) write_page(result);
   print(result);
   if (checkpoints_) {
     for (const CheckpointOrder& order : checkpoints_->missed())
@@ -187,6 +191,10 @@ int SimRun::tell_parting() const {
 
 std::string SimRun::record_name() const {
   namespace fs = std::filesystem;
+  if (options_.no_record) {  // for the report alone
+    fs::create_directories(options_.report.folder);
+    return (fs::path(options_.report.folder) / (report_file(scenario_.name, seed_) + ".mcap.part")).string();
+  }
   const fs::path asked = options_.record.empty() ? fs::path(scenario_.name + ".mcap") : fs::path(options_.record);
   const bool several = continuation_ && continuation_->branches.size() > 1;
   if (!continuation_ || (!options_.record.empty() && !several)) return asked.string();
@@ -196,7 +204,7 @@ std::string SimRun::record_name() const {
 
 // A file that was asked for and cannot be written is an error; the usual one is not.
 bool SimRun::open_record() {
-  if (options_.no_record) return false;
+  if (options_.no_record && !options_.report.wanted()) return false;
   record_ = record_name();
   if (recorder_->open(record_)) return true;
   const std::string why = recorder_->error();
@@ -208,7 +216,7 @@ bool SimRun::open_record() {
 
 void SimRun::start_record() {
   const bool flies = record_plan_.flight.kept_s > 0;
-  if (options_.no_record && !flies) return;
+  if (options_.no_record && !options_.report.wanted() && !flies) return;
   recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals, record_plan_.settings, record_plan_.flight);
   if (open_record()) {
     const RobotTexts texts = robot_texts(assembly_);
@@ -243,9 +251,12 @@ void SimRun::finish_record(const RunResult& result) {
     if (flight->dumps() > 0) std::fprintf(stderr, "flight record: %s\n", flight->file().c_str());
   }
   if (recorder_->is_open()) {
+    const auto failed = std::ranges::count(result.checks, false, &CheckResult::passed);
     (void)recorder_->describe("result", {{"state_hash", hash_text(result.state_hash)},
                                          {"control_ticks", std::to_string(result.control_ticks)},
-                                         {"passed", result.passed ? "yes" : "no"}});
+                                         {"passed", result.passed ? "yes" : "no"},
+                                         {"checks", std::to_string(result.checks.size())},
+                                         {"checks_failed", std::to_string(failed)}});
   }
   if (!recorder_->close()) print_error("the record is not complete: " + recorder_->error());
   if (recorder_->dropped() > 0) print_error(std::to_string(recorder_->dropped()) + " rows are missing in the record");
@@ -260,6 +271,41 @@ std::string SimRun::repeat() const {
   for (const std::string& setting : branch_.set) command += " --set '" + setting + "'";
   for (const std::string& push : branch_.push) command += " --push " + push;
   return command;
+}
+
+ReportSubject SimRun::subject(const RunResult& result) const {
+  const std::string name = scenario_.name + (branch_.name.empty() ? "" : " (" + branch_.name + ")");
+  return {.result = result,
+          .log = log_,
+          .model = assembly_.robot().model,
+          .checks = wanted_,
+          .traces = traces_,
+          .title = name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
+          .record = record_,
+          .repeat = repeat()};
+}
+
+// A record that only the page needed goes.
+void SimRun::write_page(const RunResult& result) {
+  std::vector<std::string> seen;
+  for (std::size_t i = 0; i < checks_.size(); ++i) {
+    if (result.checks[i].passed) continue;
+    for (const SignalId signal : checks_.signals_of(i)) seen.push_back(assembly_.catalog().signals.info(signal).name);
+  }
+  const std::string record = record_;
+  if (options_.no_record) record_.clear();
+  const ReportSubject about = subject(result);
+  const std::filesystem::path file =
+      write_run_page({.subject = about,
+                      .scenario = scenario_,
+                      .name = scenario_.name + (branch_.name.empty() ? "" : "." + branch_.name),
+                      .record = record,
+                      .quantities = assembly_.quantities(),
+                      .evidence = evidence_.around(result.checks),
+                      .check_signals = seen},
+                     options_.report);
+  if (options_.no_record) std::filesystem::remove(record);
+  if (!options_.json) std::printf("  report: %s\n\n", file.c_str());
 }
 
 void SimRun::print(const RunResult& result) const {
@@ -278,20 +324,8 @@ void SimRun::print(const RunResult& result) const {
     std::puts(json_report(result, context).c_str());
     return;
   }
-  std::vector<ScenarioCheck> wanted;
-  for (std::size_t i = 0; i < checks_.size(); ++i) wanted.push_back(checks_.config(i));
-  const std::vector<ReportTrace> traces{height_.trace()};
-  const std::string name = scenario_.name + (branch_.name.empty() ? "" : " (" + branch_.name + ")");
-  const ReportSubject subject{.result = result,
-                              .log = log_,
-                              .model = assembly_.robot().model,
-                              .checks = wanted,
-                              .traces = traces,
-                              .title = name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
-                              .record = record_,
-                              .repeat = repeat()};
   const std::string text =
-      text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
+      text_report(subject(result), {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
   std::fputs(text.c_str(), stdout);
   for (const MetricValue& metric : metrics_.values()) std::printf("  %s = %.6g\n", metric.name.c_str(), metric.value);
 }

@@ -63,6 +63,8 @@ class SimRun final : public RunObserver {
   std::string record_name() const;
   int report(RunResult& result);
   void print(const RunResult& result) const;
+  ReportSubject subject(const RunResult& result) const;
+  void write_page(const RunResult& result);
   std::string repeat() const;
   void reach_branch(const RunMark& mark);
   void take_branch(std::size_t index, const RunMark& mark);
@@ -88,6 +90,8 @@ class SimRun final : public RunObserver {
   RecordPlan record_plan_;
   std::unique_ptr<Recorder> recorder_;
   std::string record_;
+  std::vector<ScenarioCheck> wanted_;  // for the report
+  std::vector<ReportTrace> traces_;    // likewise
 
   std::optional<SimContinuation> continuation_;
   std::vector<BranchActions> actions_;  // of the branches

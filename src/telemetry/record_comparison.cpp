@@ -9,16 +9,13 @@
 #include "kadans/signal/number_text.h"
 
 namespace kadans {
-namespace {
-
-bool same(double a, double b) noexcept {
-  return a == b || (a != a && b != b);  // -0 and 0 are equal
-}
 
 bool is_upkeep(const std::string& name) {
   if (!name.starts_with("behavior.")) return false;
   return name.ends_with(".heap_bytes") || name.ends_with(".instructions") || name.ends_with(".gc_pause_ns");
 }
+
+namespace {
 
 std::uint32_t number_in(const TextMap& metadata, const char* name) {
   const auto found = metadata.find(name);
@@ -114,7 +111,7 @@ void RecordComparison::compare_values(const Topic& topic, std::span<const double
     const SignalId id = topic.signals[i];
     if (id == not_compared) continue;
     const double replayed = topic.single ? static_cast<double>(static_cast<float>(row[id])) : row[id];
-    if (same(topic.values[i], replayed)) continue;
+    if (same_value(topic.values[i], replayed)) continue;
     const Signal& info = table_.info(id);
     found_.push_back({id, {info.name, info.unit, topic.values[i], replayed}});
   }

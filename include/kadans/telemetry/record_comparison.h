@@ -18,6 +18,11 @@
 
 namespace kadans {
 
+// -0 and 0 are equal, and so are all NaN.
+inline bool same_value(double a, double b) noexcept { return a == b || (a != a && b != b); }
+// What the interpreter needs, by the signal's name.
+bool is_upkeep(const std::string& name);
+
 struct SignalDifference {
   std::string name, unit;
   double recorded = 0, replayed = 0;
