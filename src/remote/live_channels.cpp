@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;
+constexpr double limit_max_us = 20'000, limit_step = 1.0905077326652577;  // 8 an octave
 
 // With the messages that it is made of, as tools of ROS 2 write them.
 constexpr const char* joint_state_definition = R"(std_msgs/Header header
@@ -94,7 +95,9 @@ void LiveChannel::put(std::uint64_t time_ns, std::span<const std::byte> payload)
 }
 
 LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
-    : catalog_(instance.catalog()), topics_(signal_topics(catalog_.signals, Precision::full)) {
+    : catalog_(instance.catalog()),
+      topics_(signal_topics(catalog_.signals, Precision::full)),
+      description_(texts.description) {
   for (const SignalTopic& topic : topics_) {
     signals_["signals" + topic.topic] = topic.description;
     add({.topic = topic.topic,
@@ -113,8 +116,8 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
   transitions_ = add_json("/transitions", "kadans.Transition", transition_schema, true);
   faults_ = add_json("/faults", "kadans.Fault", fault_schema, true);
   timing_ = add_json("/timing", "kadans.Timing", R"({"title": "kadans.Timing", "type": "object"})", false);
-  const std::size_t described = add_json("/description", "kadans.Description", description_schema, false);
-  put_json(described, 0, texts.description);
+  described_ = add_json("/description", "kadans.Description", description_schema, false);
+  put_json(described_, 0, texts.description);
   const std::size_t robot = add({.topic = "/robot_description",
                                  .encoding = "cdr",
                                  .schema_name = "std_msgs/msg/String",
@@ -223,6 +226,13 @@ void LiveChannels::take(const Fault& fault, std::int64_t time_ns) {
   put_json(faults_, time_ns, json.dump());
 }
 
+void LiveChannels::take_behaviors(const std::string& json) {
+  Json description = Json::parse(description_);
+  description["behaviors"] = Json::parse(json);
+  description_ = description.dump(-1, ' ', false, Json::error_handler_t::replace);
+  put_json(described_, 0, description_);
+}
+
 void LiveChannels::take_timing(const std::string& json, std::int64_t time_ns) { put_json(timing_, time_ns, json); }
 
 std::string timing_json(const std::vector<TimingSource>& sources) {
@@ -241,6 +251,11 @@ std::string timing_json(const std::vector<TimingSource>& sources) {
       counts.push_back(until > below ? until - below : 0);
       below = std::max(below, until);
     }
+    Json limits = Json::array(), within = Json::array();
+    for (double limit_us = 1; limit_us < limit_max_us; limit_us *= limit_step) {
+      limits.push_back(std::round(limit_us * 10) / 10);
+      within.push_back(s.count_until(std::llround(limit_us * 1e3)));
+    }
     json[source.name] = {{"unit", "us"},
                          {"low", low * 1e-3},
                          {"high", high * 1e-3},
@@ -248,7 +263,9 @@ std::string timing_json(const std::vector<TimingSource>& sources) {
                          {"median", s.percentile_ns(0.5) * 1e-3},
                          {"p99", s.percentile_ns(0.99) * 1e-3},
                          {"max", static_cast<double>(s.max_ns()) * 1e-3},
-                         {"count", s.count()}};
+                         {"count", s.count()},
+                         {"limits", limits},
+                         {"within", within}};
   }
   return json.dump();
 }

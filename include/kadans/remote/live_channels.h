@@ -53,6 +53,7 @@ class LiveChannels {
   void take(const LatestRow::View& row);
   void take(const Event& event);
   void take(const Fault& fault, std::int64_t time_ns);
+  void take_behaviors(const std::string& json);  // behaviors_description, in place of those before
   void take_timing(const std::string& json, std::int64_t time_ns);
 
  private:
@@ -67,7 +68,8 @@ class LiveChannels {
   std::vector<SignalTopic> topics_;  // the first channels
   std::vector<LiveChannel> channels_;
   std::map<std::string, std::string> signals_;
-  std::size_t joint_states_, transforms_, log_, transitions_, faults_, timing_;
+  std::size_t joint_states_, transforms_, log_, transitions_, faults_, timing_, described_;
+  std::string description_;
   std::string base_;
   struct JointSignals {
     std::optional<SignalId> position, velocity, effort;
@@ -77,7 +79,9 @@ class LiveChannels {
   std::vector<double> values_;
 };
 
-// {"control tick": {"unit", "low", "high", "counts", "median", "p99", "max", "count"}}, in microseconds.
+// {"control tick": {"unit", "low", "high", "counts", "median", "p99", "max", "count", "limits", "within"}}, in
+// microseconds. `within` says how many were at most as long as each of `limits`, always the same ones: the differences
+// between two messages are the histogram of what was between them.
 struct TimingSource {
   std::string name;
   const TickStatistics* statistics;

@@ -2,9 +2,8 @@
 import { existsSync, readdirSync, statSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { WebSocket } from 'ws';
-import { check, folder, live_address, project, run, scenario, start, until } from './program.mjs';
+import { check, chromium_options, folder, live_address, project, run, scenario, start, until } from './program.mjs';
 
-const args = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run', '--disable-dev-shm-usage'];
 const page_max_bytes = 300 * 1024;
 
 // The robot's picture as a hash, to tell whether it changed.
@@ -93,7 +92,7 @@ run(async () => {
 
   const first = sim(0);
   const [, url, port] = await first.begun;
-  const browser = await chromium.launch({ executablePath: process.env.KADANS_CHROMIUM ?? 'chromium', args });
+  const browser = await chromium.launch(chromium_options);
   try {
     const page = await browser.newPage({ viewport: { width: 1100, height: 640 } });
     const problems = [];

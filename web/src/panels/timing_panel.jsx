@@ -34,8 +34,8 @@ export function TimingPanel({ session }) {
     if (joints && !session.timing) found.push({ title: 'Time between rows', unit: 'µs', data: histogram(intervals_us(joints)) });
     for (const [name, signal] of session.signals) {
       if (!/^behavior\..*\.(instructions|gc_pause_ns)$/.test(name)) continue;
-      const data = histogram(column_values(signal));
-      if (data && data.max > 0) found.push({ title: name, unit: signal.unit, data }); // in virtual time a pause is no time
+      const data = histogram(column_values(signal).filter((value) => value > 0)); // of rows in which behaviors ticked
+      if (data) found.push({ title: name, unit: signal.unit, data }); // in virtual time a pause is no time
     }
     return found;
   }, [session, Math.floor(rows / 500), session.timing === null]);

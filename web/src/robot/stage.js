@@ -1,6 +1,6 @@
 // The place where the robot stands: light, ground, camera. Draws when told to; knows nothing of time.
 import {
-  AmbientLight, Color, DirectionalLight, GridHelper, HemisphereLight, Mesh, PCFShadowMap, PerspectiveCamera,
+  AmbientLight, Color, DirectionalLight, Fog, GridHelper, HemisphereLight, Mesh, PCFShadowMap, PerspectiveCamera,
   PlaneGeometry, Scene, ShadowMaterial, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -9,6 +9,8 @@ const themes = {
   light: { back: 0xeef1f4, grid: 0xc9d1d9, lines: 0xdde3e8, sun: 2.1, sky: 1.5, shadow: 0.16 },
   dark: { back: 0x14191f, grid: 0x35404b, lines: 0x232b34, sun: 1.7, sky: 0.9, shadow: 0.45 },
 };
+
+const from_start = new Vector3(2.5, 1.7, 0.62);
 
 export class Stage {
   constructor(canvas) {
@@ -21,9 +23,12 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, canvas);
     this.moved = true; // by hand, since it was drawn
     this.controls.addEventListener('change', () => (this.moved = true));
-    this.controls.minDistance = 0.3;
+    this.controls.minDistance = 0.15;
     this.controls.maxDistance = 15;
     this.target = new Vector3(0, 0, 0.6);
+    this.distance = 2.7;
+    this.from = from_start;
+    this.followed = new Vector3();
     this.add_lights();
     this.ground = new Mesh(new PlaneGeometry(40, 40), new ShadowMaterial());
     this.ground.receiveShadow = true;
@@ -47,6 +52,7 @@ export class Stage {
     const theme = themes[name];
     this.moved = true;
     this.scene.background = new Color(theme.back);
+    this.scene.fog = new Fog(theme.back, 4, 11); // the ground has no edge
     if (this.grid) this.scene.remove(this.grid);
     this.grid = new GridHelper(20, 80, theme.grid, theme.lines);
     this.grid.rotation.x = Math.PI / 2;
@@ -59,15 +65,25 @@ export class Stage {
 
   look_from_start() {
     this.controls.target.copy(this.target);
-    this.camera.position.copy(this.target).add(new Vector3(2.5, 1.7, 0.62));
+    this.camera.position.copy(this.target).add(this.from.clone().setLength(this.distance));
     this.controls.update();
     this.moved = true;
   }
 
+  // Sees a robot of this size whole, whose base is at `base`.
+  frame(centre, radius, base, from = from_start) {
+    this.from = from;
+    this.target.copy(centre);
+    this.followed.copy(base);
+    this.distance = 4.1 * radius;
+    this.look_from_start();
+  }
+
   // Keeps `point` where it is in the picture, sideways; height stays.
   follow(point) {
-    const dx = point.x - this.target.x;
-    const dy = point.y - this.target.y;
+    const dx = point.x - this.followed.x;
+    const dy = point.y - this.followed.y;
+    this.followed.copy(point);
     this.target.x += dx;
     this.target.y += dy;
     for (const at of [this.controls.target, this.camera.position]) at.set(at.x + dx, at.y + dy, at.z);
