@@ -18,7 +18,7 @@ constexpr int little_bytes = 4096, niceness = 10, look_again_ms = 50;
 
 Channels introduce(WebSocket& client) {
   for (;;) {
-    const std::string text = client.next_frame();
+    const std::string text = client.next_message();
     if (text.empty() || text[0] != '{') continue;
     const Json json = Json::parse(text);
     if (json.at("op") != "advertise") continue;
@@ -64,18 +64,18 @@ void Crowd::read() {
     for (std::size_t i = 0; i < wait.size(); ++i) {
       if (wait[i].revents == 0) continue;
       if (!readers_[i]->take()) lost_ = true, wait[i].fd = -1;
-      take_frames(*readers_[i]);
+      take_messages(*readers_[i]);
     }
   }
 }
 
 // A message: 1, the number of the subscription, the time, the payload.
-void Crowd::take_frames(WebSocket& client) {
-  while (const auto frame = client.frame()) {
-    bytes_ += frame->size();
+void Crowd::take_messages(WebSocket& client) {
+  while (const auto message = client.message()) {
+    bytes_ += message->size();
     std::uint32_t id = 0;
-    if (frame->size() < 13 || (*frame)[0] != 1) continue;
-    std::memcpy(&id, frame->data() + 1, sizeof id);
+    if (message->size() < 13 || (*message)[0] != 1) continue;
+    std::memcpy(&id, message->data() + 1, sizeof id);
     if (id == joint_) ++rows_;
   }
 }

@@ -30,13 +30,13 @@ class Crowd {
   Crowd& operator=(const Crowd&) = delete;
 
   std::uint64_t rows() const noexcept { return rows_.load(); }    // of the joints, that those who read got
-  std::uint64_t bytes() const noexcept { return bytes_.load(); }  // of whole frames
+  std::uint64_t bytes() const noexcept { return bytes_.load(); }  // of whole messages
   std::size_t readers() const noexcept { return readers_.size(); }
   bool all_there() const noexcept { return !lost_.load(); }  // nobody who reads was sent away
 
  private:
   void read();
-  void take_frames(WebSocket& client);
+  void take_messages(WebSocket& client);
 
   std::vector<std::unique_ptr<WebSocket>> readers_, others_;
   std::uint32_t joint_ = 0;

@@ -1,6 +1,7 @@
 #include "live/tick_times.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -42,10 +43,11 @@ TickTimes tick_times(std::uint16_t port) {
   WebSocket client(port);
   const Channels channels = introduce(client);
   client.send_text(subscription(channels.timing, channels.timing));
-  for (;;) {
-    const std::string frame = client.next_frame();
-    if (frame.size() < 14 || frame[0] != 1) continue;
-    const Json json = Json::parse(frame.substr(13));
+  for (bool fresh = false;;) {
+    const std::string message = client.next_message();
+    if (message.size() < 14 || message[0] != 1) continue;
+    if (!std::exchange(fresh, true)) continue;  // the first may be from when somebody last looked
+    const Json json = Json::parse(message.substr(13));
     return {distribution(json.at("Control tick: late")), distribution(json.at("Control tick: takes"))};
   }
 }

@@ -22,7 +22,7 @@ struct TickTimes {
   Distribution late, takes;
 };
 
-// Connects, reads one message, leaves: its own client is none of those that are measured.
+// Connects, reads, leaves within a second: its own client is none of those that are measured.
 TickTimes tick_times(std::uint16_t port);
 
 }  // namespace kadans::bench

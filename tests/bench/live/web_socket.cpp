@@ -49,8 +49,10 @@ void WebSocket::send_all(std::string_view bytes) const {
 
 // With a mask of zeros, so the text stays as it is.
 void WebSocket::send_text(std::string_view text) {
-  std::string frame{static_cast<char>(0x81), static_cast<char>(0x80U | 126U), static_cast<char>(text.size() >> 8U),
-                    static_cast<char>(text.size() & 0xffU)};
+  constexpr std::size_t short_max = 125;  // a length that fits must stand in the first byte
+  const bool is_short = text.size() <= short_max;
+  std::string frame{static_cast<char>(0x81), static_cast<char>(0x80U | (is_short ? text.size() : 126U))};
+  if (!is_short) frame += {static_cast<char>(text.size() >> 8U), static_cast<char>(text.size() & 0xffU)};
   frame.append(4, '\0');
   send_all(frame.append(text));
 }
@@ -67,7 +69,7 @@ bool WebSocket::take() {
   return count > 0 || (count < 0 && errno == EAGAIN);
 }
 
-std::optional<std::string_view> WebSocket::frame() {
+std::optional<std::string_view> WebSocket::part() {
   const std::size_t left = in_.size() - at_;
   if (left < 2) return std::nullopt;
   const auto byte = [&](std::size_t i) { return static_cast<std::uint64_t>(static_cast<unsigned char>(in_[at_ + i])); };
@@ -82,9 +84,23 @@ std::optional<std::string_view> WebSocket::frame() {
   return body;
 }
 
-std::string WebSocket::next_frame() {
+std::optional<std::string_view> WebSocket::message() {
   for (;;) {
-    if (const auto body = frame()) return std::string(*body);
+    const std::size_t head = at_;
+    const auto body = part();
+    if (!body) return std::nullopt;
+    const bool last = (static_cast<unsigned char>(in_[head]) & 0x80U) != 0;
+    if (last && whole_) return body;
+    if (whole_) parts_.clear();
+    parts_ += *body;
+    whole_ = last;
+    if (last) return parts_;
+  }
+}
+
+std::string WebSocket::next_message() {
+  for (;;) {
+    if (const auto body = message()) return std::string(*body);
     pollfd wait{socket_, POLLIN, 0};
     if (poll(&wait, 1, patience_ms) <= 0 || !take()) throw std::runtime_error("the live server says no more");
   }

@@ -1,5 +1,5 @@
 // A client of a live server on this machine that speaks as much WebSocket (RFC 6455) as the bench needs: short frames
-// out, whole frames in. One thread.
+// out, whole messages in. One thread.
 #pragma once
 
 #include <cstddef>
@@ -22,17 +22,21 @@ class WebSocket {
   void send_text(std::string_view text);  // up to 65535 bytes
   // Takes what has come, without waiting; false: the other side closed.
   bool take();
-  // The next whole frame of what was taken; binary frames begin with a byte below 32, texts with '{'.
-  std::optional<std::string_view> frame();
+  // The next whole message of what was taken, until the next call; binary ones begin with a byte below 32, texts with
+  // '{'.
+  std::optional<std::string_view> message();
   // Waits for it. Throws std::runtime_error after 20 s.
-  std::string next_frame();
+  std::string next_message();
 
  private:
   void send_all(std::string_view bytes) const;
+  std::optional<std::string_view> part();
 
   int socket_ = -1;
   std::string in_;
   std::size_t at_ = 0;  // of in_ is read
+  std::string parts_;   // of a message in several frames
+  bool whole_ = true;
 };
 
 }  // namespace kadans::bench

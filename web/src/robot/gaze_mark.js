@@ -12,6 +12,7 @@ export class GazeMark {
     Object.assign(this, { stage, object, model, send, ray: new Raycaster(), plane: new Plane(), held: null, waits: false });
     this.root = new Group();
     this.ball = new Mesh(new SphereGeometry(0.022, 24, 16), new MeshBasicMaterial({ color }));
+    this.ball.name = 'gaze target';
     this.grip = new Mesh(new SphereGeometry(0.06, 12, 8), new MeshBasicMaterial({ visible: false })); // easier to take
     this.eyes = [object.options?.left_eye, object.options?.right_eye].filter((eye) => eye && model.link(eye));
     this.lines = this.eyes.map(() => new Line(new BufferGeometry(), new LineBasicMaterial({ color, transparent: true, opacity: 0.45 })));

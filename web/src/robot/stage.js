@@ -30,7 +30,7 @@ export class Stage {
     this.from = from_start;
     this.followed = new Vector3();
     this.add_lights();
-    this.ground = new Mesh(new PlaneGeometry(40, 40), new ShadowMaterial());
+    this.ground = new Mesh(new PlaneGeometry(5, 5), new ShadowMaterial());
     this.ground.receiveShadow = true;
     this.scene.add(this.ground);
     this.look_from_start();
@@ -52,9 +52,9 @@ export class Stage {
     const theme = themes[name];
     this.moved = true;
     this.scene.background = new Color(theme.back);
-    this.scene.fog = new Fog(theme.back, 4, 11); // the ground has no edge
+    this.scene.fog = new Fog(theme.back, 3, 7); // the ground has no edge
     if (this.grid) this.scene.remove(this.grid);
-    this.grid = new GridHelper(20, 80, theme.grid, theme.lines);
+    this.grid = new GridHelper(14, 56, theme.grid, theme.lines);
     this.grid.rotation.x = Math.PI / 2;
     this.grid.position.z = -0.001;
     this.scene.add(this.grid);
@@ -87,13 +87,15 @@ export class Stage {
     this.target.x += dx;
     this.target.y += dy;
     for (const at of [this.controls.target, this.camera.position]) at.set(at.x + dx, at.y + dy, at.z);
+    this.ground.position.set(point.x, point.y, 0);
+    this.grid.position.set(Math.round(point.x / 0.25) * 0.25, Math.round(point.y / 0.25) * 0.25, -0.001);
     this.sun.target.position.set(point.x, point.y, 0.4);
     this.sun.position.set(point.x + 1.2, point.y + 1.6, 4.2);
   }
 
   resize(width, height, ratio = Math.min(2, globalThis.devicePixelRatio)) {
-    if (this.width === width && this.height === height) return;
-    [this.width, this.height] = [width, height];
+    if (this.width === width && this.height === height && this.ratio === ratio) return;
+    [this.width, this.height, this.ratio] = [width, height, ratio];
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
