@@ -102,6 +102,11 @@ export function BehaviorPanel({ session }) {
   useSession(session, 15);
   const behaviors = session.description?.behaviors ?? [];
   const [chosen, choose] = useState(0);
+  const count = useRef(0);
+  useEffect(() => {
+    if (count.current > 0 && behaviors.length > count.current) choose(behaviors.length - 1); // what plays now came last
+    count.current = behaviors.length;
+  }, [behaviors.length]);
   const behavior = behaviors[Math.min(chosen, behaviors.length - 1)];
   return (
     <div class="behavior">
