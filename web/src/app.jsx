@@ -74,7 +74,7 @@ export function App({ session, frames, open }) {
   const search_box = useRef();
   const latest = useRef();
   latest.current = { session, theme };
-  useSession(session, 1);
+  useSession(session, 2);
   useEffect(() => {
     document.documentElement.dataset.theme = theme;
     localStorage.setItem('kadans.theme', theme);

@@ -2,7 +2,7 @@
 // FOLDER/pictures. PICTURES=word takes only those whose name holds the word.
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { chromium } from 'playwright-core';
-import { chromium_options, folder, live_address, run, scenario, start, until } from './program.mjs';
+import { chromium_options, folder, live_address, project, run, scenario, start, until } from './program.mjs';
 
 const out = `${folder}/pictures`;
 const sizes = { laptop: { width: 1366, height: 768 }, screen: { width: 1920, height: 1080 } };
@@ -84,8 +84,12 @@ const views = {
     }
     const page = await open(url, { theme: 'dark' });
     await read(page);
-    await page.setInputFiles('input[type=file]', `${folder}/bad.mcap`).catch(() => console.log('no file input'));
+    const chooser = page.waitForEvent('filechooser');
+    await page.click('text=Open record…');
+    await (await chooser).setFiles(`${folder}/bad.mcap`);
     await take(page, 'state-damaged');
+    await page.goto(url);
+    await read(page);
     await page.keyboard.press('?');
     await take(page, 'state-keys');
     await page.keyboard.press('Escape');
@@ -96,6 +100,14 @@ const views = {
     await take(page, 'state-find');
     await page.context().close();
     await view.stop();
+  },
+  async gaze() {
+    const head = start(['run', `${project}/config/head/robot.json`, '--soft', '--no-ctl', '--live=0'], live_address);
+    const page = await open((await head.begun)[1], { theme: 'dark' });
+    await until('rows', () => page.evaluate(() => globalThis.kadans.end_s > 2));
+    await take(page, 'live-gaze');
+    await page.context().close();
+    await head.stop();
   },
   async live() {
     const sim = start(['sim', scenario('squat'), '--play', 'squat{repeats=100}', '--duration', '600', '--live=0', '--no-record', '--no-ctl'], live_address);

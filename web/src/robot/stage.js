@@ -52,7 +52,7 @@ export class Stage {
     const theme = themes[name];
     this.moved = true;
     this.scene.background = new Color(theme.back);
-    this.scene.fog = new Fog(theme.back, 3, 7); // the ground has no edge
+    this.scene.fog = new Fog(theme.back); // the ground has no edge
     if (this.grid) this.scene.remove(this.grid);
     this.grid = new GridHelper(14, 56, theme.grid, theme.lines);
     this.grid.rotation.x = Math.PI / 2;
@@ -104,6 +104,8 @@ export class Stage {
 
   draw() {
     this.controls.update();
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    Object.assign(this.scene.fog, { near: 1.25 * distance, far: 2.5 * distance });
     this.renderer.render(this.scene, this.camera);
   }
 
