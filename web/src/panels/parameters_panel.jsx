@@ -9,7 +9,7 @@ const unit_suffix = /(_(Nms|Nm|N|rads|rad|deg|ms|us|m|s|Hz|kg|C|W|J|V|A)\d?)+(_p
 const short = (label, unit) => (unit && unit !== '1' && label.replace(unit_suffix, '')) || label;
 
 const bound = (value, otherwise) => (Number.isFinite(value ?? NaN) ? number(value, 3) : otherwise);
-const range_text = (p) => `${bound(p.min, '−∞')} … ${bound(p.max, '∞')}`;
+const range_text = (p) => `${bound(p.min, '−∞')}…${bound(p.max, '∞')}`;
 
 // A range without an end gets one that holds the value.
 function slider_range(p, value) {

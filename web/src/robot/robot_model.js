@@ -28,6 +28,7 @@ export class RobotModel {
     this.root.add(this.robot);
     this.joints = Object.values(this.robot.joints).filter((joint) => joint.jointType !== 'fixed');
     this.masses = masses_of(this.robot);
+    this.radius = this.bounds().radius; // with all joints at 0
     this.turn = new Quaternion();
     this.euler = new Euler();
     this.robot.traverse((part) => {

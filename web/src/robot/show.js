@@ -34,7 +34,8 @@ export class Show {
     const { center, radius } = this.model.bounds();
     this.marks.com_ball.scale.setScalar(Math.min(1, radius / 0.6));
     if (this.gazes.length > 0) return this.stage.frame(center.setX(center.x + 0.4), Math.max(radius, 0.62), base, beside);
-    if (this.marks.feet.length > 0) return this.stage.frame(center.set(base.x, base.y, 0.78 * radius), 1.08 * radius, base); // as if it stood
+    const { radius: tall } = this.model;
+    if (this.marks.feet.length > 0) return this.stage.frame(center.set(base.x, base.y, 0.78 * tall), 1.08 * tall, base); // as if it stood
     return this.stage.frame(center, radius, base);
   }
 
