@@ -235,10 +235,10 @@ void SimRun::fly() {
   FlightRecorder& flight = *recorder_->flight();
   const std::string file = std::filesystem::path(record_name()).replace_extension(".flight.mcap").string();
   if (!flight.begin(file)) return print_error(flight.error());
-  const RobotModel& model = assembly_.robot().model;
+  const RobotTexts texts = robot_texts(assembly_);
   (void)flight.dump().describe_run(inputs_);
-  (void)flight.dump().describe_robot(model.name, read_all(model.file), 0);
-  (void)flight.dump().describe_parts(run_description(assembly_.robot(), assembly_.catalog(), assembly_.own_host()), 0);
+  (void)flight.dump().describe_robot(texts.name, texts.urdf, 0);
+  (void)flight.dump().describe_parts(texts.description, 0);
 }
 
 void SimRun::finish_record(const RunResult& result) {

@@ -8,6 +8,8 @@
 namespace kadans {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 std::vector<std::byte> copy_of(std::span<const std::byte> bytes) { return {bytes.begin(), bytes.end()}; }
 
 }  // namespace
@@ -28,7 +30,8 @@ void LiveChannel::put(std::uint64_t time_ns, std::span<const std::byte> payload)
 LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
     : catalog_(instance.catalog()),
       topics_(signal_topics(catalog_.signals, Precision::full)),
-      viewers_(catalog_.signals, texts.subjects) {
+      viewers_(catalog_.signals, texts.subjects),
+      description_(texts.description) {
   for (const SignalTopic& topic : topics_) {
     signals_["signals" + topic.topic] = topic.description;
     add({.topic = topic.topic,
@@ -43,8 +46,8 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
   transitions_ = add_json("/transitions", "kadans.Transition", transition_schema, true);
   faults_ = add_json("/faults", "kadans.Fault", fault_schema, true);
   timing_ = add_json("/timing", "kadans.Timing", timing_schema, false);
-  const std::size_t described = add_json("/description", "kadans.Description", description_schema, false);
-  put_json(described, 0, texts.description);
+  described_ = add_json("/description", "kadans.Description", description_schema, false);
+  put_json(described_, 0, texts.description);
   write_robot_description(texts.urdf, message_);
   channels_[add_viewer(robot_description_channel())].put(0, message_.bytes());
 }
@@ -98,6 +101,13 @@ void LiveChannels::take(const Fault& fault, std::int64_t time_ns) {
   const auto& joints = catalog_.model->joints;
   const std::string joint = fault.joint < joints.size() ? joints[fault.joint].name : "";
   put_json(faults_, time_ns, json_of(fault, joint, time_ns));
+}
+
+void LiveChannels::take_behaviors(const std::string& json) {
+  Json description = Json::parse(description_);
+  description["behaviors"] = Json::parse(json);
+  description_ = description.dump(-1, ' ', false, Json::error_handler_t::replace);
+  put_json(described_, 0, description_);
 }
 
 void LiveChannels::take_timing(const std::string& json, std::int64_t time_ns) { put_json(timing_, time_ns, json); }

@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::size_t overhead_bytes = 64;  // of a reply in the queue
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
+  return text;
+}
+
 }  // namespace
 
 LiveClient::LiveClient(LiveHub& hub, std::uint64_t id, bool writes, std::string who)
@@ -49,6 +55,7 @@ void LiveClient::introduce() {
   metadata["robot"] = hub_.instance().facts().name;
   metadata["writes"] = writes_ ? "yes" : "no";
   metadata["verbs"] = verbs_text(hub_.can_pace());
+  metadata["plays"] = joined(playable_names(hub_.instance().facts().folders));
   say(Json{{"op", "serverInfo"},
            {"name", "kadans " + hub_.instance().facts().version + ": " + hub_.instance().facts().name},
            {"capabilities", {"parameters", "parametersSubscribe", "services", "assets"}},

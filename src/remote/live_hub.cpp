@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t report_every = 30, timing_every = 60, parameters_every = 6;  // beats
 constexpr std::uint64_t own = 0;                                                     // the hub's orders
-constexpr std::uint32_t report_call = 1, saved_call = 2;
+constexpr std::uint32_t report_call = 1, saved_call = 2, describe_call = 3;
 
 }  // namespace
 
@@ -59,6 +59,7 @@ void LiveHub::beat() {
   if (wanted_ != !clients_.empty()) {
     wanted_ = !clients_.empty();
     const double ticks = 1 / (rate_hz * p_.instance.facts().control_period_s);
+    beats_ = 0;  // who comes first is told everything at once
     p_.port.want_signals(wanted_ ? static_cast<std::uint32_t>(std::max(1.0, std::floor(ticks))) : 0);
   }
   for (Event event; p_.port.next(event);) channels_.take(event);
@@ -97,16 +98,28 @@ void LiveHub::take_answers() {
       if (client != clients_.end()) client->second->take(caller.call, answer);
       continue;
     }
-    if (caller.call != report_call) continue;
-    report_waits_ = false;
-    behaviors_now_.clear();
-    for (const BehaviorReport& behavior : answer.behaviors) {
-      for (const ScriptParameter& p : behavior.parameters)
-        behaviors_now_.push_back({behavior.name + "." + p.name, p.value});
-    }
-    paused_ = answer.paused;
-    tell_state();
+    take_own(caller.call, answer);
   }
+}
+
+void LiveHub::take_own(std::uint32_t call, const Answer& answer) {
+  if (call == report_call) take_report(answer);
+  if (call == describe_call && answer.done) channels_.take_behaviors(answer.text);
+}
+
+void LiveHub::take_report(const Answer& answer) {
+  report_waits_ = false;
+  behaviors_now_.clear();
+  std::map<std::string, std::uint64_t> charts;
+  for (const BehaviorReport& behavior : answer.behaviors) {
+    charts[behavior.name] = behavior.chart;
+    for (const ScriptParameter& p : behavior.parameters)
+      behaviors_now_.push_back({behavior.name + "." + p.name, p.value});
+  }
+  // Others play now, or new versions; those of the start are described already.
+  if (charts != charts_ && send({.kind = Order::Kind::describe}, own, describe_call)) charts_ = std::move(charts);
+  paused_ = answer.paused;
+  tell_state();
 }
 
 void LiveHub::note(const std::string& name, double value) {

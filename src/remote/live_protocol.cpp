@@ -17,6 +17,7 @@ constexpr std::array orders{
     std::pair{std::string_view("stop"), Order::Kind::stop},
     std::pair{std::string_view("reload"), Order::Kind::reload},
     std::pair{std::string_view("switch_set"), Order::Kind::switch_set},
+    std::pair{std::string_view("set_point"), Order::Kind::set_point},
     std::pair{std::string_view("undo"), Order::Kind::undo},
     std::pair{std::string_view("save"), Order::Kind::changes},  // then they are written
     std::pair{std::string_view("clear_faults"), Order::Kind::clear_faults},

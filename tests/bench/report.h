@@ -62,6 +62,7 @@ void keep(T& value) {
 void bench_control(Report& report);
 void bench_exchange(Report& report);
 void bench_latency(Report& report);
+void bench_live(Report& report);
 void bench_lua(Report& report);
 void bench_objects(Report& report);
 void bench_plant(Report& report);
