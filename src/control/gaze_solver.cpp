@@ -14,7 +14,8 @@ namespace {
 constexpr double near_m = 0.05;        // a target nearer than this counts as so far away
 constexpr double steep = 0.1;          // h / distance from which on a target above an eye turns its yaw less
 constexpr double margin_rad = 0.03;    // before a position limit
-constexpr double approach_per_s = 20;  // of a position limit
+constexpr double approach_per_s = 20;  // of a position limit, at the end
+constexpr double braking = 0.7;        // share of acceleration_max that stops a joint before it
 constexpr double eyes_singular = 0.5;  // volume of what the eyes can do, below which the damping rises; ahead it is 1.4
 
 Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
@@ -138,8 +139,12 @@ double GazeSolver::damping2() const noexcept {
 
 GazeSolver::Bounds GazeSolver::bounds(const Part& part, double position_rad) const noexcept {
   const double most = part.law.velocity_max_rad_s;
-  const double below = approach_per_s * (part.limits.lower_rad + margin_rad - position_rad);
-  const double above = approach_per_s * (part.limits.upper_rad - margin_rad - position_rad);
+  const auto towards = [&part](double room_rad) {
+    const double slowly = approach_per_s * room_rad;
+    return std::min(slowly, std::sqrt(2 * braking * part.law.acceleration_max_rad_s2 * std::max(0.0, room_rad)));
+  };
+  const double below = -towards(position_rad - part.limits.lower_rad - margin_rad);
+  const double above = towards(part.limits.upper_rad - margin_rad - position_rad);
   return {std::clamp(below, -1e3 * most, most), std::clamp(above, -most, 1e3 * most)};
 }
 
