@@ -106,7 +106,7 @@ TEST_CASE("A stick changes with whole reports only, and asks to be read anew whe
 }
 
 TEST_CASE("A joystick's trigger and a gamepad's first button are both button 1") {
-  for (const std::uint16_t first : {BTN_JOYSTICK, BTN_GAMEPAD}) {
+  for (const std::uint16_t first : {std::uint16_t{BTN_JOYSTICK}, std::uint16_t{BTN_GAMEPAD}}) {
     Stick stick({}, ranges_of(-100, 100));
     CHECK(after(stick, {{0, EV_KEY, first, 1}}).buttons[0]);
     CHECK_FALSE(after(stick, {{0, EV_KEY, first, 0}}).buttons[0]);
@@ -193,7 +193,7 @@ class VirtualStick {
     setup.id.bustype = BUS_VIRTUAL;
     std::strcpy(setup.name, "kadans test stick");
     bool good = ioctl(descriptor_, UI_SET_EVBIT, EV_KEY) >= 0 && ioctl(descriptor_, UI_SET_KEYBIT, BTN_JOYSTICK) >= 0;
-    for (const std::uint16_t axis : {ABS_X, ABS_Y}) {
+    for (const std::uint16_t axis : {std::uint16_t{ABS_X}, std::uint16_t{ABS_Y}}) {
       uinput_abs_setup abs{};
       abs.code = axis;
       abs.absinfo.minimum = -100;
