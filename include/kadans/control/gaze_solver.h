@@ -97,6 +97,7 @@ class GazeSolver {
     double lowest_rad_s, highest_rad_s;
   };
   Bounds bounds(const Part& part, double position_rad) const noexcept;
+  static double most_rad_s(const Part& part, double position_rad, double velocity_rad_s) noexcept;
   void see(const Target& target) noexcept;
   void go_round() noexcept;
   double damping2() const noexcept;
