@@ -68,9 +68,10 @@ int run_check(const CheckOptions& options);
 struct RunOptions {
   std::string robot;
   std::string plant = "bullet";
-  std::string peer;    // of a udp plant; "" = the robot's own
-  std::string play;    // a list; "" = nothing, the robot holds
-  std::string record;  // "" = none
+  std::string peer;      // of a udp plant; "" = the robot's own
+  std::string play;      // a list; "" = nothing, the robot holds
+  std::string joystick;  // a device or a recording; "" = the robot's own
+  std::string record;    // "" = none
   RecordOptions recording;
   std::optional<double> duration_s;
   std::optional<std::uint64_t> seed;

@@ -103,6 +103,7 @@ std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembl
   files.add(scenario.file);
   files.add(robot.file);
   files.add(robot.model.file);
+  if (!scenario.joystick.recording.empty()) files.add(scenario.joystick.recording);
   for (const fs::path& file : assembly.host().files()) files.add(file);
   return files.take();
 }

@@ -86,6 +86,9 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("HOST:PORT");
   run->add_option("--play", options.play, "What to play: \"squat, wave\" (default: nothing, the robot holds)")
       ->type_name("LIST");
+  run->add_option("--joystick", options.joystick,
+                  "/dev/input/event5, or a recording of one, for s.joystick of behaviors")
+      ->type_name("FILE");
   run->add_option("--duration", options.duration_s, "Seconds to run (default: until it is told to stop)")
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e9));

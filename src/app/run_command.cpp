@@ -21,6 +21,7 @@
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/record_side.h"
 #include "leaving.h"
+#include "live_joystick.h"
 #include "live_log.h"
 #include "live_report.h"
 #include "live_threads.h"
@@ -117,6 +118,7 @@ class LiveRun {
                    ? nullptr
                    : std::make_unique<PlantTask>(*link_, *assembly_.model(),
                                                  assembly_.robot().engine.control_period_ns())),
+        joystick_(make_joystick()),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
                  assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
@@ -134,7 +136,8 @@ class LiveRun {
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     if (assembly_.udp_plant() != nullptr && !assembly_.udp_plant()->connect(interrupted)) return exit_interrupted;
-    LiveThreads threads(timing, {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr});
+    LiveThreads threads(timing,
+                        {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()});
     threads.start();
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     ctl_.start();
@@ -176,6 +179,12 @@ class LiveRun {
   }
 
  private:
+  std::unique_ptr<LiveJoystick> make_joystick() {
+    const JoystickSettings& settings = assembly_.robot().joystick;
+    if (options_.joystick.empty() && settings.device.empty()) return nullptr;
+    return std::make_unique<LiveJoystick>(settings, options_.joystick, parts_.control.exchange().joystick);
+  }
+
   // Until somebody or something ends the run; says what.
   std::string watch(LiveThreads& threads) {
     Wait& wait = threads.supervisor();
@@ -222,17 +231,22 @@ class LiveRun {
     }
   }
 
+  void tell(const Event& event) {
+    instance_.tell(event);
+    const bool message = event.kind == Event::Kind::message;
+    if (!options_.verbose && (!message || event.severity != BehaviorLog::Severity::error)) return;
+    const Transition& t = event.transition;
+    const std::string text = message ? event.text : t.from + " -> " + t.to + " (" + t.why + ")";
+    std::fprintf(stderr, "%9.2f s  %s: %s\n", 1e-9 * static_cast<double>(t.time_ns), t.behavior.c_str(), text.c_str());
+  }
+
   // What behaviors said, and faults but for late ticks, which the report counts.
   void tell(std::int64_t time_ns) {
     Event event;
-    while (live_log_.told().pop(time_ns, event)) {
-      instance_.tell(event);
-      const bool message = event.kind == Event::Kind::message;
-      if (!options_.verbose && (!message || event.severity != BehaviorLog::Severity::error)) continue;
-      const Transition& t = event.transition;
-      const std::string text = message ? event.text : t.from + " -> " + t.to + " (" + t.why + ")";
-      std::fprintf(stderr, "%9.2f s  %s: %s\n", 1e-9 * static_cast<double>(t.time_ns), t.behavior.c_str(),
-                   text.c_str());
+    while (live_log_.told().pop(time_ns, event)) tell(event);
+    if (joystick_ != nullptr) {
+      const std::optional<Event> news = joystick_->news(parts_.control.exchange().snapshot.read(1));
+      if (news) tell(*news);
     }
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) {
@@ -269,6 +283,7 @@ class LiveRun {
   } parts_;
   std::unique_ptr<TruthTask> truth_;  // of a model
   std::unique_ptr<PlantTask> plant_;  // likewise
+  std::unique_ptr<LiveJoystick> joystick_;
   Leaving leaving_;
   Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog()};
   ControlSide control_side_{instance_, parts_.control.safety()};

@@ -53,6 +53,7 @@ void RobotReader::read(Fields& f) {
            [&](Fields& safe) { safe_fields(safe, config_, problems_); });
   f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });
   f.object("start", "where the robot starts", [&](Fields& e) { start(e); });
+  f.object("joystick", "a joystick that behaviors read as s.joystick", [&](Fields& e) { joystick(e); });
   f.object("estimate", "how the estimator is set up", [&](Fields& e) { estimate(e); });
   f.object("record", "what records hold", [&](Fields& record) { record_fields(record, config_.record); });
   f.object("safety", "limits and reactions of the safety layer", [&](Fields& e) { safety(e); });

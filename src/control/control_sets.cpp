@@ -53,6 +53,11 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
   plans_.reserve(catalog.sets.size());  // parameters point into the members
   for (const ControlSetInfo& set : catalog.sets) make_plan(catalog, set);
   declare(catalog);
+  SetpointState ignored;
+  for (SetpointId id = 0; id < catalog.setpoints.size(); ++id) {
+    const Setpoint& setpoint = catalog.setpoints[id];
+    if (objects_[setpoint.owner]->setpoint_state(setpoint.channel, ignored)) catalog.setpoints.set_follows(id);
+  }
 }
 
 void ControlSets::make_plan(Catalog& catalog, const ControlSetInfo& set) {

@@ -14,6 +14,7 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
   actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
   written_ = actuation_;
   declare_signals(catalog);
+  if (settings.joystick) declare_joystick(catalog.signals);
   row_.resize(catalog.signals.size());
 }
 
@@ -74,6 +75,7 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   inbox_.fill(snapshot_);
   sets_.fill(snapshot_);
   inbox_.motions().fill(snapshot_);
+  snapshot_.joystick = exchange_.joystick.read();
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);
   if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);

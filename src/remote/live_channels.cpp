@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <nlohmann/json.hpp>
+
 #include "kadans/signal/byte_order.h"
 #include "kadans/telemetry/recorder.h"
 

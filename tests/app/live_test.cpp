@@ -58,6 +58,28 @@ TEST_CASE("run ends cleanly on SIGTERM: behaviors leave, the robot is off, the r
   CHECK(has(read(project / "err"), "supervisor: stop"));
 }
 
+TEST_CASE("run is led by a joystick's recording, also when behaviors play in a process of their own") {
+  const auto project = project_copy("live_joystick");
+  for (const std::string behaviors : {"thread", "process"}) {
+    CAPTURE(behaviors);
+    const Outcome outcome =
+        run("run config/jiwiy/robot.json --plant ideal --play stick --joystick config/joystick/jiwiy_round.evemu"
+            " --duration 2 --threads-on-virtual-time --verbose --behaviors " +
+                behaviors,
+            project);
+    CHECK_MESSAGE(outcome.exit_code == 0, outcome.err);
+    CHECK(has(outcome.err, "joystick: is there"));
+    CHECK(has(outcome.err, "velocity.stick_velocity.held -> effort (button 3)"));
+  }
+}
+
+TEST_CASE("run refuses a joystick that is not there before anything moves") {
+  const Outcome outcome = run("run config/jiwiy/robot.json --joystick /dev/input/none --threads-on-virtual-time",
+                              project_copy("live_no_joystick"));
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "/dev/input/none: there is no such device"));
+}
+
 TEST_CASE("run refuses a wrong list before anything moves") {
   const auto project = project_copy("live_wrong");
   const Outcome outcome =

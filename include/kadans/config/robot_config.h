@@ -18,6 +18,7 @@
 #include "kadans/engine/settings.h"
 #include "kadans/estimate/settings.h"
 #include "kadans/model/robot_model.h"
+#include "kadans/plant/joystick/settings.h"
 #include "kadans/plant/settings.h"
 #include "kadans/plant/udp/settings.h"
 #include "kadans/safety/settings.h"
@@ -56,6 +57,7 @@ struct RobotConfig {
   EngineSettings engine;
   PlantSettings plant;
   UdpSettings udp;
+  JoystickSettings joystick;  // engine.joystick: whether the file has one
   EstimateSettings estimate;
   SafetySettings safety;
   std::vector<ObjectConfig> objects;

@@ -23,9 +23,9 @@ namespace kadans {
 
 class ControlSets {
  public:
-  // Keeps a reference to the catalog and declares signals and parameters in it. `objects` as numbered there. Throws
-  // std::invalid_argument on a set that names no object or an object twice, on an object that sets a joint which an
-  // earlier one of the set drives, on initial sets that share a joint, and on too many objects or sets.
+  // Keeps the catalog, declares signals and parameters in it, marks set-points that can be led. Throws
+  // std::invalid_argument on a set that names no object or one twice, on an object that sets a joint which an earlier
+  // one of the set drives, on initial sets that share a joint, and on too many objects (numbered as there) or sets.
   ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects);
 
   // Control thread. Computes the actuation of all joints.

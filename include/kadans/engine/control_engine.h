@@ -25,12 +25,14 @@ namespace kadans {
 inline constexpr std::size_t snapshot_readers = 2;  // 0: behavior engine, 1: supervisor
 using SnapshotStorage = Latest<Snapshot, snapshot_readers>;
 using HeartbeatStorage = Latest<std::int64_t>;  // time of the behavior engine's last tick
+using JoystickStorage = Latest<JoystickState>;
 
 // The storages between the threads. Position independent; may live in shared memory.
 struct EngineExchange {
   SnapshotStorage snapshot;    // written by the control thread
   CommandQueue commands;       // pushed by the behavior thread, popped by the control thread
   HeartbeatStorage heartbeat;  // written by the behavior thread
+  JoystickStorage joystick;    // written by whoever reads one, read by the control thread
 };
 
 class ControlEngine {
@@ -59,6 +61,7 @@ class ControlEngine {
  private:
   void publish(std::int64_t time_ns) noexcept;
   void declare_signals(Catalog& catalog);
+  void declare_joystick(SignalTable& table) const;
 
   Plant& plant_;
   Estimator& estimator_;
