@@ -8,15 +8,19 @@ local floor = require "floor"
 local P = k.params {
   tries       = { 3, min = 1, max = 10, doc = "how often it tries" },
   rolls       = { 2, min = 1, max = 10, doc = "how often it rolls in one try" },
-  still_s     = { 0.6, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins: torque is back by then" },
+  still_s     = { 0.35, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins: torque is back by then" },
   still_rad_s = { 0.5, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
   patience_s  = { 2.0, min = 0.1, max = 20, unit = "s", doc = "longest wait to lie still" },
-  bear_s      = { 0.15, min = 0, max = 2, unit = "s", doc = "time to come to rest on hands and feet" },
+  bear_s      = { 0.05, min = 0, max = 2, unit = "s", doc = "time to come to rest on hands and feet" },
   steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
   tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
   lean_rad    = { 0.0, min = -0.2, max = 0.2, unit = "rad", doc = "how far back it leans in the ankles while it rises" },
   learn_rad   = { 0.03, min = 0, max = 0.2, unit = "rad", doc = "change of that after a fall, away from where it fell" },
+  straight_s  = { 0.22, min = 0.02, max = 2, unit = "s", doc = "time to stretch the legs after a roll" },
+  turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
+  face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
+  flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
 
@@ -45,10 +49,13 @@ local function roll(over)
   return {
     run = function(m, s)
       m.vars.rolls = m.vars.rolls + 1
+      m.vars.turned = false
       play(m, floor.roll(over, s.joints))
-      m.posture:move(floor.lying(), { time_s = 0.3 }):wait()
+      m.posture:move(floor.lying(), { time_s = P.straight_s }):wait()
+      m.vars.turned = true
+      m:wait(P.turn_s)
     end,
-    { on = "run.done", when = is "prone", to = "fold" },
+    { when = function(s, m) return m.vars.turned and floor.up(s.base).x < P.face end, to = "fold" },
     { on = "run.done", when = function(_, m) return m.vars.rolls < P.rolls end, to = "look", why = "did not roll over" },
     { on = "run.done", to = "again", why = "did not roll over" },
   }
@@ -56,7 +63,7 @@ end
 
 return k.behavior "get_up" {
   controls = "balanced",
-  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, rolls = 0 },
+  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, rolls = 0, turned = false },
   initial  = "lie",
 
   k.state "at_once" { { after = 0, to = "up" } },
@@ -100,7 +107,11 @@ return k.behavior "get_up" {
   },
   k.state "rise" {
     run = function(m)
-      m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad)):wait()
+      m.posture:set_gains("rise")
+      local motion = m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad))
+      m:wait(P.flat_s)
+      m.balance:set_parameter("share", 1)
+      motion:wait()
     end,
     { on = "run.done", to = "steady" },
     { when = function(s, m) return m.time_s > 1 and floor.up(s.base).z < 0.3 end, to = "fell" },

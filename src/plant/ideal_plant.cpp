@@ -33,6 +33,7 @@ IdealPlant::IdealPlant(const RobotModel& model, const PlantSettings& settings) {
     const double rotor = settings.drives.empty() ? 0 : settings.drives[i].rotor_inertia_kg_m2;
     inertia_kg_m2_[i] = rotor > 0 ? rotor : 1;
     lower_rad_[i] = limited ? joint.lower_rad : -std::numeric_limits<double>::infinity();
+    truth_.motor_torque_max_Nm[i] = std::numeric_limits<double>::infinity();
     upper_rad_[i] = limited ? joint.upper_rad : std::numeric_limits<double>::infinity();
     truth_.position_rad[i] = settings.position_rad[i];
   }
@@ -66,6 +67,7 @@ void IdealPlant::step(std::int64_t dt_ns) {
     double& velocity = truth_.velocity_rad_s[i];
     const double before = position;
     truth_.drive_torque_Nm[i] = asked.mode == ActuationMode::effort ? asked.effort_Nm : 0;
+    truth_.motor_torque_Nm[i] = truth_.drive_torque_Nm[i];
     velocity += dt_s * truth_.drive_torque_Nm[i] / inertia_kg_m2_[i];
     if (asked.mode == ActuationMode::velocity) velocity = asked.velocity_rad_s;
     position = asked.mode == ActuationMode::position ? asked.position_rad : position + dt_s * velocity;

@@ -36,10 +36,17 @@ void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
   table.add({"plant.base.tilt_rad", "rad", "Angle between the base's z axis and up."}, &state_.tilt_rad);
   table.add({"plant.base.yaw_rad", "rad", "Heading of the base."}, &state_.yaw_rad);
   table.add({"plant.base.speed_m_s", "m/s", "Speed of the base frame."}, &state_.speed_m_s);
+  table.add({"plant.base.jump_m", "m", "Way of the base in a step beyond what its speed explains."}, &state_.jump_m);
   table.add({"plant.limits.position_rad", "rad", "How far the worst joint is inside its limits; negative beyond."},
             &state_.position_rad);
-  table.add({"plant.limits.torque_share", "", "Largest drive torque as a share of its limit."}, &state_.torque_share);
+  table.add({"plant.limits.motor_torque_share", "",
+             "Largest torque of a motor as a share of its limit; what it cannot give at its speed counts as used up."},
+            &state_.motor_torque_share);
+  table.add({"plant.limits.torque_share", "", "Largest torque of a transmission on its joint as a share of its limit."},
+            &state_.torque_share);
   table.add({"plant.limits.speed_share", "", "Largest joint velocity as a share of its limit."}, &state_.speed_share);
+  table.add({"plant.limits.overspeed_s", "s", "How long now a joint has been faster than its limit."},
+            &state_.overspeed_s);
   table.add({"reference.base.height_m", "m", "Height of the base with every joint at its set-point."},
             &state_.reference_height_m);
   table.add({"reference.base.error_m", "m", "Height of the base minus that of the set-points."},
@@ -56,21 +63,35 @@ void TruthSignals::watch(Catalog& catalog, const GazeTruth::Eyes& eyes) {
   gazes_.back()->declare(catalog.signals);
 }
 
-void TruthSignals::update_limits() noexcept {
+void TruthSignals::update_limits(double dt_s) noexcept {
   const PlantTruth& truth = plant_.truth();
   state_.position_rad = std::numeric_limits<double>::infinity();
-  state_.torque_share = state_.speed_share = 0;
+  state_.motor_torque_share = state_.torque_share = state_.speed_share = state_.overspeed_s = 0;
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint& joint = model_.joints[i];
     const double inside = std::min(truth.position_rad[i] - joint.lower_rad, joint.upper_rad - truth.position_rad[i]);
     state_.position_rad = std::min(state_.position_rad, inside);
     if (!joint.passive()) {
+      const double left_Nm = truth.motor_torque_max_Nm[i] - std::abs(truth.motor_torque_Nm[i]);
+      state_.motor_torque_share = std::max(state_.motor_torque_share, 1 - left_Nm / joint.effort_max_Nm);
       state_.torque_share = std::max(state_.torque_share, std::abs(truth.drive_torque_Nm[i]) / joint.effort_max_Nm);
     }
     if (joint.velocity_max_rad_s > 0) {
-      state_.speed_share = std::max(state_.speed_share, std::abs(truth.velocity_rad_s[i]) / joint.velocity_max_rad_s);
+      const double share = std::abs(truth.velocity_rad_s[i]) / joint.velocity_max_rad_s;
+      overspeed_s_[i] = share > 1 ? overspeed_s_[i] + dt_s : 0;
+      state_.speed_share = std::max(state_.speed_share, share);
+      state_.overspeed_s = std::max(state_.overspeed_s, overspeed_s_[i]);
     }
   }
+}
+
+void TruthSignals::update_jump(double dt_s) noexcept {
+  const Vec3& at_m = plant_.truth().base.position_m;
+  const double way_m = std::hypot(at_m[0] - last_m_[0], at_m[1] - last_m_[1], at_m[2] - last_m_[2]);
+  const double fastest_m_s = std::max(last_m_s_, state_.speed_m_s);
+  state_.jump_m = dt_s > 0 ? std::max(0.0, way_m - fastest_m_s * dt_s) : 0;
+  last_m_ = at_m;
+  last_m_s_ = state_.speed_m_s;
 }
 
 void TruthSignals::update_feet(double time_s) noexcept {
@@ -121,7 +142,10 @@ void TruthSignals::update(double time_s, std::span<const double> row) noexcept {
   state_.tilt_rad = std::atan2(std::hypot(up[0], up[1]), up[2]);
   state_.yaw_rad = roll_pitch_yaw(truth.base.orientation)[2];
   state_.speed_m_s = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  update_limits();
+  const double dt_s = last_s_ ? time_s - *last_s_ : 0;
+  last_s_ = time_s;
+  update_limits(dt_s);
+  update_jump(dt_s);
   update_feet(time_s);
   world_->update(truth);
   for (const auto& gaze : gazes_) gaze->update(row);

@@ -141,3 +141,33 @@ TEST_CASE("The speed-torque line holds for a rotor behind a spring") {
   run(plant, 1500);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(8).epsilon(0.01));
 }
+
+TEST_CASE("A transmission that is hit carries more than its motor gives, and the motor stays on its line") {
+  const DriveSettings drive{.torque_max_Nm = 3,
+                            .velocity_max_rad_s = 8,
+                            .knee_velocity_rad_s = 4.8,
+                            .rotor_inertia_kg_m2 = 0.02,
+                            .spring_Nm_per_rad = 3000,
+                            .spring_damping_Nms_per_rad = 1};
+  Robot robot = pendulum(1, 0.1, 0.02);
+  robot.settings.drives = {drive};
+  BulletPlant plant(robot.model, robot.settings, 1);
+  SensorFrame sensors;
+  double rotor_rad = 0, rotor_rad_s = 0, most_on_joint_Nm = 0;
+  for (int i = 0; i < 600; ++i) {
+    plant.write(effort(i / 100 % 2 == 0 ? 50 : -50));
+    if (i % 90 == 80) plant.push(1, {400, 0, 0}, {0, 0, -0.1});
+    plant.step(ms);
+    plant.read(sensors);
+    const double before_rad_s = rotor_rad_s;
+    rotor_rad_s = 1e3 * (sensors.joints[0].motor_position_rad - rotor_rad);
+    rotor_rad = sensors.joints[0].motor_position_rad;
+    const double motor_Nm = plant.truth().motor_torque_Nm[0], sign = motor_Nm < 0 ? -1 : 1;
+    const double slower_rad_s = std::min(sign * before_rad_s, sign * rotor_rad_s);
+    const double allowed_Nm = 3 * std::clamp((8 - slower_rad_s) / (8 - 4.8), 0.0, 1.0);
+    CHECK(std::abs(motor_Nm) <= allowed_Nm + 1e-6);
+    CHECK(plant.truth().motor_torque_max_Nm[0] == doctest::Approx(allowed_Nm).epsilon(1e-6));
+    most_on_joint_Nm = std::max(most_on_joint_Nm, std::abs(plant.truth().drive_torque_Nm[0]));
+  }
+  CHECK(most_on_joint_Nm > 2 * drive.torque_max_Nm);
+}

@@ -55,6 +55,10 @@ struct PlantTruth {
   std::array<double, max_joints> position_rad{};
   std::array<double, max_joints> velocity_rad_s{};
   std::array<double, max_joints> drive_torque_Nm{};  // what each drive put on its joint in the last step
+  // Of the motor alone, reflected to the joint, and the most that it can give at its speed, in that direction. The
+  // torque on the joint is more than that where the joint is hit or brakes: then the transmission carries the rotor's
+  // own inertia.
+  std::array<double, max_joints> motor_torque_Nm{}, motor_torque_max_Nm{};
   std::uint32_t foot_count = 0;
   std::array<Pose, max_feet> feet{};
   std::array<Vec3, max_feet> foot_force_N{};  // from whatever the foot stands on, world axes

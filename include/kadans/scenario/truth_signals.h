@@ -1,10 +1,16 @@
 // What a model knows for certain, as signals: for checks and pictures, never for control.
 //
 //   plant.base.height_m, x_m, y_m, tilt_rad, yaw_rad, speed_m_s     the base frame in the world
+//   plant.base.jump_m           its way in this step beyond what its speed explains: a teleport
 //   plant.foot.<link>.force_N, slip_m                                slip: way along the ground since the foot settled
 //   plant.limits.position_rad   how far the worst joint is inside its limits; negative beyond them
-//   plant.limits.torque_share   the largest drive torque, as a share of its joint's limit
-//   plant.limits.speed_share    the largest joint velocity, as a share of its limit
+//   plant.limits.motor_torque_share   the largest torque of a motor, as a share of its joint's limit. What the motor
+//                                     cannot give at its speed counts as used up: at most 1, or the plant cheats
+//   plant.limits.torque_share   the largest torque that a transmission puts on its joint, as a share of its limit. More
+//                               than 1 when a limb hits something: the rotor behind it must be stopped, too
+//   plant.limits.speed_share    the largest joint velocity, as a share of its limit. More than 1 when something turns
+//                               the joint faster than its motor could: no motor pushes on there
+//   plant.limits.overspeed_s    how long now, without a break, a joint has been so
 //   reference.base.height_m     where the base would be if every joint stood at its set-point
 //   reference.base.error_m      plant.base.height_m minus that
 // and those of world_signals.h, and of gaze_truth.h for eyes that are watched.
@@ -44,8 +50,8 @@ class TruthSignals {
 
  private:
   struct State {
-    double height_m = 0, x_m = 0, y_m = 0, tilt_rad = 0, yaw_rad = 0, speed_m_s = 0;
-    double position_rad = 0, torque_share = 0, speed_share = 0;
+    double height_m = 0, x_m = 0, y_m = 0, tilt_rad = 0, yaw_rad = 0, speed_m_s = 0, jump_m = 0;
+    double position_rad = 0, motor_torque_share = 0, torque_share = 0, speed_share = 0, overspeed_s = 0;
     double reference_height_m = 0, reference_error_m = 0;
   };
   struct FootState {
@@ -56,7 +62,8 @@ class TruthSignals {
     double force_N = 0, slip_m = 0;
   };
   void declare(SignalTable& table, const std::vector<Foot>& feet);
-  void update_limits() noexcept;
+  void update_limits(double dt_s) noexcept;
+  void update_jump(double dt_s) noexcept;
   void update_feet(double time_s) noexcept;
   double reference_rad(std::size_t joint, std::span<const double> row) const noexcept;
   double reference_height_m(std::span<const double> row) noexcept;
@@ -66,6 +73,10 @@ class TruthSignals {
   double settle_s_;
   Kinematics kinematics_;
   State state_;
+  std::array<double, max_joints> overspeed_s_{};
+  std::optional<double> last_s_;  // of the step before, and then:
+  Vec3 last_m_{};
+  double last_m_s_ = 0;
   std::vector<FootState> feet_;
   std::optional<WorldSignals> world_;
   std::vector<std::unique_ptr<GazeTruth>> gazes_;

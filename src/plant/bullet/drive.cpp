@@ -20,6 +20,12 @@ double Drive::available_Nm(double direction, double velocity_rad_s) const {
   return settings_.torque_max_Nm * (no_load - speed) / (no_load - knee);
 }
 
+// A step's torque is one number while the speed changes: what the line allows at the better of both ends.
+double Drive::most_Nm(double before_rad_s, double after_rad_s) const {
+  const double direction = state_.motor_torque_Nm < 0 ? -1 : 1;
+  return std::max(available_Nm(direction, before_rad_s), available_Nm(direction, after_rad_s));
+}
+
 TorqueLaw Drive::law(double position_rad, double velocity_rad_s, double dt_s) const {
   const double torque_max = settings_.torque_max_Nm, no_load = settings_.velocity_max_rad_s;
   const JointActuation& asked = actuation_;
@@ -69,12 +75,14 @@ double Drive::begin_elastic(double position_rad, double velocity_rad_s, double d
   const double radians_per_step = dt_s * std::sqrt(settings_.spring_Nm_per_rad / settings_.rotor_inertia_kg_m2);
   const int steps = std::max(1, static_cast<int>(std::ceil(radians_per_step)));
   const double small_dt_s = dt_s / steps;
+  const double before_rad_s = state_.rotor_velocity_rad_s;
   double torque_sum = 0, motor_sum = 0;
   for (int i = 0; i < steps; ++i) {
     torque_sum += step_rotor(position_rad + i * small_dt_s * velocity_rad_s, velocity_rad_s, small_dt_s);
     motor_sum += state_.motor_torque_Nm;
   }
   state_.motor_torque_Nm = motor_sum / steps;
+  state_.motor_torque_max_Nm = most_Nm(before_rad_s, state_.rotor_velocity_rad_s);
   state_.joint_torque_Nm = torque_sum / steps;
   return state_.joint_torque_Nm;
 }
@@ -105,6 +113,7 @@ double Drive::step_rotor(double position_rad, double velocity_rad_s, double dt_s
 void Drive::end_step(double position_rad, double velocity_rad_s, double dt_s) {
   if (elastic()) return;
   state_.motor_torque_Nm += rows_->impulse(JointRows::servo) / dt_s;
+  state_.motor_torque_max_Nm = most_Nm(velocity_before_rad_s_, velocity_rad_s);
   const double friction_Nm =
       rows_->impulse(JointRows::friction) / dt_s - settings_.viscous_Nms_per_rad * velocity_rad_s;
   const double inertia_Nm = settings_.rotor_inertia_kg_m2 * (velocity_before_rad_s_ - velocity_rad_s) / dt_s;

@@ -33,6 +33,7 @@ class Drive {
   struct State {
     double rotor_rad = 0, rotor_velocity_rad_s = 0;  // of a series elastic drive
     double motor_torque_Nm = 0;                      // electrical: before rotor inertia and friction
+    double motor_torque_max_Nm = 0;                  // what it could give so, in that direction
     double joint_torque_Nm = 0;                      // what the drive put on the joint in the last step
   };
 
@@ -54,6 +55,7 @@ class Drive {
   double begin_elastic(double position_rad, double velocity_rad_s, double dt_s);
   double step_rotor(double position_rad, double velocity_rad_s, double dt_s);
   double available_Nm(double direction, double velocity_rad_s) const;
+  double most_Nm(double before_rad_s, double after_rad_s) const;
 
   DriveSettings settings_;
   JointRows* rows_;

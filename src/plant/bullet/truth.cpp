@@ -40,6 +40,8 @@ void TruthReader::read(const std::vector<Drive>& drives, const std::vector<FootL
     truth_.position_rad[i] = multibody.getJointPos(static_cast<int>(i));
     truth_.velocity_rad_s[i] = multibody.getJointVel(static_cast<int>(i));
     truth_.drive_torque_Nm[i] = drives[i].state().joint_torque_Nm;
+    truth_.motor_torque_Nm[i] = drives[i].state().motor_torque_Nm;
+    truth_.motor_torque_max_Nm[i] = drives[i].state().motor_torque_max_Nm;
   }
   truth_.foot_count = static_cast<std::uint32_t>(feet.size());
   for (std::size_t i = 0; i < feet.size(); ++i) {
