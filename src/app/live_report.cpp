@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double us(double ns) { return std::round(ns) / 1000; }
+double in_us(double ns) { return std::round(ns) / 1000; }
 
 double resident_MB() {
   std::ifstream file("/proc/self/statm");
@@ -24,15 +24,15 @@ double resident_MB() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
-Json json_of(const TickStatistics& s) {
-  return {{"min", us(static_cast<double>(s.min_ns()))},
-          {"mean", us(s.mean_ns())},
-          {"p50", us(s.percentile_ns(0.5))},
-          {"p99", us(s.percentile_ns(0.99))},
-          {"p999", us(s.percentile_ns(0.999))},
-          {"p9999", us(s.percentile_ns(0.9999))},
-          {"p99999", us(s.percentile_ns(0.99999))},
-          {"max", us(static_cast<double>(s.max_ns()))}};
+Json percentiles_of(const TickStatistics& s) {
+  return {{"min", in_us(static_cast<double>(s.min_ns()))},
+          {"mean", in_us(s.mean_ns())},
+          {"p50", in_us(s.percentile_ns(0.5))},
+          {"p99", in_us(s.percentile_ns(0.99))},
+          {"p999", in_us(s.percentile_ns(0.999))},
+          {"p9999", in_us(s.percentile_ns(0.9999))},
+          {"p99999", in_us(s.percentile_ns(0.99999))},
+          {"max", in_us(static_cast<double>(s.max_ns()))}};
 }
 
 double preparation_s(const TaskThread& thread) {
@@ -45,15 +45,15 @@ Json json_of(const TaskThread& thread) {
   return {{"beats", s.lateness.count()},           {"overruns", s.overruns.get()},
           {"late_wakes", s.late_wakes.get()},      {"missed", s.missed.get()},
           {"page_faults", thread.page_faults()},   {"cpu_s", 1e-9 * static_cast<double>(thread.cpu_time_ns())},
-          {"lateness_us", json_of(s.lateness)},    {"jitter_us", json_of(s.jitter)},
-          {"execution_us", json_of(s.execution)},  {"preparation_us", json_of(thread.preparation())},
+          {"lateness_us", percentiles_of(s.lateness)},    {"jitter_us", percentiles_of(s.jitter)},
+          {"execution_us", percentiles_of(s.execution)},  {"preparation_us", percentiles_of(thread.preparation())},
           {"preparation_s", preparation_s(thread)}};
 }
 
 std::string row(const char* name, const TickStatistics& s, const char* rest) {
   std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, us(s.percentile_ns(0.5)),
-                us(s.percentile_ns(0.99)), us(s.percentile_ns(0.999)), us(static_cast<double>(s.max_ns())), rest);
+  std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, in_us(s.percentile_ns(0.5)),
+                in_us(s.percentile_ns(0.99)), in_us(s.percentile_ns(0.999)), in_us(static_cast<double>(s.max_ns())), rest);
   return text.data();
 }
 
@@ -131,7 +131,7 @@ std::string live_json(const LiveResult& result) {
             {"start_ms", result.start_ms},
             {"resident_MB", resident_MB()},
             {"control_ticks", result.control.ticks()},
-            {"tick_us", json_of(result.control.tick_cost())},
+            {"tick_us", percentiles_of(result.control.tick_cost())},
             {"safety_level", name(result.engine.state().status.safety.level)},
             {"faults", result.engine.state().status.safety.fault_count},
             {"commands",

@@ -9,7 +9,7 @@
 namespace kadans {
 namespace {
 
-constexpr const char* number = "<td class=\"number\">";
+constexpr const char* number_cell = "<td class=\"number\">";
 
 // Which checks failed, else what the process said.
 std::string reasons(const RunOutcome& run) {
@@ -29,8 +29,8 @@ std::string row(const RunOutcome& run, const std::filesystem::path& folder) {
   std::string name = html_text(run.scenario);
   if (std::filesystem::exists(folder / file, ignored)) name = "<a href=\"" + file + "\">" + name + "</a>";
   return std::string("<tr><td class=\"mark ") + (passed ? "good\">✓" : "bad\">✗") + "</td><td>" + name + "</td>" +
-         number + std::to_string(run.seed) + "</td><td>" + kadans::name(run.status) + "</td>" + number +
-         printed("%.2f s", run.simulated_s) + "</td>" + number + printed("%.2f s", run.wall_s) + "</td><td>" +
+         number_cell + std::to_string(run.seed) + "</td><td>" + kadans::name(run.status) + "</td>" + number_cell +
+         printed("%.2f s", run.simulated_s) + "</td>" + number_cell + printed("%.2f s", run.wall_s) + "</td><td>" +
          reasons(run) + (passed ? "" : "<code>" + html_text(run.repeat) + "</code>") + "</td></tr>\n";
 }
 

@@ -196,14 +196,14 @@ std::vector<std::string> event_lines(const RecordOutline& record) {
 
 // Those of `lines` beyond what `others` has of them too, in their order.
 std::vector<std::string> without(const std::vector<std::string>& lines, const std::vector<std::string>& others) {
-  std::multiset<std::string> left(others.begin(), others.end());
+  std::multiset<std::string> unmatched(others.begin(), others.end());
   std::vector<std::string> rest;
   for (const std::string& line : lines) {
-    const auto found = left.find(line);
-    if (found == left.end())
+    const auto found = unmatched.find(line);
+    if (found == unmatched.end())
       rest.push_back(line);
     else
-      left.erase(found);
+      unmatched.erase(found);
   }
   return rest;
 }

@@ -9,7 +9,7 @@
 namespace kadans {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 // A line of a topic's description: name, unit and sentence between tabs.
 Signal signal_in(const std::string& line) {
