@@ -127,7 +127,7 @@ class LiveRun {
     const bool may_record = !options_.record.empty() || place_of(options_).wanted || options_.live.wanted();
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
-    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->connect();
+    if (assembly_.udp_plant() != nullptr && !assembly_.udp_plant()->connect(interrupted)) return exit_interrupted;
     LiveThreads threads(timing, {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr});
     threads.start();
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);

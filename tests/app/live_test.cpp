@@ -1,9 +1,14 @@
 // `kadans run`, jitter and doctor as a person would call them; the runs on virtual time.
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 
 #include <doctest/doctest.h>
+#include <netinet/in.h>
 #include <nlohmann/json.hpp>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "program.h"
 
@@ -77,6 +82,35 @@ TEST_CASE("run and plant say what is wrong with a network before anything moves"
   const Outcome plant = run("plant config/tulip/robot.json --listen 127.0.0.1:77777 --soft", project);
   CHECK(plant.exit_code == 2);
   CHECK(has(plant.err, "must be HOST:PORT"));
+}
+
+TEST_CASE("run that waits for a plant on the network ends on SIGINT") {
+  const auto project = project_copy("live_waiting");
+  const int plant = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof place;
+  REQUIRE(bind(plant, reinterpret_cast<sockaddr*>(&place), size) == 0);
+  REQUIRE(getsockname(plant, reinterpret_cast<sockaddr*>(&place), &size) == 0);
+  const timeval patience{.tv_sec = 30, .tv_usec = 0};
+  setsockopt(plant, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string peer = "127.0.0.1:" + std::to_string(ntohs(place.sin_port));
+    if (chdir(project.c_str()) != 0) _exit(100);
+    execl(KADANS_BINARY_DIR "/kadans", "kadans", "run", "config/tulip/robot.json", "--plant", "udp", "--peer",
+          peer.c_str(), "--soft", "--no-ctl", nullptr);
+    _exit(101);
+  }
+  char greeting = 0;
+  CHECK(recv(plant, &greeting, 1, 0) == 1);  // it waits for the answer
+  kill(child, SIGINT);
+  int status = 0;
+  CHECK(waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 130);
+  close(plant);
 }
 
 TEST_CASE("doctor tells of any machine whose files it is given") {

@@ -29,12 +29,13 @@ UdpPlant::UdpPlant(const UdpSettings& settings, const PlantLayout& layout, Datag
 
 UdpPlant::~UdpPlant() { leave(); }
 
-void UdpPlant::connect() {
+bool UdpPlant::connect(bool (*give_up)() noexcept) {
   const int greetings = static_cast<int>(std::ceil(1000 * settings_.connect_timeout_s / greet_every_ms));
   for (int i = 0; i < greetings; ++i) {
+    if (give_up != nullptr && give_up()) return false;
     if (!welcome_) (void)greet();
     socket_.wait(greet_every_ms);
-    if (welcomed()) return;
+    if (welcomed()) return true;
   }
   const std::string place = "the plant at " + settings_.peer;
   std::array<char, 32> seconds{};
