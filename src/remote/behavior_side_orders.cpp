@@ -26,6 +26,15 @@ PlayOrder::Kind kind_of(Order::Kind kind) {
   }
 }
 
+// The parameters of behaviors are where their process is.
+void check_is_no_behavior(const std::vector<std::string>& behaviors, const std::string& parameter) {
+  const std::string name = parameter.substr(0, parameter.find('.'));
+  if (std::find(behaviors.begin(), behaviors.end(), name) == behaviors.end()) return;
+  throw InputError({.message = "parameters of behaviors cannot be set while they play in a process of their own: "
+                               "change its file, then `kadans ctl reload " +
+                               name + "`; or run with --behaviors thread"});
+}
+
 void check_range(const std::string& name, const std::string& unit, double value, double min, double max) {
   if (value >= min && value <= max) return;
   throw InputError({.message = name + " = " + number_text(value) + " is outside its range " + number_text(min) + ".." +
@@ -130,6 +139,7 @@ ParameterChange BehaviorSide::change_of(const Order& order) const {
       return {order.text, own.value, order.value};
     }
   }
+  if (p_.process != nullptr) check_is_no_behavior(p_.process->names(), order.text);
   throw InputError({.message = unknown_name("parameter", order.text, names)});
 }
 
