@@ -70,5 +70,6 @@ void bench_rfsm(Report& report);  // part of bench_lua; nothing without KADANS_R
 void bench_simulation(Report& report);
 void bench_start(Report& report);
 void bench_switch(Report& report);
+void bench_wall(Report& report);
 
 }  // namespace kadans::bench
