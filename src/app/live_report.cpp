@@ -35,13 +35,19 @@ Json json_of(const TickStatistics& s) {
           {"max", us(static_cast<double>(s.max_ns()))}};
 }
 
+double preparation_s(const TaskThread& thread) {
+  const TickStatistics& s = thread.preparation();
+  return 1e-9 * s.mean_ns() * static_cast<double>(s.count());
+}
+
 Json json_of(const TaskThread& thread) {
   const TaskStatistics& s = thread.statistics();
-  return {{"beats", s.lateness.count()},         {"overruns", s.overruns.get()},
-          {"late_wakes", s.late_wakes.get()},    {"missed", s.missed.get()},
-          {"page_faults", thread.page_faults()}, {"cpu_s", 1e-9 * static_cast<double>(thread.cpu_time_ns())},
-          {"lateness_us", json_of(s.lateness)},  {"jitter_us", json_of(s.jitter)},
-          {"execution_us", json_of(s.execution)}};
+  return {{"beats", s.lateness.count()},           {"overruns", s.overruns.get()},
+          {"late_wakes", s.late_wakes.get()},      {"missed", s.missed.get()},
+          {"page_faults", thread.page_faults()},   {"cpu_s", 1e-9 * static_cast<double>(thread.cpu_time_ns())},
+          {"lateness_us", json_of(s.lateness)},    {"jitter_us", json_of(s.jitter)},
+          {"execution_us", json_of(s.execution)},  {"preparation_us", json_of(thread.preparation())},
+          {"preparation_s", preparation_s(thread)}};
 }
 
 std::string row(const char* name, const TickStatistics& s, const char* rest) {
@@ -58,7 +64,13 @@ std::string rows_of(const TaskThread& thread) {
   std::array<char, 128> rest{};
   std::snprintf(rest.data(), rest.size(), "%llu beats, %llu missed, %llu page faults", whole(s.lateness.count()),
                 whole(s.missed.get()), whole(thread.page_faults()));
-  return row((thread.settings().name + ", late").c_str(), s.lateness, rest.data()) + row("  work", s.execution, "");
+  std::string rows = row((thread.settings().name + ", late").c_str(), s.lateness, rest.data());
+  if (thread.preparation().count() > 0) {
+    std::snprintf(rest.data(), rest.size(), "before the tick, %.2f s of %.2f s CPU time", preparation_s(thread),
+                  1e-9 * static_cast<double>(thread.cpu_time_ns()));
+    rows += row("  preparation", thread.preparation(), rest.data());
+  }
+  return rows + row("  work", s.execution, "");
 }
 
 std::uint64_t refused(const LiveResult& result) {

@@ -106,13 +106,13 @@ void ControlSets::restart(const ControlInput& input) noexcept {
   start_newcomers(input);
 }
 
-void ControlSets::compose_joints(const Member& member, ActuationFrame& actuation) noexcept {
+void ControlSets::compose_joints(const Member& member, Writers& writers, ActuationFrame& actuation) const noexcept {
   const ActuationFrame& proposal = *proposals_[member.object];
   const std::uint32_t bit = 1U << member.object;
   for (const std::size_t joint : catalog_.objects[member.object].joints) {
     const bool replaces = member.composition == Composition::set || member.composition == Composition::priority;
     if (!compose(member.composition, member.weight, proposal.joints[joint], actuation.joints[joint])) continue;
-    writers_[joint] = replaces ? bit : writers_[joint] | bit;
+    writers[joint] = replaces ? bit : writers[joint] | bit;
   }
 }
 
@@ -134,13 +134,24 @@ void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationF
         const ControlInput slower{input.joints, input.status, input.last, input.time_ns, input.dt_s * member.divisor};
         objects_[member.object]->step(slower, *proposals_[member.object]);
       }
-      compose_joints(member, actuation);
+      compose_joints(member, writers_, actuation);
     }
   });
   fresh_ = 0;
   unheld_.step(input.joints, actuation);
   if (touched != 0 && !first) switchover_.begin(input.joints, input.dt_s, input.last, actuation, touched);
   switchover_.apply(input.joints, input.dt_s, actuation);
+}
+
+void ControlSets::rehearse(std::uint64_t tick, const ControlInput& input, ActuationFrame& scratch) const noexcept {
+  Writers writers{};
+  each_bit(active_, [&](std::uint32_t set) {
+    for (const Member& member : plans_[set]) {
+      if (tick % member.divisor == 0) objects_[member.object]->rehearse(input);
+      compose_joints(member, writers, scratch);
+    }
+  });
+  unheld_.step(input.joints, scratch);
 }
 
 void ControlSets::fill(Snapshot& snapshot) const noexcept {

@@ -30,6 +30,8 @@ class ControlSets {
 
   // Control thread. Computes the actuation of all joints.
   void step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept;
+  // Control thread, in the wait before a tick: what step would compute, on copies.
+  void rehearse(std::uint64_t tick, const ControlInput& input, ActuationFrame& scratch) const noexcept;
   // Control thread, before step. The set computes from the next step on, in place of the active ones that it shares a
   // joint with; objects that were not active start from the present state: in that step, or earlier by start_newcomers,
   // so that they can be given set-points before it. Nothing changes when it is active.
@@ -59,13 +61,14 @@ class ControlSets {
   using Plan = std::vector<Member>;  // a set, laid out for the tick
   void make_plan(Catalog& catalog, const ControlSetInfo& set);
   void declare(Catalog& catalog);
-  void compose_joints(const Member& member, ActuationFrame& actuation) noexcept;
+  using Writers = std::array<std::uint32_t, max_joints>;  // by joint: the objects that have a share, a bit each
+  void compose_joints(const Member& member, Writers& writers, ActuationFrame& actuation) const noexcept;
 
   const Catalog& catalog_;
   std::vector<std::unique_ptr<ControlObject>> objects_;
   std::vector<std::unique_ptr<ActuationFrame>> proposals_;  // by object; stand while a slower object rests
   std::vector<Plan> plans_;                                 // by set
-  std::array<std::uint32_t, max_joints> writers_{};
+  Writers writers_{};
   SetPartition partition_;
   Switchover switchover_;
   UnheldJoints unheld_;

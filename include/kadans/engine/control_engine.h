@@ -11,6 +11,7 @@
 #include "kadans/control/control_sets.h"
 #include "kadans/engine/command_inbox.h"
 #include "kadans/engine/record_sink.h"
+#include "kadans/engine/rehearsal.h"
 #include "kadans/engine/settings.h"
 #include "kadans/estimate/estimator.h"
 #include "kadans/exchange/latest.h"
@@ -44,9 +45,8 @@ class ControlEngine {
   // Control thread. `missed` ticks were skipped before this one; dt_s is the true time since the last tick.
   void tick(std::int64_t time_ns, double dt_s, std::uint32_t missed = 0) noexcept;
 
-  // Control thread, in the wait before a tick: reads what the tick will read, so that its memory is in the cache of a
-  // CPU that worked for others meanwhile. Changes nothing that counts.
-  void warm() noexcept;
+  // Control thread, in the wait before a tick: rehearsal.h. Changes nothing that counts.
+  void rehearse() noexcept;
 
   std::uint64_t ticks() const noexcept { return tick_; }
   std::span<const double> row() const noexcept { return row_; }  // signals of the last tick
@@ -75,6 +75,7 @@ class ControlEngine {
   ActuationFrame actuation_;  // computed in the last tick, written in this one
   ActuationFrame written_;    // as it went to the plant
   std::vector<double> row_;
+  Rehearsal rehearsal_;
 };
 
 }  // namespace kadans
