@@ -145,8 +145,8 @@ std::string live_json(const LiveResult& result) {
     json["behavior_process"] = {{"deaths", process.deaths()},
                                 {"takeovers", process.takeovers()},
                                 {"down", process.down()},
-                                {"answer_us", json_of(process.answer_cost())},
-                                {"outage_us", json_of(process.outage())}};
+                                {"answer_us", percentiles_of(process.answer_cost())},
+                                {"outage_us", percentiles_of(process.outage())}};
   }
   if (result.udp_plant != nullptr) json["link"] = udp_json(result.udp_plant->statistics());
   if (has_record(result)) {

@@ -15,11 +15,7 @@ bool ControlTask::beat(const Beat& beat) {
   return true;
 }
 
-// Once through cold caches, once more for what the first pushed out and the branches it learnt.
-void ControlTask::prepare() noexcept {
-  engine_.rehearse();
-  engine_.rehearse();
-}
+void ControlTask::prepare() noexcept { engine_.rehearse(); }
 
 bool BehaviorTask::beat(const Beat& beat) {
   if (before_ != nullptr) before_->beside_tick(beat.woke_ns);

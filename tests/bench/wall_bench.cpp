@@ -120,7 +120,7 @@ ChainRun run_chain() {
   const std::int64_t origin_ns = PosixWait().now_ns() + period_ns;
   PosixWait wait(default_spin_ns, origin_ns), slow(0, origin_ns);
   const int last_cpu = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)) - 1;
-  TaskThread thread({.name = "control", .period_ns = period_ns, .prepare_ns = 40'000, .priority = 90, .cpu = last_cpu},
+  TaskThread thread({.name = "control", .period_ns = period_ns, .prepare_ns = 25'000, .priority = 90, .cpu = last_cpu},
                     counted, wait);
   thread.start();
   for (int i = 1; i <= behavior_ticks; ++i) {
