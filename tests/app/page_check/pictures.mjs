@@ -112,6 +112,10 @@ const views = {
   async live() {
     const sim = start(['sim', scenario('squat'), '--play', 'squat{repeats=100}', '--duration', '600', '--live=0', '--no-record', '--no-ctl'], live_address);
     const [, url, port] = await sim.begun;
+    const reader = await open(`http://127.0.0.1:${port}/`, { theme: 'dark', tab: 1 });
+    await until('rows', () => reader.evaluate(() => globalThis.kadans.end_s > 1));
+    await take(reader, 'live-without-token');
+    await reader.context().close(); // one at a time: all is drawn in software
     const page = await open(url);
     await until('rows', () => page.evaluate(() => globalThis.kadans.end_s > 4));
     await take(page, 'live-behavior');
@@ -123,9 +127,6 @@ const views = {
     await page.keyboard.press('Escape');
     await page.keyboard.press('4');
     await take(page, 'live-timing');
-    const reader = await open(`http://127.0.0.1:${port}/`, { theme: 'dark', tab: 1 });
-    await reader.waitForTimeout(500);
-    await take(reader, 'live-without-token');
     await page.click('.estop');
     await page.keyboard.press('3');
     await page.waitForTimeout(1500);
@@ -134,7 +135,8 @@ const views = {
     await take(page, 'live-log');
     await sim.stop();
     await take(page, 'live-lost');
-    await take(reader, 'live-lost-dark');
+    await page.keyboard.press('t');
+    await take(page, 'live-lost-dark');
   },
 };
 

@@ -30,6 +30,7 @@ class Remote {
       if (this.closed) return;
       for (const call of [...this.calls.keys()]) this.end_call(call, { done: false, text: 'the connection was lost before the answer came' });
       this.session.status = 'connecting…';
+      this.writes = false;
       this.session.changed();
       setTimeout(() => this.connect(), again_ms);
     };

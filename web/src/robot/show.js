@@ -35,7 +35,7 @@ export class Show {
     this.marks.com_ball.scale.setScalar(Math.min(1, radius / 0.6));
     if (this.gazes.length > 0) return this.stage.frame(center.setX(center.x + 0.4), Math.max(radius, 0.62), base, beside);
     const { radius: tall } = this.model;
-    if (this.marks.feet.length > 0) return this.stage.frame(center.set(base.x, base.y, 0.78 * tall), 1.08 * tall, base); // as if it stood
+    if (this.marks.feet.length > 0) return this.stage.frame(center.set(base.x, base.y, 0.86 * tall), 1.14 * tall, base); // as if it stood
     return this.stage.frame(center, radius, base);
   }
 
