@@ -40,7 +40,7 @@ std::string suite_page(const std::vector<RunOutcome>& runs, double wall_s, const
   std::vector<const RunOutcome*> ordered;  // what failed first
   for (const RunOutcome& run : runs) ordered.push_back(&run);
   const auto has_passed = [](const RunOutcome* run) { return run->status == RunStatus::passed; };
-  std::ranges::stable_partition(ordered, [&](const RunOutcome* run) { return !has_passed(run); });
+  std::stable_partition(ordered.begin(), ordered.end(), [&](const RunOutcome* run) { return !has_passed(run); });
   const auto passed = static_cast<std::size_t>(std::ranges::count_if(ordered, has_passed));
   double simulated_s = 0;
   for (const RunOutcome& run : runs) simulated_s += run.simulated_s;

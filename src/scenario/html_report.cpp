@@ -130,8 +130,10 @@ class HtmlRun {
                 run_.duration_s) +
         ": " + counted(report_.subject.log.transitions().size(), "transition") + ", " +
         counted(run_.faults.size(), "fault") + ", " + counted(errors, "error") + " of behaviors. " +
-        (failed() == 0 ? "All " + counted(run_.checks.size(), "check") + " held."
-                       : printed("%zu of %zu checks did not hold.", failed(), run_.checks.size())) +
+        (failed() > 0
+             ? printed("%zu of %zu checks did not hold.", failed(), run_.checks.size())
+             : "Checks that held: " + (run_.checks.empty() ? "none, there are none."
+                                                           : "all " + std::to_string(run_.checks.size()) + ".")) +
         "</p>\n");
     if (!run_.error.empty()) add("<p class=\"bad\">The run ended early: " + html_text(run_.error) + "</p>\n");
     add("<dl>\n");

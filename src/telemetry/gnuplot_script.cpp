@@ -146,13 +146,16 @@ class Script {
     return fits(last) ? last : "";
   }
 
+  // One name where there is room for one, and how many more stand there.
   void mark_names() {
-    double free_from_s = plot_.from_s;
-    for (const PlotMark& mark : plot_.marks) {
-      if (mark.time_s < free_from_s) continue;
-      add("set label " + quoted(mark.label) +
+    for (std::size_t i = 0; i < plot_.marks.size();) {
+      const PlotMark& mark = plot_.marks[i];
+      const double room_s = static_cast<double>(mark.label.size() + 4) * points_a_letter / pixels_a_second();
+      const std::size_t first = i;
+      while (i < plot_.marks.size() && plot_.marks[i].time_s <= mark.time_s + room_s) ++i;
+      const std::string more = i - first > 1 ? " +" + std::to_string(i - first - 1) : "";
+      add("set label " + quoted(mark.label + more) +
           printed(" at first %.9g, graph 1 left offset 0,0.6 textcolor rgb '%s'\n", mark.time_s, color_of(mark)));
-      free_from_s = mark.time_s + static_cast<double>(mark.label.size() + 1) * points_a_letter / pixels_a_second();
     }
   }
 

@@ -122,6 +122,20 @@ TEST_CASE("a plot of a stretch begins with what the signals held") {
   CHECK(points[1].time_s == doctest::Approx(0.04));
 }
 
+TEST_CASE("of faults that stand close together one is named, with how many more there are") {
+  const SignalPlot plot{.title = "",
+                        .from_s = 0,
+                        .to_s = 10,
+                        .panels = {{.title = "", .unit = "m", .lines = {{"height", {{0, 1}, {10, 2}}}}}},
+                        .lanes = {},
+                        .marks = {{1, "tilt"}, {1.001, "fall"}, {1.2, "impact"}, {8, "push", false}}};
+  const std::string script = gnuplot_script(plot, PlotFormat::svg);
+  CHECK(count(script, "'tilt +2'") == 1);
+  CHECK(count(script, "'push'") == 1);
+  CHECK(count(script, "'fall'") == 0);
+  CHECK(count(script, "set arrow from") == 3);  // those that fall on one column of the picture are one line
+}
+
 TEST_CASE("names mean nothing to gnuplot, whatever they hold") {
   WrittenRecord record;
   const std::string script = gnuplot_script(knee_plot(record), PlotFormat::png);
