@@ -2,7 +2,7 @@
 // own sends, over a topic. The verbs are those of the service /kadans/command of the live server.
 //
 //   {"id": 7, "verb": "play", "text": "squat", "value": 0}      id, text and value may be left out
-//   {"id": 7, "verb": "play", "done": true, "text": ""}         when it is done, or refused: text says why
+//   {"id": 7, "verb": "play", "done": true, "text": "..."}      when it is done; or not: text says why
 //
 // Whatever comes is answered or refused, once. At most 15 orders are on their way; all is done on one thread, the
 // caller's. Nobody proves who he is on a topic, so nothing is obeyed unless whoever started the run allows it.
