@@ -15,7 +15,7 @@
 namespace kadans {
 namespace {
 
-constexpr int answer_ms = 15'000;  // longer than the server waits for its instance
+constexpr int reply_ms = 15'000;  // longer than the server waits for its instance
 
 // A verb of the command line, what it asks for, and who may.
 struct Verb {
@@ -86,7 +86,7 @@ int talk(const Verb& verb, const CtlOptions& options) {
   CtlLink link(options.socket, verb.role);
   if (std::string(verb.words) == "repl") return ctl_console(link);
   link.send(request_of(verb.words, options).dump());
-  const std::optional<std::string> line = link.receive(answer_ms);
+  const std::optional<std::string> line = link.receive(reply_ms);
   if (!line) throw InputError({.message = "the instance does not answer"});
   const Json answer = Json::parse(*line);
   if (!answer.value("ok", false)) {
