@@ -35,8 +35,7 @@ function(kadans_test name)
   target_precompile_headers(${target} REUSE_FROM kadans_test_main)
   target_compile_definitions(${target} PRIVATE KADANS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                KADANS_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF  # its cases name their helpers alike
-                                             RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests"
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests"
                                              POSITION_INDEPENDENT_CODE OFF)  # as kadans_test_main, for its precompiled header
   include(doctest)
   doctest_discover_tests(${target} TEST_PREFIX "${name}: ")
