@@ -30,7 +30,7 @@ class SourceText {
   std::vector<std::size_t> lines_;  // where each line starts
 };
 
-inline constexpr std::string_view xml_blanks = " \\t\\r\\n";
+inline constexpr std::string_view xml_blanks = " \t\r\n";
 
 // The first byte that is not UTF-8, or a control character other than tab, line feed and carriage return.
 std::optional<TextProblem> find_non_text(std::string_view text);
