@@ -153,12 +153,9 @@ class Comparison {
   }
 
   void compare(const Rows::Held& held_a, const Rows::Held& held_b, SignalParting& parting, std::int64_t time_ns) const {
-    double a = held_a.value, b = held_b.value;
-    if (held_a.single != held_b.single) {
-      a = static_cast<double>(static_cast<float>(a));
-      b = static_cast<double>(static_cast<float>(b));
-    }
-    if (same_value(a, b)) return;
+    const double a = held_a.value, b = held_b.value;
+    const bool rounded = held_a.single || held_b.single;  // then what both can say counts
+    if (same_value(a, b) || (rounded && static_cast<float>(a) == static_cast<float>(b))) return;
     const double apart = std::isfinite(a) && std::isfinite(b) ? std::abs(a - b) : INFINITY;
     if (apart <= tolerance_) return;
     if (parting.rows++ == 0) {
