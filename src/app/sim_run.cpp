@@ -191,7 +191,7 @@ int SimRun::tell_parting() const {
 
 std::string SimRun::record_name() const {
   namespace fs = std::filesystem;
-  if (options_.no_record) {  // for the report alone
+  if (options_.no_record && options_.report.wanted()) {  // for the report alone
     fs::create_directories(options_.report.folder);
     return (fs::path(options_.report.folder) / (report_file(scenario_.name, seed_) + ".mcap.part")).string();
   }

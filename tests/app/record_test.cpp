@@ -79,7 +79,7 @@ TEST_CASE("sim records the signals that are asked for, and replay compares those
   CHECK(has(wrong.err, "--signals: no signal is called 'bse.*', did you mean 'base.*'?"));
 }
 
-TEST_CASE("A robot's configuration chooses what is recorded; a mistake in it is told with its place") {
+TEST_CASE("A robot's configuration chooses what is recorded, a mistake in it is told with its place") {
   const fs::path project = project_copy("record_configured");
   const fs::path robot = project / "config/tulip/robot.json";
   REQUIRE(
@@ -115,7 +115,7 @@ TEST_CASE("A fault that latches in a simulation leaves a flight record, with or 
 }
 
 TEST_CASE(
-    "A fault that latches in a run leaves a flight record of what came before and a second after; its end does not") {
+    "A fault that latches in a run leaves a flight record of what came before and a second after, its end does not") {
   const fs::path project = project_copy("record_flight_run");
   const std::string live = "run config/tulip/robot.json --threads-on-virtual-time --duration 4 --flight 3";
   CHECK(run(live, project).exit_code == 0);

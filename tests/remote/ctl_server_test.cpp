@@ -163,7 +163,7 @@ TEST_CASE("a record is started and stopped while the robot runs, twice, and no f
   CHECK(says(live.ask({{"verb", "record_start"}, {"file", "../three.mcap"}}), "names no folder"));
 }
 
-TEST_CASE("the flight recorder's last seconds are written when somebody asks; without one that is said") {
+TEST_CASE("the flight recorder's last seconds are written when somebody asks, without one that is said") {
   {
     LiveInstance live;
     live.start();

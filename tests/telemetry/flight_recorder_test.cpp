@@ -127,7 +127,7 @@ TEST_CASE("FlightMemory packs what moves slowly, and what stands still into next
   CHECK(memory.packed_bytes() < 4000);  // of 80,000
 }
 
-TEST_CASE("A fault that latches is due a second later; the dump holds what was kept before, and that second") {
+TEST_CASE("A fault that latches is due a second later, the dump holds what was kept before, and that second") {
   const ScratchFile file;
   Robot robot;
   robot.recorder.events().message(1000 * ms, BehaviorLog::Severity::info, "squat", "long forgotten");
@@ -176,7 +176,7 @@ TEST_CASE("Faults that latch within the time that is kept give one dump, a later
   CHECK(read_dump(second.path()).knee.rbegin()->first == 7099);
 }
 
-TEST_CASE("A rung that the end of a run asks for is no fault; a file that cannot be written is told") {
+TEST_CASE("A rung that the end of a run asks for is no fault, a file that cannot be written is told") {
   Robot robot;
   robot.flight().watch_no_more();
   robot.run(2000, {500});

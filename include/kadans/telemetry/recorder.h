@@ -70,8 +70,8 @@ class Recorder final : public RecordSink {
   std::uint32_t dropped_events() const noexcept { return events_.dropped(); }
 
  private:
-  // 4 MB: one second at 1 kHz of 522 signals.
-  using Rows = Ring<double, std::size_t{1} << 19U>;
+  // 2 MB: one second at 1 kHz of 260 signals.
+  using Rows = Ring<double, std::size_t{1} << 18U>;
   static constexpr std::size_t head_size = 2;  // tick and time, bit for bit
   static constexpr std::int64_t end_of_time_ns = std::numeric_limits<std::int64_t>::max();
 
