@@ -1,4 +1,5 @@
 // The shipped configuration of TULip, against its URDF and the control objects that it names.
+#include <map>
 #include <algorithm>
 #include <array>
 #include <cmath>
