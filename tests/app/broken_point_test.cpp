@@ -31,7 +31,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 45> breakages = {{
+constexpr std::array<Breakage, 49> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -84,6 +84,10 @@ constexpr std::array<Breakage, 45> breakages = {{
     {"squat", squat, "P.depth_m)", "0.01)", "crouches, lowest height in m"},
     {"squat", squat, stiff, soft, "height follows, m"},
     {"squat_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "torso upright, rad"},
+    {"stay_up_backward_left", robot, "\"ankle_per_m\": 1.5", "\"ankle_per_m\": 0", "stays up"},
+    {"stay_up_forward", robot, "\"ankle_per_m\": 1.5", "\"ankle_per_m\": 0", "stays up"},
+    {"stay_up_left", robot, "\"l_hip_roll\": 0.13", "\"l_hip_roll\": 0", "stays up"},
+    {"stay_up_right", robot, "\"r_hip_roll\": -0.13", "\"r_hip_roll\": 0", "stays up"},
     {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
 }};

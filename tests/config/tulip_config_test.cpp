@@ -1,8 +1,8 @@
 // The shipped configuration of TULip, against its URDF and the control objects that it names.
-#include <map>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include <doctest/doctest.h>
 
