@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include <doctest/doctest.h>
 
@@ -82,10 +81,13 @@ TEST_CASE("TULip's gains and presets fit the parameters that joint_pid declares"
   CHECK(objects.value("posture.l_knee.kp_Nm_per_rad") == 300);
   CHECK(objects.value("posture.r_shoulder_pitch.ki_Nm_per_rads") == 20);
   const std::vector<Preset>& presets = objects.catalog.objects[0].presets;
-  std::map<std::string, std::size_t> values;
-  for (const Preset& preset : presets) values[preset.name] = preset.values.size();
-  for (const char* name : {"stiff", "get_up", "balance", "soft"}) CHECK(values.contains(name));
-  CHECK(values["soft"] == 24);
+  REQUIRE(presets.size() == 5);
+  CHECK(presets[0].name == "stiff");
+  CHECK(presets[1].name == "get_up");
+  CHECK(presets[2].name == "rise");
+  CHECK(presets[3].name == "balance");
+  CHECK(presets[4].name == "soft");
+  CHECK(presets[4].values.size() == 24);
 }
 
 }  // namespace kadans
