@@ -42,18 +42,24 @@ double preparation_s(const TaskThread& thread) {
 
 Json json_of(const TaskThread& thread) {
   const TaskStatistics& s = thread.statistics();
-  return {{"beats", s.lateness.count()},           {"overruns", s.overruns.get()},
-          {"late_wakes", s.late_wakes.get()},      {"missed", s.missed.get()},
-          {"page_faults", thread.page_faults()},   {"cpu_s", 1e-9 * static_cast<double>(thread.cpu_time_ns())},
-          {"lateness_us", percentiles_of(s.lateness)},    {"jitter_us", percentiles_of(s.jitter)},
-          {"execution_us", percentiles_of(s.execution)},  {"preparation_us", percentiles_of(thread.preparation())},
+  return {{"beats", s.lateness.count()},
+          {"overruns", s.overruns.get()},
+          {"late_wakes", s.late_wakes.get()},
+          {"missed", s.missed.get()},
+          {"page_faults", thread.page_faults()},
+          {"cpu_s", 1e-9 * static_cast<double>(thread.cpu_time_ns())},
+          {"lateness_us", percentiles_of(s.lateness)},
+          {"jitter_us", percentiles_of(s.jitter)},
+          {"execution_us", percentiles_of(s.execution)},
+          {"preparation_us", percentiles_of(thread.preparation())},
           {"preparation_s", preparation_s(thread)}};
 }
 
 std::string row(const char* name, const TickStatistics& s, const char* rest) {
   std::array<char, 200> text{};
   std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, in_us(s.percentile_ns(0.5)),
-                in_us(s.percentile_ns(0.99)), in_us(s.percentile_ns(0.999)), in_us(static_cast<double>(s.max_ns())), rest);
+                in_us(s.percentile_ns(0.99)), in_us(s.percentile_ns(0.999)), in_us(static_cast<double>(s.max_ns())),
+                rest);
   return text.data();
 }
 

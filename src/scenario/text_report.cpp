@@ -72,8 +72,9 @@ class TextReport {
       const CheckResult& check = subject_.result.checks[i];
       const std::string mark = check.passed ? green(style_.unicode ? "✓" : "ok") : red(style_.unicode ? "✗" : "FAILED");
       text_ += "  " + mark + " " + check.name + std::string(widest - check.name.size(), ' ');
-      text_ += printed("  %11.5g at %6.2f s", check.value, check.at_s) +
-               dim("   wanted " + wanted_text(subject_.checks[i]) + (check.note.empty() ? "" : "; " + check.note) + '\n');
+      text_ +=
+          printed("  %11.5g at %6.2f s", check.value, check.at_s) +
+          dim("   wanted " + wanted_text(subject_.checks[i]) + (check.note.empty() ? "" : "; " + check.note) + '\n');
     }
   }
 

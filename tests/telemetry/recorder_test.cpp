@@ -158,20 +158,20 @@ TEST_CASE("Recorder: when nobody drains, rows are dropped, counted, and told in 
   const ScratchFile file;
   constexpr std::uint64_t rows = 2000;
   const SignalTable table = wide_table(498);
-  Recorder recorder(table, {.standstill_ticks = 1});  // 500 words a row: 1048 rows fit
+  Recorder recorder(table, {.standstill_ticks = 1});  // 500 words a row: 524 rows fit
   REQUIRE(recorder.open(file.path()));
   const std::vector<double> row(498, 1.0);
   for (std::uint64_t tick = 0; tick < rows; ++tick) recorder.record(tick, static_cast<std::int64_t>(tick) * ms, row);
-  CHECK(recorder.dropped() == rows - 1048);
+  CHECK(recorder.dropped() == rows - 524);
   REQUIRE(recorder.drain());
   recorder.record(rows, static_cast<std::int64_t>(rows) * ms, row);
   REQUIRE(recorder.close());
-  CHECK(recorder.dropped() == rows - 1048);
+  CHECK(recorder.dropped() == rows - 524);
   const auto entries = entries_of(file.path());
-  CHECK(count(entries, "/s") == 1049);
+  CHECK(count(entries, "/s") == 525);
   REQUIRE(count(entries, "/log") == 1);
   for (const Entry& entry : entries) {
-    if (entry.topic == "/log") CHECK(entry.payload.find("952 rows and 0 events so far") != std::string::npos);
+    if (entry.topic == "/log") CHECK(entry.payload.find("1476 rows and 0 events so far") != std::string::npos);
   }
   CHECK(entries.back().sequence == rows);
 }
@@ -184,7 +184,7 @@ TEST_CASE("Recorder::record neither allocates, locks nor touches files, also whe
     const testing::RealTimeGuard guard;  // aborts
     for (std::uint64_t tick = 0; tick < 1100; ++tick) recorder.record(tick, 0, row);
   }
-  CHECK(recorder.dropped() == 1100 - 1048);
+  CHECK(recorder.dropped() == 1100 - 524);
 }
 
 TEST_CASE("Recorder counts a row of the wrong size as dropped") {

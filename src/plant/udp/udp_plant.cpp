@@ -42,7 +42,7 @@ bool UdpPlant::connect(bool (*give_up)() noexcept) {
   std::snprintf(seconds.data(), seconds.size(), "%g", settings_.connect_timeout_s);
   if (busy_) fail_with(place + " is driven by somebody else");
   fail_with(place + " does not answer within " + seconds.data() +
-         " s: is `kadans plant` running there, and does the network let UDP pass?");
+            " s: is `kadans plant` running there, and does the network let UDP pass?");
 }
 
 bool UdpPlant::greet() { return socket_.send(wire_.greet(next_head(WireKind::hello), out_)); }
@@ -78,11 +78,11 @@ void UdpPlant::refuse(const WireHead& head, Bytes datagram) const {
     fail_with(plant + " speaks another version of the protocol: use the same Kadans on both sides");
   if (head.refusal == WireRefusal::period)
     fail_with(plant + " has a control period of " + std::to_string(theirs.period_ns) + " ns, this robot of " +
-           std::to_string(ours.period_ns) + " ns");
+              std::to_string(ours.period_ns) + " ns");
   const std::string other = shape(theirs.robot.data(), theirs.joints, theirs.feet);
   const std::string own = shape(ours.robot.data(), ours.joints, ours.feet);
   fail_with(plant + " is another robot: " + other + "; this one is " + own +
-         (other == own ? ", but they have other names or another order" : ""));
+            (other == own ? ", but they have other names or another order" : ""));
 }
 
 WireHead UdpPlant::next_head(WireKind kind) noexcept {
