@@ -20,7 +20,7 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
   const std::int64_t period_ns = timing.control_period_ns;
   // On the wall clock the model is half a period behind, so that what it is told and what it says is always as old; and
   // it shares the control thread's CPU: when the machine takes that away for a while, time passes for neither.
-  const std::int64_t prepare_ns = timing.virtual_time ? 0 : timing.spin_ns * 2 / 5;
+  const std::int64_t prepare_ns = timing.virtual_time ? 0 : timing.spin_ns / 4;
   const std::int64_t plant_first_ns = timing.virtual_time ? 0 : period_ns / 2;
   add({.name = "control",
        .period_ns = period_ns,
@@ -32,7 +32,7 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
   add({.name = "behaviors",
        .period_ns = timing.behavior_period_ns,
        .first_ns = 2 * period_ns,
-       .prepare_ns = timing.virtual_time ? 0 : timing.spin_ns / 2,
+       .prepare_ns = 2 * prepare_ns,
        .priority = priority(behavior_priority),
        .stack_bytes = std::size_t{1} << 20U},
       tasks.behaviors, timing.spin_ns);

@@ -47,6 +47,7 @@ void ControlEngine::rehearse() noexcept {
   Rehearsal& r = rehearsal_;
   plant_.warm();
   exchange_.heartbeat.warm_read();
+  exchange_.joystick.warm_read();
   (void)exchange_.commands.size();
   r.sample(sensors_);
   r.estimator = estimator_;

@@ -129,9 +129,7 @@ void TaskThread::loop() {
     const std::int64_t due_ns = periodic_.plan();
     if (settings_.prepare_ns > 0) {
       wait_.until(due_ns - settings_.prepare_ns);
-      const std::int64_t began_ns = wait_.now_ns();
-      task_.prepare();
-      preparation_.add(wait_.now_ns() - began_ns);
+      prepare_until(due_ns);
     }
     const Beat beat = periodic_.wake();
     standing = beat.stands ? standing + 1 : 0;
@@ -144,6 +142,18 @@ void TaskThread::loop() {
     if (!goes_on) break;
   }
   page_faults_ = beats >= warm_up_beats ? faults_of_this_thread() - faults_before : 0;
+}
+
+// Over and over, as what is near is not for long: others share the caches. The last ends just before the beat is due.
+void TaskThread::prepare_until(std::int64_t due_ns) noexcept {
+  std::int64_t now_ns = wait_.now_ns(), took_ns = 0;
+  do {
+    const std::int64_t began_ns = now_ns;
+    task_.prepare();
+    now_ns = wait_.now_ns();
+    took_ns = now_ns - began_ns;
+    preparation_.add(took_ns);
+  } while (took_ns > 0 && now_ns + 2 * took_ns < due_ns);
 }
 
 void TaskThread::fail(const char* why) noexcept { std::snprintf(failure_.data(), failure_.size(), "%s", why); }

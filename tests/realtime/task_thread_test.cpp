@@ -22,6 +22,27 @@ class Counter final : public Task {
   Beat last;
 };
 
+// Takes its time over what it prepares.
+class Preparer final : public Task {
+ public:
+  Preparer(FakeWait& wait, std::int64_t takes_ns) : wait_(wait), takes_ns_(takes_ns) {}
+  bool beat(const Beat& beat) override {
+    late_ns = beat.woke_ns - beat.due_ns;
+    return ++beats < 10;
+  }
+  void prepare() noexcept override {
+    ++prepared;
+    wait_.work(takes_ns_);
+    ended_ns = wait_.now_ns();
+  }
+  int beats = 0, prepared = 0;
+  std::int64_t late_ns = 0, ended_ns = 0;
+
+ private:
+  FakeWait& wait_;
+  std::int64_t takes_ns_;
+};
+
 }  // namespace
 
 TEST_CASE("A task beats on its own thread until it says that it is over") {
@@ -37,6 +58,28 @@ TEST_CASE("A task beats on its own thread until it says that it is over") {
   CHECK(thread.statistics().lateness.count() == 1000);
   CHECK(std::string(thread.failure()).empty());
   CHECK(thread.cpu_time_ns() > 0);
+}
+
+TEST_CASE("A task prepares over and over until it would be late, so that the last time is just before its beat") {
+  FakeWait wait;
+  Preparer quick(wait, 3'000);
+  TaskThread thread({.name = "prepare", .first_ns = 1'000'000, .prepare_ns = 25'000}, quick, wait);
+  thread.start();
+  thread.join();
+  CHECK(quick.prepared == 10 * 7);  // an eighth could end late if it took twice as long
+  CHECK(quick.ended_ns == 10'000'000 - 4'000);
+  CHECK(quick.late_ns == 0);
+  CHECK(thread.preparation().count() == 70);
+}
+
+TEST_CASE("What takes longer to prepare than there is time is prepared once") {
+  FakeWait wait;
+  Preparer slow(wait, 30'000);
+  TaskThread thread({.name = "prepare", .first_ns = 1'000'000, .prepare_ns = 25'000}, slow, wait);
+  thread.start();
+  thread.join();
+  CHECK(slow.prepared == 10);
+  CHECK(slow.late_ns == 5'000);
 }
 
 TEST_CASE("An exception ends a task, and its words are kept") {

@@ -26,7 +26,7 @@ class Task {
   virtual ~Task() = default;
   // The task's thread. False: the task is over. An exception ends it too.
   virtual bool beat(const Beat& beat) = 0;
-  // The task's thread, prepare_ns before a beat is due.
+  // The task's thread, from prepare_ns before a beat is due on, as often as there is time for.
   virtual void prepare() noexcept {}
 };
 
@@ -77,6 +77,7 @@ class TaskThread {
   static void* enter(void* self);
   void run() noexcept;
   void loop();
+  void prepare_until(std::int64_t due_ns) noexcept;
   int create(int priority) noexcept;
   void move_to_cpu() noexcept;
   void fail(const char* why) noexcept;
