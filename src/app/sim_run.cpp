@@ -214,15 +214,21 @@ bool SimRun::open_record() {
   return false;
 }
 
+// A record, or what the flight recorder writes.
+template <typename Record>
+void SimRun::describe(Record& record) const {
+  const RobotTexts texts = robot_texts(assembly_);
+  (void)record.describe_run(inputs_);
+  (void)record.describe_robot(texts.name, texts.urdf, 0);
+  (void)record.describe_parts(texts.description, 0);
+}
+
 void SimRun::start_record() {
   const bool flies = record_plan_.flight.kept_s > 0;
   if (options_.no_record && !options_.report.wanted() && !flies) return;
   recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals, record_plan_.settings, record_plan_.flight);
   if (open_record()) {
-    const RobotTexts texts = robot_texts(assembly_);
-    (void)recorder_->describe_run(inputs_);
-    (void)recorder_->describe_robot(texts.name, texts.urdf, 0);
-    (void)recorder_->describe_parts(texts.description, 0);
+    describe(*recorder_);
   } else if (!flies) {
     return recorder_.reset();
   }
@@ -235,10 +241,7 @@ void SimRun::fly() {
   FlightRecorder& flight = *recorder_->flight();
   const std::string file = std::filesystem::path(record_name()).replace_extension(".flight.mcap").string();
   if (!flight.begin(file)) return print_error(flight.error());
-  const RobotTexts texts = robot_texts(assembly_);
-  (void)flight.dump().describe_run(inputs_);
-  (void)flight.dump().describe_robot(texts.name, texts.urdf, 0);
-  (void)flight.dump().describe_parts(texts.description, 0);
+  describe(flight.dump());
 }
 
 void SimRun::finish_record(const RunResult& result) {

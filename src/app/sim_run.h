@@ -56,6 +56,8 @@ class SimRun final : public RunObserver {
 
  private:
   void make_reachable();
+  template <typename Record>
+  void describe(Record& record) const;
   void start_record();
   bool open_record();
   void fly();

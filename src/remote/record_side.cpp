@@ -37,12 +37,18 @@ void RecordSide::begin() {
   control_.record_to(recorder_.get());
 }
 
+// A record, or what the flight recorder writes.
+template <typename Record>
+void RecordSide::describe(Record& record, std::int64_t time_ns) const {
+  (void)record.describe("run", facts_);
+  if (!texts_.urdf.empty()) (void)record.describe_robot(texts_.name, texts_.urdf, time_ns);
+  if (!texts_.description.empty()) (void)record.describe_parts(texts_.description, time_ns);
+}
+
 void RecordSide::start(const std::string& file) {
   make_recorder();
   if (!recorder_->open(file)) throw InputError({.message = recorder_->error()});
-  (void)recorder_->describe("run", facts_);
-  if (!texts_.urdf.empty()) (void)recorder_->describe_robot(texts_.name, texts_.urdf, time_ns_);
-  if (!texts_.description.empty()) (void)recorder_->describe_parts(texts_.description, time_ns_);
+  describe(*recorder_, time_ns_);
   file_ = file;
   log_.to(&recorder_->events());
   control_.record_to(recorder_.get());
@@ -117,9 +123,7 @@ void RecordSide::hand_over(bool at_once) {
 void RecordSide::fly(const fs::path& file) {
   FlightRecorder& flight = *recorder_->flight();
   if (!flight.begin(file.string())) return;
-  (void)flight.dump().describe("run", facts_);
-  if (!texts_.urdf.empty()) (void)flight.dump().describe_robot(texts_.name, texts_.urdf, 0);
-  if (!texts_.description.empty()) (void)flight.dump().describe_parts(texts_.description, 0);
+  describe(flight.dump(), 0);
 }
 
 void RecordSide::carry_out(OrderCase& order) {

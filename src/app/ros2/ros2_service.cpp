@@ -1,12 +1,11 @@
 #include "ros2/ros2_service.h"
 
-#include <charconv>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 
 #include <CLI/CLI.hpp>
 
+#include "kadans/signal/number_text.h"
 #include "live/live_service.h"
 
 namespace kadans {
@@ -18,14 +17,12 @@ std::uint32_t domain_of(const Ros2Place& place) {
   if (place.domain != "-1") return static_cast<std::uint32_t>(std::stoul(place.domain));
   const char* const text = std::getenv("ROS_DOMAIN_ID");  // NOLINT(concurrency-mt-unsafe): before any thread
   if (text == nullptr || *text == '\0') return 0;
-  int domain = -1;
-  const char* const end = text + std::strlen(text);
-  const auto [rest, error] = std::from_chars(text, end, domain);
-  if (error != std::errc() || rest != end || domain < 0 || domain > domain_max)
+  const std::optional<int> domain = number_of<int>(text);
+  if (!domain || *domain < 0 || *domain > domain_max)
     throw InputError(
         InputProblem{.file = "ROS_DOMAIN_ID",
                      .message = "'" + std::string(text) + "' must be from 0 to " + std::to_string(domain_max)});
-  return static_cast<std::uint32_t>(domain);
+  return static_cast<std::uint32_t>(*domain);
 }
 
 }  // namespace
