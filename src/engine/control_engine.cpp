@@ -12,7 +12,7 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
       signals_(catalog.signals),
       rehearsal_(settings.control_period_s, estimator, safety, *catalog.model) {
   actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
-  written_ = actuation_;
+  written_ = actuation_;  // all of it, once
   declare_signals(catalog);
   if (settings.joystick) declare_joystick(catalog.signals);
   row_.resize(catalog.signals.size());
@@ -31,7 +31,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
                  .health = estimator_.health()},
                 actuation_, snapshot_.status.safety);
   plant_.write(actuation_);
-  written_ = actuation_;
+  copy_used(actuation_, written_);
   const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
   if (safety_.came_back()) sets_.restart(input);
   inbox_.apply(tick_, input, safety_);
@@ -52,8 +52,8 @@ void ControlEngine::rehearse() noexcept {
   r.sample(sensors_);
   r.estimator = estimator_;
   r.safety.imitate(safety_);
-  r.snapshot = snapshot_;
-  r.actuation = actuation_;
+  copy_used(snapshot_, r.snapshot);
+  copy_used(actuation_, r.actuation);
   r.estimator.update(r.sensors, r.dt_s, tick_, r.snapshot.joints, r.snapshot.status);
   r.safety.check({.tick = tick_,
                   .dt_s = r.dt_s,

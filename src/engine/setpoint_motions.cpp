@@ -104,6 +104,7 @@ void SetpointMotions::step(double dt_s) noexcept {
 
 void SetpointMotions::fill(Snapshot& snapshot) const noexcept {
   const std::size_t shown = std::min(motions_.size(), max_setpoints_shown);
+  snapshot.setpoint_count = static_cast<std::uint32_t>(shown);
   for (SetpointId id = 0; id < shown; ++id) {
     SetpointStatus& status = snapshot.setpoints[id];
     status = {};

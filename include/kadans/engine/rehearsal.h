@@ -20,7 +20,7 @@ struct Rehearsal {
 
   // The last sample once more, as if it were a new one.
   void sample(const SensorFrame& last) noexcept {
-    sensors = last;
+    copy_used(last, sensors);
     for (std::uint32_t i = 0; i < last.joint_count; ++i) ++sensors.joints[i].sequence;
     for (std::uint32_t i = 0; i < last.foot_count; ++i) ++sensors.feet[i].sequence;
     ++sensors.imu.sequence;

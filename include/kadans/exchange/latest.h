@@ -9,8 +9,9 @@
 // of reading) and acquires the one that comes back, so a slot has one owner at any time and its bytes need no atomics.
 //
 // Latest is trivially copyable and holds no pointer, so it may live in memory shared between two processes. Copy it
-// only while nobody reads or writes. A process that is killed inside publish() or read() may leave two parties with the
-// same slot: when a party died, construct the storage anew before the next one takes its place.
+// only while nobody reads or writes. Where there is a copy_used(from, to) for T, publishing copies by that. A process
+// that is killed inside publish() or read() may leave two parties with the same slot: when a party died, construct the
+// storage anew before the next one takes its place.
 #pragma once
 
 #include <array>
@@ -36,7 +37,7 @@ class Latest {
   // Writer thread only. Wait-free.
   void publish(const T& value) noexcept {
     for (Channel& channel : channels_) {
-      channel.slots[channel.write_slot].value = value;
+      put(value, channel.slots[channel.write_slot].value);
       const std::uint32_t previous = middle(channel).exchange(channel.write_slot | fresh, std::memory_order_acq_rel);
       channel.write_slot = previous & slot_mask;
     }
@@ -86,6 +87,13 @@ class Latest {
     alignas(cache_line) std::uint32_t middle = 1;      // both, through atomic_ref alone
     alignas(cache_line) std::uint32_t read_slot = 2;   // reader
   };
+
+  static void put(const T& from, T& to) noexcept {
+    if constexpr (requires { copy_used(from, to); })
+      copy_used(from, to);
+    else
+      to = from;
+  }
 
   // A hint to the processor: no access that the language knows of, so no race with the slot's owner.
   template <int to_write>

@@ -25,7 +25,7 @@ class LinkedPlant final : public ModelPlant {
   // The model as it is before the threads start.
   LinkedPlant(PlantExchange& exchange, ModelPlant& model);
 
-  void read(SensorFrame& sensors) noexcept override { sensors = exchange_.sensors.read(); }
+  void read(SensorFrame& sensors) noexcept override { copy_used(exchange_.sensors.read(), sensors); }
   void write(const ActuationFrame& actuation) noexcept override { exchange_.actuation.publish(actuation); }
   void warm() noexcept override {
     exchange_.sensors.warm_read();

@@ -1,8 +1,11 @@
 // The frames that cross the seams of the control engine. Plain, fixed-size data: they are copied between threads and
 // processes as they are, and alignas(8) makes their layout the same on 32-bit machines, where a double in a struct
 // would need only 4. Joints are numbered as in the robot's model; only the first `joint_count` entries count.
+//
+// A frame is as large as the largest robot; copy_used() copies what counts of it, and leaves the rest of `to` as it is.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -75,6 +78,31 @@ struct alignas(8) ActuationFrame {
   std::uint32_t joint_count = 0;
   std::array<JointActuation, max_joints> joints{};
 };
+
+// The first `count` entries, or all that there are.
+template <typename T, std::size_t N>
+void copy_first(const std::array<T, N>& from, std::size_t count, std::array<T, N>& to) noexcept {
+  std::copy_n(from.begin(), std::min(count, N), to.begin());
+}
+
+inline void copy_used(const SensorFrame& from, SensorFrame& to) noexcept {
+  to.time_ns = from.time_ns;
+  to.joint_count = from.joint_count;
+  to.foot_count = from.foot_count;
+  copy_first(from.joints, from.joint_count, to.joints);
+  to.imu = from.imu;
+  copy_first(from.feet, from.foot_count, to.feet);
+}
+
+inline void copy_used(const JointStates& from, JointStates& to) noexcept {
+  to.count = from.count;
+  copy_first(from.joints, from.count, to.joints);
+}
+
+inline void copy_used(const ActuationFrame& from, ActuationFrame& to) noexcept {
+  to.joint_count = from.joint_count;
+  copy_first(from.joints, from.joint_count, to.joints);
+}
 
 static_assert(std::is_trivially_copyable_v<SensorFrame> && std::is_trivially_copyable_v<JointStates> &&
               std::is_trivially_copyable_v<ActuationFrame>);

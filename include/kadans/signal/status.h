@@ -81,15 +81,34 @@ struct alignas(8) Snapshot {
   JointStates joints;
   RobotStatus status;
   std::uint32_t object_count = 0;
+  std::uint32_t setpoint_count = 0;  // that are shown
   std::array<ObjectStatus, max_objects> objects{};
   std::array<SetpointStatus, max_setpoints_shown> setpoints{};  // by SetpointId
   std::array<Refusal, refusals_shown> refusals{};               // the newest ones, by count modulo their number
   JoystickState joystick;
 };
 
+inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
+  to.tick = from.tick;
+  to.time_ns = from.time_ns;
+  to.transactions_applied = from.transactions_applied;
+  to.commands_refused = from.commands_refused;
+  to.control_sets = from.control_sets;
+  to.transactions_refused = from.transactions_refused;
+  copy_used(from.joints, to.joints);
+  to.status = from.status;
+  to.object_count = from.object_count;
+  to.setpoint_count = from.setpoint_count;
+  copy_first(from.objects, from.object_count, to.objects);
+  copy_first(from.setpoints, from.setpoint_count, to.setpoints);
+  to.refusals = from.refusals;
+  to.joystick = from.joystick;
+}
+
 static_assert(std::is_trivially_copyable_v<Snapshot>);
 static_assert(sizeof(BaseStatus) == 96 && sizeof(FootStatus) == 32 && sizeof(SafetyStatus) == 40 &&
               sizeof(ObjectStatus) == 16 && alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 104 && offsetof(Snapshot, joints) == 32);
+static_assert(sizeof(Snapshot) == 4680);  // whoever adds to it adds to copy_used()
 
 }  // namespace kadans

@@ -197,7 +197,7 @@ BulletPlant::BulletPlant(const RobotModel& model, const PlantSettings& settings,
 
 BulletPlant::~BulletPlant() = default;
 
-void BulletPlant::read(SensorFrame& sensors) noexcept { sensors = world_->sensors(); }
+void BulletPlant::read(SensorFrame& sensors) noexcept { copy_used(world_->sensors(), sensors); }
 
 void BulletPlant::write(const ActuationFrame& actuation) noexcept { world_->write(actuation); }
 
