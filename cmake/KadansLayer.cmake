@@ -26,11 +26,14 @@ function(kadans_layer name)
   set_property(GLOBAL APPEND PROPERTY KADANS_LAYERS ${target})
 endfunction()
 
-# kadans_test(LAYER SOURCES file... [LINKS target...]): one program of doctest cases, each case a ctest test.
+# kadans_test(LAYER SOURCES file... [ALONE file...] [LINKS target...])
+# One program of doctest cases, each case a ctest test. ALONE names the sources that call something as a neighbour does,
+# and so cannot be compiled together with it.
 function(kadans_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;ALONE;LINKS" ${ARGN})
   string(REPLACE "/" "_" target "${name}_test")
-  add_executable(${target} ${arg_SOURCES})
+  add_executable(${target} ${arg_SOURCES} ${arg_ALONE})
+  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_link_libraries(${target} PRIVATE kadans_test_main ${arg_LINKS} kadans_warnings)
   target_precompile_headers(${target} REUSE_FROM kadans_test_main)
   target_compile_definitions(${target} PRIVATE KADANS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
