@@ -12,6 +12,7 @@ const picture = (page) =>
     const small = document.createElement('canvas');
     small.width = small.height = 96;
     const context = small.getContext('2d');
+    globalThis.kadans_stage.draw(); // what was drawn is gone once the screen has it
     context.drawImage(document.getElementById('robot'), 0, 0, 96, 96);
     return context.getImageData(0, 0, 96, 96).data.reduce((hash, value) => (Math.imul(hash, 31) + value) | 0, 7);
   });
