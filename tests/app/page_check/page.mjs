@@ -2,6 +2,7 @@
 import { existsSync, readdirSync, statSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { WebSocket } from 'ws';
+import { check_files, check_keyboard, check_plots, check_theme } from './hands.mjs';
 import { check, chromium_options, folder, live_address, project, run, scenario, start, until } from './program.mjs';
 
 const page_max_bytes = 300 * 1024;
@@ -145,6 +146,9 @@ run(async () => {
     await page.goto(url);
     await check_live(page, port);
     await check_hand(page);
+    await check_plots(page);
+    await check_theme(page);
+    await check_keyboard(page);
 
     const id = await page.evaluate(() => globalThis.kadans.id);
     await first.stop();
@@ -158,6 +162,7 @@ run(async () => {
     await second.stop();
 
     await check_record(page, record);
+    await check_files(page, record);
     await check_gaze(page);
     check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
   } finally {
