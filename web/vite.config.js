@@ -23,9 +23,15 @@ const preload = {
       .map((chunk) => ({ tag: 'link', attrs: { rel: 'modulepreload', crossorigin: true, href: `./${chunk.fileName}` }, injectTo: 'head' })),
 };
 
+// src/early.js stands within index.html: it is to run before any other file came.
+const early = {
+  name: 'early',
+  transformIndexHtml: () => [{ tag: 'script', children: readFileSync('src/early.js', 'utf8'), injectTo: 'head' }],
+};
+
 export default defineConfig({
   base: './',
-  plugins: [preload, { name: 'compress', apply: 'build', closeBundle: () => compress_all('dist') }],
+  plugins: [early, preload, { name: 'compress', apply: 'build', closeBundle: () => compress_all('dist') }],
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
   worker: { format: 'es' },
   build: { target: 'es2022', modulePreload: false, assetsInlineLimit: 8192, chunkSizeWarningLimit: 1200 },

@@ -6,6 +6,12 @@ namespace kadans {
 void ControlEngine::declare_signals(Catalog& catalog) {
   SignalTable& table = catalog.signals;
   kadans::declare_signals(table, *catalog.model, estimator_.settings(), snapshot_.joints, snapshot_.status);
+  constexpr const char* axes[] = {"x", "y", "z"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    table.add({std::string("imu.acceleration_") + axes[i] + "_m_s2", "m/s2",
+               std::string("What the accelerometer says along the base's ") + axes[i] + " axis; at rest 9.81 upwards."},
+              &sensors_.imu.acceleration_m_s2[i]);
+  }
   for (std::size_t i = 0; i < catalog.model->joints.size(); ++i) {
     table.add({"actuation." + catalog.model->joints[i].name + ".effort_Nm", "Nm", "Torque asked of the drive."},
               &written_.joints[i].effort_Nm);

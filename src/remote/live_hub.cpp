@@ -10,8 +10,8 @@
 namespace kadans {
 namespace {
 
-constexpr std::uint64_t report_every = 30, timing_every = 60, parameters_every = 6;  // beats
-constexpr std::uint64_t own = 0;                                                     // the hub's orders
+constexpr std::uint64_t report_every = 70, timing_every = 140, parameters_every = 14;  // beats
+constexpr std::uint64_t own = 0;                                                       // the hub's orders
 constexpr std::uint32_t report_call = 1, saved_call = 2, describe_call = 3;
 
 }  // namespace
@@ -58,7 +58,7 @@ LiveHub::LiveHub(Parts parts)
 void LiveHub::beat() {
   if (wanted_ != !clients_.empty()) {
     wanted_ = !clients_.empty();
-    const double ticks = 1 / (rate_hz * p_.instance.facts().control_period_s);
+    const double ticks = 1 / (rows_hz * p_.instance.facts().control_period_s);
     beats_ = 0;  // who comes first is told everything at once
     p_.port.want_signals(wanted_ ? static_cast<std::uint32_t>(std::max(1.0, std::floor(ticks))) : 0);
   }

@@ -40,6 +40,7 @@ std::string new_token() {
 struct LiveServer::Parts {
   static constexpr std::size_t connections_max = 300;
   static constexpr int niceness = 5;
+  static constexpr double record_hz = 20;  // nothing moves there
 
   Parts(LiveSettings wanted, LiveHub* hub, RecordSite record)
       : settings(std::move(wanted)), site{hub, std::move(record), settings.token} {
@@ -74,7 +75,7 @@ struct LiveServer::Parts {
 
   // On a grid; after a while in which the machine was busy no beats are caught up.
   void plan_beat() {
-    constexpr std::chrono::nanoseconds period(std::int64_t(1e9 / LiveHub::rate_hz));
+    const std::chrono::nanoseconds period(std::int64_t(1e9 / (site.hub != nullptr ? site.hub->rate_hz() : record_hz)));
     due = std::max(due + period, std::chrono::steady_clock::now());
     timer.expires_at(due);
     timer.async_wait([this](const Error& error) {

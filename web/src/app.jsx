@@ -66,7 +66,7 @@ function Tabs({ session, tab, set_tab }) {
   );
 }
 
-export function App({ session, frames, open }) {
+export function App({ session, frames, drawing, open }) {
   const [theme, set_theme] = useState(first_theme);
   const [tab, set_tab] = useState(() => Number(new URLSearchParams(location.search).get('tab') ?? 0));
   const [help, set_help] = useState(false);
@@ -99,7 +99,7 @@ export function App({ session, frames, open }) {
       <TopBar {...{ session, theme, turn, open }} help={() => set_help(!help)} />
       <SignalList {...{ session, add, search_box }} />
       <main>
-        <RobotPanel {...{ session, theme, frames, open }} />
+        <RobotPanel {...{ session, theme, drawing, open }} />
         <Plots {...{ session, plots, set_plots, theme, frames }} />
       </main>
       <aside>

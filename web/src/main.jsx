@@ -8,7 +8,13 @@ import { open_record } from './data/record_source.js';
 import { Session } from './data/session.js';
 import { Frames } from './frames.js';
 
+// Where the machine draws in software, the shell's first picture keeps the graphics process for as long as all the rest
+// takes; so the robot's place is made ready before it, unless that would keep the shell from the eye. ?fine spares nothing.
+const shell_waits_ms = 150;
 const frames = new Frames();
+const wanted = new URLSearchParams(location.search);
+const drawing = wanted.has('render') ? null : import('./robot/robot_view.js').then(({ RobotView }) => new RobotView(frames, wanted.has('fine')));
+const ready = Promise.race([drawing?.catch(() => {}), new Promise((resolve) => setTimeout(resolve, shell_waits_ms))]);
 let session = null;
 
 function show(next) {
@@ -16,7 +22,8 @@ function show(next) {
   session = next;
   globalThis.kadans = session; // for the console, and for tests
   frames.advance = (dt_s) => session.advance(dt_s);
-  render(<App session={session} frames={frames} open={(source) => show(open_record(source))} />, document.getElementById('app'));
+  const open = (source) => show(open_record(source));
+  ready.then(() => render(<App {...{ session, frames, drawing, open }} />, document.getElementById('app')));
 }
 
 addEventListener('dragover', (event) => event.preventDefault());
@@ -26,13 +33,7 @@ addEventListener('drop', (event) => {
   if (file) show(open_record(file));
 });
 
-const wanted = new URLSearchParams(location.search);
 if (wanted.has('render')) import('./render.js').then(({ render_record }) => render_record(open_record(new URL(wanted.get('record'), location.href).href), wanted));
 else if (wanted.has('record')) show(open_record(new URL(wanted.get('record'), location.href).href, wanted.get('title')));
 else if (wanted.has('empty')) show(new Session('none', false));
-else {
-  const address = new URL(wanted.get('live') ?? '.', location.href);
-  address.protocol = address.protocol.replace('http', 'ws');
-  address.search = '';
-  show(open_live(address.href, wanted.get('token') ?? ''));
-}
+else show(open_live(globalThis.kadans_run)); // of early.js

@@ -20,6 +20,7 @@ RobotReadings::RobotReadings(const Catalog& catalog, const std::string& urdf) : 
   heading_ = first("plant.base.yaw_rad", "base.yaw_rad");
   x_ = find("plant.base.x_m"), y_ = find("plant.base.y_m"), height_ = first("plant.base.height_m", "base.height_m");
   rate_ = {find("base.rate_x_rad_s"), find("base.rate_y_rad_s"), find("base.rate_z_rad_s")};
+  acceleration_ = {find("imu.acceleration_x_m_s2"), find("imu.acceleration_y_m_s2"), find("imu.acceleration_z_m_s2")};
   moving_.push_back({"world", model_.links.front().name, {}});
   for (UrdfFrame& frame : urdf_frames(model_, urdf)) {
     (frame.joint ? moving_ : fixed_).push_back({frame.parent, frame.child, frame.origin});
@@ -35,7 +36,10 @@ void RobotReadings::take(const LatestRow::View& row) noexcept {
     velocity_rad_s_[i] = value(velocity_[i]);
     effort_Nm_[i] = value(effort_[i]);
   }
-  for (std::size_t i = 0; i < rate_.size(); ++i) angular_velocity_rad_s_[i] = value(rate_[i]);
+  for (std::size_t i = 0; i < rate_.size(); ++i) {
+    angular_velocity_rad_s_[i] = value(rate_[i]);
+    acceleration_m_s2_[i] = value(acceleration_[i]);
+  }
   orientation_ = from_roll_pitch_yaw(value(roll_), value(pitch_), value(yaw_));
   moving_[0].pose = {{value(x_), value(y_), value(height_)},
                      from_roll_pitch_yaw(value(roll_), value(pitch_), value(heading_))};

@@ -79,13 +79,14 @@ void Ros2Topics::publish_frames(dds_entity_t writer, const std::vector<RobotRead
   (void)domain_.write(writer, &message);
 }
 
-// How exact the estimate is nobody knows: all 0. A measured acceleration is no signal of a run: -1.
+// How exact it is nobody knows: all 0. -1: nothing was measured.
 void Ros2Topics::publish_imu(Stamp now) noexcept {
   sensor_msgs_msg_dds__Imu_ message{};
   message.header = {.stamp = now, .frame_id = chars(robot_.base())};
   message.orientation = quaternion(robot_.orientation());
   message.angular_velocity = vector(robot_.angular_velocity_rad_s());
-  message.linear_acceleration_covariance[0] = -1;
+  message.linear_acceleration = vector(robot_.acceleration_m_s2());
+  if (!robot_.acceleration_known()) message.linear_acceleration_covariance[0] = -1;
   (void)domain_.write(to_.imu, &message);
 }
 

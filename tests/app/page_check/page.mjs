@@ -2,6 +2,7 @@
 import { existsSync, readdirSync, statSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { WebSocket } from 'ws';
+import { check_files, check_keyboard, check_plots, check_theme } from './hands.mjs';
 import { check, chromium_options, folder, live_address, project, run, scenario, start, until } from './program.mjs';
 
 const page_max_bytes = 300 * 1024;
@@ -12,6 +13,7 @@ const picture = (page) =>
     const small = document.createElement('canvas');
     small.width = small.height = 96;
     const context = small.getContext('2d');
+    globalThis.kadans_stage.draw(); // what was drawn is gone once the screen has it
     context.drawImage(document.getElementById('robot'), 0, 0, 96, 96);
     return context.getImageData(0, 0, 96, 96).data.reduce((hash, value) => (Math.imul(hash, 31) + value) | 0, 7);
   });
@@ -144,6 +146,9 @@ run(async () => {
     await page.goto(url);
     await check_live(page, port);
     await check_hand(page);
+    await check_plots(page);
+    await check_theme(page);
+    await check_keyboard(page);
 
     const id = await page.evaluate(() => globalThis.kadans.id);
     await first.stop();
@@ -157,6 +162,7 @@ run(async () => {
     await second.stop();
 
     await check_record(page, record);
+    await check_files(page, record);
     await check_gaze(page);
     check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
   } finally {

@@ -27,6 +27,7 @@ async function open(url, { size = 'laptop', theme = 'light', tab = 0 } = {}) {
   const address = new URL(url);
   address.searchParams.set('theme', theme);
   address.searchParams.set('tab', tab);
+  address.searchParams.set('fine', '');
   await page.goto(address.href);
   return page;
 }

@@ -76,6 +76,7 @@ Json json_of(const sensor_msgs_msg_dds__Imu_& m) {
           {"frame", m.header.frame_id},
           {"orientation", {m.orientation.w, m.orientation.x, m.orientation.y, m.orientation.z}},
           {"rate", {m.angular_velocity.x, m.angular_velocity.y, m.angular_velocity.z}},
+          {"acceleration", {m.linear_acceleration.x, m.linear_acceleration.y, m.linear_acceleration.z}},
           {"covariance",
            {m.orientation_covariance[0], m.angular_velocity_covariance[0], m.linear_acceleration_covariance[0]}}};
 }

@@ -157,13 +157,20 @@ TEST_CASE("another process of DDS sees a squatting TULip as its record and Bulle
       REQUIRE(std::abs(poses.at(foot).position_m[2] - 0.06) < 0.005);
   }
 
+  double lifted = 0;
   for (const Json& message : topics["imu"]) {
     const auto& row = rows.at(time_of(message));
     const auto angles = roll_pitch_yaw(message["orientation"].get<Quat>());
     REQUIRE(std::abs(angles[1] - row.at("base.pitch_rad")) < 1e-12);
     REQUIRE(message["rate"][1] == row.at("base.rate_y_rad_s"));
-    REQUIRE(message["covariance"] == Json({0.0, 0.0, -1.0}));
+    // What the accelerometer said, gravity and noise included.
+    const auto acceleration_m_s2 = message["acceleration"].get<Vec3>();
+    for (std::size_t i = 0; i < 3; ++i)
+      REQUIRE(acceleration_m_s2[i] == row.at(std::string("imu.acceleration_") + "xyz"[i] + "_m_s2"));
+    lifted += acceleration_m_s2[2];
+    REQUIRE(message["covariance"] == Json({0.0, 0.0, 0.0}));
   }
+  CHECK(lifted / static_cast<double>(topics["imu"].size()) == doctest::Approx(9.81).epsilon(0.03));
   REQUIRE(topics["robot_description"].size() == 1);  // kept for who comes late
   CHECK(topics["robot_description"][0]["text"] == read(project / "models/tulip/tulip.urdf"));
   CHECK(topics["command_result"][0]["answer"] == Json{{"id", 1}, {"verb", "speed"}, {"done", true}, {"text", ""}});

@@ -9,31 +9,40 @@ const wanted_texts = new Set(['/log', '/transitions', '/faults', '/timing', '/de
 const again_ms = 500;
 
 class Remote {
-  constructor(session, address, token) {
-    Object.assign(this, { session, address, token });
+  // `run`: {connect(), first}: what makes a socket to the run, and one that may have heard something already.
+  constructor(session, { connect, first }) {
+    Object.assign(this, { session, open: connect });
     this.writes = false;
     this.verbs = new Set();
     this.plays = []; // names of behaviors that there are
     this.state = {};
     this.calls = new Map();
     this.last_call = 0;
-    this.connect();
+    this.connect(first);
   }
 
-  connect() {
-    const address = this.token ? `${this.address}?token=${encodeURIComponent(this.token)}` : this.address;
-    this.socket = new WebSocket(address, ['foxglove.sdk.v1', 'foxglove.websocket.v1']);
-    this.socket.binaryType = 'arraybuffer';
+  connect(socket) {
+    this.socket = socket;
     this.subscriptions = new Map(); // number -> {topic, width, single}
-    this.socket.onmessage = ({ data }) => (typeof data === 'string' ? this.take_text(JSON.parse(data)) : this.take_bytes(new DataView(data)));
-    this.socket.onclose = () => {
-      if (this.closed) return;
-      for (const call of [...this.calls.keys()]) this.end_call(call, { done: false, text: 'the connection was lost before the answer came' });
-      this.session.status = 'connecting…';
-      this.writes = false;
-      this.session.changed();
-      setTimeout(() => this.connect(), again_ms);
-    };
+    socket.onmessage = ({ data }) => this.take(data);
+    socket.onclose = () => this.lose();
+    for (const data of socket.early.splice(0)) this.take(data);
+    if (socket.readyState >= WebSocket.CLOSING) this.lose();
+  }
+
+  lose() {
+    if (this.closed) return;
+    this.socket.onclose = null;
+    for (const call of [...this.calls.keys()]) this.end_call(call, { done: false, text: 'the connection was lost before the answer came' });
+    this.session.status = 'connecting…';
+    this.writes = false;
+    this.session.changed();
+    setTimeout(() => this.closed || this.connect(this.open()), again_ms);
+  }
+
+  take(data) {
+    if (typeof data === 'string') this.take_text(JSON.parse(data));
+    else this.take_bytes(new DataView(data));
   }
 
   close() {
@@ -142,10 +151,10 @@ class Remote {
   }
 }
 
-export function open_live(address, token) {
+export function open_live(run) {
   const session = new Session('live', true);
   session.status = 'connecting…';
   session.mesh_base = './asset/';
-  session.remote = new Remote(session, address, token);
+  session.remote = new Remote(session, run);
   return session;
 }

@@ -1,5 +1,5 @@
 // The robot in 3D at the time that is looked at, with what bears it and where it looks.
-import { useEffect, useRef, useState } from 'preact/hooks';
+import { useLayoutEffect, useRef, useState } from 'preact/hooks';
 import { mark_colors } from '../robot/mark_colors.js';
 import { useSession } from '../watching.js';
 import { StartPanel } from './start_panel.jsx';
@@ -21,20 +21,23 @@ function Tip({ session }) {
   return remote.verbs.has('push') ? <span class="tip">shift and drag a link: push</span> : null;
 }
 
-export function RobotPanel({ session, theme, frames, open }) {
-  const canvas = useRef();
+export function RobotPanel({ session, theme, drawing, open }) {
+  const place = useRef();
   const view = useRef();
   const [shown, set_shown] = useState(() => new Set(marks.map(([name]) => name)));
+  const [problem, set_problem] = useState('');
   const latest = useRef();
   latest.current = { session, shown, theme };
   useSession(session, 2);
 
-  useEffect(() => {
-    let gone = false;
-    import('../robot/robot_view.js').then(({ RobotView }) => {
-      if (!gone) view.current = new RobotView(canvas.current, frames, () => latest.current);
-    });
-    return () => ((gone = true), view.current?.dispose());
+  useLayoutEffect(() => {
+    drawing
+      .then((made) => {
+        view.current = made;
+        place.current.append(made.canvas);
+        made.now = () => latest.current;
+      })
+      .catch((error) => set_problem(String(error.message ?? error)));
   }, []);
 
   const toggle = (name) => {
@@ -45,7 +48,8 @@ export function RobotPanel({ session, theme, frames, open }) {
   const offered = marks.filter(([name]) => stands(session) || name === 'com');
   return (
     <section class="robot" aria-label="Robot">
-      <div class="stage"><canvas ref={canvas} id="robot" /></div>
+      <div class="stage" ref={place} />
+      {problem && <p class="hint error">The robot cannot be drawn: {problem}</p>}
       {session.urdf ? (
         <div class="marks">
           {offered.map(([name, label, color]) => (

@@ -37,7 +37,7 @@ function Remote({ session }) {
       )}
       {remote.verbs.has('replace') && <Play remote={remote} />}
       {remote.verbs.has('pause') && <button disabled={!remote.writes} onClick={() => ask(paused ? 'resume' : 'pause')}>{paused ? 'Resume' : 'Pause'}</button>}
-      {remote.verbs.has('stop') && <button disabled={!remote.writes} onClick={() => ask('stop')}>Stop</button>}
+      {remote.verbs.has('stop') && <button data-verb="stop" disabled={!remote.writes} onClick={() => ask('stop')}>Stop</button>}
       {remote.verbs.has('reload') && <button disabled={!remote.writes} onClick={() => ask('reload')}>Reload</button>}
       {remote.verbs.has('estop') && <button class="estop" disabled={!remote.writes} title="Damp, then off, latched until cleared" onClick={() => ask('estop')}>E-stop</button>}
     </div>

@@ -1,6 +1,6 @@
 // The robot from its URDF, posed from the signals of a session: joints as measured, the base as the model knows it or,
 // on a real robot, as it is estimated. Also its centre of mass, from the inertias of the same URDF.
-import { Box3, Euler, Group, Quaternion, Sphere, Vector3 } from 'three';
+import { Box3, Euler, Group, MeshLambertMaterial, Quaternion, Sphere, Vector3 } from 'three';
 import URDFLoader from 'urdf-loader';
 
 const gravity_m_s2 = 9.81;
@@ -19,8 +19,8 @@ function masses_of(robot) {
 }
 
 export class RobotModel {
-  // `mesh_base`: where package:// leads to.
-  constructor(urdf, mesh_base) {
+  // `mesh_base`: where package:// leads to. Not `fine`: without gloss.
+  constructor(urdf, mesh_base, fine) {
     const loader = new URDFLoader();
     loader.packages = (name) => `${mesh_base}${name}`;
     this.robot = loader.parse(urdf);
@@ -35,7 +35,10 @@ export class RobotModel {
       if (!part.isMesh) return;
       part.castShadow = true;
       part.receiveShadow = true;
-      if (part.material.isMeshPhongMaterial) {
+      const { isMeshPhongMaterial, color, map, opacity, transparent } = part.material;
+      if (isMeshPhongMaterial && !fine) {
+        part.material = new MeshLambertMaterial({ color, map, opacity, transparent });
+      } else if (isMeshPhongMaterial) {
         part.material.shininess = 18;
         part.material.specular?.setHex(0x222222);
       }

@@ -19,9 +19,10 @@ export class Show {
     const same_robot = this.session === session && this.urdf === session.urdf;
     Object.assign(this, { session, urdf: session.urdf, description: session.description, key });
     if (!session.urdf) return;
-    this.model = new RobotModel(session.urdf, session.mesh_base ?? './assets/');
+    this.model = new RobotModel(session.urdf, session.mesh_base ?? './assets/', this.stage.fine);
     this.marks = new BalanceMarks(session.description?.robot?.feet ?? []);
     this.gazes = (session.description?.objects ?? []).filter((object) => object.type === 'gaze').map((object) => new GazeMark(this.stage, object, this.model, () => this.sender()));
+    this.marks.root.visible = this.stage.fine;
     this.stage.scene.add(this.model.root, this.marks.root, ...this.gazes.map((gaze) => gaze.root));
     this.framed = same_robot && this.framed;
   }
@@ -60,5 +61,7 @@ export class Show {
       this.stage.follow(this.model.root.position);
     }
     this.stage.draw();
+    if (!this.model || this.marks.root.visible) return;
+    this.marks.root.visible = this.stage.moved = true; // the robot is seen first: what is beside it takes programs of its own
   }
 }

@@ -12,10 +12,26 @@ const themes = {
 
 const from_start = new Vector3(2.5, 1.7, 0.62);
 
+const in_software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+function draws_in_software(context) {
+  const names = context?.getExtension('WEBGL_debug_renderer_info');
+  return Boolean(names) && in_software.test(context.getParameter(names.UNMASKED_RENDERER_WEBGL));
+}
+
+// On a canvas of its own, as fine as the machine draws with ease, or as is wanted.
+export function make_stage(fine) {
+  const canvas = document.createElement('canvas');
+  if (fine || !draws_in_software(canvas.getContext('webgl2', { alpha: false, antialias: false }))) return new Stage(document.createElement('canvas'));
+  return new Stage(canvas, { fine: false });
+}
+
 export class Stage {
-  constructor(canvas) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-    this.renderer.shadowMap.enabled = true;
+  // Not `fine`: no shadows, gloss and smooth edges. A canvas that has a context already keeps it.
+  constructor(canvas, { fine = true } = {}) {
+    this.fine = fine;
+    this.renderer = new WebGLRenderer({ canvas, context: canvas.getContext('webgl2', { alpha: false, antialias: fine }) });
+    this.renderer.shadowMap.enabled = fine;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(32, 1, 0.02, 60);
@@ -32,6 +48,7 @@ export class Stage {
     this.add_lights();
     this.ground = new Mesh(new PlaneGeometry(5, 5), new ShadowMaterial());
     this.ground.receiveShadow = true;
+    this.ground.visible = fine;
     this.scene.add(this.ground);
     this.look_from_start();
   }
@@ -40,7 +57,7 @@ export class Stage {
     this.sky = new HemisphereLight(0xffffff, 0x8a8f96, 1);
     this.sky.position.set(0, 0, 1);
     this.sun = new DirectionalLight(0xffffff, 2);
-    this.sun.castShadow = true;
+    this.sun.castShadow = this.fine;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.sun.shadow.radius = 3;
     this.sun.shadow.bias = -0.0008;

@@ -2,7 +2,7 @@
 // velocities and efforts by joint, the pose of the base in the world, each frame of the URDF in its parent's.
 //
 // The base is where the model has it, where there is a model, else where it is estimated: heading and height, at the
-// origin. Roll and pitch, and the IMU, are always the estimate.
+// origin. Roll and pitch, and the rates, are always the estimate; the acceleration is what the IMU measured.
 #pragma once
 
 #include <array>
@@ -31,6 +31,10 @@ class RobotReadings {
   const Quat& orientation() const noexcept { return orientation_; }
   const Vec3& angular_velocity_rad_s() const noexcept { return angular_velocity_rad_s_; }
 
+  // Along the base's axes, gravity included. Where no IMU said anything yet nothing is known.
+  const Vec3& acceleration_m_s2() const noexcept { return acceleration_m_s2_; }
+  bool acceleration_known() const noexcept { return acceleration_m_s2_ != Vec3{}; }
+
   struct Frame {
     std::string parent, child;
     Pose pose;
@@ -46,13 +50,13 @@ class RobotReadings {
   const RobotModel& model_;
   std::vector<Signal> position_, velocity_, effort_;
   Signal roll_, pitch_, yaw_, x_, y_, height_, heading_;
-  std::array<Signal, 3> rate_;
+  std::array<Signal, 3> rate_, acceleration_;
 
   std::int64_t time_ns_ = 0;
   std::vector<std::string> joints_;
   std::vector<double> position_rad_, velocity_rad_s_, effort_Nm_;
   Quat orientation_{1, 0, 0, 0};
-  Vec3 angular_velocity_rad_s_{};
+  Vec3 angular_velocity_rad_s_{}, acceleration_m_s2_{};
   std::vector<UrdfFrame> driven_;  // of moving_, without the base
   std::vector<Frame> moving_, fixed_;
 };

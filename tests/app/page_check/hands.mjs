@@ -1,0 +1,102 @@
+// What hands do with the page besides looking: drag signals, drop and open records, switch the theme, work by keyboard.
+import { check, start, until } from './program.mjs';
+
+const plots = (page) => page.evaluate(() => [...document.querySelectorAll('.plot')].map((plot) => [...plot.querySelectorAll('.series')].map((series) => series.firstElementChild.nextSibling.textContent)));
+
+// The signals of the first plot, drawn: how many pixels of its canvas are not empty.
+const inked = (page, at) =>
+  page.evaluate((index) => {
+    const canvas = document.querySelectorAll('.plot canvas')[index];
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let inks = 0;
+    for (let i = 3; i < data.length; i += 4) inks += data[i] > 0 ? 1 : 0;
+    return inks;
+  }, at);
+
+export async function check_plots(page) {
+  const name = 'joint.l_hip_pitch.position_rad';
+  await page.click('.signals .topic:has-text("joint")');
+  const signal = page.locator(`[data-signal="${name}"]`);
+  const before = await plots(page);
+  await signal.dragTo(page.locator('.plot').first());
+  await until('the plot has it', async () => (await plots(page))[0].includes(name));
+  check((await plots(page))[0].length === before[0].length + 1, 'a signal is dragged into a plot');
+  await page.click(`[aria-label="Remove ${name}"]`);
+  await signal.focus();
+  await page.keyboard.press('Enter');
+  await until('the last plot has it', async () => (await plots(page)).at(-1).includes(name));
+  await until('it is drawn', async () => (await inked(page, (await plots(page)).length - 1)) > 500);
+  check(true, 'Enter puts one into the newest plot, and it is drawn');
+  await page.click('.signals .topic:has-text("joint")');
+}
+
+export async function check_theme(page) {
+  const theme = () => page.evaluate(() => [document.documentElement.dataset.theme, getComputedStyle(document.body).backgroundColor]);
+  const [name, color] = await theme();
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('t');
+  await until('the theme is another', async () => (await theme())[0] !== name && (await theme())[1] !== color);
+  await page.click('[title="Dark or light (t)"]');
+  await until('and is back', async () => (await theme())[0] === name && (await theme())[1] === color);
+  check(true, 'the theme switches by key and button');
+}
+
+// Tabs on until what has the focus fits.
+async function tab_to(page, selector) {
+  for (let i = 0; i < 80; ++i) {
+    if (await page.evaluate((wanted) => document.activeElement?.matches(wanted), selector)) return;
+    await page.keyboard.press('Tab');
+  }
+  throw new Error(`the tab key does not lead to ${selector}`);
+}
+
+// No mouse: plays, stops and ends a run in the emergency stop.
+export async function check_keyboard(page) {
+  const last = (behavior) => page.evaluate((name) => globalThis.kadans.last_transitions().get(name)?.to, behavior);
+  const logged = (words) => page.evaluate((text) => globalThis.kadans.log.some((line) => line.message.includes(text)), words);
+  await page.keyboard.press('Escape');
+  await tab_to(page, '[aria-label="Behaviors to play"]');
+  await page.keyboard.type('squat{repeats=3}');
+  await page.keyboard.press('Enter');
+  await until('squat begins', async () => Boolean(await last('squat')));
+  await until('the field is empty again', () => page.evaluate(() => document.activeElement.value === ''));
+  await tab_to(page, '[data-verb="stop"]');
+  await page.keyboard.press('Enter');
+  await until('the run says that it stops', () => logged('stop'));
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('3');
+  await page.waitForSelector('[role=tab][aria-selected=true]:has-text("Safety")');
+  await tab_to(page, '.estop');
+  await page.keyboard.press('Enter');
+  await until('the robot damps or is off', () => page.evaluate(() => globalThis.kadans.value('safety.level') >= 3));
+  await page.waitForSelector('.rung.on:text-matches("damp|off")');
+  check(true, 'by keyboard alone a behavior is played and stopped, and the robot too');
+}
+
+// As the system hands a file over when it is let go above the page.
+async function drop(page, file) {
+  const hand = await page.context().newCDPSession(page);
+  const data = { items: [], files: [file], dragOperationsMask: 1 };
+  for (const type of ['dragEnter', 'dragOver', 'drop']) await hand.send('Input.dispatchDragEvent', { type, x: 400, y: 300, data });
+  await hand.detach();
+}
+
+const shows_record = (page) =>
+  page.waitForFunction(() => globalThis.kadans && !globalThis.kadans.live && globalThis.kadans.loading === 0 && globalThis.kadans.end_s > 2.5 && globalThis.kadans_drawn?.posed);
+
+export async function check_files(page, record) {
+  const view = start(['view', record], /(http:\S+)/);
+  const [, url] = await view.begun;
+  const empty = new URL('/?empty', url).href;
+  await page.goto(empty);
+  await page.waitForSelector('text=Drop a record here');
+  await drop(page, record);
+  await shows_record(page);
+  check(true, 'a file that is dropped on the page is shown');
+  await page.goto(empty);
+  await page.fill('[aria-label="Address of a record"]', new URL('/record.mcap', url).href);
+  await page.keyboard.press('Enter');
+  await shows_record(page);
+  check(true, 'and one whose address is typed');
+  await view.stop();
+}
