@@ -21,6 +21,7 @@ local P = k.params {
   turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
   face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
   flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
+  rise_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rises in; soft springs want more" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
 
@@ -108,7 +109,7 @@ return k.behavior "get_up" {
   k.state "rise" {
     run = function(m)
       m.posture:set_gains("rise")
-      local motion = m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad))
+      local motion = m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad, P.rise_pace))
       m:wait(P.flat_s)
       m.balance:set_parameter("share", 1)
       motion:wait()

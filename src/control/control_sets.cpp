@@ -1,5 +1,6 @@
 #include "kadans/control/control_sets.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -45,6 +46,7 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
   }
   if (objects_.size() != catalog.objects.size()) throw std::invalid_argument("the catalog lists other control objects");
   for (const ControlSetInfo& set : catalog.sets) check_set(catalog, set);
+  check_drives();
   if (active_ == 0 || std::bit_width(active_) > catalog.sets.size()) {
     throw std::invalid_argument("there is no initial control set");
   }
@@ -53,6 +55,24 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
   plans_.reserve(catalog.sets.size());  // parameters point into the members
   for (const ControlSetInfo& set : catalog.sets) make_plan(catalog, set);
   declare(catalog);
+}
+
+void ControlSets::check_drives() {
+  JointMask driven = 0;
+  for (const std::uint32_t index : catalog_.at_drives) {
+    const ObjectInfo& object = catalog_.objects.at(index);
+    at_drives_ |= ObjectMask{1} << index;
+    for (const ControlSetInfo& set : catalog_.sets) {
+      if (std::ranges::find(set.objects, index) == set.objects.end()) continue;
+      throw std::invalid_argument("control object " + object.name + " stands at the drives and in control set " +
+                                  set.name);
+    }
+    for (const std::size_t joint : object.joints) {
+      if ((std::exchange(driven, driven | joint_bit(joint)) & joint_bit(joint)) == 0) continue;
+      throw std::invalid_argument("two control objects stand at the drive of joint " +
+                                  catalog_.model->joints.at(joint).name);
+    }
+  }
 }
 
 void ControlSets::make_plan(Catalog& catalog, const ControlSetInfo& set) {
@@ -141,6 +161,17 @@ void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationF
   unheld_.step(input.joints, actuation);
   if (touched != 0 && !first) switchover_.begin(input.joints, input.dt_s, input.last, actuation, touched);
   switchover_.apply(input.joints, input.dt_s, actuation);
+}
+
+void ControlSets::drive(const ControlInput& input, JointMask blind, ActuationFrame& actuation) noexcept {
+  for (const std::uint32_t index : catalog_.at_drives) {
+    ActuationFrame& motors = *proposals_[index];
+    motors = actuation;
+    objects_[index]->step(input, motors);
+    for (const std::size_t joint : catalog_.objects[index].joints) {
+      if ((blind & joint_bit(joint)) == 0) actuation.joints[joint] = motors.joints[joint];
+    }
+  }
 }
 
 void ControlSets::fill(Snapshot& snapshot) const noexcept {

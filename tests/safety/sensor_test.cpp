@@ -94,6 +94,27 @@ TEST_CASE("A reading that stays the same while more and more torque is asked is 
   CHECK(still.codes().empty());
 }
 
+TEST_CASE("Behind a spring a joint that is pressed against something is not stuck, however hard its motor pulls") {
+  SafetySettings springs = settings();
+  for (JointLimits& limits : springs.joints) limits.spring_Nm_per_rad = 200;
+  Bench bench(springs);
+  bench.knee_noise = false;
+  JointSample& knee = bench.sensors.joints[0];
+  const double joint_rad = knee.position_rad;
+  const auto pull = [&](double torque_Nm, double moved_rad) {
+    bench.ask(torque_Nm);
+    knee.motor_effort_Nm = torque_Nm;
+    knee.motor_position_rad = joint_rad + moved_rad + torque_Nm / 200;  // by 0.08 rad as the torque grows
+    bench.check();
+  };
+  for (int i = 0; i < 1000; ++i) pull(5 + 0.016 * i, 0);
+  CHECK(bench.codes().empty());
+  int ticks = 0;
+  while (bench.codes().empty() && ticks < 1000) pull(5, 0.002 * ++ticks);  // the joint moves, its encoder does not
+  CHECK(bench.codes() == "sensor_stuck");
+  CHECK(ticks <= 27);  // 0.05 rad
+}
+
 TEST_CASE("A reading that follows its motor by a hair's breadth at a time is not stuck") {
   Bench bench;
   bench.knee_noise = false;
