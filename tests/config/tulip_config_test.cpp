@@ -81,12 +81,13 @@ TEST_CASE("TULip's gains and presets fit the parameters that joint_pid declares"
   CHECK(objects.value("posture.l_knee.kp_Nm_per_rad") == 300);
   CHECK(objects.value("posture.r_shoulder_pitch.ki_Nm_per_rads") == 20);
   const std::vector<Preset>& presets = objects.catalog.objects[0].presets;
-  REQUIRE(presets.size() == 4);
+  REQUIRE(presets.size() == 5);
   CHECK(presets[0].name == "stiff");
   CHECK(presets[1].name == "get_up");
-  CHECK(presets[2].name == "balance");
-  CHECK(presets[3].name == "soft");
-  CHECK(presets[3].values.size() == 24);
+  CHECK(presets[2].name == "rise");
+  CHECK(presets[3].name == "balance");
+  CHECK(presets[4].name == "soft");
+  CHECK(presets[4].values.size() == 24);
 }
 
 }  // namespace kadans
