@@ -13,9 +13,19 @@ function compress_all(folder) {
   }
 }
 
+// The robot's chunks are fetched beside the page's own, not after it.
+const preload = {
+  name: 'preload',
+  apply: 'build',
+  transformIndexHtml: (_, { bundle }) =>
+    Object.values(bundle)
+      .filter((chunk) => /^(robot_view|stage)/.test(chunk.name ?? ''))
+      .map((chunk) => ({ tag: 'link', attrs: { rel: 'modulepreload', crossorigin: true, href: `./${chunk.fileName}` }, injectTo: 'head' })),
+};
+
 export default defineConfig({
   base: './',
-  plugins: [{ name: 'compress', apply: 'build', closeBundle: () => compress_all('dist') }],
+  plugins: [preload, { name: 'compress', apply: 'build', closeBundle: () => compress_all('dist') }],
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
   worker: { format: 'es' },
   build: { target: 'es2022', modulePreload: false, assetsInlineLimit: 8192, chunkSizeWarningLimit: 1200 },

@@ -1,31 +1,49 @@
--- The joystick task of 2008: ten times a second the stick's x and y become the velocity of a target 1 m ahead. The stick is
--- played: it goes round, as a hand would lead it.
+-- The joystick task of 2008: ten times a second the stick's x and y become the velocity of a target 1 m ahead, its twist
+-- that of the distance. The first button brings the target back ahead. Let go, or pulled out, it stays where it is.
 local k = require "kadans"
 
 local P = k.params {
   velocity_m_s = { 0.4, min = 0, max = 3, unit = "m/s", doc = "of the target at the stick's end" },
-  turn_s       = { 4, min = 0.5, max = 60, unit = "s", doc = "time in which the stick goes round" },
-  lasts_s      = { 8, min = 0.1, max = 600, unit = "s", doc = "how long it is played" },
+  side_m       = { 1.0, min = 0, max = 5, unit = "m", doc = "no farther to a side, up or down" },
+  nearest_m    = { 0.4, min = 0.2, max = 1, unit = "m", doc = "no nearer to the base" },
+  farthest_m   = { 3.0, min = 1, max = 10, unit = "m", doc = "no farther from the base" },
 }
 
 local period_s = 0.1
+local ahead = { x_m = 1.08, y_m = 0, z_m = 0.22 }
+
+-- Stops where the target would pass its bounds.
+local function go(gaze, direction, velocity_m_s, lowest_m, highest_m)
+  local at_m = gaze:setpoint(direction .. "_m")
+  if (velocity_m_s < 0 and at_m < lowest_m) or (velocity_m_s > 0 and at_m > highest_m) then velocity_m_s = 0 end
+  gaze:set(direction .. "_m_s", velocity_m_s)
+end
 
 return k.behavior "stick" {
   controls = "gaze",
-  initial  = "played",
+  initial  = "held",
+  always   = {
+    { when = function(s) return s.safety.level ~= "normal" end, to = "failed", why = "safety" },
+  },
 
-  k.state "played" {
-    run = function(m)
-      for i = 0, math.floor(P.lasts_s / period_s) do
-        local angle = 2 * math.pi * i * period_s / P.turn_s
-        m.gaze:set("y_m_s", P.velocity_m_s * math.cos(angle))
-        m.gaze:set("z_m_s", P.velocity_m_s * math.sin(angle))
+  k.state "held" {
+    run = function(m, s)
+      while true do
+        go(m.gaze, "x", P.velocity_m_s * s.joystick.twist, P.nearest_m, P.farthest_m)
+        go(m.gaze, "y", -P.velocity_m_s * s.joystick.x, -P.side_m, P.side_m)
+        go(m.gaze, "z", P.velocity_m_s * s.joystick.y, -P.side_m, P.side_m)
         m:wait(period_s)
       end
-      m.gaze:set("y_m_s", 0)
-      m.gaze:set("z_m_s", 0)
     end,
-    { on = "run.done", to = "done" },
+    { when = function(s) return s.joystick.button_1 end, to = "back", why = "button 1" },
   },
-  k.final "done" { outcome = "done" },
+  k.state "back" {
+    run = function(m)
+      for _, direction in ipairs { "x", "y", "z" } do m.gaze:set(direction .. "_m_s", 0) end
+      for setpoint, value_m in pairs(ahead) do m.gaze:set(setpoint, value_m, { time_s = 0.5 }) end
+      m:wait(0.5)
+    end,
+    { on = "run.done", to = "held" },
+  },
+  k.final "failed" { outcome = "failed" },
 }

@@ -3,7 +3,7 @@
 local k = require "kadans"
 
 local P = k.params {
-  rest_s = { 3.0, min = 0.5, max = 60, unit = "s", doc = "time at each target" },
+  rest_s = { 3.5, min = 0.5, max = 60, unit = "s", doc = "time at each target" },
 }
 
 local targets = {

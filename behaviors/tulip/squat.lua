@@ -25,7 +25,7 @@ return k.behavior "squat" {
   vars     = { done = 0 },
   initial  = "settle",
   always   = {
-    { when = function(s) return s.safety.level ~= "normal" end, to = "failed", why = "safety" },
+    { when = function(s) return s.safety.level ~= "normal" and s.safety.level ~= "limited" end, to = "failed", why = "safety" },
   },
 
   k.state "settle" {

@@ -9,7 +9,7 @@ return k.behavior "stand" {
   controls = "posture",
   initial  = "stand",
   always   = {
-    { when = function(s) return s.safety.level ~= "normal" end, to = "failed", why = "safety" },
+    { when = function(s) return s.safety.level ~= "normal" and s.safety.level ~= "limited" end, to = "failed", why = "safety" },
   },
 
   k.state "stand" {

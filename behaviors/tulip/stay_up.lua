@@ -21,9 +21,9 @@ return k.behavior "stay_up" {
     { when = lies, to = "fallen" },
   },
   k.state "fallen" {
-    k.call "get_up" {},
-    { on = "get_up.done", to = "stand" },
-    { on = "get_up.failed", to = "failed" },
+    k.call "get_up",
+    { on = "done", to = "stand" },
+    { on = "failed", to = "failed" },
   },
   k.final "failed" { outcome = "failed" },
 }

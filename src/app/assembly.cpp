@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "kadans/config/project_root.h"
@@ -35,6 +36,11 @@ GazeTruth::Eyes eyes_of(const ObjectConfig& object) {
 
 SafePosture::Settings safe_posture_of(const SafeConfig& safe) {
   return {.pose = safe.pose, .after_s = safe.after_s, .time_s = safe.time_s};
+}
+
+// When a joystick's state is recorded: the robot has one, or this run.
+bool has_joystick(const ScenarioConfig& scenario, const RobotConfig& robot) {
+  return robot.engine.joystick || !scenario.joystick.recording.empty() || !scenario.joystick_device.empty();
 }
 
 // The behaviors' names are known once they are loaded.
@@ -71,6 +77,7 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
     : scenario_(scenario), log_(log), link_(link), outside_(outside), robot_(read_robot(scenario.robot)) {
   control_system_ = make_control_system(robot_);
   Catalog& catalog = control_system_->catalog;
+  robot_.config.engine.joystick = has_joystick(scenario, robot_.config);
   try {
     vary(seed);
     make_plant(seed);
@@ -100,6 +107,7 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
                                              *exchange_);
   if (host_) faulty_host_ = make_faulty_host(scenario, *host_);
   disturbances_ = std::make_unique<Disturbances>(scenario, robot_.config.model);
+  make_joystick_player();
   make_behaviors();
 }
 
@@ -171,6 +179,18 @@ void Assembly::make_plant(std::uint64_t seed) {
   plant_ = seen_model_;
 }
 
+void Assembly::make_joystick_player() {
+  const ScenarioJoystick& joystick = scenario_.joystick;
+  if (joystick.recording.empty()) return;
+  const auto ns = [](double s) { return s < 1e9 ? std::llround(s * 1e9) : std::numeric_limits<std::int64_t>::max(); };
+  try {
+    joystick_ = std::make_unique<JoystickPlayer>(robot_.config.joystick, joystick.recording, ns(joystick.at_s),
+                                                 ns(joystick.lost_at_s));
+  } catch (const std::invalid_argument& error) {
+    throw InputError({scenario_.file, joystick.place.line, joystick.place.column, error.what()});
+  }
+}
+
 BehaviorHost& Assembly::played() noexcept {
   if (faulty_host_) return *faulty_host_;
   return outside_ != nullptr ? static_cast<BehaviorHost&>(*outside_) : *host_;
@@ -196,6 +216,7 @@ RunParts Assembly::parts() noexcept {
           .truth = *truth_,
           .log = log_,
           .disturbances = disturbances_.get(),
+          .joystick = joystick_.get(),
           .upkeep_first = static_cast<SignalId>(upkeep_first_),
           .upkeep_count = upkeep_count_};
 }

@@ -44,6 +44,7 @@ ScenarioConfig live_scenario(const RunOptions& options) {
                    : options.plant == "ideal" ? PlantKind::ideal
                                               : PlantKind::bullet;
   scenario.peer = options.peer;
+  scenario.joystick_device = options.joystick;
   scenario.seed = options.seed.value_or(1);
   if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
   return scenario;

@@ -36,6 +36,7 @@ class Sensors final : public SnapshotFilter {
       snapshot.status.safety.level = static_cast<SafetyLevel>(value);
       return true;
     }
+    if (bool* held = find_button(snapshot, name)) return *held = value != 0, true;
     for (const auto& [foot, side] : {std::pair{0, "left"}, std::pair{1, "right"}}) {
       if (name != std::string("feet.") + side + ".contact") continue;
       snapshot.status.feet[static_cast<std::size_t>(foot)].contact = value != 0;
@@ -46,7 +47,19 @@ class Sensors final : public SnapshotFilter {
     return number != nullptr;
   }
 
+  static bool* find_button(Snapshot& snapshot, const std::string& name) {
+    JoystickState& joystick = snapshot.joystick;
+    if (name == "joystick.connected") return &joystick.connected;
+    for (std::size_t i = 0; i < joystick_buttons; ++i) {
+      if (name == "joystick.button_" + std::to_string(i + 1)) return &joystick.buttons[i];
+    }
+    return nullptr;
+  }
+
   double* find(Snapshot& snapshot, const std::string& name) const {
+    for (std::size_t i = 0; i < joystick_axes; ++i) {
+      if (name == std::string("joystick.") + joystick_axis_names[i]) return &snapshot.joystick.axes[i];
+    }
     BaseStatus& base = snapshot.status.base;
     const std::pair<const char*, double*> fields[] = {
         {"base.roll_rad", &base.roll_rad},

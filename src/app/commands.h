@@ -8,6 +8,9 @@
 
 #include "ctl/ctl_service.h"
 #include "live/live_service.h"
+#include "record_options.h"
+#include "report/report_options.h"
+#include "ros2/ros2_service.h"
 #include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -22,8 +25,9 @@ struct SimOptions : RunRequest {
   bool no_record = false;
   bool realtime = false;
   bool watch = false;
-  std::string metrics;                   // plan whose metrics are reported; "" = none
-  std::string record;                    // "" = NAME.mcap in the working directory
+  std::string metrics;  // plan whose metrics are reported; "" = none
+  std::string record;   // "" = NAME.mcap in the working directory
+  RecordOptions recording;
   std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
   std::string from;                      // a checkpoint; then what is set and played counts from there
   std::vector<std::string> push;         // with it
@@ -31,7 +35,9 @@ struct SimOptions : RunRequest {
   std::optional<double> hash_every_s;
   CtlPlace ctl;  // always with realtime, else where a folder is named
   LivePlace live;
-  double speed = 1;  // with it, of the wall clock's
+  ReportPlace report;
+  Ros2Place ros2;
+  double speed = 1;  // with live or ros2, of the wall clock's
 };
 void add_sim(CLI::App& app, SimOptions& options);
 int run_sim(const SimOptions& options);
@@ -49,6 +55,7 @@ struct TestOptions {
   bool golden = false;        // state hashes must be those of the golden file
   bool renew_golden = false;  // write them there instead
   std::string junit;
+  ReportPlace report;
 };
 int run_test(const TestOptions& options);
 
@@ -61,9 +68,11 @@ int run_check(const CheckOptions& options);
 struct RunOptions {
   std::string robot;
   std::string plant = "bullet";
-  std::string peer;    // of a udp plant; "" = the robot's own
-  std::string play;    // a list; "" = nothing, the robot holds
-  std::string record;  // "" = none
+  std::string peer;      // of a udp plant; "" = the robot's own
+  std::string play;      // a list; "" = nothing, the robot holds
+  std::string joystick;  // a device or a recording; "" = the robot's own
+  std::string record;    // "" = none
+  RecordOptions recording;
   std::optional<double> duration_s;
   std::optional<std::uint64_t> seed;
   bool soft = false;          // also without the rights to be punctual
@@ -80,6 +89,7 @@ struct RunOptions {
   double behaviors_memory_MB = 256;    // more than it has when it begins to play
   CtlPlace ctl;                        // on virtual time only where a folder is named
   LivePlace live;
+  Ros2Place ros2;
 };
 int run_live(const RunOptions& options);
 // What run_live starts for behaviors in a process of their own: robot, play and seed count.

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double us(double ns) { return std::round(ns) / 1000; }
+double in_us(double ns) { return std::round(ns) / 1000; }
 
 double resident_MB() {
   std::ifstream file("/proc/self/statm");
@@ -24,30 +24,42 @@ double resident_MB() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
-Json json_of(const TickStatistics& s) {
-  return {{"min", us(static_cast<double>(s.min_ns()))},
-          {"mean", us(s.mean_ns())},
-          {"p50", us(s.percentile_ns(0.5))},
-          {"p99", us(s.percentile_ns(0.99))},
-          {"p999", us(s.percentile_ns(0.999))},
-          {"p9999", us(s.percentile_ns(0.9999))},
-          {"p99999", us(s.percentile_ns(0.99999))},
-          {"max", us(static_cast<double>(s.max_ns()))}};
+Json percentiles_of(const TickStatistics& s) {
+  return {{"min", in_us(static_cast<double>(s.min_ns()))},
+          {"mean", in_us(s.mean_ns())},
+          {"p50", in_us(s.percentile_ns(0.5))},
+          {"p99", in_us(s.percentile_ns(0.99))},
+          {"p999", in_us(s.percentile_ns(0.999))},
+          {"p9999", in_us(s.percentile_ns(0.9999))},
+          {"p99999", in_us(s.percentile_ns(0.99999))},
+          {"max", in_us(static_cast<double>(s.max_ns()))}};
+}
+
+double preparation_s(const TaskThread& thread) {
+  const TickStatistics& s = thread.preparation();
+  return 1e-9 * s.mean_ns() * static_cast<double>(s.count());
 }
 
 Json json_of(const TaskThread& thread) {
   const TaskStatistics& s = thread.statistics();
-  return {{"beats", s.lateness.count()},         {"overruns", s.overruns.get()},
-          {"late_wakes", s.late_wakes.get()},    {"missed", s.missed.get()},
-          {"page_faults", thread.page_faults()}, {"cpu_s", 1e-9 * static_cast<double>(thread.cpu_time_ns())},
-          {"lateness_us", json_of(s.lateness)},  {"jitter_us", json_of(s.jitter)},
-          {"execution_us", json_of(s.execution)}};
+  return {{"beats", s.lateness.count()},
+          {"overruns", s.overruns.get()},
+          {"late_wakes", s.late_wakes.get()},
+          {"missed", s.missed.get()},
+          {"page_faults", thread.page_faults()},
+          {"cpu_s", 1e-9 * static_cast<double>(thread.cpu_time_ns())},
+          {"lateness_us", percentiles_of(s.lateness)},
+          {"jitter_us", percentiles_of(s.jitter)},
+          {"execution_us", percentiles_of(s.execution)},
+          {"preparation_us", percentiles_of(thread.preparation())},
+          {"preparation_s", preparation_s(thread)}};
 }
 
 std::string row(const char* name, const TickStatistics& s, const char* rest) {
   std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, us(s.percentile_ns(0.5)),
-                us(s.percentile_ns(0.99)), us(s.percentile_ns(0.999)), us(static_cast<double>(s.max_ns())), rest);
+  std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, in_us(s.percentile_ns(0.5)),
+                in_us(s.percentile_ns(0.99)), in_us(s.percentile_ns(0.999)), in_us(static_cast<double>(s.max_ns())),
+                rest);
   return text.data();
 }
 
@@ -58,7 +70,18 @@ std::string rows_of(const TaskThread& thread) {
   std::array<char, 128> rest{};
   std::snprintf(rest.data(), rest.size(), "%llu beats, %llu missed, %llu page faults", whole(s.lateness.count()),
                 whole(s.missed.get()), whole(thread.page_faults()));
-  return row((thread.settings().name + ", late").c_str(), s.lateness, rest.data()) + row("  work", s.execution, "");
+  std::string rows = row((thread.settings().name + ", late").c_str(), s.lateness, rest.data());
+  if (thread.preparation().count() > 0) {
+    std::snprintf(rest.data(), rest.size(), "before the tick, %.2f s of %.2f s CPU time", preparation_s(thread),
+                  1e-9 * static_cast<double>(thread.cpu_time_ns()));
+    rows += row("  preparation", thread.preparation(), rest.data());
+  }
+  return rows + row("  work", s.execution, "");
+}
+
+// A recorder may be there for its flight recorder alone.
+bool has_record(const LiveResult& result) {
+  return result.recorder != nullptr && (result.recorder->rows() > 0 || !result.recorder->error().empty());
 }
 
 std::uint64_t refused(const LiveResult& result) {
@@ -87,7 +110,7 @@ std::string live_text(const LiveResult& result) {
                   whole(process.deaths()), whole(process.takeovers()), process.down() ? ", is down" : "");
     all += text.data();
   }
-  if (result.recorder != nullptr) {
+  if (has_record(result)) {
     std::snprintf(text.data(), text.size(), "  record: %llu rows, %u dropped, %llu lost, %.1f MB\n",
                   whole(result.recorder->rows()), result.recorder->dropped(), whole(result.recorder->lost()),
                   1e-6 * static_cast<double>(result.recorder->file_bytes()));
@@ -114,7 +137,7 @@ std::string live_json(const LiveResult& result) {
             {"start_ms", result.start_ms},
             {"resident_MB", resident_MB()},
             {"control_ticks", result.control.ticks()},
-            {"tick_us", json_of(result.control.tick_cost())},
+            {"tick_us", percentiles_of(result.control.tick_cost())},
             {"safety_level", name(result.engine.state().status.safety.level)},
             {"faults", result.engine.state().status.safety.fault_count},
             {"commands",
@@ -128,11 +151,11 @@ std::string live_json(const LiveResult& result) {
     json["behavior_process"] = {{"deaths", process.deaths()},
                                 {"takeovers", process.takeovers()},
                                 {"down", process.down()},
-                                {"answer_us", json_of(process.answer_cost())},
-                                {"outage_us", json_of(process.outage())}};
+                                {"answer_us", percentiles_of(process.answer_cost())},
+                                {"outage_us", percentiles_of(process.outage())}};
   }
   if (result.udp_plant != nullptr) json["link"] = udp_json(result.udp_plant->statistics());
-  if (result.recorder != nullptr) {
+  if (has_record(result)) {
     json["record"] = {{"rows", result.recorder->rows()},
                       {"dropped", result.recorder->dropped()},
                       {"dropped_events", result.recorder->dropped_events()},

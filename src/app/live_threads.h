@@ -18,13 +18,15 @@ namespace kadans {
 
 // The model stands for hardware, which waits for nobody: whatever keeps it from its step must keep the control thread
 // too, or time would pass for control alone and every sensor would fall silent.
-inline constexpr int control_priority = 90, plant_priority = 92, behavior_priority = 40, record_priority = 20;
+inline constexpr int control_priority = 90, plant_priority = 92, behavior_priority = 40, joystick_priority = 30,
+                     record_priority = 20;
 
 struct LiveTasks {
   ControlTask& control;
   BehaviorTask& behaviors;
   PlantTask* plant = nullptr;  // of a model
   Task* record = nullptr;
+  Task* joystick = nullptr;
 };
 
 struct LiveTiming {

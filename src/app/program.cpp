@@ -9,6 +9,7 @@
 #include "ctl/ctl_command.h"
 #include "kadans/signal/nearest_name.h"
 #include "live/page_commands.h"
+#include "log/log_command.h"
 #include "repl_command.h"
 #include "replay_command.h"
 #include "stubs_command.h"
@@ -34,6 +35,7 @@ constexpr const char* examples =
     "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
     "  kadans run config/tulip/robot.json --play squat    drive the robot, or its model, on the wall clock\n"
     "  kadans view squat.mcap                             show a record in the browser: robot, plots, states\n"
+    "  kadans log info squat.mcap                         what a record holds; also cat, csv, plot, diff, cut\n"
     "  kadans ctl status                                  how a running robot is; 'kadans ctl --help' lists the rest\n"
     "  kadans check behaviors/tulip/squat.lua             say what is wrong in a file, without running it\n"
     "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"
@@ -60,6 +62,8 @@ void add_test(CLI::App& app, TestOptions& options) {
                                       "Write the states into that file, and say what that changes");
   renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
   test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
+  add_report_place(*test, options.report, "Leave a page about each run in a folder, and index.html about all",
+                   "failed");
   test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
 }
 
@@ -82,10 +86,14 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("HOST:PORT");
   run->add_option("--play", options.play, "What to play: \"squat, wave\" (default: nothing, the robot holds)")
       ->type_name("LIST");
+  run->add_option("--joystick", options.joystick,
+                  "/dev/input/event5, or a recording of one, for s.joystick of behaviors")
+      ->type_name("FILE");
   run->add_option("--duration", options.duration_s, "Seconds to run (default: until it is told to stop)")
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e9));
   run->add_option("--record", options.record, "Write a record (default: none)")->type_name("FILE");
+  add_record_options(*run, options.recording);
   run->add_option("--seed", options.seed, "Seed of a model's noise (default: 1)")->type_name("N");
   run->add_flag("--soft", options.soft, "Go on without the rights that real time needs");
   run->add_flag("--threads-on-virtual-time", options.virtual_time,
@@ -116,6 +124,7 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->check(CLI::Range(1.0, 1e6));
   add_ctl_place(*run, options.ctl);
   add_live_place(*run, options.live);
+  add_ros2_place(*run, options.ros2);
   run->add_flag("--json", options.json, "End with one JSON object on a line of its own");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
 }
@@ -223,6 +232,8 @@ int run(int argc, char** argv) {
   add_view(app, view);
   RenderOptions render;
   add_render(app, render);
+  LogOptions log;
+  add_log(app, log);
   DoctorOptions doctor;
   add_doctor(app, doctor);
   NewControlObjectOptions new_object;
@@ -245,6 +256,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("completion")) return run_completion(app, completion);
   if (app.got_subcommand("view")) return run_view(view);
   if (app.got_subcommand("render")) return run_render(render);
+  if (app.got_subcommand("log")) return run_log(app, log);
   if (app.got_subcommand("doctor")) return run_doctor(doctor);
   if (app.got_subcommand("replay")) return run_replay(replay);
   if (app.got_subcommand("sweep")) return run_sweep(sweep);

@@ -21,6 +21,7 @@
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/record_side.h"
 #include "leaving.h"
+#include "live_joystick.h"
 #include "live_log.h"
 #include "live_report.h"
 #include "live_threads.h"
@@ -117,28 +118,38 @@ class LiveRun {
                    ? nullptr
                    : std::make_unique<PlantTask>(*link_, *assembly_.model(),
                                                  assembly_.robot().engine.control_period_ns())),
+        joystick_(make_joystick()),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
                  assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
   int run() {
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
+    RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
+    const bool flies = plan.flight.kept_s > 0;
+    plan.timing = {{"Control tick: takes", &control_.tick_cost()}};
+    record_side_.record_as(std::move(plan));
+    record_side_.begin();
     if (!options_.record.empty()) record_side_.start(options_.record);
-    const bool may_record = !options_.record.empty() || place_of(options_).wanted || options_.live.wanted();
+    const bool may_record = flies || !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() ||
+                            options_.ros2.commands;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
-    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->connect();
-    LiveThreads threads(timing, {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr});
+    if (assembly_.udp_plant() != nullptr && !assembly_.udp_plant()->connect(interrupted)) return exit_interrupted;
+    LiveThreads threads(timing,
+                        {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()});
     threads.start();
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     ctl_.start();
     live_.start({{"Control tick: late", &threads.control().statistics().lateness},
                  {"Control tick: takes", &control_.tick_cost()},
                  {"Behavior tick: takes", &threads.behaviors().statistics().execution}});
+    ros2_.start();
     notifier_.ready("drives " + assembly_.robot().name);
     const std::string ended = watch(threads);
     notifier_.stopping();
     leave(threads);
+    ros2_.stop();
     live_.stop();
     ctl_.stop();
     threads.stop();
@@ -147,7 +158,8 @@ class LiveRun {
     assembly_.plant().write(off);
     if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->leave();
     tell(threads.supervisor().now_ns());
-    if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
+    if (!record_side_.end()) print_error("the record is not complete: " + record_side_.recorder()->error());
+    tell_flights(record_side_.status());
     LiveResult result{threads,
                       control_,
                       parts_.behaviors,
@@ -167,6 +179,12 @@ class LiveRun {
   }
 
  private:
+  std::unique_ptr<LiveJoystick> make_joystick() {
+    const JoystickSettings& settings = assembly_.robot().joystick;
+    if (options_.joystick.empty() && settings.device.empty()) return nullptr;
+    return std::make_unique<LiveJoystick>(settings, options_.joystick, parts_.control.exchange().joystick);
+  }
+
   // Until somebody or something ends the run; says what.
   std::string watch(LiveThreads& threads) {
     Wait& wait = threads.supervisor();
@@ -192,6 +210,7 @@ class LiveRun {
     const SafetySettings& safety = parts_.control.safety().settings();
     const bool held = parts_.control.exchange().snapshot.read(1).status.safety.level >= SafetyLevel::hold;
     failed_ = failed_ || held;
+    record_side_.expect_end();
     if (!failed_) {
       leaving_.ask();
       pass(threads, assembly_.robot().safe.time_s + 0.2);
@@ -212,36 +231,40 @@ class LiveRun {
     }
   }
 
+  void tell(const Event& event) {
+    instance_.tell(event);
+    const bool message = event.kind == Event::Kind::message;
+    if (!options_.verbose && (!message || event.severity != BehaviorLog::Severity::error)) return;
+    const Transition& t = event.transition;
+    const std::string text = message ? event.text : t.from + " -> " + t.to + " (" + t.why + ")";
+    std::fprintf(stderr, "%9.2f s  %s: %s\n", 1e-9 * static_cast<double>(t.time_ns), t.behavior.c_str(), text.c_str());
+  }
+
   // What behaviors said, and faults but for late ticks, which the report counts.
   void tell(std::int64_t time_ns) {
     Event event;
-    while (live_log_.told().pop(time_ns, event)) {
-      instance_.tell(event);
-      const bool message = event.kind == Event::Kind::message;
-      if (!options_.verbose && (!message || event.severity != BehaviorLog::Severity::error)) continue;
-      const Transition& t = event.transition;
-      const std::string text = message ? event.text : t.from + " -> " + t.to + " (" + t.why + ")";
-      std::fprintf(stderr, "%9.2f s  %s: %s\n", 1e-9 * static_cast<double>(t.time_ns), t.behavior.c_str(),
-                   text.c_str());
+    while (live_log_.told().pop(time_ns, event)) tell(event);
+    if (joystick_ != nullptr) {
+      const std::optional<Event> news = joystick_->news(parts_.control.exchange().snapshot.read(1));
+      if (news) tell(*news);
     }
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) {
       instance_.tell(fault);
+      record_side_.tell(fault);
       if (fault.code == FaultCode::tick_overrun) continue;
       std::fprintf(stderr, "%9.2f s  fault %s\n", 1e-9 * static_cast<double>(time_ns),
                    fault_text(fault, assembly_.robot().model).c_str());
     }
-    publish();
+    const RecordStatus record = record_side_.status();
+    tell_flights(record);
+    instance_.publish(status_of(parts_.control.exchange().snapshot.read(1), record));
   }
 
-  void publish() {
-    const Snapshot& snapshot = parts_.control.exchange().snapshot.read(1);
-    instance_.publish({.tick = snapshot.tick,
-                       .time_ns = snapshot.time_ns,
-                       .safety = snapshot.status.safety,
-                       .control_sets = snapshot.control_sets,
-                       .commands_refused = snapshot.commands_refused,
-                       .record = record_side_.status()});
+  void tell_flights(const RecordStatus& status) {
+    if (status.flights == told_flights_) return;
+    told_flights_ = status.flights;
+    std::fprintf(stderr, "flight record: %s\n", status.flight.data());
   }
 
   const RunOptions& options_;
@@ -260,6 +283,7 @@ class LiveRun {
   } parts_;
   std::unique_ptr<TruthTask> truth_;  // of a model
   std::unique_ptr<PlantTask> plant_;  // likewise
+  std::unique_ptr<LiveJoystick> joystick_;
   Leaving leaving_;
   Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog()};
   ControlSide control_side_{instance_, parts_.control.safety()};
@@ -272,9 +296,12 @@ class LiveRun {
                               &leaving_};
   CtlService ctl_{place_of(options_), instance_};
   LiveService live_{options_.live, instance_, assembly_};
+  Ros2Service ros2_{options_.ros2, instance_, assembly_, nullptr,
+                    options_.virtual_time ? -1 : timing_of(options_, assembly_.robot().engine).cpu};
   ControlTask control_{parts_.control, truth_.get()};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;
+  std::uint32_t told_flights_ = 0;
   bool failed_ = false;
 };
 

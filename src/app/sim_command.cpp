@@ -53,6 +53,7 @@ void refuse_wrong_mixtures(const SimOptions& options) {
   if (!options.checkpoints.empty()) refuse_option("--checkpoint", "does not go with --from");
   if (options.watch) refuse_option("--watch", "does not go with --from");
   if (options.live.wanted()) refuse_option("--live", "does not go with --from");
+  if (options.ros2.wanted()) refuse_option("--ros2", "does not go with --from");
   if (!options.branches.empty() && !(options.set.empty() && options.play.empty() && options.push.empty()))
     refuse_option("--branch", "says itself what to set, play and push");
 }
@@ -76,6 +77,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
   CLI::Option* record =
       sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
   sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
+  add_record_options(*sim, options.recording);
   CLI::Option* realtime = sim->add_flag("--realtime", options.realtime, "Run at the pace of the wall clock");
   sim->add_flag("--watch", options.watch, "Reload behaviors when their files are saved")->needs(realtime);
   sim->add_option("--checkpoint", options.checkpoints, "Leave a checkpoint at a time, to go on from with --from")
@@ -93,9 +95,11 @@ void add_sim(CLI::App& app, SimOptions& options) {
   sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
       ->type_name("S")
       ->check(CLI::Range(0.001, 1e6));
+  add_report_place(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
   add_ctl_place(*sim, options.ctl);
   add_live_place(*sim, options.live);
-  sim->add_option("--speed", options.speed, "With --live: as a multiple of the wall clock's pace")
+  add_ros2_place(*sim, options.ros2);
+  sim->add_option("--speed", options.speed, "With --live or --ros2: as a multiple of the wall clock's pace")
       ->type_name("X")
       ->check(CLI::Range(0.01, 100.0));
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");

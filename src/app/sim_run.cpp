@@ -3,25 +3,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <thread>
 
 #include "input_files.h"
 #include "kadans/config/experiment_config.h"
-#include "kadans/remote/run_description.h"
 #include "live/live_pace.h"
+#include "live/live_service.h"
+#include "report/run_page.h"
 #include "terminal.h"
 
 namespace kadans {
 namespace {
 
 constexpr const char* height_signal = "plant.base.height_m";
-
-std::string read_all(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // A run that was asked to be short says nothing about what was to come later: such checks are not judged.
 std::vector<ScenarioCheck> reached_checks(const ScenarioConfig& scenario, double duration_s) {
@@ -74,6 +68,7 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
       metrics_(assembly_.catalog().signals,
                options.metrics.empty() ? std::vector<MetricConfig>() : read_metrics(options.metrics), options.metrics),
       height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
+      record_plan_(record_plan(assembly_, options.recording, false)),
       continuation_(std::move(continuation)) {
   if (continuation_) {
     inputs_ = continuation_->from.inputs;
@@ -90,12 +85,13 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
 }
 
 void SimRun::make_reachable() {
-  const bool paced = options_.realtime || options_.live.wanted();
-  SimRemote::Places places{options_.ctl, options_.live};
+  const bool paced = options_.realtime || options_.live.wanted() || options_.ros2.wanted();
+  SimRemote::Places places{options_.ctl, options_.live, options_.ros2};
   places.ctl.wanted = places.ctl.wanted && (paced || !options_.ctl.folder.empty());
-  if (!places.ctl.wanted && !places.live.wanted()) return;
+  if (!places.ctl.wanted && !places.live.wanted() && !places.ros2.wanted()) return;
   inputs_.run["ctl"] = "yes";
-  remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_, SimRemote::Logs{told_, echo_, record_log_, log_});
+  remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_, RecordPlan{record_plan_.settings, {}, {}},
+                                        SimRemote::Logs{told_, echo_, record_log_, log_});
   remote_->pace().speed = options_.speed;
 }
 
@@ -106,7 +102,7 @@ int SimRun::run() {
   std::vector<RunObserver*> observers{&progress, &height_, &evidence_, &metrics_, this};
   Pace pace;
   std::optional<LivePacer> pacer;
-  if (options_.live.wanted() && remote_) {
+  if ((options_.live.wanted() || options_.ros2.wanted()) && remote_) {
     observers.push_back(&pacer.emplace(remote_->pace()));
   } else if (options_.realtime) {
     observers.push_back(&pace);
@@ -114,7 +110,7 @@ int SimRun::run() {
   if (trail_) observers.push_back(trail_.get());
   if (checkpoints_) observers.push_back(checkpoints_.get());
   if (remote_) {
-    remote_->begin(recorder_.get(), record_);
+    remote_->begin(recorder_.get(), record_.empty() ? "the flight recorder's" : record_);
     observers.push_back(remote_.get());
     if (!recorder_) late_log_.set(&record_log_);
   }
@@ -132,6 +128,9 @@ int SimRun::report(RunResult& result) {
   result.scenario = scenario_.name;
   result.seed = seed_;
   finish_record(result);
+  for (std::size_t i = 0; i < checks_.size(); ++i) wanted_.push_back(checks_.config(i));
+  traces_ = {height_.trace()};
+  if (options_.report.wanted()) write_page(result);
   print(result);
   if (checkpoints_) {
     for (const CheckpointOrder& order : checkpoints_->missed())
@@ -142,8 +141,10 @@ int SimRun::report(RunResult& result) {
 }
 
 void SimRun::tick(double, std::span<const double>) {
+  if (!recorder_) return;
   // A failing disk is reported when the record is closed; the run goes on.
-  if (recorder_) (void)recorder_->drain();
+  (void)recorder_->drain();
+  if (recorder_->flight() != nullptr && recorder_->flight()->due()) fly();
 }
 
 void SimRun::between_ticks(const RunMark& mark) {
@@ -190,6 +191,10 @@ int SimRun::tell_parting() const {
 
 std::string SimRun::record_name() const {
   namespace fs = std::filesystem;
+  if (options_.no_record && options_.report.wanted()) {  // for the report alone
+    fs::create_directories(options_.report.folder);
+    return (fs::path(options_.report.folder) / (report_file(scenario_.name, seed_) + ".mcap.part")).string();
+  }
   const fs::path asked = options_.record.empty() ? fs::path(scenario_.name + ".mcap") : fs::path(options_.record);
   const bool several = continuation_ && continuation_->branches.size() > 1;
   if (!continuation_ || (!options_.record.empty() && !several)) return asked.string();
@@ -198,31 +203,61 @@ std::string SimRun::record_name() const {
 }
 
 // A file that was asked for and cannot be written is an error; the usual one is not.
-void SimRun::start_record() {
-  if (options_.no_record) return;
+bool SimRun::open_record() {
+  if (options_.no_record && !options_.report.wanted()) return false;
   record_ = record_name();
-  recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals);
-  if (!recorder_->open(record_)) {
-    const std::string why = recorder_->error();
-    recorder_.reset();
-    record_.clear();
-    if (!options_.record.empty()) throw InputError({.message = why});
-    return print_error(why + "; this run leaves no record");
+  if (recorder_->open(record_)) return true;
+  const std::string why = recorder_->error();
+  record_.clear();
+  if (!options_.record.empty()) throw InputError({.message = why});
+  print_error(why + "; this run leaves no record");
+  return false;
+}
+
+void SimRun::start_record() {
+  const bool flies = record_plan_.flight.kept_s > 0;
+  if (options_.no_record && !options_.report.wanted() && !flies) return;
+  recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals, record_plan_.settings, record_plan_.flight);
+  if (open_record()) {
+    const RobotTexts texts = robot_texts(assembly_);
+    (void)recorder_->describe_run(inputs_);
+    (void)recorder_->describe_robot(texts.name, texts.urdf, 0);
+    (void)recorder_->describe_parts(texts.description, 0);
+  } else if (!flies) {
+    return recorder_.reset();
   }
-  const RobotModel& model = assembly_.robot().model;
-  (void)recorder_->describe_run(inputs_);
-  (void)recorder_->describe_robot(model.name, read_all(model.file), 0);
-  (void)recorder_->describe_parts(run_description(assembly_.robot(), assembly_.catalog(), assembly_.own_host()), 0);
   late_log_.set(&recorder_->events());
   if (!remote_) assembly_.record_to(recorder_.get());
+}
+
+// A fault latched.
+void SimRun::fly() {
+  FlightRecorder& flight = *recorder_->flight();
+  const std::string file = std::filesystem::path(record_name()).replace_extension(".flight.mcap").string();
+  if (!flight.begin(file)) return print_error(flight.error());
+  const RobotTexts texts = robot_texts(assembly_);
+  (void)flight.dump().describe_run(inputs_);
+  (void)flight.dump().describe_robot(texts.name, texts.urdf, 0);
+  (void)flight.dump().describe_parts(texts.description, 0);
 }
 
 void SimRun::finish_record(const RunResult& result) {
   if (!recorder_) return;
   (void)recorder_->drain();
-  (void)recorder_->describe("result", {{"state_hash", hash_text(result.state_hash)},
-                                       {"control_ticks", std::to_string(result.control_ticks)},
-                                       {"passed", result.passed ? "yes" : "no"}});
+  if (FlightRecorder* flight = recorder_->flight(); flight != nullptr) {
+    if (flight->due(true)) fly();
+    flight->finish();
+    if (!flight->error().empty()) print_error("the flight record is not complete: " + flight->error());
+    if (flight->dumps() > 0) std::fprintf(stderr, "flight record: %s\n", flight->file().c_str());
+  }
+  if (recorder_->is_open()) {
+    const auto failed = std::ranges::count(result.checks, false, &CheckResult::passed);
+    (void)recorder_->describe("result", {{"state_hash", hash_text(result.state_hash)},
+                                         {"control_ticks", std::to_string(result.control_ticks)},
+                                         {"passed", result.passed ? "yes" : "no"},
+                                         {"checks", std::to_string(result.checks.size())},
+                                         {"checks_failed", std::to_string(failed)}});
+  }
   if (!recorder_->close()) print_error("the record is not complete: " + recorder_->error());
   if (recorder_->dropped() > 0) print_error(std::to_string(recorder_->dropped()) + " rows are missing in the record");
 }
@@ -236,6 +271,41 @@ std::string SimRun::repeat() const {
   for (const std::string& setting : branch_.set) command += " --set '" + setting + "'";
   for (const std::string& push : branch_.push) command += " --push " + push;
   return command;
+}
+
+ReportSubject SimRun::subject(const RunResult& result) const {
+  const std::string name = scenario_.name + (branch_.name.empty() ? "" : " (" + branch_.name + ")");
+  return {.result = result,
+          .log = log_,
+          .model = assembly_.robot().model,
+          .checks = wanted_,
+          .traces = traces_,
+          .title = name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
+          .record = record_,
+          .repeat = repeat()};
+}
+
+// A record that only the page needed goes.
+void SimRun::write_page(const RunResult& result) {
+  std::vector<std::string> seen;
+  for (std::size_t i = 0; i < checks_.size(); ++i) {
+    if (result.checks[i].passed) continue;
+    for (const SignalId signal : checks_.signals_of(i)) seen.push_back(assembly_.catalog().signals.info(signal).name);
+  }
+  const std::string record = record_;
+  if (options_.no_record) record_.clear();
+  const ReportSubject about = subject(result);
+  const std::filesystem::path file =
+      write_run_page({.subject = about,
+                      .scenario = scenario_,
+                      .name = scenario_.name + (branch_.name.empty() ? "" : "." + branch_.name),
+                      .record = record,
+                      .quantities = assembly_.quantities(),
+                      .evidence = evidence_.around(result.checks),
+                      .check_signals = seen},
+                     options_.report);
+  if (options_.no_record) std::filesystem::remove(record);
+  if (!options_.json) std::printf("  report: %s\n\n", file.c_str());
 }
 
 void SimRun::print(const RunResult& result) const {
@@ -254,20 +324,8 @@ void SimRun::print(const RunResult& result) const {
     std::puts(json_report(result, context).c_str());
     return;
   }
-  std::vector<ScenarioCheck> wanted;
-  for (std::size_t i = 0; i < checks_.size(); ++i) wanted.push_back(checks_.config(i));
-  const std::vector<ReportTrace> traces{height_.trace()};
-  const std::string name = scenario_.name + (branch_.name.empty() ? "" : " (" + branch_.name + ")");
-  const ReportSubject subject{.result = result,
-                              .log = log_,
-                              .model = assembly_.robot().model,
-                              .checks = wanted,
-                              .traces = traces,
-                              .title = name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
-                              .record = record_,
-                              .repeat = repeat()};
   const std::string text =
-      text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
+      text_report(subject(result), {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
   std::fputs(text.c_str(), stdout);
   for (const MetricValue& metric : metrics_.values()) std::printf("  %s = %.6g\n", metric.name.c_str(), metric.value);
 }

@@ -48,16 +48,23 @@ class SimRun final : public RunObserver {
   int run();
 
   void tick(double time_s, std::span<const double> row) override;
+  void fault(const Fault& fault) override {
+    if (recorder_) recorder_->fault(fault);
+  }
   void between_ticks(const RunMark& mark) override;
   bool stop_asked() const override { return parted_ || split_; }
 
  private:
   void make_reachable();
   void start_record();
+  bool open_record();
+  void fly();
   void finish_record(const RunResult& result);
   std::string record_name() const;
   int report(RunResult& result);
   void print(const RunResult& result) const;
+  ReportSubject subject(const RunResult& result) const;
+  void write_page(const RunResult& result);
   std::string repeat() const;
   void reach_branch(const RunMark& mark);
   void take_branch(std::size_t index, const RunMark& mark);
@@ -80,8 +87,11 @@ class SimRun final : public RunObserver {
   TraceObserver height_;
   std::unique_ptr<HashTrail> trail_;
   std::unique_ptr<CheckpointWriter> checkpoints_;
+  RecordPlan record_plan_;
   std::unique_ptr<Recorder> recorder_;
   std::string record_;
+  std::vector<ScenarioCheck> wanted_;  // for the report
+  std::vector<ReportTrace> traces_;    // likewise
 
   std::optional<SimContinuation> continuation_;
   std::vector<BranchActions> actions_;  // of the branches

@@ -49,9 +49,9 @@ void tell(const MergedSweep& part, const SweepResults& results, const Shard& sha
 int run_sweep(const SweepOptions& options) {
   const SweepPlan plan = read_plan(options);
   const std::vector<SweepSubject> subjects = read_sweep_subjects(plan);
-  const std::string version = build_version();
-  std::vector<SweepCase> cases = sweep_cases(plan, subjects, version);
-  const SweepManifest manifest = manifest_of(plan, cases, version);
+  const std::string build = build_version();
+  std::vector<SweepCase> cases = sweep_cases(plan, subjects, build);
+  const SweepManifest manifest = manifest_of(plan, cases, build);
   const fs::path folder =
       options.out.empty() ? fs::path("sweeps") / (plan.name + "-" + manifest.plan.substr(0, 8)) : fs::path(options.out);
   const Shard shard = options.shard.empty() ? slurm_shard().value_or(Shard{}) : parse_shard(options.shard);

@@ -6,8 +6,10 @@
 
 #include "commands.h"
 #include "job_progress.h"
+#include "kadans/campaign/durable_file.h"
 #include "kadans/campaign/golden.h"
 #include "kadans/campaign/scenario_search.h"
+#include "kadans/campaign/suite_page.h"
 #include "kadans/campaign/suite_report.h"
 #include "kadans/config/project_root.h"
 #include "line_editor.h"
@@ -70,6 +72,7 @@ class Suite final : public JobWatcher {
       jobs.push_back({{fs::read_symlink("/proc/self/exe").string(), "sim", run.scenario.file.string(), "--seed",
                        std::to_string(run.seed), "--json", "--no-record"},
                       run.scenario.wall_limit_s});
+      if (options_.report.wanted()) add_report(jobs.back());
       if (golden_ != nullptr) jobs.back().arguments.insert(jobs.back().arguments.end(), {"--hash-every", "1"});
     }
     run_jobs(jobs, options_.jobs, *this);
@@ -103,6 +106,14 @@ class Suite final : public JobWatcher {
   bool stop_asked() const override { return stop_ || interrupted(); }
 
  private:
+  // Its process writes the page, so there is more to wait for.
+  void add_report(Job& job) const {
+    constexpr double drawing_s = 120;
+    job.arguments.insert(job.arguments.end(),
+                         {"--report", fs::absolute(options_.report.folder).string(), "--film", options_.report.film});
+    job.wall_limit_s += drawing_s;
+  }
+
   // Another state is a failure of a run that passes otherwise.
   void check_golden(RunOutcome& run) const {
     if (run.status != RunStatus::passed && run.status != RunStatus::failed) return;
@@ -138,6 +149,11 @@ class Suite final : public JobWatcher {
     if (!interrupted()) failed_runs.write(failures);
     if (!options_.json) std::fputs(suite_summary(outcomes, progress_.elapsed_s(), style_).c_str(), stdout);
     if (options_.renew_golden && !interrupted()) renew_golden(outcomes);
+    if (options_.report.wanted()) {
+      const fs::path page = fs::path(options_.report.folder) / "index.html";
+      write_durably(page, suite_page(outcomes, progress_.elapsed_s(), page.parent_path()));
+      std::fprintf(options_.json ? stderr : stdout, "report: %s\n", page.c_str());
+    }
     if (options_.junit.empty()) return;
     std::ofstream file(options_.junit);
     file << junit_xml(outcomes, progress_.elapsed_s());
@@ -195,6 +211,7 @@ int run_test(const TestOptions& options) {
   std::unique_ptr<GoldenHashes> golden;
   if (options.golden || options.renew_golden) golden = std::make_unique<GoldenHashes>(golden_file(folder));
   catch_interrupts();
+  if (options.report.wanted()) fs::create_directories(options.report.folder);
   return Suite(options, std::move(runs), golden.get()).run(failed_runs);
 }
 

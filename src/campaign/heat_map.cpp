@@ -7,6 +7,7 @@
 #include <set>
 
 #include "kadans/config/problems.h"
+#include "kadans/scenario/html_page.h"
 #include "kadans/signal/number_text.h"
 
 namespace kadans {
@@ -14,19 +15,6 @@ namespace {
 
 constexpr std::size_t values_max = 24, bins = 10;
 constexpr int field_width = 56, field_height = 36, left = 110, top = 48, bottom = 70, legend = 120;
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<')
-      safe += "&lt;";
-    else if (c == '&')
-      safe += "&amp;";
-    else
-      safe += c;
-  }
-  return safe;
-}
 
 // The columns or rows of one quantity.
 struct Axis {
@@ -99,7 +87,7 @@ class Picture {
         "font-family=\"sans-serif\" font-size=\"11\" text-anchor=\"middle\">\n",
         width, height);
     text += printed("<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", width, height);
-    text += printed("<text x=\"%d\" y=\"24\" font-size=\"14\" text-anchor=\"start\">", left) + escaped(title_) +
+    text += printed("<text x=\"%d\" y=\"24\" font-size=\"14\" text-anchor=\"start\">", left) + html_text(title_) +
             "</text>\n";
     for (std::size_t row = 0; row < y_.size(); ++row) {
       for (std::size_t column = 0; column < x_.size(); ++column) text += field_svg(column, row);
@@ -156,10 +144,10 @@ class Picture {
                       y_of(i) + field_height / 2 + 4, y_.label(i).c_str());
     const int middle_x = left + static_cast<int>(x_.size()) * field_width / 2;
     const int middle_y = top + static_cast<int>(y_.size()) * field_height / 2;
-    text +=
-        printed("<text x=\"%d\" y=\"%d\" font-size=\"12\">", middle_x, bottom_y + 40) + escaped(x_.name) + "</text>\n";
-    text += printed("<text transform=\"translate(20 %d) rotate(-90)\" font-size=\"12\">", middle_y) + escaped(y_.name) +
+    text += printed("<text x=\"%d\" y=\"%d\" font-size=\"12\">", middle_x, bottom_y + 40) + html_text(x_.name) +
             "</text>\n";
+    text += printed("<text transform=\"translate(20 %d) rotate(-90)\" font-size=\"12\">", middle_y) +
+            html_text(y_.name) + "</text>\n";
     constexpr int parts = 5;
     const int legend_x = x_of(x_.size()) + 20;
     for (int i = 0; i < parts; ++i) {

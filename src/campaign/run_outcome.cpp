@@ -10,7 +10,7 @@
 namespace kadans {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 // A number that is not finite is null in JSON.
 double number(const Json& value) {

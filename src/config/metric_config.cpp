@@ -5,14 +5,14 @@
 namespace kadans {
 namespace {
 
-const std::array<std::string, 8> kind_names{"max", "min", "mean", "rms", "end", "share", "first_time", "since"};
+const std::array<std::string, 8> metric_kinds{"max", "min", "mean", "rms", "end", "share", "first_time", "since"};
 constexpr NumberRange time_range{0, 1e6, "s"};
 
 bool takes_signal(MetricKind kind) { return kind <= MetricKind::end; }
 bool takes_condition(MetricKind kind) { return kind >= MetricKind::end; }
 
 void verify(const Fields& f, const MetricConfig& metric, Problems& problems) {
-  const std::string kind = in_quotes(kind_names.at(static_cast<std::size_t>(metric.kind)));
+  const std::string kind = in_quotes(metric_kinds.at(static_cast<std::size_t>(metric.kind)));
   if (f.has("signal") == f.has("that")) {
     problems.add(f.place(), f.path() + (f.has("that") ? " has both signal and that, must have one of them"
                                                       : " needs a signal, or a condition in that"));
@@ -34,7 +34,7 @@ void verify(const Fields& f, const MetricConfig& metric, Problems& problems) {
 void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics, Problems& problems) {
   f.map("metrics", "numbers that each run is judged by, by their names", [&](Fields& e) {
     MetricConfig metric{.name = e.key(), .place = e.key_place(), .signal = {}, .that = {}};
-    e.choice("kind", metric.kind, kind_names, "what is made of the signal or the condition", Need::required);
+    e.choice("kind", metric.kind, metric_kinds, "what is made of the signal or the condition", Need::required);
     e.string("signal", metric.signal, "max, min, mean, rms, end: name of the signal");
     e.string("that", metric.that, "end, share, first_time, since: a condition on signals in Lua");
     e.number("from_s", metric.from_s, time_range, "looked at from this time on");
@@ -48,7 +48,7 @@ void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics, Problems& pro
 }
 
 std::string definition(const MetricConfig& metric) {
-  return metric.name + " " + kind_names.at(static_cast<std::size_t>(metric.kind)) + " [" + metric.signal + "] [" +
+  return metric.name + " " + metric_kinds.at(static_cast<std::size_t>(metric.kind)) + " [" + metric.signal + "] [" +
          metric.that + "] " + number_text(metric.from_s) + " " + number_text(metric.until_s);
 }
 

@@ -55,7 +55,9 @@ void RobotReader::read(Fields& f) {
            [&](Fields& safe) { safe_fields(safe, config_, problems_); });
   f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });
   f.object("start", "where the robot starts", [&](Fields& e) { start(e); });
+  f.object("joystick", "a joystick that behaviors read as s.joystick", [&](Fields& e) { joystick(e); });
   f.object("estimate", "how the estimator is set up", [&](Fields& e) { estimate(e); });
+  f.object("record", "what records hold", [&](Fields& record) { record_fields(record, config_.record); });
   f.object("safety", "limits and reactions of the safety layer", [&](Fields& e) { safety(e); });
   f.object(
       "control", "control objects and control sets", [&](Fields& e) { control(e); }, Need::required);
@@ -98,7 +100,7 @@ std::vector<std::size_t> RobotReader::joints(std::string_view pattern, TextPlace
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
                                    std::span<const std::string> object_types) {
   RobotConfig config;
-  config.file = file;
+  config.file = config.record.signals.file = file;
   const BasedJson json = parse_based_json(text, file);
   if (!json.bases.empty()) (void)read_robot_config(json.bases.front(), object_types);
   Problems problems(file);

@@ -31,6 +31,9 @@ class RobotReader {
   void start(Fields& f);
   void estimate(Fields& f);
 
+  // robot_joystick.cpp
+  void joystick(Fields& f);
+
   // robot_safety.cpp
   void safety(Fields& f);
   void reaction(Fields& entry);

@@ -6,12 +6,12 @@
 namespace kadans {
 namespace {
 
-const std::array<std::string, 6> kind_names{"always", "never", "eventually", "at_end", "within", "settles"};
+const std::array<std::string, 6> check_kinds{"always", "never", "eventually", "at_end", "within", "settles"};
 constexpr NumberRange time_range{0, 1e6, "s"};
 
 void list_fields(Fields& f, ScenarioCheck& check) {
   f.string("name", check.name, "what is shown to hold", Need::required);
-  f.choice("kind", check.kind, kind_names, "when it must (never: must not) hold", Need::required);
+  f.choice("kind", check.kind, check_kinds, "when it must (never: must not) hold", Need::required);
   f.string("signal", check.signal, "name of a signal that must be in min..max");
   f.number("min", check.min, {}, "least value, in the signal's unit");
   f.number("max", check.max, {}, "greatest value, in the signal's unit");
@@ -28,7 +28,7 @@ void list_fields(Fields& f, ScenarioCheck& check) {
 // What each kind needs and what means nothing to it.
 void verify_kind(const Fields& f, const ScenarioCheck& check, Problems& problems) {
   const bool clocked = check.kind == CheckKind::within || check.kind == CheckKind::settles;
-  const auto& kind = kind_names.at(static_cast<std::size_t>(check.kind));
+  const auto& kind = check_kinds.at(static_cast<std::size_t>(check.kind));
   const auto unasked = [&](const char* key) {
     if (f.has(key)) problems.add(f.place(key), f.path(key) + " means nothing to a check of kind " + in_quotes(kind));
   };

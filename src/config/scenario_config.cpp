@@ -36,6 +36,16 @@ void variant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   variation_fields(f, "randomise", scenario.randomise, problems);
 }
 
+void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+  ScenarioJoystick& joystick = scenario.joystick;
+  f.string("recording", joystick.recording, "input events, as evemu-record or cat wrote them", Need::required);
+  joystick.place = f.place("recording");
+  if (!joystick.recording.empty())
+    joystick.recording = resolve_file(joystick.recording, joystick.place, "recording", problems).string();
+  f.number("at_s", joystick.at_s, {0, duration_max_s, "s"}, "when its first event comes");
+  f.number("lost_at_s", joystick.lost_at_s, {0, duration_max_s, "s"}, "from when on it is unplugged; else never");
+}
+
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
@@ -75,6 +85,8 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     if (e.reading()) scenario.faults.push_back(std::move(fault));
   });
   world_fields(f, scenario.world, problems);
+  f.object("joystick", "a joystick that is played from a recording",
+           [&](Fields& e) { joystick_fields(e, scenario, problems); });
   if (scenario.plant == PlantKind::ideal && f.has("world")) {
     problems.add(f.place("world"), "world: only the bullet plant has one, this scenario's plant is ideal");
   }

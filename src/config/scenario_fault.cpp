@@ -5,7 +5,7 @@
 namespace kadans {
 namespace {
 
-using Kind = ScenarioFault::Kind;
+using FaultKind = ScenarioFault::Kind;
 
 struct KindInfo {
   const char* name;
@@ -30,7 +30,7 @@ constexpr std::array<KindInfo, 16> kinds{{
     {"clock_missed", "control ticks missed in a row, each time"},
 }};
 
-std::array<std::string, kinds.size()> kind_names() {
+std::array<std::string, kinds.size()> names_of_kinds() {
   std::array<std::string, kinds.size()> names;
   for (std::size_t i = 0; i < kinds.size(); ++i) names[i] = kinds[i].name;
   return names;
@@ -51,7 +51,8 @@ void verify(const Fields& f, const ScenarioFault& fault, Problems& problems) {
   if (!(fault.from_s < fault.until_s))
     problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(fault.until_s) +
                                          ", must be after from_s, " + number_text(fault.from_s) + " s");
-  if ((fault.kind == Kind::drive_late || fault.kind == Kind::commands_late || fault.kind == Kind::clock_missed) &&
+  if ((fault.kind == FaultKind::drive_late || fault.kind == FaultKind::commands_late ||
+       fault.kind == FaultKind::clock_missed) &&
       !(fault.size >= 1 && fault.size <= 255))
     problems.add(f.place("size"), f.path("size") + " is " + number_text(fault.size) + ", must be 1..255 ticks");
 }
@@ -60,7 +61,7 @@ void verify(const Fields& f, const ScenarioFault& fault, Problems& problems) {
 
 void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
   constexpr NumberRange time{0, 1e6, "s"};
-  f.choice("kind", fault.kind, kind_names(), "what fails and how", Need::required);
+  f.choice("kind", fault.kind, names_of_kinds(), "what fails and how", Need::required);
   f.string("of", fault.of.name, "of sensors: a joint, a foot's link, or imu; of drives: a joint");
   f.number("from_s", fault.from_s, time, "from this time on");
   f.number("until_s", fault.until_s, time, "up to this time, else to the end");

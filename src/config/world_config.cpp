@@ -12,7 +12,7 @@ namespace kadans {
 namespace {
 
 enum class Kind : std::uint8_t { box, ramp, stairs, wall, ball, pendulum, ground, payload };
-const std::array<std::string, 8> kind_names{"box", "ramp", "stairs", "wall", "ball", "pendulum", "ground", "payload"};
+const std::array<std::string, 8> part_kinds{"box", "ramp", "stairs", "wall", "ball", "pendulum", "ground", "payload"};
 
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 constexpr NumberRange anywhere_m{-1000, 1000, "m"}, size_m{1e-3, 1000, "m"}, time_s{0, 1e6, "s"}, mass{1e-4, 1e4, "kg"};
@@ -38,7 +38,7 @@ class EntryReader {
   EntryReader(Fields& f, Entry& entry, Problems& problems) : f_(f), entry_(entry), problems_(problems) {}
 
   bool read() {
-    const bool known = f_.choice("kind", entry_.kind, kind_names, "what it is", Need::required);
+    const bool known = f_.choice("kind", entry_.kind, part_kinds, "what it is", Need::required);
     all_ = !known;
     if (known && entry_.kind == Kind::pendulum) entry_.length_m = 1.5, entry_.radius_m = 0.1, entry_.mass_kg = 2;
     placing();

@@ -55,6 +55,11 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
   plans_.reserve(catalog.sets.size());  // parameters point into the members
   for (const ControlSetInfo& set : catalog.sets) make_plan(catalog, set);
   declare(catalog);
+  SetpointState ignored;
+  for (SetpointId id = 0; id < catalog.setpoints.size(); ++id) {
+    const Setpoint& setpoint = catalog.setpoints[id];
+    if (objects_[setpoint.owner]->setpoint_state(setpoint.channel, ignored)) catalog.setpoints.set_follows(id);
+  }
 }
 
 void ControlSets::check_drives() {
@@ -126,13 +131,13 @@ void ControlSets::restart(const ControlInput& input) noexcept {
   start_newcomers(input);
 }
 
-void ControlSets::compose_joints(const Member& member, ActuationFrame& actuation) noexcept {
+void ControlSets::compose_joints(const Member& member, Writers& writers, ActuationFrame& actuation) const noexcept {
   const ActuationFrame& proposal = *proposals_[member.object];
   const std::uint32_t bit = 1U << member.object;
   for (const std::size_t joint : catalog_.objects[member.object].joints) {
     const bool replaces = member.composition == Composition::set || member.composition == Composition::priority;
     if (!compose(member.composition, member.weight, proposal.joints[joint], actuation.joints[joint])) continue;
-    writers_[joint] = replaces ? bit : writers_[joint] | bit;
+    writers[joint] = replaces ? bit : writers[joint] | bit;
   }
 }
 
@@ -154,7 +159,7 @@ void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationF
         const ControlInput slower{input.joints, input.status, input.last, input.time_ns, input.dt_s * member.divisor};
         objects_[member.object]->step(slower, *proposals_[member.object]);
       }
-      compose_joints(member, actuation);
+      compose_joints(member, writers_, actuation);
     }
   });
   fresh_ = 0;
@@ -172,6 +177,17 @@ void ControlSets::drive(const ControlInput& input, JointMask blind, ActuationFra
       if ((blind & joint_bit(joint)) == 0) actuation.joints[joint] = motors.joints[joint];
     }
   }
+}
+
+void ControlSets::rehearse(std::uint64_t tick, const ControlInput& input, ActuationFrame& scratch) const noexcept {
+  Writers writers{};
+  each_bit(active_, [&](std::uint32_t set) {
+    for (const Member& member : plans_[set]) {
+      if (tick % member.divisor == 0) objects_[member.object]->rehearse(input);
+      compose_joints(member, writers, scratch);
+    }
+  });
+  unheld_.step(input.joints, scratch);
 }
 
 void ControlSets::fill(Snapshot& snapshot) const noexcept {

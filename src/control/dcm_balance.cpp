@@ -56,6 +56,7 @@ void DcmBalance::declare(Declaration& d) {
               &c.offset_x_m);
   d.parameter({"ankle_per_m", "", 0, 10, 1, "Shift of the centre of pressure per error."}, &c.ankle_per_m);
   d.parameter({"ankle_max_Nm", "Nm", 0, 50, 12, "Bound of an ankle's torque."}, &c.ankle_max_Nm);
+  d.parameter({"smooth_s", "s", 0, 0.1, 0, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
   d.parameter({"reach_front_m", "m", 0, 0.5, 0.1, "Error forward that the ankles hold."}, &c.reach_front_m);
   d.parameter({"reach_back_m", "m", 0, 0.5, 0.06, "Error backward that the ankles hold."}, &c.reach_back_m);
   d.parameter({"reach_side_m", "m", 0, 0.5, 0, "Error to the side that the posture holds."}, &c.reach_side_m);
@@ -139,9 +140,11 @@ void DcmBalance::step(const ControlInput& input, ActuationFrame& actuation) noex
   const bool stands = measure(input);
   const double most = share_per_s * input.dt_s;
   state_.share = stands ? state_.share + std::clamp(config_.share - state_.share, -most, most) : 0;
+  const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
   for (Part& part : parts_) {
     const double wanted_Nm = stands ? state_.share * law_Nm(part.role) : 0;
-    part.effort_Nm = std::clamp(wanted_Nm, -part.axis.effort_max_Nm, part.axis.effort_max_Nm);
+    const double bounded_Nm = std::clamp(wanted_Nm, -part.axis.effort_max_Nm, part.axis.effort_max_Nm);
+    part.effort_Nm = stands ? part.effort_Nm + smooth * (bounded_Nm - part.effort_Nm) : 0;
     actuation.joints[part.axis.joint] = {.effort_Nm = part.effort_Nm, .mode = ActuationMode::effort};
   }
 }

@@ -107,7 +107,7 @@ void Gaze::declare_joint(Declaration& declaration, std::size_t i) {
   tables.tunable("centring", "", 0, 10, part.of_eye ? 1 : 0.1, &part.law.centring, "How strongly it is drawn to 0.");
   tables.tunable("velocity_max_rad_s", "rad/s", 0, fastest, fastest, &part.law.velocity_max_rad_s, "Speed limit.");
   tables.tunable("acceleration_max_rad_s2", "rad/s2", 0.1, 10000, part.of_eye ? 2000 : 100,
-                 &part.config.acceleration_max_rad_s2, "Limit of the reference's acceleration.");
+                 &part.law.acceleration_max_rad_s2, "Limit of the reference's acceleration.");
   tables.tunable("lead_max_rad", "rad", 0.001, 10, 0.3, &part.config.lead_max_rad,
                  "How far the reference may be from the joint.");
   tables.signal("reference_rad", "rad", "Where the joint is led.", &part.state.reference_rad);
@@ -202,9 +202,10 @@ void Gaze::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
       continue;
     }
     if (!part.running) take_over(part, input);
-    const double change = part.config.acceleration_max_rad_s2 * dt_s;
+    const double change = part.law.acceleration_max_rad_s2 * dt_s;
     const double wanted_rad_s = led ? rates.solution.velocity_rad_s[i] : 0;
     part.asked_rad_s += std::clamp(wanted_rad_s - part.asked_rad_s, -change, change);
+    part.asked_rad_s = braked(part, part.asked_rad_s, dt_s);
     const double reflex = led && part.of_eye ? reflex_rad_s(i, rates, input.joints) : 0;
     integrate(part, part.asked_rad_s + reflex, joint.position_rad, dt_s);
     out = {.effort_Nm = part.fading.step(dt_s),
@@ -214,12 +215,22 @@ void Gaze::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   }
 }
 
+// As fast as it can still stop before its limits.
+double Gaze::braked(const Part& part, double velocity_rad_s, double dt_s) noexcept {
+  const double a = part.law.acceleration_max_rad_s2, half = 0.5 * a * dt_s;  // what half a tick takes off
+  const auto most_rad_s = [a, half](double room_rad) {
+    return std::sqrt(half * half + 2 * a * std::max(0.0, room_rad - margin_rad)) - half;
+  };
+  return std::clamp(velocity_rad_s, -most_rad_s(part.state.reference_rad - part.axis.lower_rad),
+                    most_rad_s(part.axis.upper_rad - part.state.reference_rad));
+}
+
 // Short of the joint's limits, so that a drive that overshoots finds no soft stop, and near where it is; a reference
 // that is already beyond comes no farther.
 void Gaze::integrate(Part& part, double velocity_rad_s, double position_rad, double dt_s) noexcept {
   JointState& s = part.state;
   const double fastest = part.law.velocity_max_rad_s, lead = part.config.lead_max_rad;
-  s.velocity_rad_s = std::clamp(velocity_rad_s, -fastest, fastest);
+  s.velocity_rad_s = braked(part, std::clamp(velocity_rad_s, -fastest, fastest), dt_s);
   const double lowest = std::max(part.axis.lower_rad + margin_rad, position_rad - lead);
   const double highest = std::min(part.axis.upper_rad - margin_rad, position_rad + lead);
   const double free_rad = s.reference_rad + dt_s * s.velocity_rad_s;

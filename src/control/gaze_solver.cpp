@@ -11,10 +11,11 @@
 namespace kadans {
 namespace {
 
-constexpr double near_m = 0.05;        // a target nearer than this counts as so far away
-constexpr double steep = 0.1;          // h / distance from which on a target above an eye turns its yaw less
-constexpr double margin_rad = 0.03;    // before a position limit
-constexpr double approach_per_s = 20;  // of a position limit
+constexpr double near_m = 0.05;              // a target nearer than this counts as so far away
+constexpr double steep = 0.1;                // h / distance from which on a target above an eye turns its yaw less
+constexpr double barrier_margin_rad = 0.03;  // before a position limit
+constexpr double approach_per_s = 20;        // of a position limit, at the end
+constexpr double braking = 0.7;              // share of acceleration_max that stops a joint before it
 constexpr double eyes_singular = 0.5;  // volume of what the eyes can do, below which the damping rises; ahead it is 1.4
 
 Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
@@ -138,9 +139,18 @@ double GazeSolver::damping2() const noexcept {
 
 GazeSolver::Bounds GazeSolver::bounds(const Part& part, double position_rad) const noexcept {
   const double most = part.law.velocity_max_rad_s;
-  const double below = approach_per_s * (part.limits.lower_rad + margin_rad - position_rad);
-  const double above = approach_per_s * (part.limits.upper_rad - margin_rad - position_rad);
+  const double below = approach_per_s * (part.limits.lower_rad + barrier_margin_rad - position_rad);
+  const double above = approach_per_s * (part.limits.upper_rad - barrier_margin_rad - position_rad);
   return {std::clamp(below, -1e3 * most, most), std::clamp(above, -most, 1e3 * most)};
+}
+
+// As fast as it may be, and can still stop before its limit in this direction. Near it the bounds are lower, so that a
+// joint that stands there does not hold the others.
+double GazeSolver::most_rad_s(const Part& part, double position_rad, double velocity_rad_s) noexcept {
+  const double room_rad =
+      velocity_rad_s < 0 ? position_rad - part.limits.lower_rad : part.limits.upper_rad - position_rad;
+  const double left_rad = std::max(1e-6, room_rad - barrier_margin_rad);
+  return std::min(part.law.velocity_max_rad_s, std::sqrt(2 * braking * part.law.acceleration_max_rad_s2 * left_rad));
 }
 
 // The task's share: damped least squares over the joints that are free, the others held at their bounds.
@@ -177,8 +187,8 @@ void GazeSolver::lead(const std::vector<double>& position_rad, double damping2, 
   double share = 1;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     brought += jacobian_.col(static_cast<Eigen::Index>(i)) * velocity[i];
-    if (std::abs(velocity[i]) * share > joints_[i].law.velocity_max_rad_s)
-      share = joints_[i].law.velocity_max_rad_s / std::abs(velocity[i]);
+    const double most = most_rad_s(joints_[i], position_rad[joints_[i].joint], velocity[i]);
+    if (std::abs(velocity[i]) * share > most) share = most / std::abs(velocity[i]);
   }
   const double wish = settings_.gain_per_s * error_.squaredNorm();
   solution.progress = wish > 0 ? error_.dot(brought - drift_) / wish : 1;

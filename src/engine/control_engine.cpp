@@ -9,10 +9,12 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
       sets_(sets),
       exchange_(exchange),
       inbox_(exchange.commands, catalog, sets, settings.commands_per_tick_max, settings.command_age_max_ns()),
-      signals_(catalog.signals) {
+      signals_(catalog.signals),
+      rehearsal_(settings.control_period_s, estimator, safety, *catalog.model) {
   actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
   written_ = actuation_;
   declare_signals(catalog);
+  if (settings.joystick) declare_joystick(catalog.signals);
   row_.resize(catalog.signals.size());
 }
 
@@ -53,7 +55,32 @@ const ActuationFrame& ControlEngine::drive(std::int64_t time_ns, double dt_s) no
   return motors_;
 }
 
-void ControlEngine::warm() noexcept {
+// Step by step as tick(). The snapshot's slots are left out: they would push out of the smallest cache what is needed
+// before them.
+void ControlEngine::rehearse() noexcept {
+  Rehearsal& r = rehearsal_;
+  plant_.warm();
+  exchange_.heartbeat.warm_read();
+  (void)exchange_.commands.size();
+  r.sample(sensors_);
+  r.estimator = estimator_;
+  r.safety.imitate(safety_);
+  r.snapshot = snapshot_;
+  r.actuation = actuation_;
+  r.estimator.update(r.sensors, r.dt_s, tick_, r.snapshot.joints, r.snapshot.status);
+  r.safety.check({.tick = tick_,
+                  .dt_s = r.dt_s,
+                  .missed_ticks = 0,
+                  .heartbeat_age_s = 0,
+                  .sensors = r.sensors,
+                  .joints = r.snapshot.joints,
+                  .base = r.snapshot.status.base,
+                  .health = r.estimator.health()},
+                 r.actuation, r.snapshot.status.safety);
+  sets_.rehearse(tick_, {r.snapshot.joints, r.snapshot.status, written_, snapshot_.time_ns, r.dt_s}, r.actuation);
+  inbox_.fill(r.snapshot);
+  sets_.fill(r.snapshot);
+  inbox_.motions().fill(r.snapshot);
   signals_.gather(row_);
   if (sink_ != nullptr) sink_->warm();
 }
@@ -64,6 +91,7 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   inbox_.fill(snapshot_);
   sets_.fill(snapshot_);
   inbox_.motions().fill(snapshot_);
+  snapshot_.joystick = exchange_.joystick.read();
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);
   if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);

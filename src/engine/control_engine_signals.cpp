@@ -17,4 +17,17 @@ void ControlEngine::declare_signals(Catalog& catalog) {
   safety_.declare_signals(table, *catalog.model);
 }
 
+void ControlEngine::declare_joystick(SignalTable& table) const {
+  const JoystickState& joystick = snapshot_.joystick;
+  constexpr const char* docs[joystick_axes] = {"To the right, -1..1.", "Away from the hand, -1..1.",
+                                               "Clockwise from above, -1..1.", "Forward, -1..1."};
+  for (std::size_t i = 0; i < joystick_axes; ++i) {
+    table.add({std::string("joystick.") + joystick_axis_names[i], "", docs[i]}, &joystick.axes[i]);
+  }
+  for (std::size_t i = 0; i < joystick_buttons; ++i) {
+    table.add({"joystick.button_" + std::to_string(i + 1), "", "1 while it is held."}, &joystick.buttons[i]);
+  }
+  table.add({"joystick.connected", "", "1 while there is one."}, &joystick.connected);
+}
+
 }  // namespace kadans

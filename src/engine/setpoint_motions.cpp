@@ -8,11 +8,6 @@ namespace kadans {
 SetpointMotions::SetpointMotions(Catalog& catalog, ControlSets& sets)
     : setpoints_(catalog.setpoints), sets_(sets), motions_(catalog.setpoints.size()) {
   active_.reserve(motions_.size());
-  SetpointState ignored;
-  for (SetpointId id = 0; id < motions_.size(); ++id) {
-    const Setpoint& setpoint = setpoints_[id];
-    if (sets.object(setpoint.owner).setpoint_state(setpoint.channel, ignored)) catalog.setpoints.set_follows(id);
-  }
 }
 
 bool SetpointMotions::acceptable(const Command& command, const SetpointTable& setpoints) noexcept {

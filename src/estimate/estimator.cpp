@@ -7,8 +7,6 @@
 namespace kadans {
 namespace {
 
-bool is_finite(const Vec3& v) noexcept { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
 // Whether the sensor has a new reading, counting the ticks without.
 bool is_new(std::uint32_t sequence, std::uint32_t& last_sequence, bool look, SensorState& health) noexcept {
   if (look && sequence != last_sequence) {

@@ -12,8 +12,6 @@ namespace {
 
 constexpr double gravity_m_s2 = 9.81;
 
-bool is_finite(const Vec3& v) noexcept { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
 void require(bool ok, const char* field, double value, const char* range) {
   if (!ok) throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + " must be " + range);
 }

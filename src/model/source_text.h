@@ -30,10 +30,13 @@ class SourceText {
   std::vector<std::size_t> lines_;  // where each line starts
 };
 
+inline constexpr std::string_view xml_blanks = " \t\r\n";
+
 // The first byte that is not UTF-8, or a control character other than tab, line feed and carriage return.
 std::optional<TextProblem> find_non_text(std::string_view text);
 
 // For a message: without control characters, cut after 40 characters.
 std::string shown(std::string_view text);
+inline std::string quoted(const std::string& name) { return "'" + shown(name) + "'"; }
 
 }  // namespace kadans

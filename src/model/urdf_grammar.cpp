@@ -114,14 +114,6 @@ const Rule* find_rule(const std::vector<Rule>& rules, std::string_view name) {
   return found == rules.end() ? nullptr : &*found;
 }
 
-template <typename Rule>
-std::vector<std::string> names_of(const std::vector<Rule>& rules) {
-  std::vector<std::string> names;
-  names.reserve(rules.size());
-  for (const Rule& rule : rules) names.push_back(rule.name);
-  return names;
-}
-
 // ", did you mean 'mass'?" or, with nothing near, what there is to choose from.
 std::string hint(const std::string& nearest, const std::vector<std::string>& known) {
   if (!nearest.empty()) return ", did you mean '" + nearest + "'?";

@@ -14,8 +14,6 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-std::string quoted(const std::string& name) { return "'" + shown(name) + "'"; }
-
 void check_type(UrdfDocument& document, const UrdfJoint& joint) {
   const std::vector<std::string> known{"revolute", "continuous", "prismatic", "fixed"};
   if (joint.type.empty() || std::find(known.begin(), known.end(), joint.type) != known.end()) return;

@@ -20,14 +20,6 @@ const Item* find_named(const std::vector<Item>& items, std::string_view name) {
   return found == items.end() ? nullptr : &*found;
 }
 
-template <typename Item>
-std::vector<std::string> names_of(const std::vector<Item>& items) {
-  std::vector<std::string> names;
-  names.reserve(items.size());
-  for (const Item& item : items) names.push_back(item.name);
-  return names;
-}
-
 void check_count(UrdfDocument& document, std::size_t count, const XMLElement& element, const char* what) {
   if (count <= most) return;
   document.refuse(element, "more than " + std::to_string(most) + " " + what);

@@ -9,8 +9,6 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-std::string quoted(const std::string& name) { return "'" + shown(name) + "'"; }
-
 class TreeCheck {
  public:
   TreeCheck(UrdfDocument& document, const UrdfOutline& outline) : document_(document), outline_(outline) {}

@@ -10,21 +10,20 @@
 namespace kadans {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n";
 constexpr double largest = 1e9;
 constexpr std::size_t longest_name = 128, longest_number = 64;
 using Defect = std::optional<std::string>;
 
 std::string_view trimmed(std::string_view text) {
-  const std::size_t first = std::min(text.find_first_not_of(blanks), text.size());
-  return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+  const std::size_t first = std::min(text.find_first_not_of(xml_blanks), text.size());
+  return text.substr(first, text.find_last_not_of(xml_blanks) + 1 - first);
 }
 
 std::vector<std::string_view> pieces(std::string_view text) {
   constexpr std::size_t enough = 16;  // nothing in URDF has more than four
   std::vector<std::string_view> result;
   for (text = trimmed(text); !text.empty() && result.size() < enough; text = trimmed(text)) {
-    const std::size_t end = std::min(text.find_first_of(blanks), text.size());
+    const std::size_t end = std::min(text.find_first_of(xml_blanks), text.size());
     result.push_back(text.substr(0, end));
     text.remove_prefix(end);
   }

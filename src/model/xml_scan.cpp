@@ -7,7 +7,6 @@
 namespace kadans {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 constexpr std::size_t npos = std::string_view::npos;
 
@@ -35,7 +34,7 @@ class Scanner {
   static std::string closing(const XmlTag& tag) { return "</" + shown(tag.name) + ">"; }
   XmlTag& top() { return result_.tags[open_.back()]; }
   void problem(std::size_t at, std::string message) { result_.problem = TextProblem{at, std::move(message)}; }
-  void skip_blanks() { at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size()); }
+  void skip_blanks() { at_ = std::min(text_.find_first_not_of(xml_blanks, at_), text_.size()); }
 
   void between_tags() {
     const std::size_t start = at_;
@@ -79,7 +78,7 @@ class Scanner {
     const std::size_t end = text_.find_first_of("<>", at_ + 1);
     if (end == npos || text_[end] == '<') return problem(at_, "this closing tag has no '>'");
     std::string_view name = text_.substr(at_ + 2, end - at_ - 2);
-    name = name.substr(0, name.find_last_not_of(blanks) + 1);
+    name = name.substr(0, name.find_last_not_of(xml_blanks) + 1);
     const std::string here = "</" + shown(name) + ">";
     if (open_.empty()) return problem(at_, here + " closes nothing: no element is open here");
     if (name != top().name) {

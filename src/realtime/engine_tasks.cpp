@@ -15,6 +15,8 @@ bool ControlTask::beat(const Beat& beat) {
   return true;
 }
 
+void ControlTask::prepare() noexcept { engine_.rehearse(); }
+
 bool BehaviorTask::beat(const Beat& beat) {
   if (before_ != nullptr) before_->beside_tick(beat.woke_ns);
   engine_.tick(beat.woke_ns);

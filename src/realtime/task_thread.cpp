@@ -129,7 +129,9 @@ void TaskThread::loop() {
     const std::int64_t due_ns = periodic_.plan();
     if (settings_.prepare_ns > 0) {
       wait_.until(due_ns - settings_.prepare_ns);
+      const std::int64_t began_ns = wait_.now_ns();
       task_.prepare();
+      preparation_.add(wait_.now_ns() - began_ns);
     }
     const Beat beat = periodic_.wake();
     standing = beat.stands ? standing + 1 : 0;

@@ -1,11 +1,13 @@
 #include "kadans/remote/behavior_side.h"
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <utility>
 
 #include "kadans/config/fields.h"
 #include "kadans/engine/refusal_text.h"
+#include "kadans/remote/run_description.h"
 
 namespace kadans {
 namespace {
@@ -57,6 +59,9 @@ bool BehaviorSide::carry_out_now(const Order& order, Answer& answer) {
     case Order::Kind::report:
       report(answer);
       return true;
+    case Order::Kind::describe:
+      answer.text = behaviors_description(p_.host);
+      return true;
     case Order::Kind::changes:
       answer.changes = tuning_.unsaved();
       return true;
@@ -88,9 +93,12 @@ void BehaviorSide::begin(Pending& pending) {
   const Order& order = pending.order->order;
   switch (order.kind) {
     case Order::Kind::switch_set:
-      return send(pending, {.kind = CommandKind::switch_set, .index = p_.instance.set_named(order.text)});
+      return send(pending,
+                  std::array{Command{.kind = CommandKind::switch_set, .index = p_.instance.set_named(order.text)}});
     case Order::Kind::clear_faults:
-      return send(pending, {.kind = CommandKind::clear_faults});
+      return send(pending, std::array{Command{.kind = CommandKind::clear_faults}});
+    case Order::Kind::set_point:
+      return send(pending, set_points_of(order));
     case Order::Kind::set_parameter:
       return begin_change(pending, change_of(order));
     case Order::Kind::undo: {
@@ -160,6 +168,9 @@ void BehaviorSide::finish(Pending& pending) {
       return say(time_ns_, order.who, "switched to control set " + order.text);
     case Order::Kind::clear_faults:
       return say(time_ns_, order.who, "cleared the faults");
+    case Order::Kind::set_point:
+      if (time_ns_ - std::exchange(led_ns_, time_ns_) < led_again_ns) return;
+      return say(time_ns_, order.who, "set " + order.text);
     case Order::Kind::undo:
       tuning_.drop();
       break;

@@ -14,7 +14,8 @@ constexpr ScriptLimits console_limits{.tick_instructions = 200'000,
 
 Console& BehaviorSide::console_of(const Order& order) {
   if (p_.host == nullptr)
-    throw InputError({.message = "there is no console while behaviors play in a process of their own"});
+    throw InputError(
+        {.message = "there is no console while behaviors play in a process of their own: run with --behaviors thread"});
   const auto found = consoles_.find(order.client);
   if (found != consoles_.end()) return *found->second;
   if (consoles_.size() == consoles_max) throw InputError({.message = "all consoles are taken"});

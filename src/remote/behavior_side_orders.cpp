@@ -1,9 +1,15 @@
 // Orders: what plays, control sets, parameters.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <sstream>
+#include <string_view>
 
 #include "kadans/config/fields.h"
 #include "kadans/remote/behavior_side.h"
+#include "kadans/remote/run_description.h"
+#include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -26,6 +32,15 @@ PlayOrder::Kind kind_of(Order::Kind kind) {
   }
 }
 
+// The parameters of behaviors are where their process is.
+void check_is_no_behavior(const std::vector<std::string>& behaviors, const std::string& parameter) {
+  const std::string name = parameter.substr(0, parameter.find('.'));
+  if (std::find(behaviors.begin(), behaviors.end(), name) == behaviors.end()) return;
+  throw InputError({.message = "parameters of behaviors cannot be set while they play in a process of their own: "
+                               "change its file, then `kadans ctl reload " +
+                               name + "`; or run with --behaviors thread"});
+}
+
 void check_range(const std::string& name, const std::string& unit, double value, double min, double max) {
   if (value >= min && value <= max) return;
   throw InputError({.message = name + " = " + number_text(value) + " is outside its range " + number_text(min) + ".." +
@@ -46,6 +61,7 @@ void BehaviorSide::report(Answer& answer) const {
                                 .error = behavior.failed() ? behavior.error().text() : "",
                                 .lane = host.lane(i),
                                 .over = host.over(i),
+                                .chart = chart_sign(behavior.chart()),
                                 .parameters = behavior.parameters()});
   }
 }
@@ -61,6 +77,7 @@ void BehaviorSide::report_process(Answer& answer) const {
                                 .error = process.down() ? "its process stays down" : "",
                                 .lane = 0,
                                 .over = process.down() || process.finished(),
+                                .chart = 0,
                                 .parameters = {}});
   }
 }
@@ -99,12 +116,34 @@ std::string BehaviorSide::told(const Order& order, bool& done) {
   return text;
 }
 
-void BehaviorSide::send(Pending& pending, const Command& command) {
+void BehaviorSide::send(Pending& pending, std::span<const Command> commands) {
   CommandSender& sender = p_.engine.sender();
   sender.begin(time_ns_);
-  (void)sender.add(command);
+  for (const Command& command : commands) (void)sender.add(command);
   pending.sequence = sender.commit();
   if (pending.sequence == 0) throw InputError({.message = "the command queue is full"});
+}
+
+// All are known and within their ranges.
+std::vector<Command> BehaviorSide::set_points_of(const Order& order) const {
+  const SetpointTable& table = p_.instance.catalog().setpoints;
+  if (!(order.value >= 0 && order.value <= motion_duration_max_s))
+    throw InputError({.message = "a set-point is reached in 0.." + number_text(motion_duration_max_s) + " s"});
+  std::vector<Command> commands;
+  std::istringstream entries(order.text);
+  for (std::string entry; std::getline(entries, entry, ',');) {
+    const std::size_t equals = std::min(entry.find('='), entry.size());
+    const std::string name = entry.substr(0, equals);
+    const std::optional<double> value =
+        number_of<double>(std::string_view(entry).substr(std::min(equals + 1, entry.size())));
+    if (!value) throw InputError({.message = "'" + entry + "' must be NAME=NUMBER, such as gaze.x_m=1.2"});
+    const auto id = table.find(name);
+    if (!id) throw InputError({.message = unknown_name("set-point", name, table.names())});
+    check_range(name, table[*id].unit, *value, table[*id].min, table[*id].max);
+    commands.push_back({.kind = CommandKind::set_point, .index = *id, .value = *value, .duration_s = order.value});
+  }
+  if (commands.empty()) throw InputError({.message = "there is no set-point in it"});
+  return commands;
 }
 
 // The name as it is known, and the value now.
@@ -130,6 +169,7 @@ ParameterChange BehaviorSide::change_of(const Order& order) const {
       return {order.text, own.value, order.value};
     }
   }
+  if (p_.process != nullptr) check_is_no_behavior(p_.process->names(), order.text);
   throw InputError({.message = unknown_name("parameter", order.text, names)});
 }
 
@@ -137,7 +177,7 @@ void BehaviorSide::begin_change(Pending& pending, const ParameterChange& change)
   pending.change = change;
   if (const auto id = p_.instance.catalog().parameters.find(change.name)) {
     pending.lasting = true;
-    return send(pending, {.kind = CommandKind::set_parameter, .index = *id, .value = change.now});
+    return send(pending, std::array{Command{.kind = CommandKind::set_parameter, .index = *id, .value = change.now}});
   }
   for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
     Behavior& behavior = p_.host->behavior(i);

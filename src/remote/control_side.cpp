@@ -15,6 +15,9 @@ void ControlSide::record(std::uint64_t tick, std::int64_t time_ns, std::span<con
 
 void ControlSide::warm() noexcept {
   if (RecordSink* sink = sink_.load(std::memory_order_acquire); sink != nullptr) sink->warm();
+  // A row without values goes nowhere, but finds out as others do whether somebody wants it.
+  for (const auto& port : instance_.ports()) port->row_.publish(0, 0, {});
+  instance_.console_row_.publish(0, 0, {});
 }
 
 // As at every way out: damping takes the speed, then the joints are off. Faults that are cleared meanwhile lift it.

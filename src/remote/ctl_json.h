@@ -9,7 +9,7 @@
 
 namespace kadans {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 std::string line_of(const Json& json);  // without a newline, whatever bytes the texts hold
 std::string refusal(const std::string& why);

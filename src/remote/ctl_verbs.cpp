@@ -27,6 +27,7 @@ const CtlVerb verbs[] = {
     {"estop", Role::operate, {}},
     {"record_start", Role::operate, Is::record_start, {{{"file", text}}}},
     {"record_stop", Role::operate, Is::record_stop},
+    {"record_dump", Role::operate, Is::record_dump, {{{"file", text}}}},
     {"set", Role::develop, Is::set_parameter, {{{"name", text, true}, {"value", number, true}}}},
     {"undo", Role::develop, Is::undo},
     {"save", Role::develop, Is::changes},

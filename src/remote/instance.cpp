@@ -39,7 +39,8 @@ void OrderQueue::answer(std::unique_ptr<OrderCase> order) noexcept {
 }
 
 std::uint64_t InstancePort::send(Order order) {
-  const bool to_records = order.kind == Order::Kind::record_start || order.kind == Order::Kind::record_stop;
+  const bool to_records = order.kind == Order::Kind::record_start || order.kind == Order::Kind::record_stop ||
+                          order.kind == Order::Kind::record_dump;
   auto asked = std::make_unique<OrderCase>();
   asked->order = std::move(order);
   asked->answer.number = sent_ + 1;
@@ -66,6 +67,15 @@ std::uint32_t Instance::set_named(const std::string& name) const {
 InstancePort& Instance::open_port() {
   if (ports_.size() == ports_max) throw std::logic_error("an instance has no more ports");
   return *ports_.emplace_back(std::make_unique<InstancePort>(catalog_.signals.size()));
+}
+
+InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) noexcept {
+  return {.tick = snapshot.tick,
+          .time_ns = snapshot.time_ns,
+          .safety = snapshot.status.safety,
+          .control_sets = snapshot.control_sets,
+          .commands_refused = snapshot.commands_refused,
+          .record = record};
 }
 
 void Instance::publish(const InstanceStatus& status) noexcept {

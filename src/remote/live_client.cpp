@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::size_t overhead_bytes = 64;  // of a reply in the queue
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
+  return text;
+}
+
 }  // namespace
 
 LiveClient::LiveClient(LiveHub& hub, std::uint64_t id, bool writes, std::string who)
@@ -49,6 +55,7 @@ void LiveClient::introduce() {
   metadata["robot"] = hub_.instance().facts().name;
   metadata["writes"] = writes_ ? "yes" : "no";
   metadata["verbs"] = verbs_text(hub_.can_pace());
+  metadata["plays"] = joined(playable_names(hub_.instance().facts().folders));
   say(Json{{"op", "serverInfo"},
            {"name", "kadans " + hub_.instance().facts().version + ": " + hub_.instance().facts().name},
            {"capabilities", {"parameters", "parametersSubscribe", "services", "assets"}},
@@ -180,7 +187,12 @@ void LiveClient::command(std::uint32_t service_call, const std::string& verb, co
   if (!writes_) return say(service_failure(service_call, "orders need the token that the server printed"));
   const std::optional<Order::Kind> kind = order_of(verb);
   if (!kind) {
-    if (hub_.act(verb, text, value)) return answer_service(service_call, true, "");
+    if (hub_.act(verb, text, value)) {
+      if (verb == "estop")
+        (void)hub_.send({.kind = Order::Kind::note, .text = "asked for the emergency stop", .who = who_}, id_,
+                        ++next_call_);
+      return answer_service(service_call, true, "");
+    }
     return say(service_failure(service_call, "'" + verb + "' is no order; there are " + verbs_text(hub_.can_pace())));
   }
   const std::uint32_t call = ++next_call_;

@@ -191,6 +191,7 @@ class Connection final : public LiveConnection {
       response.set(http::field::sec_websocket_protocol, beast::string_view(subprotocol.data(), subprotocol.size()));
     }));
     stream_.read_message_max(message_max_bytes);
+    stream_.auto_fragment(false);  // a message is one write of the system
     stream_.async_accept(request, counted([this, writes] { become_client(writes); }));
   }
 

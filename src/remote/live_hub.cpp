@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t report_every = 30, timing_every = 60, parameters_every = 6;  // beats
 constexpr std::uint64_t own = 0;                                                     // the hub's orders
-constexpr std::uint32_t report_call = 1, saved_call = 2;
+constexpr std::uint32_t report_call = 1, saved_call = 2, describe_call = 3;
 
 }  // namespace
 
@@ -21,6 +21,23 @@ bool LivePace::push(const std::string& what) {
   if (pushes_.size() == pushes_max) return false;
   pushes_.push_back(what);
   pushed_.store(true, std::memory_order_release);
+  return true;
+}
+
+bool LivePace::obey(const std::string& verb, const std::string& text, double value) {
+  if (verb == "hold") {
+    held = true;
+  } else if (verb == "go") {
+    held = false;
+  } else if (verb == "step") {
+    steps += 1;
+  } else if (verb == "push") {
+    return push(text);
+  } else if (verb == "speed" && value >= 0.01 && value <= 100) {
+    speed = value;
+  } else {
+    return false;
+  }
   return true;
 }
 
@@ -42,6 +59,7 @@ void LiveHub::beat() {
   if (wanted_ != !clients_.empty()) {
     wanted_ = !clients_.empty();
     const double ticks = 1 / (rate_hz * p_.instance.facts().control_period_s);
+    beats_ = 0;  // who comes first is told everything at once
     p_.port.want_signals(wanted_ ? static_cast<std::uint32_t>(std::max(1.0, std::floor(ticks))) : 0);
   }
   for (Event event; p_.port.next(event);) channels_.take(event);
@@ -80,16 +98,28 @@ void LiveHub::take_answers() {
       if (client != clients_.end()) client->second->take(caller.call, answer);
       continue;
     }
-    if (caller.call != report_call) continue;
-    report_waits_ = false;
-    behaviors_now_.clear();
-    for (const BehaviorReport& behavior : answer.behaviors) {
-      for (const ScriptParameter& p : behavior.parameters)
-        behaviors_now_.push_back({behavior.name + "." + p.name, p.value});
-    }
-    paused_ = answer.paused;
-    tell_state();
+    take_own(caller.call, answer);
   }
+}
+
+void LiveHub::take_own(std::uint32_t call, const Answer& answer) {
+  if (call == report_call) take_report(answer);
+  if (call == describe_call && answer.done) channels_.take_behaviors(answer.text);
+}
+
+void LiveHub::take_report(const Answer& answer) {
+  report_waits_ = false;
+  behaviors_now_.clear();
+  std::map<std::string, std::uint64_t> charts;
+  for (const BehaviorReport& behavior : answer.behaviors) {
+    charts[behavior.name] = behavior.chart;
+    for (const ScriptParameter& p : behavior.parameters)
+      behaviors_now_.push_back({behavior.name + "." + p.name, p.value});
+  }
+  // Others play now, or new versions; those of the start are described already.
+  if (charts != charts_ && send({.kind = Order::Kind::describe}, own, describe_call)) charts_ = std::move(charts);
+  paused_ = answer.paused;
+  tell_state();
 }
 
 void LiveHub::note(const std::string& name, double value) {
@@ -133,20 +163,7 @@ bool LiveHub::act(const std::string& verb, const std::string& text, double value
     p_.instance.stop_now();
     return true;
   }
-  if (p_.pace == nullptr) return false;
-  if (verb == "hold") {
-    p_.pace->held = true;
-  } else if (verb == "go") {
-    p_.pace->held = false;
-  } else if (verb == "step") {
-    p_.pace->steps += 1;
-  } else if (verb == "push") {
-    return p_.pace->push(text);
-  } else if (verb == "speed" && value >= 0.01 && value <= 100) {
-    p_.pace->speed = value;
-  } else {
-    return false;
-  }
+  if (p_.pace == nullptr || !p_.pace->obey(verb, text, value)) return false;
   tell_state();
   return true;
 }

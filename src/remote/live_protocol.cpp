@@ -17,11 +17,13 @@ constexpr std::array orders{
     std::pair{std::string_view("stop"), Order::Kind::stop},
     std::pair{std::string_view("reload"), Order::Kind::reload},
     std::pair{std::string_view("switch_set"), Order::Kind::switch_set},
+    std::pair{std::string_view("set_point"), Order::Kind::set_point},
     std::pair{std::string_view("undo"), Order::Kind::undo},
     std::pair{std::string_view("save"), Order::Kind::changes},  // then they are written
     std::pair{std::string_view("clear_faults"), Order::Kind::clear_faults},
     std::pair{std::string_view("record_start"), Order::Kind::record_start},
     std::pair{std::string_view("record_stop"), Order::Kind::record_stop},
+    std::pair{std::string_view("record_dump"), Order::Kind::record_dump},
 };
 
 std::vector<std::byte> taken(const ByteWriter& writer) {

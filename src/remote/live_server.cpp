@@ -1,5 +1,6 @@
 #include "kadans/remote/live_server.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -71,9 +72,11 @@ struct LiveServer::Parts {
     });
   }
 
-  // Also after a while in which the machine was busy: no beats are caught up.
+  // On a grid; after a while in which the machine was busy no beats are caught up.
   void plan_beat() {
-    timer.expires_after(std::chrono::nanoseconds(std::int64_t(1e9 / LiveHub::rate_hz)));
+    constexpr std::chrono::nanoseconds period(std::int64_t(1e9 / LiveHub::rate_hz));
+    due = std::max(due + period, std::chrono::steady_clock::now());
+    timer.expires_at(due);
     timer.async_wait([this](const Error& error) {
       if (error) return;
       beat();
@@ -106,6 +109,7 @@ struct LiveServer::Parts {
   asio::io_context context{1};
   Tcp::acceptor acceptor{context};
   asio::steady_timer timer{context};
+  std::chrono::steady_clock::time_point due;
   std::list<std::unique_ptr<LiveConnection>> connections;
   std::uint64_t last_id = 0;
   std::atomic<std::uint32_t> clients{0};

@@ -1,5 +1,7 @@
 #include "kadans/remote/run_description.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "kadans/control/set_partition.h"
@@ -96,9 +98,14 @@ Json sets_of(const Catalog& catalog) {
   return sets;
 }
 
-Json objects_of(const Catalog& catalog) {
+Json objects_of(const RobotConfig& robot, const Catalog& catalog) {
   Json objects = Json::array();
   for (const ObjectInfo& object : catalog.objects) {
+    Json options = Json::object();
+    const auto configured = std::ranges::find(robot.objects, object.name, &ObjectConfig::name);
+    if (configured != robot.objects.end()) {
+      for (const TextEntry& option : configured->options) options[option.key] = option.text;
+    }
     Json joints = Json::array(), presets = Json::array();
     for (const std::size_t joint : object.joints) joints.push_back(catalog.model->joints[joint].name);
     for (const Preset& preset : object.presets) {
@@ -106,7 +113,8 @@ Json objects_of(const Catalog& catalog) {
       for (const auto& [id, value] : preset.values) values[catalog.parameters.info(id).name] = value;
       presets.push_back({{"name", preset.name}, {"values", values}});
     }
-    objects.push_back({{"name", object.name}, {"type", object.type}, {"joints", joints}, {"presets", presets}});
+    objects.push_back(
+        {{"name", object.name}, {"type", object.type}, {"options", options}, {"joints", joints}, {"presets", presets}});
   }
   return objects;
 }
@@ -127,15 +135,31 @@ Json parameters_of(const Catalog& catalog) {
   return parameters;
 }
 
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 }  // namespace
 
 std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host) {
   const Json description{{"robot", robot_of(robot)},
                          {"sets", sets_of(catalog)},
-                         {"objects", objects_of(catalog)},
+                         {"objects", objects_of(robot, catalog)},
                          {"parameters", parameters_of(catalog)},
                          {"behaviors", behaviors_of(host)}};
-  return description.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text_of(description);
+}
+
+std::string behaviors_description(const ScriptHost* host) { return text_of(behaviors_of(host)); }
+
+// FNV-1a.
+std::uint64_t chart_sign(const Chart& chart) noexcept {
+  std::uint64_t sign = 14695981039346656037ULL;
+  const auto mix = [&](std::uint64_t value) { sign = (sign ^ value) * 1099511628211ULL; };
+  for (const Chart::State& state : chart.states) {
+    for (const char c : state.path) mix(static_cast<unsigned char>(c));
+    mix(state.parent);
+  }
+  for (const Chart::Transition& transition : chart.transitions) mix(transition.source), mix(transition.target);
+  return sign;
 }
 
 }  // namespace kadans

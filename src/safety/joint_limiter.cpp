@@ -59,7 +59,7 @@ FaultMask JointLimiter::cut(const Input& in, JointActuation& actuation) noexcept
   const double most_Nm = power_bound_Nm(in.state.velocity_rad_s, effort_max_Nm_ * in.derating * in.recovery);
   Interval bound = soft_speed(in.state.velocity_rad_s, {-most_Nm, most_Nm});
   bound = soft_stops(in.state.position_rad, bound);
-  const double step_Nm = rate_Nm_s_ * in.dt_s;
+  const double step_Nm = rate_Nm_s_ * in.change_s;
   const double rated_Nm = std::clamp(asked_Nm, in.last_Nm - step_Nm, in.last_Nm + step_Nm);
   const double given_Nm = std::clamp(rated_Nm, bound.low, bound.high);
   actuation.effort_Nm = given_Nm;
@@ -97,7 +97,7 @@ FaultMask JointLimiter::limit_set_point(double position_rad, JointActuation& act
 // Each limit for itself, whether it would have cut.
 FaultMask JointLimiter::who_cut(const Input& in, double asked_Nm) const noexcept {
   const double most_Nm = effort_max_Nm_ * in.derating;
-  const double step_Nm = rate_Nm_s_ * in.dt_s;
+  const double step_Nm = rate_Nm_s_ * in.change_s;
   const Interval whole{-most_Nm, most_Nm};
   const auto cuts = [&](const Interval& bound) { return asked_Nm < bound.low || asked_Nm > bound.high; };
   const double powered_Nm = power_bound_Nm(in.state.velocity_rad_s, most_Nm);
@@ -125,7 +125,7 @@ void JointLimiter::describe(const Input& in, Fault& fault) const noexcept {
       fault.limit = effort_max_Nm_ * in.derating;
       break;
     case FaultCode::effort_rate_limit:
-      fault.value = in.dt_s > 0 ? (asked_Nm_ - in.last_Nm) / in.dt_s : 0;
+      fault.value = in.change_s > 0 ? (asked_Nm_ - in.last_Nm) / in.change_s : 0;
       fault.limit = rate_Nm_s_;
       break;
     case FaultCode::power_limit:

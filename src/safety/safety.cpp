@@ -32,6 +32,20 @@ void Safety::clear() noexcept {
   first_fault_ = {};
 }
 
+void Safety::imitate(const Safety& other) noexcept {
+  std::copy_n(other.joints_.begin(), joint_count_, joints_.begin());
+  feet_ = other.feet_;
+  foot_ladders_ = other.foot_ladders_;
+  imu_ = other.imu_;
+  fall_ = other.fall_;
+  engine_ = other.engine_;
+  robot_ = other.robot_;
+  pending_ = other.pending_;
+  cut_ = other.cut_;
+  lasting_s_ = other.lasting_s_;
+  last_dt_s_ = other.last_dt_s_;
+}
+
 FaultMask Safety::watch_body(const SafetyInput& in, double dt_s) noexcept {
   return engine_.look(in.heartbeat_age_s, in.missed_ticks) | imu_.look(in.sensors.imu, in.health.imu) |
          fall_.look(in.base, in.sensors.imu, dt_s);
@@ -111,11 +125,11 @@ void Safety::escalate(FaultMask faults, double dt_s) noexcept {
   }
 }
 
-void Safety::cut_joint(const SafetyInput& in, std::size_t index, double dt_s, JointActuation& actuation) noexcept {
+void Safety::cut_joint(const SafetyInput& in, std::size_t index, JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
   actuation.effort_Nm *= fall_.share();
   const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), joint.authority, joint.last_Nm,
-                                   dt_s};
+                                   change_s_};
   joint.cut = joint.limiter.limit(limits, actuation);
   if (joint.cut == 0) return;
   cut_ |= joint.cut;
@@ -129,12 +143,12 @@ void Safety::cut_joint(const SafetyInput& in, std::size_t index, double dt_s, Jo
 
 // The usual case in a few comparisons: nothing is wrong with joint or robot, and what is asked is well within the
 // limits.
-bool Safety::passes(const SafetyInput& in, std::size_t index, double dt_s, const JointActuation& actuation) noexcept {
+bool Safety::passes(const SafetyInput& in, std::size_t index, const JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
   const bool calm = joint.ladder.idle() && robot_.level() == SafetyLevel::normal && joint.finite &&
                     joint.authority == 1 && joint.cut == 0 && !joint.gave_way && fall_.share() == 1 &&
                     actuation.mode == ActuationMode::effort;
-  const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, dt_s};
+  const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, change_s_};
   if (!calm || joint.limiter.passive() || !joint.limiter.free(limits, actuation.effort_Nm)) return false;
   joint.last_Nm = actuation.effort_Nm;
   joint.level_number = 0;
@@ -171,7 +185,7 @@ void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, 
   } else if (damps) {
     actuation = joint.limiter.damp(in.joints.joints[index]);
   } else {
-    cut_joint(in, index, dt_s, actuation);
+    cut_joint(in, index, actuation);
   }
   joint.last_Nm = actuation.effort_Nm;
   joint.level_number = static_cast<std::uint32_t>(joint_level(index));
@@ -179,6 +193,8 @@ void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, 
 
 void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatus& status) noexcept {
   const double dt_s = in.dt_s > 0 && in.dt_s <= dt_max_s ? in.dt_s : 0;
+  // What is written now was computed in the last tick, out of what had changed since the one before it.
+  change_s_ = std::max(dt_s, std::exchange(last_dt_s_, dt_s));
   const FaultMask raised = pending_ | cut_;
   pending_ = cut_ = 0;
   came_back_ = false;
@@ -189,7 +205,7 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   pending_ = 0;  // what was raised here has been judged here
   SafetyLevel worst = robot_.level();
   for (std::size_t i = 0; i < joint_count_; ++i) {
-    if (passes(in, i, dt_s, actuation.joints[i])) continue;
+    if (passes(in, i, actuation.joints[i])) continue;
     limit_joint(in, i, dt_s, actuation.joints[i]);
     worst = std::max(worst, joint_level(i));
   }

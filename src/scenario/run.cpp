@@ -50,6 +50,8 @@ class Run {
   void step() {
     parts_.truth.update(1e-9 * static_cast<double>(parts_.lockstep.time_ns()), parts_.control.row());
     if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.plant);
+    if (parts_.joystick != nullptr)
+      parts_.control.exchange().joystick.publish(parts_.joystick->at(parts_.lockstep.time_ns()));
     parts_.lockstep.step();
     const double time_s = 1e-9 * static_cast<double>(parts_.control.state().time_ns);
     const std::span<const double> row = parts_.control.row();

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "kadans/scenario/html_report.h"
 #include "kadans/scenario/report.h"
 #include "kadans/signal/number_text.h"
 #include "kadans/telemetry/text_plot.h"
@@ -64,12 +65,6 @@ class TextReport {
              "\n\n";
   }
 
-  static std::string bounds(const ScenarioCheck& check) {
-    if (!check.that.empty()) return check.that;
-    if (std::isfinite(check.min) && std::isfinite(check.max)) return printed("%g .. %g", check.min, check.max);
-    return std::isfinite(check.min) ? printed(">= %g", check.min) : printed("<= %g", check.max);
-  }
-
   void checks() {
     std::size_t widest = 0;
     for (const CheckResult& check : subject_.result.checks) widest = std::max(widest, check.name.size());
@@ -77,8 +72,9 @@ class TextReport {
       const CheckResult& check = subject_.result.checks[i];
       const std::string mark = check.passed ? green(style_.unicode ? "✓" : "ok") : red(style_.unicode ? "✗" : "FAILED");
       text_ += "  " + mark + " " + check.name + std::string(widest - check.name.size(), ' ');
-      text_ += printed("  %11.5g at %6.2f s", check.value, check.at_s) +
-               dim("   wanted " + bounds(subject_.checks[i]) + (check.note.empty() ? "" : "; " + check.note) + '\n');
+      text_ +=
+          printed("  %11.5g at %6.2f s", check.value, check.at_s) +
+          dim("   wanted " + wanted_text(subject_.checks[i]) + (check.note.empty() ? "" : "; " + check.note) + '\n');
     }
   }
 

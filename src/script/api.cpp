@@ -61,6 +61,7 @@ constexpr ApiEntry table[] = {
     {"s", "feet", "kadans.Feet", "left and right"},
     {"s", "support", "kadans.Support", "Where the ground bears the robot"},
     {"s", "safety", "kadans.Safety", "What the safety layer allows"},
+    {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
     {"joint", "position_rad", "number", "Position in rad"},
     {"joint", "velocity_rad_s", "number", "Velocity in rad/s"},
     {"joint", "effort_Nm", "number", "Torque at the joint in Nm"},
@@ -83,6 +84,19 @@ constexpr ApiEntry table[] = {
     {"safety", "level", "'normal'|'limited'|'hold'|'damp'|'off'", "Rung of the degradation ladder"},
     {"safety", "faults", "number", "Faults since the last clearing"},
     {"safety", "first_fault", "number", "Code of the first fault; 0: none"},
+    {"joystick", "x", "number", "To the right, -1..1; 0 within the dead zone"},
+    {"joystick", "y", "number", "Away from the hand, -1..1"},
+    {"joystick", "twist", "number", "Clockwise from above, -1..1"},
+    {"joystick", "throttle", "number", "Forward, -1..1"},
+    {"joystick", "button_1", "boolean", "Whether it is held"},
+    {"joystick", "button_2", "boolean", "Whether it is held"},
+    {"joystick", "button_3", "boolean", "Whether it is held"},
+    {"joystick", "button_4", "boolean", "Whether it is held"},
+    {"joystick", "button_5", "boolean", "Whether it is held"},
+    {"joystick", "button_6", "boolean", "Whether it is held"},
+    {"joystick", "button_7", "boolean", "Whether it is held"},
+    {"joystick", "button_8", "boolean", "Whether it is held"},
+    {"joystick", "connected", "boolean", "Whether there is one"},
 };
 
 struct Owner {
@@ -101,7 +115,8 @@ constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require
                             {"rate", "kadans.Rate", "A turning rate: `s.base.angular_velocity_rad_s`"},
                             {"foot", "kadans.Foot", "A foot: `s.feet.left`"},
                             {"support", "kadans.Support", "The ground: `s.support`"},
-                            {"safety", "kadans.Safety", "The safety layer: `s.safety`"}};
+                            {"safety", "kadans.Safety", "The safety layer: `s.safety`"},
+                            {"joystick", "kadans.Joystick", "A joystick: `s.joystick`"}};
 
 std::string bare(std::string_view name) { return std::string(name.substr(0, name.find('('))); }
 

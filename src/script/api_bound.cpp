@@ -40,6 +40,7 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("foot", s["feet"].fields["left"].names());
   add("support", s["support"].names());
   add("safety", s["safety"].names());
+  add("joystick", s["joystick"].names());
   std::sort(all.begin(), all.end());
   return all;
 }

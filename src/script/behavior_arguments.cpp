@@ -57,8 +57,8 @@ const char* kind_name(int type) {
 }
 
 int type_of(const PlayValue& value) {
-  constexpr int types[] = {LUA_TNUMBER, LUA_TBOOLEAN, LUA_TSTRING};
-  return types[value.index()];
+  constexpr int lua_types[] = {LUA_TNUMBER, LUA_TBOOLEAN, LUA_TSTRING};
+  return lua_types[value.index()];
 }
 
 std::string number(double value) {

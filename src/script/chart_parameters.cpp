@@ -14,7 +14,7 @@ namespace kadans {
 namespace {
 
 const char handle_key = 0;
-constexpr std::size_t parameters_max = 1000, text_max = 512;  // they are kept outside the script's memory
+constexpr std::size_t parameters_max = 1000, parameter_text_max = 512;  // they are kept outside the script's memory
 constexpr const char* spec_keys[] = {"min", "max", "unit", "doc", nullptr};
 
 double number_field(lua_State* state, int table, const char* name, double fallback, const Place& place) {
@@ -32,8 +32,8 @@ const char* text_field(lua_State* state, int table, const char* name, const Plac
   if (!lua_isnil(state, -1) && lua_type(state, -1) != LUA_TSTRING) {
     raise_at(state, place, name, "'%s' must be a string, not a %s", name, luaL_typename(state, -1));
   }
-  if (lua_objlen(state, -1) > text_max)
-    raise_at(state, place, name, "'%s' is longer than %d characters", name, static_cast<int>(text_max));
+  if (lua_objlen(state, -1) > parameter_text_max)
+    raise_at(state, place, name, "'%s' is longer than %d characters", name, static_cast<int>(parameter_text_max));
   const char* text = lua_tostring(state, -1);
   lua_pop(state, 1);
   return text != nullptr ? text : "";  // anchored by the table
@@ -72,9 +72,9 @@ void add_parameter(lua_State* state, const Spec& spec, const Place& place) {
     raise_at(state, place, spec.name, "parameter '%s': the default %f is outside %f..%f", spec.name, spec.initial,
              spec.min, spec.max);
   }
-  if (core_of(state).parameters.size() >= parameters_max || std::strlen(spec.name) > text_max)
+  if (core_of(state).parameters.size() >= parameters_max || std::strlen(spec.name) > parameter_text_max)
     raise_at(state, place, nullptr, "more than %d parameters, or a name longer than %d characters",
-             static_cast<int>(parameters_max), static_cast<int>(text_max));
+             static_cast<int>(parameters_max), static_cast<int>(parameter_text_max));
   ScriptParameter& added = core_of(state).parameters.emplace_back();
   added = {place.chunk, spec.name, spec.unit, spec.doc, spec.initial, spec.min, spec.max, spec.initial};
 }

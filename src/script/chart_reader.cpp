@@ -9,7 +9,7 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t states_max = 4000, transitions_max = 16000;  // what a chart takes is not the script's memory
-constexpr std::size_t text_max = 256;
+constexpr std::size_t key_text_max = 256;
 constexpr int call_depth_max = 16;
 
 // Nothing here may hold what needs a destructor while it calls Lua: strings go straight into the chart.
@@ -25,7 +25,7 @@ struct Reader {
   const char* text(int table, const char* key) const {  // anchored by the table
     lua_getfield(state, table, key);
     const char* value = lua_tostring(state, -1);
-    if (value != nullptr && lua_objlen(state, -1) > text_max) luaL_error(state, "'%s' is too long", key);
+    if (value != nullptr && lua_objlen(state, -1) > key_text_max) luaL_error(state, "'%s' is too long", key);
     lua_pop(state, 1);
     return value != nullptr ? value : "";
   }

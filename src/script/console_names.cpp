@@ -39,8 +39,8 @@ int look_up(lua_State* state) {
   lua_pushvalue(state, 2);
   lua_rawget(state, lua_upvalueindex(1));
   if (lua_isnil(state, 3)) return raise_unknown_field(state, "", lua_upvalueindex(1), 2);
-  const bool commands = lua_type(state, 2) == LUA_TSTRING && std::string_view(lua_tostring(state, 2)) == "m";
-  if (commands && !parts.writes) return luaL_error(state, "this console only reads: ':write' lets it command");
+  const bool machine = lua_type(state, 2) == LUA_TSTRING && std::string_view(lua_tostring(state, 2)) == "m";
+  if (machine && !parts.writes) return luaL_error(state, "this console only reads: ':write' lets it command");
   return 1;
 }
 

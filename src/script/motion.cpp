@@ -19,7 +19,7 @@ Motion* check_motion(lua_State* state, const char* method) {
 }
 
 // motion:wait() -> true | nil, outcome, reason. Inside `run` only: goes on when the motion is over.
-int wait(lua_State* state) {
+int wait_for_motion(lua_State* state) {
   Motion* motion = check_motion(state, "wait");
   LuaCore& core = core_of(state);
   Bindings& bindings = bindings_of(state);
@@ -131,7 +131,7 @@ void open_motions(lua_State* state) {
   lua_pushlightuserdata(state, const_cast<char*>(&motion_key));
   lua_createtable(state, 0, 2);
   lua_createtable(state, 0, 3);
-  lua_pushcfunction(state, wait);
+  lua_pushcfunction(state, wait_for_motion);
   lua_setfield(state, -2, "wait");
   lua_pushcfunction(state, cancel);
   lua_setfield(state, -2, "cancel");

@@ -8,6 +8,7 @@
 #include "kadans/signal/nearest_name.h"
 #include "lua_core.h"
 #include "sandbox.h"
+#include "source_lexer.h"
 
 namespace kadans {
 namespace {
@@ -18,7 +19,6 @@ constexpr std::array<std::string_view, 6> lua_words{"and", "or", "not", "true", 
 constexpr std::array<std::string_view, 9> functions{"abs", "min", "max", "sqrt", "floor", "ceil", "sin", "cos", "deg"};
 constexpr std::string_view tick_before = "last.";
 
-bool starts_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
 
 // Where a number that begins at `at` ends: an exponent's letter is no name.

@@ -28,7 +28,7 @@ int first_read(lua_State* state) {
 
 }  // namespace
 
-const std::array<SnapshotTables::Field, 23> SnapshotTables::fields{{
+const std::array<SnapshotTables::Field, 36> SnapshotTables::fields{{
     {Kind::joint, Type::number, "position_rad",
      [](const Snapshot& s, std::size_t i) -> double { return s.joints.joints[i].position_rad; }},
     {Kind::joint, Type::number, "velocity_rad_s",
@@ -71,6 +71,30 @@ const std::array<SnapshotTables::Field, 23> SnapshotTables::fields{{
      [](const Snapshot& s, std::size_t) -> double { return s.status.safety.fault_count; }},
     {Kind::safety, Type::number, "first_fault",
      [](const Snapshot& s, std::size_t) -> double { return static_cast<int>(s.status.safety.first_fault.code); }},
+    {Kind::joystick, Type::number, "x", [](const Snapshot& s, std::size_t) -> double { return s.joystick.axes[0]; }},
+    {Kind::joystick, Type::number, "y", [](const Snapshot& s, std::size_t) -> double { return s.joystick.axes[1]; }},
+    {Kind::joystick, Type::number, "twist",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.axes[2]; }},
+    {Kind::joystick, Type::number, "throttle",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.axes[3]; }},
+    {Kind::joystick, Type::boolean, "button_1",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[0]; }},
+    {Kind::joystick, Type::boolean, "button_2",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[1]; }},
+    {Kind::joystick, Type::boolean, "button_3",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[2]; }},
+    {Kind::joystick, Type::boolean, "button_4",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[3]; }},
+    {Kind::joystick, Type::boolean, "button_5",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[4]; }},
+    {Kind::joystick, Type::boolean, "button_6",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[5]; }},
+    {Kind::joystick, Type::boolean, "button_7",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[6]; }},
+    {Kind::joystick, Type::boolean, "button_8",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[7]; }},
+    {Kind::joystick, Type::boolean, "connected",
+     [](const Snapshot& s, std::size_t) -> double { return s.joystick.connected; }},
     {Kind::root, Type::number, "tick",
      [](const Snapshot& s, std::size_t) -> double { return static_cast<double>(s.tick); }},
     {Kind::root, Type::time, "time_s", nullptr},
@@ -153,6 +177,8 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
   lua_setfield(state, -2, "support");
   push_whole_part(state, Kind::safety, 0, "s.safety");
   lua_setfield(state, -2, "safety");
+  push_whole_part(state, Kind::joystick, 0, "s.joystick");
+  lua_setfield(state, -2, "joystick");
   finish_part(state, 0, "s");
   read_.reserve(parts_.size() * fields_a_part_max);
   for (std::size_t i = 0; !on_demand && i < parts_.size(); ++i) read_whole(state, i);
@@ -230,7 +256,7 @@ void SnapshotTables::read_whole(lua_State* state, std::size_t part) {
 }
 
 void SnapshotTables::read_field(lua_State* state, std::size_t part, std::size_t field) {
-  const std::uint32_t bit = std::uint32_t{1} << field;
+  const std::uint64_t bit = std::uint64_t{1} << field;
   if ((parts_[part].read & bit) != 0) return;
   luaL_checkstack(state, 8, "snapshot");
   const Read read{static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(field)};

@@ -33,12 +33,12 @@ class SnapshotTables {
   void warm_up() const noexcept;
 
  private:
-  enum class Kind : std::uint8_t { root, joint, base, rate, foot, support, safety };
+  enum class Kind : std::uint8_t { root, joint, base, rate, foot, support, safety, joystick };
   struct Part {
     Kind kind;
     std::uint32_t index;
     int content;                          // registry reference
-    std::uint32_t read = 0;               // bits: its fields that were read
+    std::uint64_t read = 0;               // bits: its fields that were read
     std::span<const std::byte> memory{};  // its tables
   };
   enum class Type : std::uint8_t { number, boolean, level, time };
@@ -51,7 +51,7 @@ class SnapshotTables {
   struct Read {
     std::uint16_t part, field;
   };
-  static const std::array<Field, 23> fields;
+  static const std::array<Field, 36> fields;
 
   void push_names(lua_State* state);
   void push_part(lua_State* state, Kind kind, std::size_t index);

@@ -13,7 +13,6 @@ constexpr std::array<std::string_view, 22> keywords{
     "in",  "local", "nil", "not",  "or",     "repeat", "return", "then", "true",     "until", "while"};
 constexpr std::array<std::string_view, 8> long_symbols{"...", "..", "==", "~=", "<=", ">=", "::", "//"};
 
-bool starts_name(char c) noexcept { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool digit(char c) noexcept { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool in_name(char c) noexcept { return starts_name(c) || digit(c); }
 

@@ -1,6 +1,7 @@
 // Lua source taken apart into tokens, for checks that look at a script without running it.
 #pragma once
 
+#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -8,6 +9,8 @@
 #include <vector>
 
 namespace kadans {
+
+inline bool starts_name(char c) noexcept { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
 struct SourceToken {
   enum class Kind : std::uint8_t { name, keyword, text, number, symbol, end };

@@ -40,6 +40,15 @@ std::string json_of(const Event& event) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+std::string json_of(const Fault& fault, const std::string& joint, std::int64_t time_ns) {
+  const nlohmann::ordered_json json{{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
+                                    {"name", name(fault.code)},
+                                    {"joint", joint},
+                                    {"value", fault.value},
+                                    {"limit", fault.limit}};
+  return json.dump();
+}
+
 const char* const log_schema = R"({
   "title": "foxglove.Log",
   "description": "A line of text for people",
@@ -92,6 +101,14 @@ const char* const transition_schema = R"({
     "to": { "type": "string", "description": "Path of the state that was entered" },
     "why": { "type": "string" }
   }
+})";
+
+const char* const fault_schema = R"({
+  "title": "kadans.Fault", "type": "object",
+  "properties": { "timestamp": { "type": "object", "title": "time",
+      "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
+    "name": { "type": "string" }, "joint": { "type": "string" },
+    "value": { "type": "number" }, "limit": { "type": "number" } }
 })";
 
 }  // namespace kadans

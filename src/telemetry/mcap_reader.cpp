@@ -146,6 +146,10 @@ bool McapReader::read_chunk() {
     records_.clear();
     return fail("a chunk with the wrong CRC");
   }
+  ++packing_.chunks;
+  packing_.packed_bytes += packed.size();
+  packing_.unpacked_bytes += size;
+  packing_.compression = compression;
   in_chunk_ = 0;
   return true;
 }

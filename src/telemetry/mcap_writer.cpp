@@ -10,6 +10,7 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t message_head = mcap_record_head + 22;  // record head, channel, sequence, two times
+constexpr std::size_t definitions_bytes = std::size_t{64} << 10U;
 
 }  // namespace
 
@@ -23,6 +24,7 @@ McapWriter::~McapWriter() { (void)close(); }
 
 bool McapWriter::open(const std::string& path) {
   if (!file_.open(path)) return false;
+  records_.reserve(settings_.chunk_bytes + definitions_bytes);  // else it may grow to twice of that
   block_.clear();
   block_.put(bytes_of(mcap_magic));
   {
@@ -100,25 +102,22 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
   return true;
 }
 
-// Leaves the chunk's records in packed_ unless it returns "": then they stay in records_ alone.
-std::string_view McapWriter::pack() {
-  if (zstd_ == nullptr) return "";
-  packed_.clear();
-  const auto room = packed_.grow(ZSTD_compressBound(records_.size()));
+// Appends the chunk's records to the block, compressed. False: nothing was appended.
+bool McapWriter::pack() {
+  if (zstd_ == nullptr) return false;
+  const std::size_t start = block_.size();
+  const auto room = block_.grow(ZSTD_compressBound(records_.size()));
   const std::size_t size = ZSTD_compressCCtx(zstd_.get(), room.data(), room.size(), records_.bytes().data(),
                                              records_.size(), settings_.compression_level);
-  if (ZSTD_isError(size) != 0) return "";  // out of memory
-  packed_.shrink(size);
-  return "zstd";
+  const bool packed = ZSTD_isError(size) == 0;  // else out of memory
+  block_.shrink(start + (packed ? size : 0));
+  return packed;
 }
 
 void McapWriter::put_chunk(Chunk& chunk) {
-  chunk.compression = pack();
-  const auto records = chunk.compression.empty() ? records_.bytes() : packed_.bytes();
   chunk.start_ns = chunk_start_ns_;
   chunk.end_ns = chunk_end_ns_;
   chunk.offset = file_.size();
-  chunk.packed = records.size();
   chunk.unpacked = records_.size();
   {
     const McapRecord record(block_, McapOpcode::chunk);
@@ -126,9 +125,22 @@ void McapWriter::put_chunk(Chunk& chunk) {
     block_.put(chunk.end_ns);
     block_.put(chunk.unpacked);
     block_.put(crc32(records_.bytes()));
+    const std::size_t at = block_.size();
+    chunk.compression = "zstd";
     block_.put_string(chunk.compression);
-    block_.put(chunk.packed);
-    block_.put(records);
+    block_.put(std::uint64_t{0});
+    const std::size_t start = block_.size();
+    if (pack()) {
+      chunk.packed = block_.size() - start;
+      block_.set(start - sizeof(std::uint64_t), chunk.packed);
+    } else {
+      chunk.compression = "";
+      chunk.packed = chunk.unpacked;
+      block_.shrink(at);
+      block_.put_string(chunk.compression);
+      block_.put(chunk.packed);
+      block_.put(records_.bytes());
+    }
   }
   chunk.length = block_.size();
 }

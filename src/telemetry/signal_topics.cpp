@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <set>
 #include <string_view>
 
 namespace kadans {
@@ -53,9 +54,11 @@ Part& add_part(std::vector<Part>& to, std::string_view name, SignalId signal) {
   return to.back();
 }
 
-std::vector<Part> tree_of(const SignalTable& table) {
+// Of the signals with that rate.
+std::vector<Part> tree_of(const SignalTable& table, std::span<const std::uint32_t> every_ticks, std::uint32_t rate) {
   std::vector<Part> topics;
   for (SignalId id = 0; id < table.size(); ++id) {
+    if (!every_ticks.empty() && every_ticks[id] != rate) continue;
     std::string_view rest = table.info(id).name;
     std::vector<Part>* level = &topics;
     for (std::size_t dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {
@@ -150,11 +153,24 @@ class Definition {
 
 }  // namespace
 
-std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision precision) {
+std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision precision,
+                                       std::span<const std::uint32_t> every_ticks) {
+  std::set<std::uint32_t> rates(every_ticks.begin(), every_ticks.end());
+  if (every_ticks.empty()) rates.insert(1);
+  rates.erase(0);
   std::vector<SignalTopic> topics;
-  for (const Part& root : tree_of(table)) {
-    topics.emplace_back();
-    Definition(table, precision, topics.back()).add(root);
+  for (const std::uint32_t rate : rates) {
+    for (const Part& root : tree_of(table, every_ticks, rate)) {
+      SignalTopic topic;
+      Definition(table, precision, topic).add(root);
+      topic.every_ticks = rate;
+      const auto same = [&](const SignalTopic& other) { return other.topic == topic.topic; };
+      if (std::ranges::any_of(topics, same)) {
+        topic.topic += "/every_" + std::to_string(rate);
+        topic.type += "Every" + std::to_string(rate);
+      }
+      topics.push_back(std::move(topic));
+    }
   }
   return topics;
 }

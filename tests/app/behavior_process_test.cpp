@@ -14,10 +14,7 @@ namespace {
 
 const std::string on_virtual_time = " --threads-on-virtual-time --behaviors process ";
 
-Json last_line(const std::string& text) {
-  const auto end = text.find_last_not_of('\n');
-  return Json::parse(text.substr(text.rfind('\n', end) + 1, end));
-}
+Json result_of(const std::string& out) { return Json::parse(last_line(out)); }
 
 // The lines of the behaviors until the robot is left, without the times.
 std::string said(const std::string& err) {
@@ -38,7 +35,7 @@ TEST_CASE("run with a behavior process squats as with a thread: the same transit
   const Outcome threads = run(squat + " --threads-on-virtual-time", project);
   const Outcome process = run(squat + on_virtual_time, project);
   CHECK_MESSAGE(process.exit_code == 0, process.err);
-  const Json result = last_line(process.out), other = last_line(threads.out);
+  const Json result = result_of(process.out), other = result_of(threads.out);
   CHECK(result["behavior_process"]["deaths"] == 0);
   CHECK(result["commands"] == other["commands"]);
   CHECK(result["commands"]["refused"] == 0);
@@ -62,7 +59,7 @@ TEST_CASE(
   const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
   const int status = std::system(("cd '" + project.string() + "' && sh term.sh '" + program + "'").c_str());
   CHECK(status == 0);
-  const Json result = last_line(read(project / "out"));
+  const Json result = result_of(read(project / "out"));
   CHECK(result["ended"] == "told to stop");
   CHECK(result["safety_level"] == "off");
   CHECK(result["behavior_process"]["deaths"] == 0);
@@ -85,5 +82,5 @@ TEST_CASE("a script that fails in a behavior process fails as in a thread: that 
       run("run config/tulip/robot.json --plant ideal --play squat --duration 9 --json" + on_virtual_time, project);
   CHECK(outcome.exit_code == 1);
   CHECK(has(outcome.err, "squat.lua:43: ouch"));
-  CHECK(last_line(outcome.out)["behavior_process"]["deaths"] == 0);
+  CHECK(result_of(outcome.out)["behavior_process"]["deaths"] == 0);
 }

@@ -31,7 +31,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 43> breakages = {{
+constexpr std::array<Breakage, 49> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -42,6 +42,8 @@ constexpr std::array<Breakage, 43> breakages = {{
      "the gaze stays within 2 degrees"},
     {"gaze_saccade", "config/head/robot.json", "\"gain_per_s\": 18", "\"gain_per_s\": 4",
      "settles on what is left within 0.35 s, below 0.5 degrees"},
+    {"gaze_stick", "behaviors/head/stick.lua", "-P.velocity_m_s * s.joystick.x", "-0.1 * s.joystick.x",
+     "the target goes to the left and up"},
     {"gaze_unreachable", "behaviors/head/wander.lua", "x = -0.4, y = 0.0, z = -0.3", "x = 1.0, y = 0.0, z = 0.3",
      "what is under its back is told to be out of reach"},
     {"get_up_left", getting_up, rises, sinks, "stands, height in m"},
@@ -52,6 +54,7 @@ constexpr std::array<Breakage, 43> breakages = {{
     {"jiwiy_sine", "", "[0, 0.001, 0.002]", "[0.03, 0.03, 0.03]", "both joints follow within 5 % and 5 degrees"},
     {"jiwiy_switched", "config/jiwiy/robot.json", "\"velocity_gain_Nms_per_rad\": 0.28",
      "\"velocity_gain_Nms_per_rad\": 28", "no torque steps by 5 % of its limit"},
+    {"jiwiy_unplugged", "", "\"lost_at_s\": 2.4", "\"lost_at_s\": 24", "comes to rest"},
     {"knee_sensor_jumps", "", "\"size\": 0.5", "\"size\": 0.005", "found at once"},
     {"late_drives", "", "0.002", "0.02", "stays up"},
     {"list_of_behaviors", squat, "after = P.rest_s, to = \"done\"", "after = P.rest_s, to = \"failed\"",
@@ -81,6 +84,10 @@ constexpr std::array<Breakage, 43> breakages = {{
     {"squat", squat, "P.depth_m)", "0.01)", "crouches, lowest height in m"},
     {"squat", squat, stiff, soft, "height follows, m"},
     {"squat_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "torso upright, rad"},
+    {"stay_up_backward_left", robot, "\"ankle_per_m\": 1.5", "\"ankle_per_m\": 0", "stays up"},
+    {"stay_up_forward", robot, "\"ankle_per_m\": 1.5", "\"ankle_per_m\": 0", "stays up"},
+    {"stay_up_left", robot, "\"l_hip_roll\": 0.13", "\"l_hip_roll\": 0", "stays up"},
+    {"stay_up_right", robot, "\"r_hip_roll\": -0.13", "\"r_hip_roll\": 0", "stays up"},
     {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
 }};

@@ -107,7 +107,7 @@ TEST_CASE("ctl commands a run whose behaviors play in a process of their own, an
   CHECK(has(said, "paused; squat"));
   CHECK(has(said, std::string(kp) + ": "));
   CHECK(has(wrong, "name the one to be read again"));
-  CHECK(has(wrong, "unknown parameter 'squat.hold_s'"));
+  CHECK(has(wrong, "parameters of behaviors cannot be set while they play in a process of their own"));
   CHECK(has(wrong, "there is no console while behaviors play in a process of their own"));
 }
 

@@ -1,9 +1,14 @@
 // `kadans run`, jitter and doctor as a person would call them; the runs on virtual time.
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 
 #include <doctest/doctest.h>
+#include <netinet/in.h>
 #include <nlohmann/json.hpp>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "program.h"
 
@@ -12,10 +17,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-Json last_line(const std::string& text) {
-  const auto end = text.find_last_not_of('\n');
-  return Json::parse(text.substr(text.rfind('\n', end) + 1, end));
-}
+Json result_of(const std::string& out) { return Json::parse(last_line(out)); }
 
 }  // namespace
 
@@ -25,7 +27,7 @@ TEST_CASE("run squats on threads, records every tick, and ends with the robot of
       run("run config/tulip/robot.json --play squat --duration 3 --threads-on-virtual-time --record live.mcap --json",
           project);
   CHECK_MESSAGE(outcome.exit_code == 0, outcome.err);
-  const Json result = last_line(outcome.out);
+  const Json result = result_of(outcome.out);
   CHECK(result["passed"] == true);
   CHECK(result["ended"] == "duration over");
   CHECK(result["commands"]["sent"] > 0);
@@ -49,11 +51,33 @@ TEST_CASE("run ends cleanly on SIGTERM: behaviors leave, the robot is off, the r
   const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
   const int status = std::system(("cd '" + project.string() + "' && sh term.sh '" + program + "'").c_str());
   CHECK(status == 0);
-  const Json result = last_line(read(project / "out"));
+  const Json result = result_of(read(project / "out"));
   CHECK(result["ended"] == "told to stop");
   CHECK(result["safety_level"] == "off");
   CHECK(result["record"]["rows"] == result["control_ticks"]);
   CHECK(has(read(project / "err"), "supervisor: stop"));
+}
+
+TEST_CASE("run is led by a joystick's recording, also when behaviors play in a process of their own") {
+  const auto project = project_copy("live_joystick");
+  for (const std::string behaviors : {"thread", "process"}) {
+    CAPTURE(behaviors);
+    const Outcome outcome =
+        run("run config/jiwiy/robot.json --plant ideal --play stick --joystick config/joystick/jiwiy_round.evemu"
+            " --duration 2 --threads-on-virtual-time --verbose --behaviors " +
+                behaviors,
+            project);
+    CHECK_MESSAGE(outcome.exit_code == 0, outcome.err);
+    CHECK(has(outcome.err, "joystick: is there"));
+    CHECK(has(outcome.err, "velocity.stick_velocity.held -> effort (button 3)"));
+  }
+}
+
+TEST_CASE("run refuses a joystick that is not there before anything moves") {
+  const Outcome outcome = run("run config/jiwiy/robot.json --joystick /dev/input/none --threads-on-virtual-time",
+                              project_copy("live_no_joystick"));
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "/dev/input/none: there is no such device"));
 }
 
 TEST_CASE("run refuses a wrong list before anything moves") {
@@ -79,6 +103,35 @@ TEST_CASE("run and plant say what is wrong with a network before anything moves"
   CHECK(has(plant.err, "must be HOST:PORT"));
 }
 
+TEST_CASE("run that waits for a plant on the network ends on SIGINT") {
+  const auto project = project_copy("live_waiting");
+  const int plant = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof place;
+  REQUIRE(bind(plant, reinterpret_cast<sockaddr*>(&place), size) == 0);
+  REQUIRE(getsockname(plant, reinterpret_cast<sockaddr*>(&place), &size) == 0);
+  const timeval patience{.tv_sec = 30, .tv_usec = 0};
+  setsockopt(plant, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string peer = "127.0.0.1:" + std::to_string(ntohs(place.sin_port));
+    if (chdir(project.c_str()) != 0) _exit(100);
+    execl(KADANS_BINARY_DIR "/kadans", "kadans", "run", "config/tulip/robot.json", "--plant", "udp", "--peer",
+          peer.c_str(), "--soft", "--no-ctl", nullptr);
+    _exit(101);
+  }
+  char greeting = 0;
+  CHECK(recv(plant, &greeting, 1, 0) == 1);  // it waits for the answer
+  kill(child, SIGINT);
+  int status = 0;
+  CHECK(waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 130);
+  close(plant);
+}
+
 TEST_CASE("doctor tells of any machine whose files it is given") {
   const auto folder = fresh_folder("doctor");
   std::filesystem::create_directories(folder / "machine/sys/kernel");
@@ -97,7 +150,7 @@ TEST_CASE("jitter ends with its figures as one object, and draws them") {
   const Outcome outcome = run("jitter --seconds 0.1 --no-keep-awake --json --svg jitter.svg", folder);
   CHECK(outcome.exit_code == 0);
   CHECK(has(outcome.out, "verdict:"));
-  const Json result = last_line(outcome.out);
+  const Json result = result_of(outcome.out);
   CHECK(result["samples"] == 100);
   for (const char* what : {"lateness_us", "jitter_us", "execution_us"}) {
     for (const char* which : {"p50", "p99", "p999", "max"}) CHECK(result[what][which].is_number());

@@ -69,4 +69,10 @@ bool edit(const fs::path& file, const std::string& from, const std::string& to) 
   return true;
 }
 
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of('\n') + 1;
+  const std::size_t begin = text.rfind('\n', end - 1) + 1;
+  return text.substr(begin, end - begin);
+}
+
 }  // namespace kadans::program

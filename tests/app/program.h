@@ -24,6 +24,9 @@ void write(const std::filesystem::path& file, const std::string& text);
 // Replaces the first `from` in the file by `to`; false when it is not there.
 bool edit(const std::filesystem::path& file, const std::string& from, const std::string& to);
 
+// The last line that is not empty, without its end.
+std::string last_line(const std::string& text);
+
 inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace kadans::program

@@ -36,12 +36,6 @@ fs::path project(const std::string& plan_more = "") {
 
 const std::string plan = "sweep config/sweeps/plan.json ";
 
-std::string last_line(const std::string& text) {
-  const std::size_t end = text.find_last_not_of('\n') + 1;
-  const std::size_t begin = text.rfind('\n', end - 1) + 1;
-  return text.substr(begin, end - begin);
-}
-
 std::size_t results_in(const fs::path& folder) {
   if (!fs::exists(folder)) return 0;
   std::size_t count = 0;

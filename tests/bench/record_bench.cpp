@@ -1,10 +1,48 @@
+#include <filesystem>
+
+#include <unistd.h>
+
 #include "kadans/app/assembly.h"
+#include "kadans/signal/random.h"
 #include "kadans/telemetry/recorder.h"
 #include "report.h"
 
 namespace kadans::bench {
+namespace {
 
-// What recording all signals of TULip costs the control thread.
+// What the thread that drains pays for a tick of so many signals, each of which is noise in each tick: file, or memory
+// of the flight recorder.
+void bench_drain(Report& report, const SignalTable& signals, bool flight) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("kadans_bench_" + std::to_string(getpid()) + ".mcap");
+  Recorder recorder(signals, {}, {.kept_s = flight ? 30.0 : 0.0});
+  if (!flight && !recorder.open(file.string())) return;
+  RandomStream random(1, "noise");
+  std::vector<double> row(signals.size());
+  std::vector<double> each;
+  std::uint64_t tick = 0;
+  for (int i = 0; i < 300; ++i) {
+    constexpr int ticks = 20;
+    for (int j = 0; j < ticks; ++j, ++tick) {
+      for (double& value : row) value = random.normal();
+      recorder.record(tick, static_cast<std::int64_t>(tick) * 1'000'000, row);
+    }
+    const double began = now_ns();
+    (void)recorder.drain();
+    each.push_back((now_ns() - began) / ticks);
+  }
+  double sum = 0;
+  for (const double ns : each) sum += ns / static_cast<double>(each.size());
+  const std::string what = flight ? "keeping for the flight recorder" : "writing";
+  report.add(flight ? "record_flight_us" : "record_write_us",
+             what + " a tick of " + std::to_string(row.size()) + " signals that are noise", sum * 1e-3, "us");
+  (void)recorder.close();
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+
+// What recording all signals of TULip costs the control thread, and the thread that drains.
 void bench_record(Report& report) {
   const ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json");
   RunLog log;
@@ -21,6 +59,8 @@ void bench_record(Report& report) {
     (void)recorder.drain();
   }
   report.add("record_tick_ns", "record() of " + std::to_string(row.size()) + " signals", median(each), "ns");
+  bench_drain(report, robot.catalog().signals, false);
+  bench_drain(report, robot.catalog().signals, true);
 }
 
 }  // namespace kadans::bench

@@ -62,6 +62,7 @@ void keep(T& value) {
 void bench_control(Report& report);
 void bench_exchange(Report& report);
 void bench_latency(Report& report);
+void bench_live(Report& report);
 void bench_lua(Report& report);
 void bench_objects(Report& report);
 void bench_plant(Report& report);
@@ -70,5 +71,6 @@ void bench_rfsm(Report& report);  // part of bench_lua; nothing without KADANS_R
 void bench_simulation(Report& report);
 void bench_start(Report& report);
 void bench_switch(Report& report);
+void bench_wall(Report& report);
 
 }  // namespace kadans::bench

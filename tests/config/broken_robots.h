@@ -142,6 +142,10 @@ inline constexpr Broken broken_robots[] = {
      "'control'?"},
     {"{\n  \"name\"", "[\n  \"name\"", "2:9: a comma or ] is needed here, not ':'"},
     {"}\n}\n", "}\n", "56:1: the file ends inside the object opened in line 1, a closing } is missing"},
+    {"\"name\": \"tulip\"", "\"name\": \"tulip\", \"joystick\": { \"axes\": { \"twits\": { \"code\": 2 } } }",
+     "2:44: unknown axis 'twits', did you mean 'twist'?"},
+    {"\"name\": \"tulip\"", "\"name\": \"tulip\", \"joystick\": { \"axes\": { \"x\": { \"min\": 2, \"max\": 1 } } }",
+     "2:58: joystick.axes.x: min and max go together, and min is less"},
 };
 
 }  // namespace kadans

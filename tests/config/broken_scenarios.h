@@ -58,6 +58,8 @@ inline constexpr Broken broken_scenarios[] = {
     {"\"max\": 0.05", "\"max\": 0.05, \"when\": \"x > 1\"",
      "9:92: checks[0].when means nothing to a check of kind 'always'"},
     {"\"checks\": [", "\"checks\": [ 5,", "8:15: checks[0] must be an object, not the number 5: what must hold"},
+    {"\"seed\": 7", "\"seed\": 7, \"joystick\": { \"recording\": \"config/joystick/no.evemu\" }",
+     "6:41: recording: there is no file 'config/joystick/no.evemu' in ROOT"},
 };
 
 }  // namespace kadans

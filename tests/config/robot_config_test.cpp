@@ -51,6 +51,19 @@ TEST_CASE("A key that is left out keeps its default, torque and speed the URDF's
   CHECK(config.engine.commands_per_tick_max == 300);
 }
 
+TEST_CASE("A joystick's axes are the usual ones, unless the configuration says so") {
+  CHECK_FALSE(read(right_robot).engine.joystick);
+  const RobotConfig config = read_with("\"name\": \"tulip\"",
+                                       "\"name\": \"tulip\", \"joystick\": { \"dead_zone\": 0.2, \"axes\": { \"y\": { "
+                                       "\"code\": 4, \"min\": 0, \"max\": 9 } } }");
+  CHECK(config.engine.joystick);
+  CHECK(config.joystick.dead_zone == 0.2);
+  CHECK(config.joystick.axes[0].code == 0);
+  CHECK(config.joystick.axes[1].code == 4);
+  CHECK(config.joystick.axes[1].inverted);
+  CHECK(config.joystick.axes[1].max == 9);
+}
+
 TEST_CASE("The bound of a switch and its fade are the configuration's, else 2 percent of the limit and 0.2 s") {
   const RobotConfig config = read(right_robot);
   CHECK(config.switching.step_max == 0.02);

@@ -47,6 +47,14 @@ TEST_CASE("A scenario names its robot and behaviors by path and bounds signals i
   CHECK(scenario.checks[2].signal_place == TextPlace{11, 51});
 }
 
+TEST_CASE("A scenario's joystick is played from its first tick and never lost, unless it says so") {
+  const std::string with = "\"seed\": 7, \"joystick\": { \"recording\": \"models/tulip/tulip.urdf\" }";
+  const ScenarioConfig scenario = read_scenario_config_text(replaced(right_scenario, "\"seed\": 7", with), file);
+  CHECK(scenario.joystick.recording == KADANS_SOURCE_DIR "/models/tulip/tulip.urdf");
+  CHECK(scenario.joystick.at_s == 0);
+  CHECK(scenario.joystick.lost_at_s == std::numeric_limits<double>::infinity());
+}
+
 TEST_CASE("A seed keeps all its 64 bits") {
   const std::string text = replaced(right_scenario, "\"seed\": 7", "\"seed\": 18446744073709551615");
   CHECK(read_scenario_config_text(text, file).seed == 18446744073709551615U);

@@ -127,6 +127,19 @@ TEST_CASE("DcmBalance comes in from no torque, and goes as far as it is told") {
   CHECK(bench.ankle_Nm() == doctest::Approx(whole_Nm / 2));
 }
 
+TEST_CASE("DcmBalance passes its torques through a low pass when it is told to") {
+  Bench bench;
+  bench.lean(0.05);
+  const double whole_Nm = bench.ankle_Nm();
+  bench.set("smooth_s", 0.01);
+  bench.lean(0.05);
+  CHECK(bench.ankle_Nm() == doctest::Approx(whole_Nm).epsilon(0.01));
+  bench.lean(-0.05);
+  bench.status.base.pitch_rad = 0.05;
+  bench.balance.step(bench.input(), bench.actuation);
+  CHECK(bench.ankle_Nm() == doctest::Approx(-0.8 * whole_Nm).epsilon(0.01));  // a tenth of the way
+}
+
 TEST_CASE("DcmBalance gives no torque when something is not measured, or the robot lies") {
   Bench bench;
   bench.lean(0.05);

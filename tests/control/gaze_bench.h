@@ -107,7 +107,9 @@ class GazeBench {
     for (std::size_t i = 0; i < joint_count; ++i) {
       JointState& joint = joints.joints[i];
       if (written.joints[i].mode != ActuationMode::position || i == pushed) continue;
+      const double before_rad_s = joint.velocity_rad_s;
       joint.velocity_rad_s = (written.joints[i].position_rad - joint.position_rad) / 0.001;
+      if (i < 4) hardest_rad_s2 = std::max(hardest_rad_s2, std::abs(joint.velocity_rad_s - before_rad_s) / 0.001);
       joint.position_rad = written.joints[i].position_rad;
       fastest_share = std::max(fastest_share, std::abs(joint.velocity_rad_s) / model.joints[i].velocity_max_rad_s);
       inside_rad = std::min(inside_rad, model.joints[i].upper_rad - std::abs(joint.position_rad));
@@ -129,6 +131,7 @@ class GazeBench {
   bool high_level = true;
   std::size_t pushed = joint_count;           // a joint that the test moves
   double fastest_share = 0, inside_rad = 10;  // largest speed so far; least distance to a position limit
+  double hardest_rad_s2 = 0;                  // largest acceleration of the neck
 
  private:
   Kinematics kinematics_;

@@ -82,6 +82,27 @@ TEST_CASE("Gaze keeps within the joints' speeds and limits on the way to any tar
   CHECK(bench.inside_rad > -1e-9);
 }
 
+TEST_CASE("Gaze brakes the neck before its limits no harder than it may accelerate") {
+  GazeBench bench;
+  for (const char* joint : {"lower_tilt", "pan", "roll", "upper_tilt"}) {
+    bench.set(std::string(joint) + ".acceleration_max_rad_s2", 25);
+  }
+  bench.run(0.1);
+  for (const Vec3& at : {Vec3{-0.4, 0, -0.3}, aside(170), Vec3{0.08, 0, 1.2}, Vec3{0.2, 0.1, -0.8}, aside(-170)}) {
+    bench.look(at);
+    bench.run(1.5);
+  }
+  bench.look(aside(0));
+  bench.run(2);
+  bench.look(aside(170));
+  while (std::abs(bench.joints.joints[1].position_rad) < 1.78) bench.tick();
+  bench.high_level = false;  // so that nobody but the low level is there to brake
+  bench.run(0.5);
+  CHECK(bench.hardest_rad_s2 > 20);
+  CHECK(bench.hardest_rad_s2 < 2 * 25);  // the last tick before a limit may stop what is left
+  CHECK(bench.inside_rad > -1e-9);
+}
+
 TEST_CASE("Gaze comes as near as it can to a target under the head's back, says so, and finds back") {
   GazeBench bench;
   bench.run(0.1);

@@ -55,7 +55,7 @@ class FullDisk {
  public:
   FullDisk() {
     getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit small{65536, before_.rlim_max};
+    const rlimit small{8192, before_.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
     std::signal(SIGXFSZ, SIG_IGN);
   }

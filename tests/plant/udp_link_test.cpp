@@ -258,6 +258,15 @@ TEST_CASE("Nobody there is told so") {
     CHECK_THROWS_AS(DatagramSocket::connected(wrong), InputError);
 }
 
+TEST_CASE("Waiting for the plant ends when it is told to") {
+  static int asked = 0;
+  asked = 0;
+  LossyWire wire(1);
+  UdpPlant plant({.peer = "the test", .connect_timeout_s = 1000}, layout(), wire.control_end(), 1);
+  CHECK_FALSE(plant.connect([]() noexcept { return ++asked == 2; }));
+  CHECK(asked == 2);
+}
+
 TEST_CASE("Real sockets carry a session") {
   std::string place;
   const auto listen = [&place] {

@@ -9,7 +9,8 @@ build="$KADANS_BINARY_DIR/$preset"
 
 [ $# -gt 0 ] || { echo "nothing to build yet"; exit 0; }
 cd "$KADANS_SOURCE_DIR"
-cmake --preset "$preset" -B "$build" -DKADANS_REBUILD_TESTS=OFF >"$KADANS_BINARY_DIR/$preset.configure.log" 2>&1 ||
+unity=${KADANS_SOAK:+-DCMAKE_UNITY_BUILD=OFF}  # clang-tidy looks at one file at a time
+cmake --preset "$preset" -B "$build" -DKADANS_REBUILD_TESTS=OFF $unity >"$KADANS_BINARY_DIR/$preset.configure.log" 2>&1 ||
   { cat "$KADANS_BINARY_DIR/$preset.configure.log"; exit 1; }
 [ -z "${KADANS_SOAK:-}" ] || set -- all
 setarch -R cmake --build "$build" --target "$@"

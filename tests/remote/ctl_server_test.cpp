@@ -1,6 +1,7 @@
 // Every verb against a robot that runs on threads and virtual time.
 #include <doctest/doctest.h>
 
+#include "kadans/telemetry/mcap_reader.h"
 #include "remote/live_instance.h"
 
 using namespace kadans;
@@ -160,4 +161,31 @@ TEST_CASE("a record is started and stopped while the robot runs, twice, and no f
   }
   CHECK(says(live.ask({{"verb", "record_start"}, {"file", "one.mcap"}}), "is there already"));
   CHECK(says(live.ask({{"verb", "record_start"}, {"file", "../three.mcap"}}), "names no folder"));
+}
+
+TEST_CASE("the flight recorder's last seconds are written when somebody asks, without one that is said") {
+  {
+    LiveInstance live;
+    live.start();
+    CHECK(says(live.ask({{"verb", "record_dump"}}), "there is no flight recorder"));
+  }
+  LiveInstance live;
+  live.record_side.record_as({.flight = {.kept_s = 2, .bytes = 1U << 20U}});
+  live.record_side.begin();
+  live.start();
+  (void)live.ask_until({{"verb", "status"}}, [](const Json& a) { return a["tick"] > 3000; });
+  CHECK(says(live.ask({{"verb", "record_stop"}}), "there is no record to stop"));
+  CHECK(live.ask({{"verb", "record_dump"}, {"file", "a.mcap"}})["text"] == (live.project.root / "a.mcap").string());
+  // Refused until the first is complete.
+  CHECK(live.ask_until({{"verb", "record_dump"}, {"file", "b.mcap"}}, [](const Json&) { return true; })["ok"] == true);
+  McapReader reader((live.project.root / "a.mcap").string());
+  std::uint32_t first = 0, last = 0;
+  for (McapMessage message; reader.next(message);) {
+    if (reader.channels().at(message.channel).topic != "/joint") continue;
+    if (first == 0) first = message.sequence;
+    last = message.sequence;
+  }
+  CHECK(reader.complete());
+  CHECK(last >= first + 2000);
+  CHECK(last < first + 2300);
 }

@@ -84,13 +84,7 @@ std::string Project::read(const std::string& file) const {
 }
 
 bool Supervisor::beat(const Beat&) {
-  const Snapshot& snapshot = exchange.snapshot.read(1);
-  instance.publish({.tick = snapshot.tick,
-                    .time_ns = snapshot.time_ns,
-                    .safety = snapshot.status.safety,
-                    .control_sets = snapshot.control_sets,
-                    .commands_refused = snapshot.commands_refused,
-                    .record = record.status()});
+  instance.publish(status_of(exchange.snapshot.read(1), record.status()));
   for (Fault fault; safety.log().try_pop(fault);) instance.tell(fault);
   return true;
 }

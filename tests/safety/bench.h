@@ -40,6 +40,7 @@ struct Bench {
   SafetyStatus status;
   double heartbeat_age_s = 0;
   std::uint32_t missed_ticks = 0;
+  double since_last_s = dt_s;  // of the next tick
   std::uint64_t tick = 0;
   bool knee_noise = true, imu_noise = true, foot_noise = true;
   double place_rad = 0;
@@ -66,7 +67,8 @@ struct Bench {
     if (imu_noise) sensors.imu.angular_velocity_rad_s[1] = 1e-3 * noise;
     if (foot_noise) sensors.feet[0].force_N.fill(20 + 0.1 * noise);
     written = asked;
-    safety->check({tick++, dt_s, missed_ticks, heartbeat_age_s, sensors, joints, base, health}, written, status);
+    safety->check({tick++, since_last_s, missed_ticks, heartbeat_age_s, sensors, joints, base, health}, written,
+                  status);
     Fault fault;
     while (safety->log().try_pop(fault)) faults.push_back(fault);
     return written.joints[0];

@@ -152,6 +152,23 @@ TEST_CASE("Torque changes no faster than its rate") {
   CHECK(bench.written.joints[0].effort_Nm == 7);
 }
 
+TEST_CASE("What was computed in a late tick may have changed in all the time that had passed") {
+  SafetySettings slow = settings();
+  slow.joints[0].effort_rate_max_Nm_s = 2000;
+  Bench bench(slow);
+  bench.ask(0);
+  bench.check();
+  bench.since_last_s = 0.005;  // this tick is late, what it writes was computed before that
+  bench.check();
+  bench.since_last_s = 0.0005;  // the next one is not: it writes what the late one computed
+  bench.ask(9);
+  CHECK(bench.check().effort_Nm == 9);
+  CHECK(bench.codes().empty());
+  bench.ask(18);  // from here on the rate is the usual one again
+  CHECK(bench.check().effort_Nm == doctest::Approx(10));
+  CHECK(bench.codes() == "effort_rate_limit");
+}
+
 TEST_CASE("A winding heats up as the torque squared, is derated when warm and takes the joint out when hot") {
   SafetySettings hot = settings();
   hot.joints[0].thermal_time_constant_s = 10;

@@ -23,7 +23,15 @@ int main(int argc, char** argv) {
   table.add({"base.2nd-imu.x", "", ""}, &zero);
   table.add({"tick_overruns", "", "Ticks that came late."}, &zero);
 
-  kadans::Recorder recorder(table, {.topics = {{.name = "base", .every_ticks = 10}}});
+  table.add({"foot.l_foot.force_N", "N", "Sum of the foot's pressure sensors."}, &zero);
+  table.add({"foot.l_foot.cop_x_m", "m", "Centre of pressure, forward."}, &zero);
+
+  std::vector<std::uint32_t> every_ticks(table.size(), 1);
+  every_ticks[12] = every_ticks[13] = 10;  // the base
+  every_ticks[15] = every_ticks[16] = 0;   // the foot
+  kadans::Recorder recorder(
+      table, {.every_ticks = every_ticks,
+              .subjects = {.joints = {"l_hip", "l_knee", "r_hip", "r_knee"}, .base = "torso", .feet = {"l_foot"}}});
   if (!recorder.open(argv[1]) || !recorder.describe_run({.run = {{"scenario", "sample"}, {"seed", "1"}}}) ||
       !recorder.describe_robot("sample", "<robot name=\"sample\"/>", 0)) {
     std::fprintf(stderr, "%s\n", recorder.error().c_str());
@@ -39,6 +47,7 @@ int main(int argc, char** argv) {
           {.time_ns = time_ns, .behavior = "sample", .from = "up", .to = "down", .why = "second"});
     }
     if (tick % 500 == 0) {
+      recorder.fault({.code = kadans::FaultCode::velocity_limit, .joint = 1, .tick = tick, .value = 9, .limit = 8});
       recorder.events().message(time_ns, kadans::BehaviorLog::Severity::warning, "sample", "half a second");
     }
     if (tick % 10 == 9 && !recorder.drain()) break;

@@ -1,5 +1,6 @@
 #include "kadans/telemetry/record_comparison.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -109,7 +110,7 @@ TEST_CASE("A value that becomes NaN, or stops being it, differs") {
 
 TEST_CASE("A record in single precision, of fewer ticks and fewer topics is compared in what it has") {
   const ScratchFile file;
-  record(file, {.topics = {{"base", 0}, {"behavior", 0}, {"joint", 10}}, .precision = Precision::single});
+  record(file, {.every_ticks = {10, 0, 10, 0}, .precision = Precision::single});
   const SignalTable signals = table(usual);
   for (const double by : {1e-12, 1e-3}) {
     McapReader reader(file.path());
@@ -140,4 +141,30 @@ TEST_CASE("Signals that the run no longer has are told, the others are compared,
   CHECK(comparison.ticks() == ticks);
   REQUIRE(comparison.gone().size() == 1);
   CHECK(comparison.gone()[0] == "base.tilt");
+}
+
+TEST_CASE("A topic that stands still is written seldom and compared in every tick all the same") {
+  const ScratchFile file;
+  const SignalTable signals = table({"moves.a", "stands.b"});
+  const auto recorded = [](std::uint64_t tick) {
+    return std::vector<double>{static_cast<double>(tick), tick < 40 ? 1.0 : 2.0};
+  };
+  {
+    Recorder recorder(signals);
+    REQUIRE(recorder.open(file.path()));
+    for (std::uint64_t tick = 0; tick < ticks; ++tick)
+      recorder.record(tick, static_cast<std::int64_t>(tick) * ms, recorded(tick));
+    REQUIRE(recorder.close());
+  }
+  for (const std::uint64_t other : {std::uint64_t{500}, std::uint64_t{20}, std::uint64_t{39}, std::uint64_t{40}}) {
+    McapReader reader(file.path());
+    RecordComparison comparison(reader, signals);
+    run(comparison, [&](std::uint64_t tick) {
+      std::vector<double> row = recorded(tick);
+      if (tick == other) row[1] += 1;
+      return row;
+    });
+    CHECK(comparison.parted() == (other < ticks));
+    CHECK(comparison.ticks() == std::min(other, ticks));
+  }
 }

@@ -14,7 +14,15 @@ import { TopBar } from './panels/top_bar.jsx';
 import { useSession } from './watching.js';
 
 const tabs = [['Behavior', BehaviorPanel], ['Parameters', ParametersPanel], ['Safety', SafetyPanel], ['Timing', TimingPanel], ['Log', LogPanel]];
-const first_plots = [['plant.base.height_m', 'base.height_m'], ['joint.l_knee.position_rad', 'joint.r_knee.position_rad'], ['base.pitch_rad', 'base.roll_rad']];
+
+// What is plotted first: of a robot on feet, of one that looks, else the joints.
+function first_plots(session) {
+  const joints = (session.description?.robot.joints ?? []).slice(0, 2);
+  const wanted = session.description?.robot.feet.length === 0
+    ? [['control.gaze.target_y_m', 'control.gaze.target_z_m'], ['joint.pan.position_rad', 'joint.left_eye_pan.position_rad'], joints.map((joint) => `joint.${joint}.position_rad`), joints.map((joint) => `joint.${joint}.velocity_rad_s`)]
+    : [['plant.base.height_m', 'base.height_m'], ['joint.l_knee.position_rad', 'joint.r_knee.position_rad'], ['base.pitch_rad', 'base.roll_rad']];
+  return wanted.map((names) => names.filter((name) => session.signals.has(name))).filter((names) => names.length > 0);
+}
 
 export function first_theme() {
   const wanted = new URLSearchParams(location.search).get('theme') ?? localStorage.getItem('kadans.theme');
@@ -22,13 +30,13 @@ export function first_theme() {
   return matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
 }
 
-// Plots that somebody made stay; else some that most robots have.
+// Plots that somebody made stay, for each robot; else some to begin with.
 function usePlots(session) {
-  const [plots, set_plots] = useState(() => JSON.parse(localStorage.getItem('kadans.plots') ?? 'null'));
-  const known = first_plots.map((names) => names.filter((name) => session.signals.has(name)).slice(0, 2)).filter((names) => names.length > 0);
-  const chosen = plots ?? known.slice(0, 2);
+  const [, set_plots] = useState(null);
+  const key = `kadans.plots.${session.description?.robot.name ?? ''}`;
+  const chosen = JSON.parse(localStorage.getItem(key) ?? 'null') ?? first_plots(session).slice(0, 2);
   const change = (next) => {
-    localStorage.setItem('kadans.plots', JSON.stringify(next));
+    localStorage.setItem(key, JSON.stringify(next));
     set_plots(next);
   };
   return [chosen, change];
@@ -66,7 +74,7 @@ export function App({ session, frames, open }) {
   const search_box = useRef();
   const latest = useRef();
   latest.current = { session, theme };
-  useSession(session, 1);
+  useSession(session, 2);
   useEffect(() => {
     document.documentElement.dataset.theme = theme;
     localStorage.setItem('kadans.theme', theme);
@@ -91,7 +99,7 @@ export function App({ session, frames, open }) {
       <TopBar {...{ session, theme, turn, open }} help={() => set_help(!help)} />
       <SignalList {...{ session, add, search_box }} />
       <main>
-        <RobotPanel {...{ session, theme, frames }} />
+        <RobotPanel {...{ session, theme, frames, open }} />
         <Plots {...{ session, plots, set_plots, theme, frames }} />
       </main>
       <aside>

@@ -7,7 +7,6 @@ import { open_live } from './data/live_source.js';
 import { open_record } from './data/record_source.js';
 import { Session } from './data/session.js';
 import { Frames } from './frames.js';
-import { render_record } from './render.js';
 
 const frames = new Frames();
 let session = null;
@@ -17,7 +16,7 @@ function show(next) {
   session = next;
   globalThis.kadans = session; // for the console, and for tests
   frames.advance = (dt_s) => session.advance(dt_s);
-  render(<App session={session} frames={frames} open={(file) => show(open_record(file))} />, document.getElementById('app'));
+  render(<App session={session} frames={frames} open={(source) => show(open_record(source))} />, document.getElementById('app'));
 }
 
 addEventListener('dragover', (event) => event.preventDefault());
@@ -28,9 +27,9 @@ addEventListener('drop', (event) => {
 });
 
 const wanted = new URLSearchParams(location.search);
-if (wanted.has('render')) render_record(open_record(new URL(wanted.get('record'), location.href).href), wanted);
-else if (wanted.has('record')) show(open_record(new URL(wanted.get('record'), location.href).href));
-else if (wanted.has('empty')) show(new Session('Drop a record here', false));
+if (wanted.has('render')) import('./render.js').then(({ render_record }) => render_record(open_record(new URL(wanted.get('record'), location.href).href), wanted));
+else if (wanted.has('record')) show(open_record(new URL(wanted.get('record'), location.href).href, wanted.get('title')));
+else if (wanted.has('empty')) show(new Session('none', false));
 else {
   const address = new URL(wanted.get('live') ?? '.', location.href);
   address.protocol = address.protocol.replace('http', 'ws');

@@ -1,6 +1,5 @@
 // Draws the robot of a record alone and posts the pictures to the server that asked (kadans render): ?at=S, or ?every=S.
-import { BalanceMarks } from './robot/balance_marks.js';
-import { RobotModel } from './robot/robot_model.js';
+import { Show } from './robot/show.js';
 import { Stage } from './robot/stage.js';
 
 const all_marks = new Set(['contacts', 'cop', 'com', 'dcm', 'support']);
@@ -29,13 +28,13 @@ export async function render_record(session, wanted) {
     const stage = new Stage(canvas);
     stage.set_theme(wanted.get('theme') ?? 'light');
     stage.resize(Number(wanted.get('width') ?? 960), Number(wanted.get('height') ?? 720), 1);
-    const model = new RobotModel(session.urdf, './asset/');
-    const marks = new BalanceMarks(session.description?.robot?.feet ?? []);
-    stage.scene.add(model.root, marks.root);
-    for (const t of times_of(session, wanted)) {
-      marks.update(session, t, model, all_marks);
-      stage.follow(model.root.position);
-      stage.draw();
+    session.mesh_base = './asset/';
+    const show = new Show(stage);
+    const times = times_of(session, wanted);
+    session.seek(times[0]);
+    show.take(session);
+    for (const t of times) {
+      show.draw(t, all_marks);
       const picture = await new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
       await post(`${t.toFixed(3).padStart(9, '0')}.png`, picture);
     }

@@ -89,6 +89,7 @@ class Assembly {
   void start_in_pose();
   void make_plant(std::uint64_t seed);
   void make_udp_plant();
+  void make_joystick_player();
   void make_behaviors();
   BehaviorHost& played() noexcept;
 
@@ -120,6 +121,7 @@ class Assembly {
   std::unique_ptr<BehaviorEngine> behaviors_;
   std::unique_ptr<Lockstep> lockstep_;
   std::unique_ptr<Disturbances> disturbances_;
+  std::unique_ptr<JoystickSource> joystick_;
 };
 
 }  // namespace kadans

@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "kadans/config/fields.h"
+#include "kadans/config/record_config.h"
 #include "kadans/control/catalog.h"
 #include "kadans/engine/settings.h"
 #include "kadans/estimate/settings.h"
 #include "kadans/model/robot_model.h"
+#include "kadans/plant/joystick/settings.h"
 #include "kadans/plant/settings.h"
 #include "kadans/plant/udp/settings.h"
 #include "kadans/safety/settings.h"
@@ -55,6 +57,7 @@ struct RobotConfig {
   EngineSettings engine;
   PlantSettings plant;
   UdpSettings udp;
+  JoystickSettings joystick;  // engine.joystick: whether the file has one
   EstimateSettings estimate;
   SafetySettings safety;
   std::vector<ObjectConfig> objects;
@@ -66,6 +69,7 @@ struct RobotConfig {
   std::vector<PoseInfo> poses;
   std::string start_pose;
   SafeConfig safe;
+  RecordConfig record;
 };
 
 // Throws InputError with everything that is wrong, the URDF's mistakes included. `object_types`: the types of control

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,14 @@
 namespace kadans {
 
 enum class PlantKind : std::uint8_t { bullet, ideal, udp };  // udp: live runs only, not in a file
+
+// A joystick's recording that is played.
+struct ScenarioJoystick {
+  std::string recording;  // "": none
+  TextPlace place;
+  double at_s = 0;
+  double lost_at_s = std::numeric_limits<double>::infinity();  // from then on it is unplugged
+};
 
 struct ScenarioConfig {
   std::string file;
@@ -40,6 +49,8 @@ struct ScenarioConfig {
   std::vector<ScenarioPush> pushes;
   std::vector<ScenarioFault> faults;
   WorldConfig world;
+  ScenarioJoystick joystick;
+  std::string joystick_device;  // not in the file: of a live run
   std::vector<ScenarioCheck> checks;
 };
 

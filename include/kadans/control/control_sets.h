@@ -27,13 +27,15 @@ namespace kadans {
 
 class ControlSets {
  public:
-  // Keeps a reference to the catalog and declares signals and parameters in it. `objects` as numbered there. Throws
-  // std::invalid_argument on a set that names no object or an object twice, on an object that sets a joint which an
-  // earlier one of the set drives, on initial sets that share a joint, and on too many objects or sets.
+  // Keeps the catalog, declares signals and parameters in it, marks set-points that can be led. Throws
+  // std::invalid_argument on a set that names no object or one twice, on an object that sets a joint which an earlier
+  // one of the set drives, on initial sets that share a joint, and on too many objects (numbered as there) or sets.
   ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects);
 
   // Control thread. Computes the actuation of all joints.
   void step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept;
+  // Control thread, in the wait before a tick: what step would compute, on copies.
+  void rehearse(std::uint64_t tick, const ControlInput& input, ActuationFrame& scratch) const noexcept;
   // Control thread, before step. The set computes from the next step on, in place of the active ones that it shares a
   // joint with; objects that were not active start from the present state: in that step, or earlier by start_newcomers,
   // so that they can be given set-points before it. Nothing changes when it is active.
@@ -68,13 +70,14 @@ class ControlSets {
   void make_plan(Catalog& catalog, const ControlSetInfo& set);
   void declare(Catalog& catalog);
   void check_drives();
-  void compose_joints(const Member& member, ActuationFrame& actuation) noexcept;
+  using Writers = std::array<std::uint32_t, max_joints>;  // by joint: the objects that have a share, a bit each
+  void compose_joints(const Member& member, Writers& writers, ActuationFrame& actuation) const noexcept;
 
   const Catalog& catalog_;
   std::vector<std::unique_ptr<ControlObject>> objects_;
   std::vector<std::unique_ptr<ActuationFrame>> proposals_;  // by object; stand while a slower object rests
   std::vector<Plan> plans_;                                 // by set
-  std::array<std::uint32_t, max_joints> writers_{};
+  Writers writers_{};
   SetPartition partition_;
   Switchover switchover_;
   UnheldJoints unheld_;

@@ -11,6 +11,8 @@
 //   arms    tau = k_arm r each: they swing the same way
 //   roll    tau = k_roll e_y on both hip rolls: the load goes to the foot on the side that it falls to
 //
+// A foot that is pressed to its edge by torques without any delay chatters on the ground: smooth_s is for that.
+//
 // The velocity is the difference of two kinematics, one of them moved on by a millisecond with the filtered joint
 // velocities and the gyro: no position is differentiated. The feet are taken to stand flat.
 //
@@ -38,6 +40,7 @@ class DcmBalance final : public ControlObject {
     double offset_x_m = 0.02;    // where xi shall be, forward of the ankles
     double ankle_per_m = 1;      // shift of the centre of pressure per error
     double ankle_max_Nm = 12;    // each
+    double smooth_s = 0;         // of the torques' low pass
     double reach_front_m = 0.1;  // error that the ankles hold
     double reach_back_m = 0.06;
     double hip_Nm_per_m = 0;

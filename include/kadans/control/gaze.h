@@ -4,8 +4,9 @@
 // the velocities of all joints, gaze_solver.h. Low level, each control tick: integrates them to positions, written in
 // position mode with the velocity as feed-forward, and lets the eyes answer at once what the neck does:
 //
-//   dv/dt within +-acceleration_max towards the velocity of the high level
-//   of the eyes also  v += vor_gain C (v_neck measured - v_neck asked),     dq_ref/dt = v
+//   dv/dt within +-acceleration_max towards the velocity of the high level, and no faster than the way that is left to
+//   a position limit allows to brake with it of the eyes also  v += vor_gain C (v_neck measured - v_neck asked),
+//   dq_ref/dt = v
 //
 // C is how the eyes must turn against the neck so that the gaze stays: a vestibulo-ocular reflex by the neck's own
 // sensors (Shibata et al. 2001, Biomimetic oculomotor control, Adaptive Behavior 9(3-4)). So a push against the head,
@@ -45,8 +46,7 @@ namespace kadans {
 class Gaze final : public ControlObject {
  public:
   struct JointConfig {
-    double acceleration_max_rad_s2 = 0;  // 0.1..10000
-    double lead_max_rad = 0;             // 0.001..10: how far the reference may be from the joint
+    double lead_max_rad = 0;  // 0.001..10: how far the reference may be from the joint
   };
   struct JointState {
     double reference_rad = 0;
@@ -101,6 +101,7 @@ class Gaze final : public ControlObject {
   void take_over(Part& part, const ControlInput& input) noexcept;
   void look_ahead(const JointStates& joints) noexcept;
   void move_target(double dt_s) noexcept;
+  static double braked(const Part& part, double velocity_rad_s, double dt_s) noexcept;
   static void integrate(Part& part, double velocity_rad_s, double position_rad, double dt_s) noexcept;
   bool stalled(std::int64_t time_ns, const Vec3& target_m) noexcept;
   void go_back() noexcept;

@@ -13,10 +13,10 @@
 // weight c: the neck follows and the eyes turn back into the middle, the gaze stays. It is not weighted by W, else the
 // neck would follow too slowly. lambda rises where the eyes alone lose a direction.
 //
-// Limits: a joint that would pass its position limit is held at what brings it there, and the others are solved for
-// again (saturation in the null space; Flacco, De Luca and Khatib 2012, ICRA). Speed limits scale the task as a whole,
-// so its direction stays; what is left of speed is for the null space. What cannot be reached ends at the least
-// squares' nearest.
+// Limits: a joint that would pass its position limit is held at what brings it there, never faster than it can brake,
+// and the others are solved for again (saturation in the null space; Flacco, De Luca and Khatib 2012, ICRA). Speed
+// limits scale the task as a whole, so its direction stays; what is left of speed is for the null space. What cannot be
+// reached ends at the least squares' nearest.
 //
 // Behavior thread; solve() does not allocate.
 #pragma once
@@ -47,6 +47,7 @@ class GazeSolver {
     double weight = 1;              // W: how dear its motion is
     double centring = 1;            // c
     double velocity_max_rad_s = 0;  // within the joint's
+    double acceleration_max_rad_s2 = 100;
   };
   struct Settings {
     double gain_per_s = 0;                     // K
@@ -96,6 +97,7 @@ class GazeSolver {
     double lowest_rad_s, highest_rad_s;
   };
   Bounds bounds(const Part& part, double position_rad) const noexcept;
+  static double most_rad_s(const Part& part, double position_rad, double velocity_rad_s) noexcept;
   void see(const Target& target) noexcept;
   void go_round() noexcept;
   double damping2() const noexcept;

@@ -25,6 +25,12 @@ class PidLaw : public PositionReference {
         .effort_Nm = pid_.step(reference.position, reference.velocity, joint.position_rad, joint.velocity_rad_s, dt_s),
         .mode = ActuationMode::effort};
   }
+  void rehearse(const JointState& joint, double dt_s) const noexcept {
+    MinimumJerk reference = reference_;
+    Pid pid = pid_;
+    const MinimumJerk::State& at = reference.step(dt_s);
+    (void)pid.step(at.position, at.velocity, joint.position_rad, joint.velocity_rad_s, dt_s);
+  }
 
  private:
   Pid pid_;

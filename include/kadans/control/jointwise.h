@@ -15,6 +15,10 @@
 //   bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept;
 //   void follow(std::uint32_t which, const SetpointState& state) noexcept;
 //
+// and, where it can be rehearsed (control_object.h):
+//
+//   void rehearse(const JointState& state, double dt_s) const noexcept;    // as step, on copies
+//
 // The step in the tick of the start passes no time (dt_s = 0), so that a reference which starts where the joint is does
 // not run ahead of the measurement.
 //
@@ -70,6 +74,12 @@ class Jointwise : public ControlObject {
     }
   }
 
+  void rehearse(const ControlInput& input) const noexcept override {
+    if constexpr (rehearsed) {
+      for (const Part& part : parts_) part.law.rehearse(input.joints.joints[part.axis.joint], input.dt_s);
+    }
+  }
+
   void set_point(std::uint32_t channel, double value, double duration_s) noexcept override {
     parts_[channel / Law::channels].law.set_point(channel % Law::channels, value, duration_s);
   }
@@ -99,6 +109,7 @@ class Jointwise : public ControlObject {
 
  private:
   static constexpr bool led = requires(const Law& law, SetpointState& state) { law.setpoint_state(0U, state); };
+  static constexpr bool rehearsed = requires(const Law& law, const JointState& state) { law.rehearse(state, 0.0); };
   struct Part {
     JointAxis axis;
     Law law;

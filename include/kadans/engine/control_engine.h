@@ -11,6 +11,7 @@
 #include "kadans/control/control_sets.h"
 #include "kadans/engine/command_inbox.h"
 #include "kadans/engine/record_sink.h"
+#include "kadans/engine/rehearsal.h"
 #include "kadans/engine/settings.h"
 #include "kadans/estimate/estimator.h"
 #include "kadans/exchange/latest.h"
@@ -24,12 +25,14 @@ namespace kadans {
 inline constexpr std::size_t snapshot_readers = 2;  // 0: behavior engine, 1: supervisor
 using SnapshotStorage = Latest<Snapshot, snapshot_readers>;
 using HeartbeatStorage = Latest<std::int64_t>;  // time of the behavior engine's last tick
+using JoystickStorage = Latest<JoystickState>;
 
 // The storages between the threads. Position independent; may live in shared memory.
 struct EngineExchange {
   SnapshotStorage snapshot;    // written by the control thread
   CommandQueue commands;       // pushed by the behavior thread, popped by the control thread
   HeartbeatStorage heartbeat;  // written by the behavior thread
+  JoystickStorage joystick;    // written by whoever reads one, read by the control thread
 };
 
 class ControlEngine {
@@ -44,9 +47,8 @@ class ControlEngine {
   // Control thread. `missed` ticks were skipped before this one; dt_s is the true time since the last tick.
   void tick(std::int64_t time_ns, double dt_s, std::uint32_t missed = 0) noexcept;
 
-  // Control thread, in the wait before a tick: reads what the tick will read, so that its memory is in the cache of a
-  // CPU that worked for others meanwhile. Changes nothing that counts.
-  void warm() noexcept;
+  // Control thread, in the wait before a tick: rehearsal.h. Changes nothing that counts.
+  void rehearse() noexcept;
 
   std::uint64_t ticks() const noexcept { return tick_; }
   std::span<const double> row() const noexcept { return row_; }  // signals of the last tick
@@ -60,6 +62,7 @@ class ControlEngine {
   const ActuationFrame& drive(std::int64_t time_ns, double dt_s) noexcept;
   void publish(std::int64_t time_ns) noexcept;
   void declare_signals(Catalog& catalog);
+  void declare_joystick(SignalTable& table) const;
 
   Plant& plant_;
   Estimator& estimator_;
@@ -77,6 +80,7 @@ class ControlEngine {
   ActuationFrame written_;    // in this tick: what is wanted of the joints
   ActuationFrame motors_;     // and what went to the plant for it, when objects stand at the drives
   std::vector<double> row_;
+  Rehearsal rehearsal_;
 };
 
 }  // namespace kadans

@@ -25,7 +25,7 @@ namespace kadans {
 
 class SetpointMotions {
  public:
-  // Marks in the catalog which set-points can be led.
+  // Of the set-points that the sets marked in the catalog as ones that can be led.
   SetpointMotions(Catalog& catalog, ControlSets& sets);
 
   // Commands that may come: a known set-point that can be led, limits and durations in their ranges.

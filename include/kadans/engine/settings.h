@@ -13,6 +13,7 @@ struct EngineSettings {
   double behavior_period_s = 0.01;  // a whole multiple of the control period
   std::uint32_t commands_per_tick_max = max_transaction;
   double command_age_max_s = 0.1;  // older transactions are refused
+  bool joystick = false;           // it is recorded
 
   std::int64_t control_period_ns() const noexcept { return std::llround(control_period_s * 1e9); }
   std::int64_t command_age_max_ns() const noexcept { return std::llround(command_age_max_s * 1e9); }

@@ -2,9 +2,15 @@
 // points with; the estimator carries rotations along the legs this way.
 #pragma once
 
+#include <cmath>
+
 #include "kadans/signal/frames.h"
 
 namespace kadans {
+
+inline bool is_finite(const Vec3& v) noexcept {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
 
 struct Axes {
   Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};

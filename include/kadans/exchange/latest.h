@@ -42,6 +42,17 @@ class Latest {
     }
   }
 
+  // Writer thread only: brings the places of the next publish() near. Changes nothing.
+  void warm() const noexcept {
+    for (const Channel& channel : channels_) bring_near<1>(channel.slots[channel.write_slot]);
+  }
+  // Thread of reader `reader` only: brings what read() will find near, unless something newer comes. Changes nothing.
+  void warm_read(std::size_t reader = 0) noexcept {
+    Channel& channel = channels_[reader];
+    const std::uint32_t middle_slot = middle(channel).load(std::memory_order_relaxed) & slot_mask;
+    bring_near<0>(channel.slots[has_news(reader) ? middle_slot : channel.read_slot]);
+  }
+
   // Thread of reader `reader` only; a reader index belongs to one thread, reader < readers(). Wait-free.
   // The reference holds its value until the same reader reads again.
   const T& read(std::size_t reader = 0) noexcept {
@@ -75,6 +86,13 @@ class Latest {
     alignas(cache_line) std::uint32_t middle = 1;      // both, through atomic_ref alone
     alignas(cache_line) std::uint32_t read_slot = 2;   // reader
   };
+
+  // A hint to the processor: no access that the language knows of, so no race with the slot's owner.
+  template <int to_write>
+  static void bring_near(const Slot& slot) noexcept {
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(&slot);
+    for (std::size_t i = 0; i < sizeof slot; i += cache_line) __builtin_prefetch(bytes + i, to_write);
+  }
 
   // A plain integer seen through atomic_ref keeps the type trivially copyable, which std::atomic would not.
   static std::atomic_ref<std::uint32_t> middle(Channel& channel) noexcept { return std::atomic_ref(channel.middle); }

@@ -27,6 +27,8 @@ class Plant {
   virtual void read(SensorFrame& sensors) noexcept = 0;
   // Control thread. Holds until the next write.
   virtual void write(const ActuationFrame& actuation) noexcept = 0;
+  // Control thread, in the wait before a tick: read and write will follow soon. Changes nothing.
+  virtual void warm() noexcept {}
   // The thread that owns the model; outside the tick, so it may allocate. Throws std::runtime_error when the model
   // fails (a state that is not finite).
   virtual void step(std::int64_t dt_ns) = 0;

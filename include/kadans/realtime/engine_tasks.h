@@ -24,7 +24,7 @@ class ControlTask final : public Task {
   explicit ControlTask(ControlEngine& engine, BesideTick* after = nullptr) noexcept : engine_(engine), after_(after) {}
 
   bool beat(const Beat& beat) override;
-  void prepare() noexcept override { engine_.warm(); }
+  void prepare() noexcept override;
 
   // Any thread: from the next tick on the robot is down to this rung, or lower. It is not taken back.
   void degrade(SafetyLevel level) noexcept { wanted_.store(level, std::memory_order_relaxed); }

@@ -27,6 +27,10 @@ class LinkedPlant final : public ModelPlant {
 
   void read(SensorFrame& sensors) noexcept override { sensors = exchange_.sensors.read(); }
   void write(const ActuationFrame& actuation) noexcept override { exchange_.actuation.publish(actuation); }
+  void warm() noexcept override {
+    exchange_.sensors.warm_read();
+    exchange_.actuation.warm();
+  }
   void step(std::int64_t) override {}
   const PlantTruth& truth() const noexcept override { return exchange_.truth.read(); }  // control thread
   void push(std::size_t, const Vec3&, const Vec3&) override {}

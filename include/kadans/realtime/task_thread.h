@@ -58,6 +58,8 @@ class TaskThread {
 
   const TaskSettings& settings() const noexcept { return settings_; }
   const TaskStatistics& statistics() const noexcept { return periodic_.statistics(); }
+  // How long each prepare() took.
+  const TickStatistics& preparation() const noexcept { return preparation_; }
   bool over() const noexcept { return over_.load(std::memory_order_acquire); }
   // Once it is over: why it ended before its time, "" when it did not.
   const char* failure() const noexcept { return over() ? failure_.data() : ""; }
@@ -83,6 +85,7 @@ class TaskThread {
   Task& task_;
   Wait& wait_;
   Periodic periodic_;
+  TickStatistics preparation_;
   pthread_t thread_{};
   bool joinable_ = false;
   std::atomic<bool> stop_{false}, over_{false};

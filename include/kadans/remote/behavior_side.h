@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ class BehaviorSide final : public BesideTick {
     BehaviorLog& log;  // where changes are told; what is said there passes the echo
   };
   static constexpr std::size_t consoles_max = 4;
+  static constexpr std::int64_t led_again_ns = 1'000'000'000;  // a hand that leads a set-point is logged so often
 
   // Everything must outlive it. `next` is called after it in every tick.
   explicit BehaviorSide(const Parts& parts, BesideTick* next = nullptr) : p_(parts), next_(next) {}
@@ -65,7 +67,8 @@ class BehaviorSide final : public BesideTick {
   void give(const Order& order);
   void begin_change(Pending& pending, const ParameterChange& change);
   ParameterChange change_of(const Order& order) const;
-  void send(Pending& pending, const Command& command);
+  void send(Pending& pending, std::span<const Command> commands);
+  std::vector<Command> set_points_of(const Order& order) const;
   std::string told(const Order& order, bool& done);  // by lines_
 
   // behavior_side_console.cpp
@@ -78,8 +81,8 @@ class BehaviorSide final : public BesideTick {
   TuningHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client
   std::vector<double> parameters_;
-  std::vector<EchoLog::Line> lines_;  // said in the last tick, when an order was carried out in it
-  std::int64_t time_ns_ = 0;
+  std::vector<EchoLog::Line> lines_;                   // said in the last tick, when an order was carried out in it
+  std::int64_t time_ns_ = 0, led_ns_ = -led_again_ns;  // when set-points were last told of
 };
 
 }  // namespace kadans

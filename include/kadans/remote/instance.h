@@ -40,6 +40,8 @@ struct RecordStatus {
   std::uint64_t rows = 0, bytes = 0;
   std::uint32_t dropped = 0;
   std::array<char, 256> file{};
+  std::uint32_t flights = 0;       // records that the flight recorder wrote
+  std::array<char, 256> flight{};  // the last of them
 };
 
 // Published by the supervisor some twenty times a second.
@@ -51,6 +53,7 @@ struct InstanceStatus {
   std::uint32_t commands_refused = 0;
   RecordStatus record;
 };
+InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) noexcept;
 
 class InstancePort {
  public:

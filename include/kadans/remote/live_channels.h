@@ -11,15 +11,15 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "kadans/engine/tick_statistics.h"
 #include "kadans/remote/instance.h"
 #include "kadans/remote/robot_texts.h"
 #include "kadans/telemetry/signal_topics.h"
+#include "kadans/telemetry/timing_json.h"
+#include "kadans/telemetry/viewer_messages.h"
 
 namespace kadans {
 
@@ -53,35 +53,25 @@ class LiveChannels {
   void take(const LatestRow::View& row);
   void take(const Event& event);
   void take(const Fault& fault, std::int64_t time_ns);
+  void take_behaviors(const std::string& json);  // behaviors_description, in place of those before
   void take_timing(const std::string& json, std::int64_t time_ns);
 
  private:
   std::size_t add(LiveChannel channel);
+  std::size_t add_viewer(const ViewerChannel& channel);
   std::size_t add_json(const std::string& topic, const std::string& schema, const char* text, bool events);
-  void put_joint_states(const LatestRow::View& row);
-  void put_base(const LatestRow::View& row);
-  double value(const LatestRow::View& row, const std::string& signal, double otherwise) const;
   void put_json(std::size_t channel, std::int64_t time_ns, const std::string& json);
 
   const Catalog& catalog_;
   std::vector<SignalTopic> topics_;  // the first channels
   std::vector<LiveChannel> channels_;
   std::map<std::string, std::string> signals_;
-  std::size_t joint_states_, transforms_, log_, transitions_, faults_, timing_;
-  std::string base_;
-  struct JointSignals {
-    std::optional<SignalId> position, velocity, effort;
-  };
-  std::vector<JointSignals> joints_;
-  std::vector<std::byte> joint_states_head_, payload_;
+  ViewerMessages viewers_;
+  std::size_t first_viewer_, log_, transitions_, faults_, timing_, described_;
+  std::string description_;
+  ByteWriter message_;
+  std::vector<std::byte> payload_;
   std::vector<double> values_;
 };
-
-// {"control tick": {"unit", "low", "high", "counts", "median", "p99", "max", "count"}}, in microseconds.
-struct TimingSource {
-  std::string name;
-  const TickStatistics* statistics;
-};
-std::string timing_json(const std::vector<TimingSource>& sources);
 
 }  // namespace kadans

@@ -25,6 +25,8 @@ struct LivePace {
 
   // Server's thread. False: too many wait.
   [[nodiscard]] bool push(const std::string& what);
+  // hold, go, step, speed, push. False: `verb` is no such thing, or it cannot be done.
+  [[nodiscard]] bool obey(const std::string& verb, const std::string& text, double value);
   // The simulation's: "torso=0,2,0", an impulse in Ns; none wait mostly, and then this is one load.
   std::vector<std::string> take_pushes();
 
@@ -86,6 +88,8 @@ class LiveHub {
     std::uint32_t call;
   };
   void take_answers();
+  void take_own(std::uint32_t call, const Answer& answer);
+  void take_report(const Answer& answer);
   void take_parameters();
   void note(const std::string& name, double value);
   void tell_state();
@@ -97,6 +101,7 @@ class LiveHub {
   std::map<std::uint64_t, Caller> waiting_;  // by the order's number
   std::vector<LiveParameter> parameters_, changed_;
   std::vector<LiveParameter> behaviors_now_;
+  std::map<std::string, std::uint64_t> charts_;  // that were told, by behavior
   std::string state_;
   std::uint64_t state_count_ = 0, beats_ = 0, last_tick_ = 0;
   bool wanted_ = false, report_waits_ = false, paused_ = false;

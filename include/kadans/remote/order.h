@@ -23,14 +23,16 @@ struct ParameterChange {
 struct Order {
   enum class Kind : std::uint8_t {
     // Behavior thread.
-    report,   // what plays: Answer::behaviors
-    play,     // `text` = list; behind what plays
-    replace,  // the same in its place
+    report,    // what plays: Answer::behaviors
+    describe,  // Answer::text = behaviors_description
+    play,      // `text` = list; behind what plays
+    replace,   // the same in its place
     pause,
     resume,
     stop,
     reload,         // `text` = name; "" = all that play
     switch_set,     // `text` = name
+    set_point,      // `text` = "gaze.x_m=1.2,gaze.y_m=0.3", in one transaction; `value` = to be reached in so many s
     set_parameter,  // `text` = name, of the table or BEHAVIOR.NAME; `value`
     undo,           // takes the newest set_parameter back
     changes,        // Answer::changes: what set_parameter changed since the start or the last `saved`
@@ -43,6 +45,7 @@ struct Order {
     // Record thread.
     record_start,  // `text` = file
     record_stop,
+    record_dump,  // `text` = file; what the flight recorder has
   };
   Kind kind = Kind::report;
   std::string text{};
@@ -56,6 +59,7 @@ struct BehaviorReport {
   std::string name, state, outcome, error;
   std::uint32_t lane = 0;
   bool over = false;
+  std::uint64_t chart = 0;  // changes with its states and transitions
   std::vector<ScriptParameter> parameters;
 };
 

@@ -1,8 +1,8 @@
 // The record thread's part of an instance: writes what waits, and starts and stops records while the loop goes on.
 //
-// The recorder is made with the first record and stays, so a row that is on its way when a record ends finds it still
-// there; it is thrown away when the next one begins. A file is never overwritten at the wish of a client, and lies in
-// the instance's folder of records.
+// The recorder is made with the first record, or at the start where there is a flight recorder, and stays, so a row
+// that is on its way when a record ends finds it still there; it is thrown away when the next one begins. A file is
+// never overwritten, but by the one named when the run began, and lies in the instance's folder of records.
 #pragma once
 
 #include <atomic>
@@ -15,6 +15,7 @@
 #include "kadans/remote/instance.h"
 #include "kadans/remote/robot_texts.h"
 #include "kadans/telemetry/recorder.h"
+#include "kadans/telemetry/timing_json.h"
 
 namespace kadans {
 
@@ -34,6 +35,12 @@ class RecordLog final : public BehaviorLog {
   std::atomic<BehaviorLog*> log_{nullptr};
 };
 
+struct RecordPlan {
+  RecorderSettings settings = {};
+  FlightSettings flight = {};
+  std::vector<TimingSource> timing = {};  // must outlive the record
+};
+
 class RecordSide final : public Task {
  public:
   // All must outlive it. `facts` stand in every record, under "run".
@@ -42,21 +49,35 @@ class RecordSide final : public Task {
 
   // Before the loop.
   void describe_with(RobotTexts texts) { texts_ = std::move(texts); }
+  void record_as(RecordPlan plan) { plan_ = std::move(plan); }
+  // The last step before the loop: the flight recorder begins to look.
+  void begin();
   // Record thread, or before the loop and after it. Throws InputError when there can be none.
   void start(const std::string& file);
   [[nodiscard]] bool stop();  // false: recorder()->error() says why the record is not complete
+  // Any thread: the robot is about to be let go. No flight record any more.
+  void expect_end() noexcept { ending_.store(true, std::memory_order_relaxed); }
+  // After the loop: stop(), and the flight record that is still to be written.
+  [[nodiscard]] bool end();
   // Before the loop: somebody else has a record that goes on to the end.
   void leave_to(RecordSink& own, const std::string& file);
   bool beat(const Beat&) override;
 
   // Supervisor.
+  void tell(const Fault& fault) noexcept {
+    if (Recorder* recorder = told_.load(std::memory_order_acquire); recorder != nullptr) recorder->fault(fault);
+  }
   const RecordStatus& status() noexcept { return status_.read(); }
   // After the loop; nullptr: there was no record.
   const Recorder* recorder() const noexcept { return recorder_.get(); }
 
  private:
   void carry_out(OrderCase& order);
-  std::filesystem::path file_for(const std::string& name) const;
+  void make_recorder();
+  void hand_over(bool at_once);
+  void fly(const std::filesystem::path& file);
+  void tell_timing();
+  std::filesystem::path file_for(const std::string& name, const char* suffix) const;
   void publish();
 
   Instance& instance_;
@@ -64,10 +85,13 @@ class RecordSide final : public Task {
   RecordLog& log_;
   TextMap facts_;
   RobotTexts texts_;
-  std::int64_t time_ns_ = 0;
+  RecordPlan plan_;
+  std::int64_t time_ns_ = 0, timing_told_ns_ = 0;
+  std::atomic<bool> ending_{false};
   std::unique_ptr<Recorder> recorder_;
-  std::string file_;     // "": none is open
-  bool others_ = false;  // and it is not ours
+  std::atomic<Recorder*> told_{nullptr};  // the same, for the supervisor
+  std::string file_;                      // "": none is open
+  bool others_ = false;                   // and it is not ours
   Latest<RecordStatus> status_;
 };
 

@@ -3,11 +3,14 @@
 
 #include <string>
 
+#include "kadans/telemetry/viewer_messages.h"
+
 namespace kadans {
 
 struct RobotTexts {
   std::string name, urdf;
   std::string description;  // run_description.h
+  ViewerSubjects subjects;
 };
 
 }  // namespace kadans

@@ -24,7 +24,7 @@ class JointLimiter {
     double derating;  // share of the torque limit that the winding allows
     double recovery;  // share of what is left that a joint has which comes back; no fault when it cuts
     double last_Nm;   // torque written in the last tick
-    double dt_s;
+    double change_s;  // in which the torque asked may have changed from last_Nm
   };
 
   JointLimiter() = default;
@@ -70,7 +70,7 @@ class JointLimiter {
 inline bool JointLimiter::free(const Input& in, double asked_Nm) const noexcept {
   const double speed_rad_s = std::abs(in.state.velocity_rad_s);
   return std::abs(asked_Nm) <= effort_max_Nm_ * in.derating * in.recovery &&
-         std::abs(asked_Nm - in.last_Nm) <= rate_Nm_s_ * in.dt_s && speed_rad_s <= velocity_max_rad_s_ &&
+         std::abs(asked_Nm - in.last_Nm) <= rate_Nm_s_ * in.change_s && speed_rad_s <= velocity_max_rad_s_ &&
          speed_rad_s * effort_max_Nm_ <= power_max_W_ && in.state.position_rad >= lower_rad_ + zone_rad_ &&
          in.state.position_rad <= upper_rad_ - zone_rad_;
 }

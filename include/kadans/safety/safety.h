@@ -59,6 +59,9 @@ class Safety {
 
   // Limits the actuation in place, so that what remains may be written, and reports into `status`.
   void check(const SafetyInput& input, ActuationFrame& actuation, SafetyStatus& status) noexcept;
+  // For rehearsals: becomes as `other`, a safety layer of the same robot, is; but for the log, which stays its own.
+  // Does not allocate.
+  void imitate(const Safety& other) noexcept;
   // Notes a fault that somebody else found; its reaction follows in the next check.
   void raise(const Fault& fault) noexcept;
   // The whole robot down to this rung from the next check on, until cleared: somebody wants it so, nothing failed.
@@ -99,10 +102,10 @@ class Safety {
   FaultMask watch_joints(const SafetyInput& input, const ActuationFrame& actuation, double dt_s) noexcept;
   void judge_robot(const SafetyInput& input, FaultMask body, FaultMask others, double dt_s) noexcept;
   void escalate(FaultMask faults, double dt_s) noexcept;
-  bool passes(const SafetyInput& input, std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
+  bool passes(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept;
   bool gives_way(std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
   void limit_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
-  void cut_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
+  void cut_joint(const SafetyInput& input, std::size_t joint, JointActuation& actuation) noexcept;
 
   SafetySettings settings_;
   std::size_t joint_count_;
@@ -118,6 +121,8 @@ class Safety {
   FaultMask cut_ = 0;         // of any joint, in the last tick
   std::uint32_t lost_ = 0;    // joints that damp or are off by themselves
   double lasting_s_ = 0;      // of what escalates
+  double last_dt_s_ = 0;      // of the last check
+  double change_s_ = 0;       // in which the torque asked may have changed
   bool came_back_ = false;
   std::uint32_t fault_count_ = 0;
   Fault first_fault_;

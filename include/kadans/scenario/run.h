@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kadans/engine/lockstep.h"
+#include "kadans/plant/joystick/stick.h"
 #include "kadans/plant/plant.h"
 #include "kadans/scenario/checks.h"
 #include "kadans/scenario/disturbances.h"
@@ -22,6 +23,7 @@ struct RunParts {
   TruthSignals& truth;
   RunLog& log;
   Disturbances* disturbances = nullptr;
+  JoystickSource* joystick = nullptr;
   // Signals that tell of the behaviors' own upkeep: they stay out of the state hash, since memory depends on the
   // machine.
   SignalId upkeep_first = 0;

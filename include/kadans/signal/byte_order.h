@@ -50,6 +50,7 @@ class ByteWriter {
     buffer_.resize(buffer_.size() + count);
     return std::span(buffer_).last(count);
   }
+  void reserve(std::size_t size) { buffer_.reserve(size); }
   void shrink(std::size_t size) { buffer_.resize(size); }
 
   void clear() noexcept { buffer_.clear(); }

@@ -10,6 +10,7 @@
 
 #include "kadans/signal/fault.h"
 #include "kadans/signal/frames.h"
+#include "kadans/signal/joystick.h"
 #include "kadans/signal/refusal.h"
 
 namespace kadans {
@@ -83,6 +84,7 @@ struct alignas(8) Snapshot {
   std::array<ObjectStatus, max_objects> objects{};
   std::array<SetpointStatus, max_setpoints_shown> setpoints{};  // by SetpointId
   std::array<Refusal, refusals_shown> refusals{};               // the newest ones, by count modulo their number
+  JoystickState joystick;
 };
 
 static_assert(std::is_trivially_copyable_v<Snapshot>);

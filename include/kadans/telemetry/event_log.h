@@ -13,6 +13,7 @@
 #include "kadans/engine/behavior_host.h"
 #include "kadans/exchange/ring.h"
 #include "kadans/signal/byte_order.h"
+#include "kadans/signal/fault.h"
 
 namespace kadans {
 
@@ -24,10 +25,12 @@ struct Event {
   std::string text;
 };
 
-// The JSON that viewers read, and the JSON schemas that go with it: foxglove.Log and kadans.Transition.
+// The JSON that viewers read, and the JSON schemas that go with it: foxglove.Log, kadans.Transition and kadans.Fault.
 std::string json_of(const Event& event);
+std::string json_of(const Fault& fault, const std::string& joint, std::int64_t time_ns);
 extern const char* const log_schema;
 extern const char* const transition_schema;
+extern const char* const fault_schema;
 
 class EventLog final : public BehaviorLog {
  public:

@@ -58,7 +58,14 @@ class McapReader {
   bool complete() const noexcept { return complete_; }
   const std::string& problem() const noexcept { return problem_; }  // "FILE: byte N: what"
 
+  std::uint64_t file_bytes() const noexcept { return file_size_; }
+
   // As far as the file has been read.
+  struct Packing {
+    std::uint64_t chunks = 0, packed_bytes = 0, unpacked_bytes = 0;
+    std::string compression;  // of the last chunk: "", "zstd"
+  };
+  const Packing& packing() const noexcept { return packing_; }
   const std::map<std::uint16_t, McapSchema>& schemas() const noexcept { return schemas_; }
   const std::map<std::uint16_t, McapChannel>& channels() const noexcept { return channels_; }
   const std::vector<McapAttachment>& attachments() const noexcept { return attachments_; }
@@ -95,6 +102,7 @@ class McapReader {
   std::map<std::uint16_t, McapChannel> channels_;
   std::vector<McapAttachment> attachments_;
   std::map<std::string, TextMap> metadata_;
+  Packing packing_;
 };
 
 }  // namespace kadans

@@ -93,7 +93,7 @@ class McapWriter {
 
   bool chunk_is_due(std::uint64_t time_ns, std::size_t more) const noexcept;
   void put_definitions(std::uint16_t channel);
-  std::string_view pack();
+  bool pack();
   void put_chunk(Chunk& chunk);
   void put_message_indexes(Chunk& chunk);
   [[nodiscard]] bool append();
@@ -112,7 +112,6 @@ class McapWriter {
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
 
   ByteWriter records_;  // of the open chunk
-  ByteWriter packed_;   // the same, compressed
   ByteWriter block_;    // what goes to the file in one piece
   std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
   std::uint32_t chunk_number_ = 1;

@@ -1,7 +1,8 @@
 // A record against a run that should repeat it: every signal that the record holds, in every tick, bit for bit. As for
 // the state hash, -0 and 0 are one value, and so is every NaN; a record in single precision is compared in that.
 //
-// The record is read along as the run goes, so its length does not matter. What the interpreter needs for a behavior
+// A topic that stood still has no message each tick (record_writer.h): what it held before is compared then. The record
+// is read along as the run goes, so its length does not matter. What the interpreter needs for a behavior
 // (memory, instructions, pauses of its collector) is not the robot's, and is not compared.
 #pragma once
 
@@ -16,6 +17,11 @@
 #include "kadans/telemetry/signal_topics.h"
 
 namespace kadans {
+
+// -0 and 0 are equal, and so are all NaN.
+inline bool same_value(double a, double b) noexcept { return a == b || (a != a && b != b); }
+// What the interpreter needs, by the signal's name.
+bool is_upkeep(const std::string& name);
 
 struct SignalDifference {
   std::string name, unit;
@@ -45,13 +51,18 @@ class RecordComparison {
  private:
   struct Topic {
     std::vector<SignalId> signals;  // in the order of the message; not_compared
-    std::vector<double> values;
+    std::vector<double> values;     // of its last message
+    std::uint32_t every_ticks = 1, standstill_ticks = 1;
+    bool single = false, read = false;
+    std::uint32_t sequence = 0;  // of its last message
   };
   static constexpr SignalId not_compared = 0xffffffff;
 
   void advance();
   Topic& topic_of(std::uint16_t channel);
-  void compare_message(std::span<const double> row, std::int64_t time_ns);
+  bool compare_message(std::span<const double> row, std::int64_t time_ns);
+  bool compare_standing(std::uint64_t tick, std::span<const double> row);
+  void compare_values(const Topic& topic, std::span<const double> row);
 
   McapReader& record_;
   const SignalTable& table_;

@@ -6,6 +6,9 @@
 // numbers side by side, in the order of the schema: `signals` says which signal stands where. ROS 2 allows only small
 // letters, digits and single '_' in a field's name: others change, and names that collide so get a number; the
 // description keeps them as they were. A name of one part is the field `value` of its own topic.
+//
+// Where signals of one topic are recorded at different rates, those of the fastest stand there, the others each in a
+// topic of their rate: /joint, /joint/every_10.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +29,13 @@ struct SignalTopic {
   std::string definition;         // ros2msg text, the units and sentences as comments
   std::vector<SignalId> signals;  // in the order of the message
   std::string description;        // the same order, a line each: name, unit and sentence, separated by tabs
+  std::uint32_t every_ticks = 1;
 };
 
-// Before the loop. In the order in which the table first names each topic.
-std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision precision);
+// Before the loop. The fastest first, then in the order in which the table first names each topic. `every_ticks`: by
+// signal, 0 leaves it out; none given: all in each tick.
+std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision precision,
+                                       std::span<const std::uint32_t> every_ticks = {});
 
 inline constexpr std::size_t cdr_head_bytes = 4;
 

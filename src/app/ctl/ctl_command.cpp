@@ -15,7 +15,7 @@
 namespace kadans {
 namespace {
 
-constexpr int answer_ms = 15'000;  // longer than the server waits for its instance
+constexpr int reply_ms = 15'000;  // longer than the server waits for its instance
 
 // A verb of the command line, what it asks for, and who may.
 struct Verb {
@@ -38,6 +38,7 @@ const Verb verbs[] = {
     {"switch", Role::operate, "Another control set"},
     {"record start", Role::operate, "Begin a record"},
     {"record stop", Role::operate, "End it"},
+    {"record dump", Role::operate, "Write what the flight recorder has of the last seconds"},
     {"set", Role::develop, "Give a parameter another value"},
     {"undo", Role::develop, "Take the last set back; again for the one before"},
     {"save", Role::develop, "Write what was set into the robot's configuration"},
@@ -62,6 +63,7 @@ Json request_of(const std::string& words, const CtlOptions& options) {
   if (words == "fault list") return {{"verb", "faults"}};
   if (words == "fault clear") return {{"verb", "clear_faults"}};
   if (words == "record stop") return {{"verb", "record_stop"}};
+  if (words == "record dump") return {{"verb", "record_dump"}};
   Json request{{"verb", words == "record start" ? "record_start" : words}};
   if (!options.name.empty()) request[words == "reload" ? "name" : "file"] = options.name;
   return request;
@@ -84,7 +86,7 @@ int talk(const Verb& verb, const CtlOptions& options) {
   CtlLink link(options.socket, verb.role);
   if (std::string(verb.words) == "repl") return ctl_console(link);
   link.send(request_of(verb.words, options).dump());
-  const std::optional<std::string> line = link.receive(answer_ms);
+  const std::optional<std::string> line = link.receive(reply_ms);
   if (!line) throw InputError({.message = "the instance does not answer"});
   const Json answer = Json::parse(*line);
   if (!answer.value("ok", false)) {
@@ -133,12 +135,13 @@ void add_operating(CLI::App& ctl, CtlOptions& options) {
   fault->require_subcommand(1)->fallthrough();
   add(*fault, "fault list");
   add(*fault, "fault clear");
-  CLI::App* record = ctl.add_subcommand("record", "Records: start, stop");
+  CLI::App* record = ctl.add_subcommand("record", "Records: start, stop, dump");
   record->require_subcommand(1)->fallthrough();
   add(*record, "record start")
       ->add_option("file", options.name, "Its name (default: robot and time)")
       ->type_name("FILE");
   add(*record, "record stop");
+  add(*record, "record dump");
 }
 
 void add_developing(CLI::App& ctl, CtlOptions& options) {

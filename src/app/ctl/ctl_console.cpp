@@ -13,7 +13,7 @@
 namespace kadans {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr int answer_ms = 15'000;
 constexpr int keys_ms = 100;

@@ -7,7 +7,7 @@
 
 namespace kadans {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 // `words`: the verb on the command line, "record stop". Ends with a newline, or is empty.
 std::string answer_text(const std::string& words, const Json& answer);

@@ -44,7 +44,8 @@ void InstanceLog::message(std::int64_t time_ns, Severity severity, const std::st
   next_->message(time_ns, severity, behavior, text);
 }
 
-SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs)
+SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan,
+                     const Logs& logs)
     : parts_(assembly.parts()),
       model_(assembly.robot().model),
       log_(logs.all),
@@ -55,12 +56,15 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
       behavior_side_(
           {instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),
       service_(places.ctl, instance_),
-      live_(places.live, instance_, assembly, &pace_) {
+      live_(places.live, instance_, assembly, &pace_),
+      ros2_(places.ros2, instance_, assembly, &pace_, -1) {
   record_side_.describe_with(robot_texts(assembly));
+  record_side_.record_as(std::move(plan));
   assembly.record_to(&control_side_);
 }
 
 SimRemote::~SimRemote() {
+  ros2_.stop();
   live_.stop();
   service_.stop();
   told_.tell(nullptr);
@@ -72,6 +76,7 @@ void SimRemote::begin(RecordSink* own, const std::string& own_file) {
   if (own != nullptr) record_side_.leave_to(*own, own_file);
   service_.start();
   live_.start({{"Control tick: takes", &parts_.lockstep.control_tick_cost()}});
+  ros2_.start();
 }
 
 void SimRemote::tick(double, std::span<const double>) {}
@@ -97,13 +102,7 @@ void SimRemote::between_ticks(const RunMark& mark) {
   behavior_side_.beside_tick(mark.time_ns);
   if (published_++ % publish_every_ticks != 0) return;
   (void)record_side_.beat({.due_ns = mark.time_ns});
-  const Snapshot& snapshot = parts_.control.state();
-  instance_.publish({.tick = snapshot.tick,
-                     .time_ns = snapshot.time_ns,
-                     .safety = snapshot.status.safety,
-                     .control_sets = snapshot.control_sets,
-                     .commands_refused = snapshot.commands_refused,
-                     .record = record_side_.status()});
+  instance_.publish(status_of(parts_.control.state(), record_side_.status()));
 }
 
 }  // namespace kadans

@@ -12,6 +12,7 @@
 #include "kadans/scenario/pushes.h"
 #include "kadans/scenario/run.h"
 #include "live/live_service.h"
+#include "ros2/ros2_service.h"
 
 namespace kadans {
 
@@ -40,10 +41,12 @@ class SimRemote final : public RunObserver {
   struct Places {
     CtlPlace ctl;
     LivePlace live;
+    Ros2Place ros2;
   };
   // All must outlive it. Takes the place of the assembly's record sink: `own` is the simulation's record, if it has
-  // one.
-  SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, const Logs& logs);
+  // one. `plan`: of records that are asked for.
+  SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan,
+            const Logs& logs);
   ~SimRemote() override;
   SimRemote(const SimRemote&) = delete;
   SimRemote& operator=(const SimRemote&) = delete;
@@ -70,6 +73,7 @@ class SimRemote final : public RunObserver {
   CtlService service_;
   LivePace pace_;
   LiveService live_;
+  Ros2Service ros2_;
   std::vector<Pushes> pushes_;  // the newest, of clients
   std::uint32_t published_ = 0;
 };

@@ -19,11 +19,18 @@ void add_live_place(CLI::App& command, LivePlace& place) {
       ->type_name("TEXT");
 }
 
+ViewerSubjects viewer_subjects(const RobotConfig& robot) {
+  ViewerSubjects subjects{.joints = robot.model.joint_names(), .base = robot.model.links.front().name, .feet = {}};
+  for (const FootSettings& foot : robot.plant.feet) subjects.feet.push_back(foot.link);
+  return subjects;
+}
+
 RobotTexts robot_texts(const Assembly& assembly) {
   const RobotConfig& robot = assembly.robot();
   return {.name = robot.model.name,
           .urdf = read_text_file(robot.model.file),
-          .description = run_description(robot, assembly.catalog(), assembly.own_host())};
+          .description = run_description(robot, assembly.catalog(), assembly.own_host()),
+          .subjects = viewer_subjects(robot)};
 }
 
 LiveService::LiveService(const LivePlace& place, Instance& instance, const Assembly& assembly, LivePace* pace) {

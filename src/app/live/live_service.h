@@ -25,6 +25,7 @@ struct LivePlace {
 };
 void add_live_place(CLI::App& command, LivePlace& place);
 
+ViewerSubjects viewer_subjects(const RobotConfig& robot);
 // What viewers need of the assembled robot.
 RobotTexts robot_texts(const Assembly& assembly);
 

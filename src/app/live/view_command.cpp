@@ -10,10 +10,27 @@
 #include "terminal.h"
 
 namespace kadans {
+namespace {
+
+std::string in_url(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    const bool plain =
+        (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' || c == '_' || c == '-';
+    constexpr const char* digits = "0123456789ABCDEF";
+    const auto byte = static_cast<unsigned char>(c);
+    safe += plain ? std::string(1, c) : std::string{'%', digits[byte >> 4U], digits[byte & 15U]};
+  }
+  return safe;
+}
+
+}  // namespace
 
 void add_view(CLI::App& app, ViewOptions& options) {
   CLI::App* view = app.add_subcommand("view", "Show a record in the browser");
-  view->add_option("record", options.record, "Record (MCAP)")->required()->type_name("FILE")->check(CLI::ExistingFile);
+  view->add_option("record", options.record, "Record (MCAP); without one the page waits for one to be dropped on it")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
   options.live.port = "0";
   view->add_option("--port", options.live.port, "Port (default: one that is free)")->check(CLI::Range(0, 65535));
   view->add_option("--live-address", options.live.address, "Address to listen on (default: this machine alone)")
@@ -22,12 +39,13 @@ void add_view(CLI::App& app, ViewOptions& options) {
 
 int run_view(const ViewOptions& options) {
   if (page_files().empty()) throw InputError({.message = std::string(page_is_missing)});
-  const std::string file = std::filesystem::absolute(options.record).string();
+  const std::filesystem::path file = options.record.empty() ? "" : std::filesystem::absolute(options.record);
   LiveServer server({.address = options.live.address, .port = options.live.port_number()}, nullptr,
-                    {.file = file, .take_frame = {}});
+                    {.file = file.string(), .take_frame = {}});
   catch_interrupts();
   server.start();
-  std::printf("%s&record=record.mcap\n", server.url().c_str());
+  const std::string shown = file.empty() ? "empty" : "record=record.mcap&title=" + in_url(file.filename().string());
+  std::printf("%s?%s\n", server.url().substr(0, server.url().find('?')).c_str(), shown.c_str());
   std::fflush(stdout);
   while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
   return exit_passed;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int greet_every_ms = 20;
 
-[[noreturn]] void fail(const std::string& message) { throw InputError({.message = message}); }
+[[noreturn]] void fail_with(const std::string& message) { throw InputError({.message = message}); }
 
 std::string shape(std::string_view robot, std::uint32_t joints, std::uint32_t feet) {
   return "'" + std::string(robot) + "' with " + std::to_string(joints) + " joints and " + std::to_string(feet) +
@@ -29,19 +29,20 @@ UdpPlant::UdpPlant(const UdpSettings& settings, const PlantLayout& layout, Datag
 
 UdpPlant::~UdpPlant() { leave(); }
 
-void UdpPlant::connect() {
+bool UdpPlant::connect(bool (*give_up)() noexcept) {
   const int greetings = static_cast<int>(std::ceil(1000 * settings_.connect_timeout_s / greet_every_ms));
   for (int i = 0; i < greetings; ++i) {
+    if (give_up != nullptr && give_up()) return false;
     if (!welcome_) (void)greet();
     socket_.wait(greet_every_ms);
-    if (welcomed()) return;
+    if (welcomed()) return true;
   }
   const std::string place = "the plant at " + settings_.peer;
   std::array<char, 32> seconds{};
   std::snprintf(seconds.data(), seconds.size(), "%g", settings_.connect_timeout_s);
-  if (busy_) fail(place + " is driven by somebody else");
-  fail(place + " does not answer within " + seconds.data() +
-       " s: is `kadans plant` running there, and does the network let UDP pass?");
+  if (busy_) fail_with(place + " is driven by somebody else");
+  fail_with(place + " does not answer within " + seconds.data() +
+            " s: is `kadans plant` running there, and does the network let UDP pass?");
 }
 
 bool UdpPlant::greet() { return socket_.send(wire_.greet(next_head(WireKind::hello), out_)); }
@@ -74,14 +75,14 @@ void UdpPlant::refuse(const WireHead& head, Bytes datagram) const {
   const std::string plant = "the plant at " + settings_.peer;
   const WireGreeting& ours = wire_.greeting();
   if (head.refusal == WireRefusal::version)
-    fail(plant + " speaks another version of the protocol: use the same Kadans on both sides");
+    fail_with(plant + " speaks another version of the protocol: use the same Kadans on both sides");
   if (head.refusal == WireRefusal::period)
-    fail(plant + " has a control period of " + std::to_string(theirs.period_ns) + " ns, this robot of " +
-         std::to_string(ours.period_ns) + " ns");
+    fail_with(plant + " has a control period of " + std::to_string(theirs.period_ns) + " ns, this robot of " +
+              std::to_string(ours.period_ns) + " ns");
   const std::string other = shape(theirs.robot.data(), theirs.joints, theirs.feet);
   const std::string own = shape(ours.robot.data(), ours.joints, ours.feet);
-  fail(plant + " is another robot: " + other + "; this one is " + own +
-       (other == own ? ", but they have other names or another order" : ""));
+  fail_with(plant + " is another robot: " + other + "; this one is " + own +
+            (other == own ? ", but they have other names or another order" : ""));
 }
 
 WireHead UdpPlant::next_head(WireKind kind) noexcept {

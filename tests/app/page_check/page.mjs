@@ -2,9 +2,8 @@
 import { existsSync, readdirSync, statSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { WebSocket } from 'ws';
-import { check, folder, live_address, project, run, scenario, start, until } from './program.mjs';
+import { check, chromium_options, folder, live_address, project, run, scenario, start, until } from './program.mjs';
 
-const args = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run', '--disable-dev-shm-usage'];
 const page_max_bytes = 300 * 1024;
 
 // The robot's picture as a hash, to tell whether it changed.
@@ -60,6 +59,50 @@ async function check_live(page, port) {
   check(true, 'a slider changes the parameter in the runtime');
 }
 
+// Where something of the scene is on the screen: `found` is a predicate on three.js's objects, as text.
+const place_of = (page, found) =>
+  page.evaluate((text) => {
+    const { scene, camera, renderer } = globalThis.kadans_stage;
+    let part = null;
+    scene.traverse((other) => (part ??= new Function('o', `return ${text}`)(other) ? other : null));
+    const at = part.getWorldPosition(camera.position.clone()).project(camera);
+    const box = renderer.domElement.getBoundingClientRect();
+    return { x: box.x + (box.width * (at.x + 1)) / 2, y: box.y + (box.height * (1 - at.y)) / 2 };
+  }, found);
+
+async function drag(page, from, dx, dy) {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  for (let i = 1; i <= 5; ++i) await page.mouse.move(from.x + (dx * i) / 5, from.y + (dy * i) / 5);
+  await page.mouse.up();
+}
+
+async function check_hand(page) {
+  await page.keyboard.press('Escape');
+  await page.keyboard.down('Shift');
+  await drag(page, await place_of(page, "o.isURDFLink && o.urdfName === 'torso'"), 0, 25);
+  await page.keyboard.up('Shift');
+  await until('the push is logged', () => page.evaluate(() => globalThis.kadans.log.some((line) => line.message.startsWith('push torso='))));
+  check(true, 'the mouse pushes a link');
+  await page.fill('[aria-label="Behaviors to play"]', 'wave');
+  await page.click('.play-list button');
+  await until('its chart comes', () => page.evaluate(() => globalThis.kadans.description.behaviors.some((behavior) => behavior.name === 'wave')));
+  check(true, 'another behavior is played, and its chart is shown');
+}
+
+async function check_gaze(page) {
+  const head = start(['run', `${project}/config/head/robot.json`, '--soft', '--no-ctl', '--live=0'], live_address);
+  await page.goto((await head.begun)[1]);
+  const target = () => value(page, 'control.gaze.target_z_m');
+  await until('the robot is drawn', () => page.evaluate(() => globalThis.kadans_drawn?.robot && globalThis.kadans.end_s > 0.5));
+  const [before, tilt] = [await target(), await value(page, 'joint.eye_tilt.position_rad')];
+  await drag(page, await place_of(page, "o.name === 'gaze target'"), 0, -40);
+  await until('the target is higher', async () => (await target()) > before + 0.05);
+  await until('the eyes turn', async () => Math.abs((await value(page, 'joint.eye_tilt.position_rad')) - tilt) > 0.02);
+  check(true, 'the mouse leads the gaze');
+  await head.stop();
+}
+
 async function check_record(page, record) {
   const view = start(['view', record], /(http:\S+)/);
   const [, url] = await view.begun;
@@ -93,13 +136,14 @@ run(async () => {
 
   const first = sim(0);
   const [, url, port] = await first.begun;
-  const browser = await chromium.launch({ executablePath: process.env.KADANS_CHROMIUM ?? 'chromium', args });
+  const browser = await chromium.launch(chromium_options);
   try {
     const page = await browser.newPage({ viewport: { width: 1100, height: 640 } });
     const problems = [];
     page.on('pageerror', (error) => problems.push(error.stack));
     await page.goto(url);
     await check_live(page, port);
+    await check_hand(page);
 
     const id = await page.evaluate(() => globalThis.kadans.id);
     await first.stop();
@@ -113,6 +157,7 @@ run(async () => {
     await second.stop();
 
     await check_record(page, record);
+    await check_gaze(page);
     check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
   } finally {
     await browser.close();

@@ -36,6 +36,12 @@ export function start(args, line) {
   return { child, begun, stop };
 }
 
+// Draws WebGL in software, keeps to itself.
+export const chromium_options = {
+  executablePath: process.env.KADANS_CHROMIUM ?? 'chromium',
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run', '--disable-dev-shm-usage'],
+};
+
 export const scenario = (name) => `${project}/config/scenarios/${name}.json`;
 export const live_address = /live on (http:\/\/127\.0\.0\.1:(\d+)\/\?token=(\w+))/;
 

@@ -3,6 +3,10 @@ import { Graph, layout } from '@dagrejs/dagre';
 
 const text_width = (text, px = 6.6) => Math.max(1, text.length) * px;
 
+// Whole in the tooltip.
+const label_max = 26;
+const short = (label) => (label.length > label_max ? `${label.slice(0, label_max - 1)}…` : label);
+
 // Arrows go between leaves; one of a compound state begins at its first leaf.
 function leaf_of(states, index, parents) {
   while (parents.has(index)) {
@@ -35,7 +39,7 @@ export function chart_layout({ states, transitions }) {
   transitions.forEach((transition, i) => {
     const source = transition.source === 0 ? 'any' : leaf_of(states, transition.source, parents);
     const target = leaf_of(states, transition.target, parents);
-    const label = transition.label;
+    const label = short(transition.label);
     graph.setEdge(source, target, { label, width: text_width(label, 5.9), height: label ? 14 : 0, labelpos: 'c', transition }, `t${i}`);
   });
   layout(graph);

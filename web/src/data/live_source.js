@@ -13,6 +13,7 @@ class Remote {
     Object.assign(this, { session, address, token });
     this.writes = false;
     this.verbs = new Set();
+    this.plays = []; // names of behaviors that there are
     this.state = {};
     this.calls = new Map();
     this.last_call = 0;
@@ -27,7 +28,9 @@ class Remote {
     this.socket.onmessage = ({ data }) => (typeof data === 'string' ? this.take_text(JSON.parse(data)) : this.take_bytes(new DataView(data)));
     this.socket.onclose = () => {
       if (this.closed) return;
+      for (const call of [...this.calls.keys()]) this.end_call(call, { done: false, text: 'the connection was lost before the answer came' });
       this.session.status = 'connecting…';
+      this.writes = false;
       this.session.changed();
       setTimeout(() => this.connect(), again_ms);
     };
@@ -72,6 +75,7 @@ class Remote {
     this.metadata = metadata;
     this.writes = metadata.writes === 'yes';
     this.verbs = new Set((metadata.verbs ?? '').split(' '));
+    this.plays = (metadata.plays ?? '').split(' ').filter(Boolean);
     this.send({ op: 'getParameters', parameterNames: [], id: 'all' });
     this.send({ op: 'subscribeParameterUpdates', parameterNames: [] });
   }
@@ -113,6 +117,10 @@ class Remote {
 
   // The answer: {done, text}.
   command(verb, { text = '', value = 0 } = {}) {
+    if (this.socket.readyState !== WebSocket.OPEN) {
+      const answer = { done: false, text: `${verb}: the run does not answer` };
+      return this.end_call(0, answer), Promise.resolve(answer);
+    }
     const call = ++this.last_call;
     const request = bytes_of.encode(JSON.stringify({ verb, text, value }));
     const frame = new Uint8Array(17 + request.length);
@@ -123,7 +131,7 @@ class Remote {
     view.setUint32(9, 4, true);
     frame.set(bytes_of.encode('json'), 13);
     frame.set(request, 17);
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(frame);
+    this.socket.send(frame);
     return new Promise((resolve) => this.calls.set(call, resolve));
   }
 

@@ -2,8 +2,8 @@
 import { Session } from './session.js';
 
 // `source`: a File or an address.
-export function open_record(source) {
-  const title = typeof source === 'string' ? source.split('/').pop().split('?')[0] : source.name;
+export function open_record(source, name) {
+  const title = name ?? (typeof source === 'string' ? decodeURIComponent(source.split('/').pop().split('?')[0]) : source.name);
   const session = new Session(title, false);
   session.loading = 0.01;
   session.facts = new Map();
@@ -20,7 +20,7 @@ export function open_record(source) {
     else if (data.kind === 'rows') session.add_rows(data.topic, data.times, data.values);
     else if (data.kind === 'text') session.add_text(data.topic, data.t, data.bytes);
     else if (data.kind === 'facts') session.facts.set(data.name, new Map(data.facts));
-    else if (data.kind === 'failed') end(`${title} is no record of Kadans, or damaged: ${data.why}`);
+    else if (data.kind === 'failed') end(data.unread ? `${title} cannot be read: ${data.why}` : `${title} is no record of Kadans, or damaged: ${data.why}`);
     else if (data.kind === 'done') {
       if (data.empty) return end(`${title} holds no signals of Kadans`);
       session.status = data.complete ? '' : 'cut short';

@@ -62,12 +62,16 @@ class Reading {
   }
 }
 
+const unread = (why) => {
+  throw Object.assign(new Error(why), { unread: true });
+};
+
 async function open(source) {
   let stream;
   let size = 0;
   if (typeof source === 'string') {
-    const answer = await fetch(source);
-    if (!answer.ok) throw new Error(`${source}: ${answer.status} ${answer.statusText}`);
+    const answer = await fetch(source).catch(() => unread(`nothing answers at ${source}, or it does not let this page read it`));
+    if (!answer.ok) unread(`${source} answers ${answer.status} ${answer.statusText}`);
     size = Number(answer.headers.get('content-length'));
     stream = answer.body;
   } else {
@@ -94,6 +98,6 @@ onmessage = async ({ data: source }) => {
     postMessage({ kind: 'done', complete: reading.reader.done(), empty: batches.size === 0 });
   } catch (error) {
     send_all();
-    postMessage({ kind: 'failed', why: String(error.message ?? error) });
+    postMessage({ kind: 'failed', unread: Boolean(error.unread), why: String(error.message ?? error) });
   }
 };

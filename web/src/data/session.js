@@ -3,6 +3,7 @@
 import { Topic } from './topic.js';
 
 const events_max = 5000;
+const json_topics = new Set(['/description', '/transitions', '/log', '/faults', '/timing', '/parameters']);
 const text_of = new TextDecoder();
 
 const seconds = (stamp) => stamp.sec + stamp.nsec * 1e-9;
@@ -95,6 +96,7 @@ export class Session {
       this.urdf = text_of.decode(bytes.subarray(8, 8 + length - 1));
       return this.changed();
     }
+    if (!json_topics.has(topic)) return; // for other viewers
     const json = JSON.parse(text_of.decode(bytes));
     if (topic === '/description') {
       this.description = json;
@@ -108,9 +110,7 @@ export class Session {
     } else if (topic === '/timing') {
       this.timing = json;
     } else if (topic === '/parameters') {
-      for (const [name, value] of Object.entries(json)) this.parameters.set(name, value);
-    } else {
-      return;
+      for (const { name, value } of json.parameters) this.parameters.set(name, value);
     }
     this.changed();
   }

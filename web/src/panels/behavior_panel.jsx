@@ -4,6 +4,8 @@ import { active_states, time_in_state } from '../data/active_states.js';
 import { chart_layout, path_of } from '../data/chart_layout.js';
 import { clock, useSession } from '../watching.js';
 
+const least_scale = 0.72;
+
 function State({ node, active }) {
   const [x, y] = [node.x - node.width / 2, node.y - node.height / 2];
   if (node.start) return <circle class="dot" cx={node.x} cy={node.y} r="4" />;
@@ -20,7 +22,7 @@ function Edge({ edge, lit }) {
   return (
     <g class={lit ? 'edge lit' : 'edge'}>
       <path d={path_of(edge.points)} marker-end={lit ? 'url(#tip-lit)' : 'url(#tip)'} />
-      {edge.label && <text x={edge.x} y={edge.y + 3}>{edge.label}</text>}
+      {edge.label && <text x={edge.x} y={edge.y + 3}>{edge.label}<title>{edge.transition?.label}</title></text>}
     </g>
   );
 }
@@ -38,7 +40,7 @@ function Chart({ session, behavior }) {
   const lit = (edge) => last && edge.transition && states[edge.transition.target].path === last.to && (edge.transition.source === 0 || states[edge.transition.source].path === last.from);
   const clusters_first = [...drawing.nodes].sort((a, b) => Number(Boolean(b.cluster)) - Number(Boolean(a.cluster)));
   return (
-    <svg class="chart" viewBox={`0 0 ${drawing.width} ${drawing.height}`} style={{ maxWidth: `${drawing.width * 1.15}px` }} role="img" aria-label={`States of ${behavior.name}`}>
+    <svg class="chart" viewBox={`0 0 ${drawing.width} ${drawing.height}`} style={{ maxWidth: `${drawing.width * 1.15}px`, minWidth: `${drawing.width * least_scale}px` }} role="img" aria-label={`States of ${behavior.name}`}>
       <defs><Tip id="tip" /><Tip id="tip-lit" /></defs>
       {clusters_first.filter((node) => node.cluster).map((node) => <State key={node.id} node={node} active={active.has(node.id)} />)}
       {drawing.edges.map((edge) => <Edge key={edge.key} edge={edge} lit={lit(edge)} />)}
@@ -55,9 +57,22 @@ function Now({ session, behavior }) {
     <p class="now-state">
       <b>{behavior.name}</b>
       <span class="path">{path || 'not begun'}</span>
-      <time>{time_in_state(session, behavior, session.cursor_s).toFixed(1)} s</time>
+      {path && <time title="Time in this state">for {time_in_state(session, behavior, session.cursor_s).toFixed(1)} s</time>}
     </p>
   );
+}
+
+// Never smaller than can be read: a chart that is larger than its place scrolls, and the active state stays in sight.
+function ChartBox({ session, behavior }) {
+  const box = useRef();
+  const active = session.transitions.findLast((entry) => entry.behavior === behavior.name && entry.t <= session.cursor_s)?.to;
+  useEffect(() => {
+    const outer = box.current?.getBoundingClientRect();
+    const state = box.current?.querySelector('.state.active')?.getBoundingClientRect();
+    if (!state || (outer.width >= box.current.scrollWidth && outer.height >= box.current.scrollHeight)) return;
+    box.current.scrollBy({ left: state.x + state.width / 2 - outer.x - outer.width / 2, top: state.y + state.height / 2 - outer.y - outer.height / 2 });
+  }, [active, behavior]);
+  return <div class="chart-box" ref={box} tabIndex={0} aria-label="Chart"><Chart {...{ session, behavior }} /></div>;
 }
 
 export function TransitionLog({ session }) {
@@ -87,6 +102,11 @@ export function BehaviorPanel({ session }) {
   useSession(session, 15);
   const behaviors = session.description?.behaviors ?? [];
   const [chosen, choose] = useState(0);
+  const count = useRef(0);
+  useEffect(() => {
+    if (count.current > 0 && behaviors.length > count.current) choose(behaviors.length - 1); // what plays now came last
+    count.current = behaviors.length;
+  }, [behaviors.length]);
   const behavior = behaviors[Math.min(chosen, behaviors.length - 1)];
   return (
     <div class="behavior">
@@ -95,7 +115,7 @@ export function BehaviorPanel({ session }) {
           {behaviors.map((other, i) => <button key={i} aria-pressed={i === chosen} onClick={() => choose(i)}>{other.name}</button>)}
         </nav>
       )}
-      {behavior ? <><Now {...{ session, behavior }} /><div class="chart-box"><Chart {...{ session, behavior }} /></div></> : <p class="hint">This run has no chart.</p>}
+      {behavior ? <><Now {...{ session, behavior }} /><ChartBox {...{ session, behavior }} /></> : <p class="hint">{session.description ? 'No behavior plays.' : 'No chart yet.'}</p>}
       <h3>Transitions</h3>
       <TransitionLog session={session} />
     </div>

@@ -4,6 +4,13 @@ import { number, useSession } from '../watching.js';
 
 const finite = (value, otherwise) => (Number.isFinite(value) ? value : otherwise);
 
+// The unit stands beside, so the label does without it: "kp_Nm_per_rad" is "kp". The tooltip has the name.
+const unit_suffix = /(_(Nms|Nm|N|rads|rad|deg|ms|us|m|s|Hz|kg|C|W|J|V|A)\d?)+(_per(_(Nms|Nm|N|rads|rad|deg|m|s|Hz|kg|C|W|J|V|A)\d?)+)*$|_per_s\d?$/;
+const short = (label, unit) => (unit && unit !== '1' && label.replace(unit_suffix, '')) || label;
+
+const bound = (value, otherwise) => (Number.isFinite(value ?? NaN) ? number(value, 3) : otherwise);
+const range_text = (p) => `${bound(p.min, '−∞')}…${bound(p.max, '∞')}`;
+
 // A range without an end gets one that holds the value.
 function slider_range(p, value) {
   const reach = 4 * Math.max(Math.abs(value), Math.abs(p.initial), 1);
@@ -26,11 +33,11 @@ function Parameter({ p, value, writable, change, label }) {
   };
   const moved = Math.abs(value - p.value) > 1e-9 * Math.max(1, Math.abs(p.value));
   return (
-    <div class={moved ? 'parameter moved' : 'parameter'} title={`${p.name}\n${p.doc}`} data-parameter={p.name}>
-      <span class="name">{label}</span>
+    <div class={moved ? 'parameter moved' : 'parameter'} title={`${p.name}\n${p.doc}\n${range_text(p)} ${p.unit}`} data-parameter={p.name}>
+      <span class="name">{short(label, p.unit)}</span>
       <input type="range" aria-label={p.name} min={low} max={high} step={(high - low) / 500} value={shown} disabled={!writable} onInput={(event) => ask(Number(event.target.value))} />
       <input type="number" aria-label={`${p.name}, number`} step="any" value={Number(number(shown, 6))} disabled={!writable} onChange={(event) => ask(Number(event.target.value))} />
-      <small>{p.unit || '1'}</small>
+      <small><i>{range_text(p)}</i> {p.unit}</small>
       <button class="back" title={`Back to ${number(p.value)}`} disabled={!writable || !moved} onClick={() => ask(p.value)}>↺</button>
     </div>
   );

@@ -26,6 +26,13 @@ function draw_bands(plot, session, color) {
   ctx.restore();
 }
 
+// A little air above and below; what does not change stands in the middle.
+function y_range(_, low, high) {
+  if (low === null || !Number.isFinite(low)) return [0, 1];
+  const air = high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? 0.06 * (high - low) : Math.max(0.05 * Math.abs(high), 0.01);
+  return [low - air, high + air];
+}
+
 function options_for(names, size, theme, now) {
   const ink = inks[theme];
   const axis = { stroke: ink.text, grid: { stroke: ink.grid, width: 1 }, ticks: { show: false }, font: '11px system-ui' };
@@ -34,10 +41,10 @@ function options_for(names, size, theme, now) {
     legend: { show: false },
     padding: [8, 10, 0, 0],
     cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false },
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, y: { range: y_range } },
     axes: [
       { ...axis, size: 24, values: (_, ticks) => ticks.map((tick) => `${number(tick, 6)}`) },
-      { ...axis, size: 58, values: (_, ticks) => ticks.map((tick) => number(tick, 4)) },
+      { ...axis, size: 58, space: 26, values: (_, ticks) => ticks.map((tick) => number(tick, 4)) },
     ],
     series: [{}, ...names.map((_, i) => ({ stroke: line_colors[i % line_colors.length], width: 1.4, spanGaps: true, points: { show: false } }))],
     hooks: {

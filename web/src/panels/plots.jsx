@@ -12,7 +12,7 @@ export function Plots({ session, plots, set_plots, theme, frames }) {
     if (window_s) return window_s;
     if (!session.live) return [session.start_s, session.end_s];
     const to = session.following ? session.end_s : Math.max(session.cursor_s + live_span_s / 2, session.start_s + live_span_s);
-    return [to - live_span_s, to];
+    return [Math.max(to - live_span_s, Math.min(session.start_s, to - 1)), to];
   };
   const put = (at, names) => set_plots(plots.map((other, i) => (i === at ? names : other)));
   return (

@@ -56,7 +56,7 @@ export function SafetyPanel({ session }) {
       <h3>Robot</h3>
       <Ladder level={level} />
       <div class="row">
-        <p class="grow">{number(session.value('safety.faults'))} faults since the start or the last clearing</p>
+        <p class="grow">{number(session.value('safety.faults'))} {session.value('safety.faults') === 1 ? 'fault' : 'faults'} since the start or the last clearing</p>
         <button disabled={!session.remote?.writes} onClick={() => session.remote.command('clear_faults')}>Clear</button>
       </div>
       {seen.length > 0 && (

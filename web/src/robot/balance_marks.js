@@ -5,8 +5,8 @@ import {
   RingGeometry, CircleGeometry, SphereGeometry, Vector3, DoubleSide, LineLoop,
 } from 'three';
 import { hull } from './hull.js';
+import { mark_colors } from './mark_colors.js';
 
-export const mark_colors = { force: 0x2f9e6e, cop: 0x2f9e6e, com: 0xd9822b, dcm: 0xb8479b, support: 0x3b82c4 };
 const metres_per_newton = 1 / 350;
 const lift_m = 0.003; // above the ground, so that nothing flickers
 const up = new Vector3(0, 0, 1);
@@ -85,6 +85,7 @@ export class BalanceMarks {
     for (const foot of this.feet) foot.update(session, t, model);
     const bearing = this.feet.filter((foot) => foot.bears);
     for (const [name, parts] of Object.entries(this.groups)) for (const part of parts) part.visible = shown.has(name);
+    if (this.feet.length === 0) for (const part of [this.plumb, this.com_spot, this.dcm_spot]) part.visible = false; // it stands on nothing
     for (const foot of this.feet) foot.arrow.visible = foot.dot.visible = foot.bears && shown.has('contacts');
     const ground_z = bearing.length > 0 ? Math.min(...bearing.map((foot) => foot.cop.z)) + lift_m : lift_m;
     this.com_ball.position.copy(this.com);

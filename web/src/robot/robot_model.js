@@ -1,6 +1,6 @@
 // The robot from its URDF, posed from the signals of a session: joints as measured, the base as the model knows it or,
 // on a real robot, as it is estimated. Also its centre of mass, from the inertias of the same URDF.
-import { Euler, Group, Quaternion, Vector3 } from 'three';
+import { Box3, Euler, Group, Quaternion, Sphere, Vector3 } from 'three';
 import URDFLoader from 'urdf-loader';
 
 const gravity_m_s2 = 9.81;
@@ -28,6 +28,7 @@ export class RobotModel {
     this.root.add(this.robot);
     this.joints = Object.values(this.robot.joints).filter((joint) => joint.jointType !== 'fixed');
     this.masses = masses_of(this.robot);
+    this.radius = this.bounds().radius; // with all joints at 0
     this.turn = new Quaternion();
     this.euler = new Euler();
     this.robot.traverse((part) => {
@@ -39,6 +40,13 @@ export class RobotModel {
         part.material.specular?.setHex(0x222222);
       }
     });
+  }
+
+  // A ball around the robot as it is posed now.
+  bounds() {
+    const sphere = new Box3().setFromObject(this.robot).getBoundingSphere(new Sphere());
+    if (!(sphere.radius > 0)) sphere.set(this.root.position.clone(), 0.5);
+    return sphere;
   }
 
   link(name) {

@@ -1,6 +1,6 @@
 // The place where the robot stands: light, ground, camera. Draws when told to; knows nothing of time.
 import {
-  AmbientLight, Color, DirectionalLight, GridHelper, HemisphereLight, Mesh, PCFShadowMap, PerspectiveCamera,
+  AmbientLight, Color, DirectionalLight, Fog, GridHelper, HemisphereLight, Mesh, PCFShadowMap, PerspectiveCamera,
   PlaneGeometry, Scene, ShadowMaterial, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -9,6 +9,8 @@ const themes = {
   light: { back: 0xeef1f4, grid: 0xc9d1d9, lines: 0xdde3e8, sun: 2.1, sky: 1.5, shadow: 0.16 },
   dark: { back: 0x14191f, grid: 0x35404b, lines: 0x232b34, sun: 1.7, sky: 0.9, shadow: 0.45 },
 };
+
+const from_start = new Vector3(2.5, 1.7, 0.62);
 
 export class Stage {
   constructor(canvas) {
@@ -21,11 +23,14 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, canvas);
     this.moved = true; // by hand, since it was drawn
     this.controls.addEventListener('change', () => (this.moved = true));
-    this.controls.minDistance = 0.3;
+    this.controls.minDistance = 0.15;
     this.controls.maxDistance = 15;
     this.target = new Vector3(0, 0, 0.6);
+    this.distance = 2.7;
+    this.from = from_start;
+    this.followed = new Vector3();
     this.add_lights();
-    this.ground = new Mesh(new PlaneGeometry(40, 40), new ShadowMaterial());
+    this.ground = new Mesh(new PlaneGeometry(5, 5), new ShadowMaterial());
     this.ground.receiveShadow = true;
     this.scene.add(this.ground);
     this.look_from_start();
@@ -47,8 +52,9 @@ export class Stage {
     const theme = themes[name];
     this.moved = true;
     this.scene.background = new Color(theme.back);
+    this.scene.fog = new Fog(theme.back); // the ground has no edge
     if (this.grid) this.scene.remove(this.grid);
-    this.grid = new GridHelper(20, 80, theme.grid, theme.lines);
+    this.grid = new GridHelper(14, 56, theme.grid, theme.lines);
     this.grid.rotation.x = Math.PI / 2;
     this.grid.position.z = -0.001;
     this.scene.add(this.grid);
@@ -59,25 +65,37 @@ export class Stage {
 
   look_from_start() {
     this.controls.target.copy(this.target);
-    this.camera.position.copy(this.target).add(new Vector3(2.5, 1.7, 0.62));
+    this.camera.position.copy(this.target).add(this.from.clone().setLength(this.distance));
     this.controls.update();
     this.moved = true;
   }
 
+  // Sees a robot of this size whole, whose base is at `base`.
+  frame(centre, radius, base, from = from_start) {
+    this.from = from;
+    this.target.copy(centre);
+    this.followed.copy(base);
+    this.distance = 4.1 * radius;
+    this.look_from_start();
+  }
+
   // Keeps `point` where it is in the picture, sideways; height stays.
   follow(point) {
-    const dx = point.x - this.target.x;
-    const dy = point.y - this.target.y;
+    const dx = point.x - this.followed.x;
+    const dy = point.y - this.followed.y;
+    this.followed.copy(point);
     this.target.x += dx;
     this.target.y += dy;
     for (const at of [this.controls.target, this.camera.position]) at.set(at.x + dx, at.y + dy, at.z);
+    this.ground.position.set(point.x, point.y, 0);
+    this.grid.position.set(Math.round(point.x / 0.25) * 0.25, Math.round(point.y / 0.25) * 0.25, -0.001);
     this.sun.target.position.set(point.x, point.y, 0.4);
     this.sun.position.set(point.x + 1.2, point.y + 1.6, 4.2);
   }
 
   resize(width, height, ratio = Math.min(2, globalThis.devicePixelRatio)) {
-    if (this.width === width && this.height === height) return;
-    [this.width, this.height] = [width, height];
+    if (this.width === width && this.height === height && this.ratio === ratio) return;
+    [this.width, this.height, this.ratio] = [width, height, ratio];
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
@@ -86,6 +104,8 @@ export class Stage {
 
   draw() {
     this.controls.update();
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    Object.assign(this.scene.fog, { near: 1.25 * distance, far: 2.5 * distance });
     this.renderer.render(this.scene, this.camera);
   }
 

@@ -27,8 +27,8 @@ class UdpPlant final : public Plant {
   ~UdpPlant() override;  // says goodbye
 
   // Before the loop: greets the plant until it welcomes us and a first sample is here. Throws InputError that says
-  // what stands in the way.
-  void connect();
+  // what stands in the way. False: give_up(), asked every 20 ms and after each signal, ended it.
+  bool connect(bool (*give_up)() noexcept = nullptr);
   // The same in steps: whether it is done; throws when the plant refuses for good.
   bool greet();
   bool welcomed();

@@ -1,0 +1,25 @@
+-- The joystick task of 2008: ten times a second the stick's x and y become the rates of pan and tilt. Right turns to the
+-- right, away from the hand looks up. Let go, or pulled out, it comes to rest.
+local k = require "kadans"
+
+local P = k.params {
+  rate_rad_s = { 1.5, min = 0, max = 5, unit = "rad/s", doc = "rate at the stick's end" },
+}
+
+local period_s = 0.1
+
+return k.behavior "stick_velocity" {
+  controls = "velocity",
+  initial  = "held",
+
+  k.state "held" {
+    endless = true,
+    run = function(m, s)
+      while true do
+        m.rate:set("pan.velocity_rad_s", -P.rate_rad_s * s.joystick.x, { time_s = period_s })
+        m.rate:set("tilt.velocity_rad_s", -P.rate_rad_s * s.joystick.y, { time_s = period_s })
+        m:wait(period_s)
+      end
+    end,
+  },
+}

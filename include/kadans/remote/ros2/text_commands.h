@@ -1,0 +1,55 @@
+// Orders to an instance as texts, one JSON object each, and their answers: what somebody without a connection of his
+// own sends, over a topic. The verbs are those of the service /kadans/command of the live server.
+//
+//   {"id": 7, "verb": "play", "text": "squat", "value": 0}      id, text and value may be left out
+//   {"id": 7, "verb": "play", "done": true, "text": "..."}      when it is done; or not: text says why
+//
+// Whatever comes is answered or refused, once. At most 15 orders are on their way; all is done on one thread, the
+// caller's. Nobody proves who he is on a topic, so nothing is obeyed unless whoever started the run allows it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "kadans/remote/instance.h"
+#include "kadans/remote/live_hub.h"
+
+namespace kadans {
+
+class TextCommands {
+ public:
+  static constexpr std::size_t text_max_bytes = 16 * 1024;
+
+  struct Parts {
+    Instance& instance;
+    InstancePort& port;  // its orders and answers are ours alone
+    LivePace* pace = nullptr;
+    bool allowed = false;
+    std::string refusal;  // when not: how it would be
+    std::string who;      // for the log
+  };
+  explicit TextCommands(Parts parts) : p_(std::move(parts)) {}
+
+  // The answer, when there is one at once.
+  [[nodiscard]] std::optional<std::string> take(std::string_view json);
+  // The next answer to an order that was on its way.
+  [[nodiscard]] std::optional<std::string> next();
+
+ private:
+  struct Asked {
+    std::string id;  // JSON; "": none
+    std::string verb;
+    bool save = false;
+  };
+  std::optional<std::string> obey(const Asked& asked, const std::string& text, double value);
+  void save(const Answer& answer, bool& done, std::string& text);
+
+  Parts p_;
+  std::map<std::uint64_t, Asked> waiting_;  // by the order's number
+};
+
+}  // namespace kadans

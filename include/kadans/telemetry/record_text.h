@@ -1,0 +1,75 @@
+// Rows of a record as text that other tools read: JSON lines of every message, and tables of chosen signals (CSV). Line
+// by line, so that a record of any length flows through. Numbers have as many digits as it takes to read the same
+// number again.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kadans/telemetry/record_outline.h"
+
+namespace kadans {
+
+void append_number(std::string& text, double value);           // shortest; "nan", "inf", "-inf"
+void append_seconds(std::string& text, std::int64_t time_ns);  // exact: "1.234"
+
+// {"time_s": 1.5, "topic": "/joint", "tick": 1500, "joint.l_knee.position_rad": 0.3, ...} for a row;
+// {"time_s": 1.5, "topic": "/transitions", "behavior": "squat", ...} for a message in JSON, without its own timestamp;
+// "data" for one that is text, "bytes" with their number for any other. What is no number in JSON becomes null.
+class JsonLines {
+ public:
+  // Topics as choose_topics takes them; none: all. A topic that is not there is known at the end only:
+  // unknown_topics().
+  JsonLines(const std::string& path, std::vector<std::string> topics, TimeSpan span);
+
+  [[nodiscard]] bool next(std::string& line);  // without its end
+  const McapReader& reader() const noexcept { return rows_.reader(); }
+  std::uint64_t lines() const noexcept { return lines_; }
+  std::vector<std::string> unknown_topics() const;
+
+ private:
+  bool wanted();
+  void write(std::string& line);
+  const std::vector<std::string>& keys();
+
+  RecordRows rows_;
+  std::map<std::uint16_t, std::vector<std::string>> keys_;  // of a channel: its signals' names, quoted
+  std::vector<std::string> topics_;
+  std::vector<bool> met_;  // of the topics
+  TimeSpan span_;
+  std::uint64_t lines_ = 0;
+};
+
+// A head with names and units, then a line for each time at which any of the signals has a row, or evenly spaced with
+// `every_ns`. A signal holds its value from one row to the next: topics that are slower, or stand still, have fewer.
+class CsvLines {
+ public:
+  CsvLines(const std::string& path, std::vector<ChosenSignal> signals, TimeSpan span,
+           std::optional<std::int64_t> every_ns = std::nullopt);
+
+  [[nodiscard]] bool next(std::string& line);
+  const McapReader& reader() const noexcept { return rows_.reader(); }
+  std::uint64_t lines() const noexcept { return lines_; }  // without the head
+
+ private:
+  bool next_row();
+  void take_row();
+  void write_head(std::string& line) const;
+  void write(std::int64_t time_ns, std::string& line);
+
+  RecordRows rows_;
+  std::vector<ChosenSignal> signals_;
+  std::map<std::uint16_t, std::vector<std::size_t>> columns_;  // of a channel
+  TimeSpan span_;
+  std::optional<std::int64_t> every_ns_;
+  std::vector<std::optional<double>> cells_;
+  bool head_written_ = false, started_ = false, ended_ = false;
+  bool held_ = false;         // a row was read that belongs to a later line
+  std::int64_t time_ns_ = 0;  // of the next line
+  std::int64_t last_ns_ = 0;  // of the last row
+  std::uint64_t lines_ = 0;
+};
+
+}  // namespace kadans

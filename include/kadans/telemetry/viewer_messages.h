@@ -1,0 +1,70 @@
+// What general viewers understand without configuration, made from a row of signals: joint states, the transform of the
+// base (links follow from the URDF and the joints), the wrench on each sole. A record and the live server send the
+// same.
+//
+// Before the loop but for write(), which one thread calls.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kadans/signal/byte_order.h"
+#include "kadans/signal/signal.h"
+
+namespace kadans {
+
+// Names, as in the model and the signal table.
+struct ViewerSubjects {
+  std::vector<std::string> joints;
+  std::string base;               // link
+  std::vector<std::string> feet;  // links
+
+  bool empty() const noexcept { return joints.empty() && base.empty() && feet.empty(); }
+};
+
+struct ViewerChannel {
+  std::string topic, encoding, schema_name, schema_encoding, schema;
+};
+
+class ViewerMessages {
+ public:
+  ViewerMessages(const SignalTable& signals, ViewerSubjects subjects);
+
+  // None without subjects.
+  const std::vector<ViewerChannel>& channels() const noexcept { return channels_; }
+  // The message of a channel, in place of what `to` holds. The row holds all signals.
+  void write(std::size_t channel, std::int64_t time_ns, std::span<const double> row, ByteWriter& to);
+
+ private:
+  struct Joint {
+    std::optional<SignalId> position, velocity, effort;
+  };
+  struct Foot {
+    std::optional<SignalId> force, cop_x, cop_y;
+  };
+  struct Base {
+    std::optional<SignalId> roll, pitch, yaw, x, y, z;
+  };
+
+  void find_signals(const SignalTable& signals);
+  void write_joint_states(std::int64_t time_ns, std::span<const double> row, ByteWriter& to);
+  void write_base(std::int64_t time_ns, std::span<const double> row, ByteWriter& to) const;
+  void write_wrench(std::size_t foot, std::int64_t time_ns, std::span<const double> row, ByteWriter& to) const;
+
+  ViewerSubjects subjects_;
+  std::vector<ViewerChannel> channels_;
+  std::vector<Joint> joints_;
+  std::vector<Foot> feet_;
+  Base base_;
+  std::vector<double> values_;
+};
+
+// The URDF for viewers: one message at the start.
+ViewerChannel robot_description_channel();
+void write_robot_description(const std::string& urdf, ByteWriter& to);
+
+}  // namespace kadans

@@ -1,0 +1,91 @@
+#include "live/record_pictures.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <vector>
+
+#include "kadans/config/fields.h"
+#include "kadans/remote/page_files.h"
+#include "live/chromium.h"
+#include "live/live_service.h"
+#include "terminal.h"
+
+namespace kadans {
+namespace {
+
+// Its process starts, draws in software and loads a record of any size meanwhile; between two pictures it takes no
+// more.
+constexpr std::chrono::seconds patience{120};
+constexpr std::chrono::milliseconds look_again{200};
+
+// From the server's thread to the one that waits.
+class Frames {
+ public:
+  void take(const std::string& name, const std::string& bytes) {
+    const std::lock_guard lock(mutex_);
+    if (name == "done") {
+      done_ = true;
+    } else if (name == "failed") {
+      problem_ = bytes;
+    } else {
+      waiting_.push_back({name, bytes});
+    }
+    came_.notify_one();
+  }
+
+  struct Frame {
+    std::string name, bytes;
+  };
+  // What came; empty: all is done. Throws InputError when the page failed, Chromium is gone, or nothing comes.
+  std::vector<Frame> next(Chromium& chromium) {
+    std::unique_lock lock(mutex_);
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (waiting_.empty() && !done_ && problem_.empty()) {
+      if (came_.wait_for(lock, look_again) == std::cv_status::no_timeout) continue;
+      if (interrupted()) throw InputError({.message = "interrupted"});
+      if (!chromium.runs()) throw InputError({.message = "chromium ended before the picture was drawn"});
+      if (std::chrono::steady_clock::now() > end) throw InputError({.message = "chromium draws nothing"});
+    }
+    if (!problem_.empty()) throw InputError({.message = problem_});
+    return std::exchange(waiting_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::vector<Frame> waiting_;
+  std::string problem_;
+  bool done_ = false;
+};
+
+std::string address_of(const PictureOrder& order, const LiveServer& server) {
+  const std::string url = server.url() + "&record=record.mcap&render=1&theme=" + order.theme +
+                          "&width=" + std::to_string(order.width) + "&height=" + std::to_string(order.height);
+  return url + (order.every_s ? "&every=" + number_text(*order.every_s) : "&at=" + number_text(order.at_s));
+}
+
+}  // namespace
+
+std::string pictures_missing() {
+  if (page_files().empty()) return std::string(page_is_missing);
+  return find_chromium().empty() ? "pictures are drawn by Chromium: install the package chromium" : "";
+}
+
+void draw_record(const PictureOrder& order,
+                 const std::function<void(const std::string& name, std::string bytes)>& take) {
+  if (const std::string missing = pictures_missing(); !missing.empty()) throw InputError({.message = missing});
+  Frames frames;
+  LiveServer server(
+      {.port = 0}, nullptr,
+      {.file = std::filesystem::absolute(order.record).string(),
+       .take_frame = [&frames](const std::string& name, const std::string& bytes) { frames.take(name, bytes); }});
+  server.start();
+  Chromium chromium(find_chromium(), address_of(order, server), order.width, order.height);
+  for (std::vector<Frames::Frame> got = frames.next(chromium); !got.empty(); got = frames.next(chromium)) {
+    for (Frames::Frame& frame : got) take(frame.name, std::move(frame.bytes));
+  }
+}
+
+}  // namespace kadans

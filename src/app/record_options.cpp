@@ -1,0 +1,37 @@
+#include "record_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "live/live_service.h"
+
+namespace kadans {
+
+void add_record_options(CLI::App& command, RecordOptions& options) {
+  command
+      .add_option("--signals", options.signals,
+                  "What is recorded, and nothing else: \"joint.*, base.*@100\" (default: all, or the robot's choice)")
+      ->type_name("PATTERN[@HZ],...");
+  command
+      .add_option("--flight", options.flight_s,
+                  "Seconds that are always in memory, written when a fault latches; 0: none (default: the robot's 30 "
+                  "in a run on the wall clock, else 0)")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 600.0));
+}
+
+RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, bool flies) {
+  const RecordConfig& config = assembly.robot().record;
+  const Catalog& catalog = assembly.catalog();
+  const SignalChoice choice =
+      options.signals.empty() ? config.signals : parse_signal_choice(options.signals, "--signals");
+  RecordPlan plan;
+  plan.settings.every_ticks = ticks_between(choice, catalog.signals, assembly.robot().engine.control_period_s);
+  plan.settings.precision = config.single_precision ? Precision::single : Precision::full;
+  plan.settings.subjects = viewer_subjects(assembly.robot());
+  plan.settings.parameters = &catalog.parameters;
+  plan.flight = {.kept_s = options.flight_s.value_or(flies ? config.flight_s : 0),
+                 .bytes = static_cast<std::size_t>(config.flight_MB * 1e6)};
+  return plan;
+}
+
+}  // namespace kadans

@@ -1,0 +1,20 @@
+// --report: where the pages of runs go, and when they have pictures.
+#pragma once
+
+#include <string>
+
+namespace CLI {  // NOLINT(readability-identifier-naming): its name
+class App;
+}
+
+namespace kadans {
+
+struct ReportPlace {
+  std::string folder;  // "": no report
+  std::string film;    // always, failed, never
+
+  bool wanted() const noexcept { return !folder.empty(); }
+};
+void add_report_place(CLI::App& command, ReportPlace& place, const char* what, const char* film);
+
+}  // namespace kadans

@@ -1,0 +1,66 @@
+#include "ros2/ros2_service.h"
+
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include <CLI/CLI.hpp>
+
+#include "live/live_service.h"
+
+namespace kadans {
+namespace {
+
+constexpr int domain_max = 232;  // the ports of more would not be ports
+
+std::uint32_t domain_of(const Ros2Place& place) {
+  if (place.domain != "-1") return static_cast<std::uint32_t>(std::stoul(place.domain));
+  const char* const text = std::getenv("ROS_DOMAIN_ID");  // NOLINT(concurrency-mt-unsafe): before any thread
+  if (text == nullptr || *text == '\0') return 0;
+  int domain = -1;
+  const char* const end = text + std::strlen(text);
+  const auto [rest, error] = std::from_chars(text, end, domain);
+  if (error != std::errc() || rest != end || domain < 0 || domain > domain_max)
+    throw InputError(
+        InputProblem{.file = "ROS_DOMAIN_ID",
+                     .message = "'" + std::string(text) + "' must be from 0 to " + std::to_string(domain_max)});
+  return static_cast<std::uint32_t>(domain);
+}
+
+}  // namespace
+
+void add_ros2_place(CLI::App& command, Ros2Place& place) {
+  CLI::Option* ros2 =
+      command
+          .add_flag("--ros2{-1}", place.domain,
+                    "Publish topics of ROS 2 on this machine; --ros2=DOMAIN (default: ROS_DOMAIN_ID, else 0)")
+          ->check(CLI::Range(-1, domain_max));
+  command.add_option("--ros2-rate", place.rate_hz, "How often (default: 100)")
+      ->type_name("HZ")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->needs(ros2);
+  command.add_flag("--ros2-commands", place.commands, "Obey whoever writes to /kadans/command there")->needs(ros2);
+}
+
+Ros2Service::Ros2Service(const Ros2Place& place, Instance& instance, const Assembly& assembly, LivePace* pace,
+                         int avoid_cpu) {
+  if (!place.wanted()) return;
+  domain_ = domain_of(place);
+  const RobotTexts texts = robot_texts(assembly);
+  bridge_ = std::make_unique<Ros2Bridge>(
+      Ros2Settings{.domain = domain_, .rate_hz = place.rate_hz, .commands = place.commands, .avoid_cpu = avoid_cpu},
+      Ros2Bridge::Parts{.instance = instance, .port = instance.open_port(), .texts = texts, .pace = pace});
+}
+
+void Ros2Service::start() {
+  if (!bridge_) return;
+  bridge_->start();
+  std::fprintf(stderr, "ros2 in domain %u\n", domain_);
+}
+
+void Ros2Service::stop() noexcept {
+  if (bridge_) bridge_->stop();
+}
+
+}  // namespace kadans

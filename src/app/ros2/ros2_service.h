@@ -1,0 +1,40 @@
+// A running instance on topics of ROS 2: --ros2.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "kadans/app/assembly.h"
+#include "kadans/remote/ros2/ros2_bridge.h"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): its name
+class App;
+}
+
+namespace kadans {
+
+struct Ros2Place {
+  std::string domain;  // "": not wanted; "-1": as the environment says
+  double rate_hz = 100;
+  bool commands = false;
+
+  bool wanted() const noexcept { return !domain.empty(); }
+};
+void add_ros2_place(CLI::App& command, Ros2Place& place);
+
+class Ros2Service {
+ public:
+  // Before the loop: joins the domain, throws InputError when it cannot. `pace`: of a simulation, else null.
+  // `avoid_cpu`: the control thread's, -1: none.
+  Ros2Service(const Ros2Place& place, Instance& instance, const Assembly& assembly, LivePace* pace, int avoid_cpu);
+
+  // Says on stderr in which domain.
+  void start();
+  void stop() noexcept;
+
+ private:
+  std::unique_ptr<Ros2Bridge> bridge_;
+  std::uint32_t domain_ = 0;
+};
+
+}  // namespace kadans

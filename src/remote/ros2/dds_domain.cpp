@@ -1,0 +1,106 @@
+#include "dds_domain.h"
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+namespace {
+
+constexpr int lines_max = 20;
+constexpr std::size_t line_max_bytes = 200;
+constexpr dds_duration_t write_max_ns = 100'000'000;
+
+// Threads and buffers as small as the traffic is: in a run all of it is locked into memory.
+constexpr const char* sizes =
+    "<CycloneDDS><Domain Id=\"any\">"
+    "<Sizing><ReceiveBufferSize>512 kB</ReceiveBufferSize><ReceiveBufferChunkSize>128 "
+    "kB</ReceiveBufferChunkSize></Sizing>"
+    "<Internal><MaxSampleSize>4 MB</MaxSampleSize><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>"
+    "<Threads>"
+    "<Thread Name=\"recv\"><StackSize>256 kB</StackSize></Thread><Thread Name=\"tev\"><StackSize>256 "
+    "kB</StackSize></Thread>"
+    "<Thread Name=\"gc\"><StackSize>256 kB</StackSize></Thread>"
+    "<Thread Name=\"dq.builtins\"><StackSize>256 kB</StackSize></Thread>"
+    "<Thread Name=\"dq.user\"><StackSize>256 kB</StackSize></Thread>"
+    "</Threads></Domain></CycloneDDS>";
+
+constexpr const char* loopback =
+    "<CycloneDDS><Domain Id=\"any\">"
+    "<General><Interfaces><NetworkInterface address=\"127.0.0.1\" multicast=\"false\"/></Interfaces>"
+    "<AllowMulticast>false</AllowMulticast></General>"
+    "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
+    "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>"
+    "</Domain></CycloneDDS>";
+
+// What the library has to say, as far as somebody may want to read it: rubbish from the network makes it say much.
+void tell(void*, const dds_log_data_t* data) {
+  static std::atomic<int> told{0};
+  const int line = told.fetch_add(1, std::memory_order_relaxed);
+  if (line >= lines_max) {
+    told.store(lines_max, std::memory_order_relaxed);
+    return;
+  }
+  const std::string_view text = std::string_view(data->message, data->size).substr(0, line_max_bytes);
+  const std::string said(text.substr(0, text.find('\n')));
+  std::fprintf(stderr, "ros2: %s%s\n", said.c_str(), line + 1 == lines_max ? "\nros2: no more of this" : "");
+}
+
+}  // namespace
+
+DdsDomain::DdsDomain(std::uint32_t domain) : api_(dds_api()), number_(domain) {
+  const char* const asked = std::getenv("CYCLONEDDS_URI");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  const bool own = asked == nullptr || *asked == '\0';
+  std::string configuration(sizes);
+  configuration.append(",").append(own ? loopback : asked);
+  api_.dds_set_log_sink(tell, nullptr);
+  domain_ = checked(api_.dds_create_domain(domain, configuration.c_str()),
+                    own ? "cannot be opened" : "cannot be opened with what CYCLONEDDS_URI says");
+  participant_ = api_.dds_create_participant(domain, nullptr, nullptr);
+  if (participant_ >= 0) return;
+  (void)api_.dds_delete(domain_);
+  (void)checked(participant_, "lets nobody in");
+}
+
+DdsDomain::~DdsDomain() { (void)api_.dds_delete(domain_); }
+
+dds_entity_t DdsDomain::checked(dds_entity_t entity, const std::string& what) const {
+  if (entity >= 0) return entity;
+  throw InputError(InputProblem{
+      .file = "--ros2",
+      .message = "DDS domain " + std::to_string(number_) + " " + what + ": " + api_.dds_strretcode(entity)});
+}
+
+dds_entity_t DdsDomain::topic(const dds_topic_descriptor_t& type, const std::string& name) const {
+  return checked(api_.dds_create_topic(participant_, &type, name.c_str(), nullptr, nullptr), "has no topic " + name);
+}
+
+template <typename Create>
+dds_entity_t DdsDomain::with_quality(const DdsQuality& quality, Create&& create) const {
+  dds_qos_t* const qos = api_.dds_create_qos();
+  api_.dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, write_max_ns);
+  api_.dds_qset_durability(qos, quality.for_late_readers ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  api_.dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, quality.depth);
+  const dds_entity_t made = create(qos);
+  api_.dds_delete_qos(qos);
+  return made;
+}
+
+dds_entity_t DdsDomain::writer(const dds_topic_descriptor_t& type, const std::string& name, const DdsQuality& quality) {
+  const dds_entity_t of = topic(type, name);
+  return checked(
+      with_quality(quality, [&](dds_qos_t* qos) { return api_.dds_create_writer(participant_, of, qos, nullptr); }),
+      "takes no writer of " + name);
+}
+
+dds_entity_t DdsDomain::reader(const dds_topic_descriptor_t& type, const std::string& name, const DdsQuality& quality) {
+  const dds_entity_t of = topic(type, name);
+  return checked(
+      with_quality(quality, [&](dds_qos_t* qos) { return api_.dds_create_reader(participant_, of, qos, nullptr); }),
+      "takes no reader of " + name);
+}
+
+}  // namespace kadans

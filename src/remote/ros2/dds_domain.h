@@ -1,0 +1,62 @@
+// A part in a DDS domain: writers and a reader of topics, gone with it. One thread at a time.
+//
+// The domain is this machine's loopback device alone, without multicast, unless CYCLONEDDS_URI says otherwise; then
+// what it says holds. Samples of more than a few MB are not even put together.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "dds_api.h"
+
+namespace kadans {
+
+// As ROS 2 has them by default: reliable, the newest `depth` kept; a late reader gets nothing, or the newest.
+struct DdsQuality {
+  std::int32_t depth = 10;
+  bool for_late_readers = false;
+};
+
+class DdsDomain {
+ public:
+  // Throws InputError: no library, a wrong CYCLONEDDS_URI, no such device.
+  explicit DdsDomain(std::uint32_t domain);
+  ~DdsDomain();
+  DdsDomain(const DdsDomain&) = delete;
+  DdsDomain& operator=(const DdsDomain&) = delete;
+
+  // Throw InputError.
+  dds_entity_t writer(const dds_topic_descriptor_t& type, const std::string& topic, const DdsQuality& quality = {});
+  dds_entity_t reader(const dds_topic_descriptor_t& type, const std::string& topic, const DdsQuality& quality = {});
+
+  // False: it could not be written, such as when a reader has not taken what came before for 100 ms.
+  // NOLINTNEXTLINE(readability-make-member-function-const): it changes what others see
+  bool write(dds_entity_t writer, const void* sample) noexcept { return api_.dds_write(writer, sample) >= 0; }
+  // Takes the oldest sample, if one waits and its data are valid, and shows it to `see`. False: none waits.
+  template <typename Sample, typename See>
+  bool take(dds_entity_t reader, See&& see) {
+    void* sample = nullptr;
+    dds_sample_info_t info{};
+    if (api_.dds_take(reader, &sample, &info, 1, 1) <= 0) return false;
+    struct Loan {
+      const DdsApi& api;
+      dds_entity_t from;
+      void** sample;
+      ~Loan() { (void)api.dds_return_loan(from, sample, 1); }
+    } const loan{api_, reader, &sample};
+    if (info.valid_data) see(*static_cast<const Sample*>(sample));
+    return true;
+  }
+
+ private:
+  dds_entity_t topic(const dds_topic_descriptor_t& type, const std::string& name) const;
+  dds_entity_t checked(dds_entity_t entity, const std::string& what) const;
+  template <typename Create>
+  dds_entity_t with_quality(const DdsQuality& quality, Create&& create) const;
+
+  const DdsApi& api_;
+  std::uint32_t number_;
+  dds_entity_t domain_ = 0, participant_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,136 @@
+// What is recorded: the choice of signals, and the flight recorder.
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "kadans/telemetry/mcap_reader.h"
+#include "program.h"
+
+using namespace kadans;
+using namespace kadans::program;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* squat = "sim config/scenarios/squat.json --duration 1.2 --record run.mcap";
+
+// Messages by topic.
+std::map<std::string, int> topics_of(const fs::path& file) {
+  std::map<std::string, int> topics;
+  McapReader reader(file.string());
+  for (McapMessage message; reader.next(message);) ++topics[reader.channels().at(message.channel).topic];
+  CHECK_MESSAGE(reader.complete(), reader.problem());
+  return topics;
+}
+
+// Time of the first and last message of a topic.
+std::pair<double, double> span_of(const fs::path& file, const std::string& topic) {
+  std::pair<double, double> span{-1, -1};
+  McapReader reader(file.string());
+  for (McapMessage message; reader.next(message);) {
+    if (reader.channels().at(message.channel).topic != topic) continue;
+    span.second = 1e-9 * static_cast<double>(message.time_ns);
+    if (span.first < 0) span.first = span.second;
+  }
+  return span;
+}
+
+std::vector<fs::path> flights_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (has(entry.path().filename().string(), "flight")) found.push_back(entry.path());
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("A record has joint states, the base's transform, wrenches, parameters and the robot for viewers") {
+  const fs::path project = project_copy("record_viewers");
+  REQUIRE(run(squat, project).exit_code == 0);
+  auto topics = topics_of(project / "run.mcap");
+  for (const char* topic : {"/joint_states", "/tf", "/wrench/l_ankle_roll_link", "/wrench/r_ankle_roll_link"})
+    CHECK(topics[topic] == 60);
+  CHECK(topics["/joint"] == 1200);
+  CHECK(topics["/robot_description"] == 1);
+  CHECK(topics["/description"] == 1);
+  CHECK(topics["/parameters"] == 1);
+  CHECK(flights_in(project).empty());
+}
+
+TEST_CASE("sim records the signals that are asked for, and replay compares those") {
+  const fs::path project = project_copy("record_signals");
+  REQUIRE(run(std::string(squat) + " --signals 'joint.*@100, base.pitch_rad'", project).exit_code == 0);
+  auto topics = topics_of(project / "run.mcap");
+  CHECK(topics["/joint"] == 120);
+  CHECK(topics["/base"] == 1200);
+  CHECK(topics.count("/control") == 0);
+  const Outcome replay = run("replay run.mcap", project);
+  CHECK(replay.exit_code == 0);
+  CHECK(has(replay.out, "the same, 1200 ticks, 43 signals"));
+  const Outcome wrong = run(std::string(squat) + " --signals 'joint.*, bse.*'", project);
+  CHECK(wrong.exit_code == 2);
+  CHECK(has(wrong.err, "--signals: no signal is called 'bse.*', did you mean 'base.*'?"));
+}
+
+TEST_CASE("A robot's configuration chooses what is recorded, a mistake in it is told with its place") {
+  const fs::path project = project_copy("record_configured");
+  const fs::path robot = project / "config/tulip/robot.json";
+  REQUIRE(
+      edit(robot, "\"safety\": {", "\"record\": {\"signals\": {\"*\": 0, \"joint.l_knee.*\": 500}},\n  \"safety\": {"));
+  REQUIRE(run(squat, project).exit_code == 0);
+  auto topics = topics_of(project / "run.mcap");
+  CHECK(topics["/joint"] == 600);
+  CHECK(topics.count("/base") == 0);
+  CHECK(topics["/joint_states"] == 60);
+  REQUIRE(edit(robot, "joint.l_knee.*", "joint.l_kne.*"));
+  const Outcome wrong = run(squat, project);
+  CHECK(wrong.exit_code == 2);
+  CHECK(has(wrong.err, "no signal is called 'joint.l_kne.*'"));
+  CHECK(has(wrong.err, "robot.json:"));
+}
+
+TEST_CASE("A fault that latches in a simulation leaves a flight record, with or without a record") {
+  const fs::path project = project_copy("record_flight");
+  for (const std::string record : {"--no-record", "--record behaviors_stall.mcap"}) {
+    CAPTURE(record);
+    const Outcome outcome = run("sim config/scenarios/behaviors_stall.json --flight 2 " + record, project);
+    CHECK(has(outcome.err, "flight record: behaviors_stall.flight.mcap"));
+    const fs::path flight = project / "behaviors_stall.flight.mcap";
+    REQUIRE(fs::exists(flight));
+    auto topics = topics_of(flight);
+    CHECK(topics["/faults"] > 0);
+    CHECK(topics["/joint"] > 1500);
+    CHECK(topics["/joint"] < 3200);
+    CHECK(topics["/joint_states"] > 80);
+    CHECK(topics["/robot_description"] == 1);
+    fs::remove(flight);
+  }
+}
+
+TEST_CASE(
+    "A fault that latches in a run leaves a flight record of what came before and a second after, its end does not") {
+  const fs::path project = project_copy("record_flight_run");
+  const std::string live = "run config/tulip/robot.json --threads-on-virtual-time --duration 4 --flight 3";
+  CHECK(run(live, project).exit_code == 0);
+  CHECK(flights_in(project).empty());
+  REQUIRE(edit(project / "config/tulip/robot.json", "\"tilt_max_rad\": 0.6", "\"tilt_max_rad\": 0.01"));
+  REQUIRE(edit(project / "config/tulip/robot.json", "\"heartbeat_lost\": {",
+               "\"tilt\": { \"robot\": \"damp\", \"latch\": true }, \"heartbeat_lost\": {"));
+  const Outcome outcome = run(live + " --play squat --record run.mcap --signals joint.*@10", project);
+  CHECK_MESSAGE(has(outcome.err, "flight record: "), outcome.err);
+  const auto flights = flights_in(project);
+  REQUIRE(flights.size() == 1);
+  auto topics = topics_of(flights[0]);
+  CHECK(topics["/faults"] > 0);
+  CHECK(topics["/base"] > 1000);
+  const auto [fault_s, last_fault_s] = span_of(flights[0], "/faults");
+  CHECK(span_of(flights[0], "/base").second >= fault_s + 1);
+  CHECK(topics_of(project / "run.mcap").count("/base") == 0);
+}

@@ -1,0 +1,64 @@
+// What stands on the stage for a session: the robot, what bears it, where it looks. Made when its URDF is there.
+import { Vector3 } from 'three';
+import { BalanceMarks } from './balance_marks.js';
+import { GazeMark } from './gaze_mark.js';
+import { RobotModel } from './robot_model.js';
+
+const beside = new Vector3(0.9, 2.4, 0.5); // where robot and what it looks at are both seen
+
+export class Show {
+  constructor(stage) {
+    this.stage = stage;
+  }
+
+  // Of a description only what is drawn: behaviors come and go in it.
+  take(session) {
+    const key = JSON.stringify([session.description?.robot, session.description?.objects]);
+    if (this.session === session && this.urdf === session.urdf && (this.description === session.description || this.key === key)) return;
+    this.clear();
+    const same_robot = this.session === session && this.urdf === session.urdf;
+    Object.assign(this, { session, urdf: session.urdf, description: session.description, key });
+    if (!session.urdf) return;
+    this.model = new RobotModel(session.urdf, session.mesh_base ?? './assets/');
+    this.marks = new BalanceMarks(session.description?.robot?.feet ?? []);
+    this.gazes = (session.description?.objects ?? []).filter((object) => object.type === 'gaze').map((object) => new GazeMark(this.stage, object, this.model, () => this.sender()));
+    this.stage.scene.add(this.model.root, this.marks.root, ...this.gazes.map((gaze) => gaze.root));
+    this.framed = same_robot && this.framed;
+  }
+
+  // Once it is known how large the robot is and where it is.
+  frame() {
+    this.framed = Boolean(this.session.description) && this.session.signals.size > 0 && this.session.end_s > 0;
+    this.model.pose(this.session, this.session.cursor_s);
+    const base = this.model.root.position;
+    const { center, radius } = this.model.bounds();
+    this.marks.com_ball.scale.setScalar(Math.min(1, radius / 0.6));
+    if (this.gazes.length > 0) return this.stage.frame(center.setX(center.x + 0.4), Math.max(radius, 0.62), base, beside);
+    const { radius: tall } = this.model;
+    if (this.marks.feet.length > 0) return this.stage.frame(center.set(base.x, base.y, 0.86 * tall), 1.14 * tall, base); // as if it stood
+    return this.stage.frame(center, radius, base);
+  }
+
+  clear() {
+    if (!this.model) return;
+    this.stage.scene.remove(this.model.root, this.marks.root, ...this.gazes.map((gaze) => gaze.root));
+    for (const gaze of this.gazes) gaze.dispose();
+    this.model = null;
+  }
+
+  sender() {
+    const { remote } = this.session;
+    if (!remote?.writes || !remote.verbs.has('set_point')) return null;
+    return (text, value) => remote.command('set_point', { text, value });
+  }
+
+  draw(t, shown) {
+    if (this.model) {
+      if (!this.framed) this.frame();
+      this.marks.update(this.session, t, this.model, shown);
+      for (const gaze of this.gazes) gaze.update(this.session, t);
+      this.stage.follow(this.model.root.position);
+    }
+    this.stage.draw();
+  }
+}
