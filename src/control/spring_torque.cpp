@@ -32,6 +32,8 @@ void SpringTorque::declare(Declaration& declaration, Part& part) {
   tables.tunable("bandwidth_Hz", "Hz", 1, 200, c.bandwidth_Hz, &c.bandwidth_Hz,
                  "Of the torque; not below what the rotor does by itself.");
   tables.tunable("damping_ratio", "", 0, 3, c.damping_ratio, &c.damping_ratio, "Of the torque's answer.");
+  tables.tunable("rate_cutoff_Hz", "Hz", 10, 400, c.rate_cutoff_Hz, &c.rate_cutoff_Hz,
+                 "Cut-off of the low pass on the torque's rate; a light load on the spring wants it low.");
   tables.tunable("observer_Hz", "Hz", 0, 50, c.observer_Hz, &c.observer_Hz,
                  "How fast friction and the like are found and made up for; 0: never.");
   tables.tunable("share", "", 0, 1, part.share, &part.share, "Of the loop's work; 0: the motor gets what is wanted.");
@@ -41,6 +43,10 @@ void SpringTorque::declare(Declaration& declaration, Part& part) {
   tables.signal("disturbance_Nm", "Nm", "What the motor's torque does not explain.", &s.disturbance_Nm);
   tables.signal("motor_Nm", "Nm", "Torque asked of the motor.", &s.motor_Nm);
   tables.signal("saturated", "", "Whether the motor's torque is limited.", &s.saturated);
+}
+
+void SpringTorque::parameters_changed() noexcept {
+  for (Part& part : parts_) (void)part.loop.retune();
 }
 
 void SpringTorque::start(const ControlInput&) noexcept {

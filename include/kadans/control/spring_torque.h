@@ -7,8 +7,8 @@
 //
 // Joints      with a spring in their drives.
 // Parameters  <joint>. spring_Nm_per_rad, rotor_inertia_kg_m2 (as the loop believes them to be; the drive's own unless
-//             given), bandwidth_Hz, damping_ratio, observer_Hz, and share: 0 hands on what is wanted, 1 closes the
-//             loop.
+//             given), bandwidth_Hz, damping_ratio, rate_cutoff_Hz, observer_Hz, and share: 0 hands on what is
+//             wanted, 1 closes the loop.
 // Signals     SpringTorqueLoop::State of each joint.
 // Start       whenever a joint comes back to effort mode: from the measured torque, without a disturbance.
 // Not finite  the motor gets what is wanted of the joint.
@@ -35,6 +35,7 @@ class SpringTorque final : public ControlObject {
   void set_point(std::uint32_t, double, double) noexcept override {}  // has none
   void cancel_motion(std::uint32_t) noexcept override {}
   double motion_remaining_s() const noexcept override { return 0; }
+  void parameters_changed() noexcept override;
 
  private:
   struct Part {

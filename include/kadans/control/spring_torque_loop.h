@@ -30,6 +30,7 @@ class SpringTorqueLoop {
     double bandwidth_Hz = 22;           // w / 2 pi; not below the rotor's own w0
     double damping_ratio = 0.7;         // z
     double observer_Hz = 5;             // o / 2 pi; 0: no observer
+    double rate_cutoff_Hz = 200;        // of T'; retune() after a change
     double effort_max_Nm = 0;           // of the motor
   };
   struct State {
@@ -40,15 +41,16 @@ class SpringTorqueLoop {
     double motor_Nm = 0;        // u
     bool saturated = false;
   };
-  static constexpr double filter_Hz = 200;  // of T'
 
-  explicit SpringTorqueLoop(double dt_s = 0.001) : rate_({.cutoff_Hz = filter_Hz, .dt_s = dt_s}) {}
+  explicit SpringTorqueLoop(double dt_s = 0.001) : rate_({.dt_s = dt_s}) { (void)retune(); }
 
   Config& config() noexcept { return config_; }
   const State& state() const noexcept { return state_; }
 
   // The next step is a first one: nothing is known of disturbances.
   void restart() noexcept;
+  // Takes over rate_cutoff_Hz. False, and nothing changes, when the tick is too long for it.
+  bool retune() noexcept { return rate_.set_cutoff(config_.rate_cutoff_Hz); }
   // The motor's torque. `joint`.effort_Nm is the spring's deflection times k. What is not finite is not used: then the
   // motor gets what is wanted of the joint.
   double step(double wanted_Nm, const JointState& joint, double dt_s) noexcept;
