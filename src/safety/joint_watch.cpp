@@ -52,8 +52,9 @@ bool JointWatch::stuck(const Input& in) noexcept {
     asked_low_ = asked_high_ = asked_;
   }
   if (!in.follows) asked_low_ = asked_high_ = demand(in);
-  motor_low_rad_ = std::min(motor_low_rad_, by_motor_rad(in));
-  motor_high_rad_ = std::max(motor_high_rad_, by_motor_rad(in));
+  const double motor_rad = by_motor_rad(in);
+  motor_low_rad_ = std::min(motor_low_rad_, motor_rad);
+  motor_high_rad_ = std::max(motor_high_rad_, motor_rad);
   asked_low_ = std::min(asked_low_, demand(in));
   asked_high_ = std::max(asked_high_, demand(in));
   if (++same_ < stuck_ticks_ || passive_) return false;
