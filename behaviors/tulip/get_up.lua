@@ -19,12 +19,9 @@ local P = k.params {
   learn_rad   = { 0.03, min = 0, max = 0.2, unit = "rad", doc = "change of that after a fall, away from where it fell" },
   straight_s  = { 0.22, min = 0.02, max = 2, unit = "s", doc = "time to stretch the legs after a roll" },
   turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
-  rest_s      = { 0, min = 0, max = 5, unit = "s", doc = "time to lie on its face after a roll, before it folds" },
   face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
   flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
-  roll_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rolls over in; soft springs want more" },
-  fold_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it folds in" },
-  rise_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rises in" },
+  rise_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rises in; soft springs want more" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
 
@@ -45,8 +42,8 @@ end
 
 local function is(posture) return function(s) return floor.posture(s.base) == posture end end
 
-local function play(m, steps, pace)
-  for _, step in ipairs(steps) do m.posture:move(step[1], { time_s = step.time_s * (pace or 1) }):wait() end
+local function play(m, steps)
+  for _, step in ipairs(steps) do m.posture:move(step[1], { time_s = step.time_s }):wait() end
 end
 
 local function roll(over)
@@ -54,7 +51,7 @@ local function roll(over)
     run = function(m, s)
       m.vars.rolls = m.vars.rolls + 1
       m.vars.turned = false
-      play(m, floor.roll(over, s.joints), P.roll_pace)
+      play(m, floor.roll(over, s.joints))
       m.posture:move(floor.lying(), { time_s = P.straight_s }):wait()
       m.vars.turned = true
       m:wait(P.turn_s)
@@ -100,10 +97,9 @@ return k.behavior "get_up" {
   k.state "roll_right" (roll "right"),
   k.state "fold" {
     run = function(m, s)
-      if m.vars.rolls > 0 and P.rest_s > 0 then m:wait(P.rest_s) end
       local steps, turns = floor.fold(s.joints)
       m.vars.arms = turns
-      play(m, steps, P.fold_pace)
+      play(m, steps)
       m:wait(P.bear_s)
       play(m, { floor.bear(turns, P.lean_rad + m.vars.learnt_rad) })
     end,
