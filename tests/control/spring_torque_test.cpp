@@ -191,6 +191,37 @@ TEST_CASE("What is not finite is not used: the motor gets what is wanted of the 
   CHECK(std::isfinite(loop.step(7, {0, 0, 1}, dt_s)));
 }
 
+TEST_CASE("A lower cut-off of the torque's rate, set while the loop runs, makes it lag more") {
+  RobotModel model;
+  Joint& joint = model.joints.emplace_back();
+  joint.name = "knee";
+  joint.effort_max_Nm = effort_max;
+  joint.velocity_max_rad_s = 8;
+  model.links.resize(2);
+  SpringTorque object(ObjectSetup{model, {0}, {}, {{.spring_Nm_per_rad = spring, .rotor_inertia_kg_m2 = rotor}}});
+  ParameterTable parameters;
+  SetpointTable setpoints;
+  SignalTable signals;
+  Declaration declaration("springs", 0, parameters, setpoints, signals);
+  object.declare(declaration);
+  const auto motor_Nm = [&](double cutoff_Hz) {
+    REQUIRE(parameters.set(parameters.find("springs.knee.rate_cutoff_Hz").value(), cutoff_Hz));
+    object.parameters_changed();
+    JointStates joints;
+    const RobotStatus status;
+    ActuationFrame last, asked;
+    const ControlInput input{joints, status, last, 0, dt_s};
+    object.start(input);
+    for (int i = 0; i < 10; ++i) {
+      joints.joints[0].effort_Nm = 0.1 * i;  // 100 Nm/s
+      asked.joints[0] = {.effort_Nm = 0, .mode = ActuationMode::effort};
+      object.step(input, asked);
+    }
+    return asked.joints[0].effort_Nm;
+  };
+  CHECK(motor_Nm(20) > motor_Nm(200) + 0.5);  // less of the damping, which pulls against the ramp
+}
+
 TEST_CASE("SpringTorque refuses joints without a spring, leaves other modes alone, and does not allocate") {
   RobotModel model;
   model.links.resize(2);
