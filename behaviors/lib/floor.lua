@@ -118,9 +118,9 @@ end
 -- Weight over the feet, the hands just bear; `lean` rad further back in the ankles.
 function floor.bear(turns, lean) return timed(turned(leaning(bear, lean), turns), bear[1]) end
 
--- From there to standing: points of one smooth curve, the last one without `lean`. An arm that came the other way round
--- goes down in front.
-function floor.rise(turns, lean)
+-- From there to standing: points of one smooth curve, the last one without `lean`, in `pace` times its time. An arm that
+-- came the other way round goes down in front.
+function floor.rise(turns, lean, pace)
   local points = {}
   for i, frame in ipairs(rise) do
     local pose = leaning(frame, i < #rise and lean or 0)
@@ -128,7 +128,7 @@ function floor.rise(turns, lean)
       local first, last = bear[5] + offset, rise[#rise][5]
       pose[joint] = first + (last - first) * i / #rise
     end
-    points[i] = timed(pose, frame[1])
+    points[i] = timed(pose, frame[1] * (pace or 1))
   end
   return points
 end

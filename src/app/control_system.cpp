@@ -32,11 +32,12 @@ void refuse_unasked(const RobotConfig& config, const ObjectConfig& object, const
   }
 }
 
-std::unique_ptr<ControlObject> make_object(const Robot& robot, const ObjectConfig& object) {
+std::unique_ptr<ControlObject> make_object(const Robot& robot, const ObjectConfig& object,
+                                           const std::vector<DriveLaw>& drives) {
   const RobotConfig& config = robot.config;
   const MakeControlObject* make = robot.types.find(object.type.name);
   if (make == nullptr) refuse_unknown(config.file, object.type, "type of control object", robot.types.names());
-  const ObjectSetup setup{config.model, object.joints, options_of(object)};
+  const ObjectSetup setup{config.model, object.joints, options_of(object), drives};
   try {
     std::unique_ptr<ControlObject> made = (*make)(setup);
     refuse_unasked(config, object, setup.options.asked());
@@ -69,7 +70,9 @@ std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
          .position_gain_Nm_per_rad = drive.position_gain_Nm_per_rad,
          .velocity_gain_Nms_per_rad = drive.velocity_gain_Nms_per_rad,
          .velocity_delay_s = VelocityFilter::delay_s({.cutoff_Hz = own_Hz > 0 ? own_Hz : estimate.velocity_cutoff_Hz,
-                                                      .dt_s = divisor * config.engine.control_period_s})});
+                                                      .dt_s = divisor * config.engine.control_period_s}),
+         .spring_Nm_per_rad = drive.spring_Nm_per_rad,
+         .rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2});
   }
   return laws;
 }
@@ -99,12 +102,13 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
   catalog.sets = config.sets;
   catalog.poses = config.poses;
   catalog.initial_sets = config.initial_sets;
+  catalog.at_drives = config.at_drives;
   catalog.drives = drive_laws(config);
   catalog.switching = config.switching;
   catalog.unheld = config.unheld;
   for (const ObjectConfig& object : config.objects) {
     const auto index = static_cast<std::uint32_t>(system->objects.size());
-    system->objects.push_back(make_object(robot, object));
+    system->objects.push_back(make_object(robot, object, catalog.drives));
     Declaration declaration(object.name, index, catalog.parameters, catalog.setpoints, catalog.signals);
     const auto first_parameter = static_cast<ParameterId>(catalog.parameters.size());
     const auto first_setpoint = static_cast<SetpointId>(catalog.setpoints.size());

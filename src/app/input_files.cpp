@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
 #include "program_parts.h"
 #include "version.h"
@@ -100,8 +101,8 @@ std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembl
   if (!robot.plugins.empty()) {
     for (const PluginFile& plugin : read_plugin_files(robot.file)) files.add_hash(plugin.file);
   }
-  files.add(scenario.file);
-  files.add(robot.file);
+  for (const fs::path& file : files_of(scenario.file)) files.add(file);
+  for (const fs::path& file : files_of(robot.file)) files.add(file);
   files.add(robot.model.file);
   if (!scenario.joystick.recording.empty()) files.add(scenario.joystick.recording);
   for (const fs::path& file : assembly.host().files()) files.add(file);

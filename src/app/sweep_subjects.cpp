@@ -4,6 +4,7 @@
 
 #include "kadans/app/assembly.h"
 #include "kadans/campaign/content_hash.h"
+#include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
 #include "kadans/scenario/metrics.h"
 #include "version.h"
@@ -16,8 +17,8 @@ namespace fs = std::filesystem;
 // Scenario, robot with plug-ins, its description with meshes, all behaviors and their libraries.
 std::uint64_t content_of(const ScenarioConfig& scenario, const RobotConfig& robot) {
   ContentHash hash;
-  hash.add_file(scenario.file);
-  hash.add_file(scenario.robot);
+  for (const fs::path& file : files_of(scenario.file)) hash.add_file(file);
+  for (const fs::path& file : files_of(scenario.robot)) hash.add_file(file);
   for (const PluginFile& plugin : read_plugin_files(scenario.robot)) hash.add_file(plugin.file);
   hash.add_folder(fs::path(robot.model.file).parent_path());
   hash.add_folder(project_root(scenario.file) / "behaviors", ".lua");

@@ -2,13 +2,15 @@
 
 #include <limits>
 
+#include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
 
 namespace kadans {
 
 void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& problems) {
-  std::string schema;
+  std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
+  f.string("based_on", base, "another plan; this file says only what is different");
   f.string("name", experiment.name, "the plan's name", Need::required);
   f.string("doc", experiment.doc, "what it shows, one or two sentences");
   std::vector<PlacedName> scenarios;
@@ -43,7 +45,7 @@ void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, P
 std::vector<MetricConfig> read_metrics(const std::string& file) {
   std::vector<MetricConfig> metrics;
   Problems problems(file);
-  const JsonValue json = parse_json(read_text_file(file), file);
+  const JsonValue json = parse_based_json(read_text_file(file), file).value;
   const JsonMember* const member = json.find("metrics");
   if (member == nullptr) problems.add(json.place, "there are no metrics in this file");
   JsonValue only{.kind = JsonValue::Kind::object, .place = json.place};

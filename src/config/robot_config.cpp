@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "kadans/config/based_on.h"
 #include "kadans/config/name_pattern.h"
 #include "kadans/config/project_root.h"
 #include "kadans/model/urdf.h"
@@ -40,8 +41,9 @@ void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
 }  // namespace
 
 void RobotReader::read(Fields& f) {
-  std::string schema;
+  std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
+  f.string("based_on", base, "another robot's configuration; this file says only what is different");
   f.string("name", config_.name, "the robot's name", Need::required);
   f.strings("plugins", config_.plugins, {1, plugins_max},
             "shared libraries that bring types of control objects, from the project root");
@@ -99,9 +101,11 @@ RobotConfig read_robot_config_text(const std::string& text, const std::string& f
                                    std::span<const std::string> object_types) {
   RobotConfig config;
   config.file = config.record.signals.file = file;
+  const BasedJson json = parse_based_json(text, file);
+  if (!json.bases.empty()) (void)read_robot_config(json.bases.front(), object_types);
   Problems problems(file);
   RobotReader reader(config, problems, object_types);
-  read_fields(parse_json(text, file), problems, [&](Fields& f) { reader.read(f); });
+  read_fields(json.value, problems, [&](Fields& f) { reader.read(f); });
   problems.throw_if_any();
   return config;
 }
@@ -111,7 +115,7 @@ RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const
 }
 
 std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot) {
-  const JsonValue json = parse_json(read_text_file(robot), robot.string());
+  const JsonValue json = parse_based_json(read_text_file(robot), robot.string()).value;
   const JsonMember* list = json.find("plugins");
   std::vector<PluginFile> files;
   if (list == nullptr) return files;

@@ -28,12 +28,34 @@ void RobotReader::control(Fields& f) {
   f.map(
       "sets", "control sets: the control objects that are active together", [&](Fields& e) { control_set(e); },
       Need::required);
+  drive_objects(f);
   f.number("switch_step_max", config_.switching.step_max, {1e-3, 1},
            "largest change of a drive's torque from tick to tick by a switch of sets, as a share of the joint's limit");
   f.number("switch_fade_s", config_.switching.fade_s, {1e-3, 10, "s"},
            "in which what is left of the old set's torque fades, or longer where switch_step_max wants it");
   unheld(f);
   initial_sets(f);
+}
+
+void RobotReader::drive_objects(Fields& f) {
+  std::vector<PlacedName> given;
+  f.strings("at_drives", given, {1, max_objects},
+            "control objects that make the drives do what is wanted of the joints; they are in no set, always active");
+  const std::vector<std::string> names = names_of(config_.objects);
+  for (const PlacedName& object : given) {
+    const auto found = std::find(names.begin(), names.end(), object.name);
+    if (found == names.end()) {
+      problems_.add_unknown(object.place, "control object", object.name, names);
+      continue;
+    }
+    const auto index = static_cast<std::uint32_t>(found - names.begin());
+    for (const ControlSetInfo& set : config_.sets) {
+      if (std::find(set.objects.begin(), set.objects.end(), index) == set.objects.end()) continue;
+      problems_.add(object.place, "control object " + in_quotes(object.name) + " is in control set " +
+                                      in_quotes(set.name) + ": it cannot stand at the drives, too");
+    }
+    config_.at_drives.push_back(index);
+  }
 }
 
 void RobotReader::unheld(Fields& f) {

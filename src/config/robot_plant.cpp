@@ -128,7 +128,8 @@ void RobotReader::plant(Fields& f) {
   f.boolean("self_collision", plant.self_collision, "the robot's links collide with each other");
   f.object("udp", "a plant on another machine", [&](Fields& e) { udp_fields(e, config_.udp); });
   for (std::size_t i = 0; i < plant.drives.size(); ++i) {
-    config_.estimate.spring_Nm_per_rad[i] = plant.drives[i].spring_Nm_per_rad;
+    config_.estimate.spring_Nm_per_rad[i] = config_.safety.joints[i].spring_Nm_per_rad =
+        plant.drives[i].spring_Nm_per_rad;
   }
 }
 

@@ -43,6 +43,7 @@ class RobotReader {
   // robot_control.cpp
   void control(Fields& f);
   void initial_sets(Fields& f);
+  void drive_objects(Fields& f);
   void unheld(Fields& f);
   void object(Fields& f);
   void object_joints(const std::vector<PlacedName>& patterns, ObjectConfig& object);

@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 
+#include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
 
 namespace kadans {
@@ -46,8 +47,9 @@ void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
 }
 
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
-  std::string schema;
+  std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
+  f.string("based_on", base, "another scenario; this file says only what is different");
   f.string("name", scenario.name, "the scenario's name", Need::required);
   f.string("doc", scenario.doc, "what it shows, one or two sentences");
   f.string("robot", scenario.robot, "the robot's configuration, from the project root", Need::required);
@@ -104,8 +106,10 @@ PlayFolders folders_of(const ScenarioConfig& scenario) {
 ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file) {
   ScenarioConfig scenario;
   scenario.file = file;
+  const BasedJson json = parse_based_json(text, file);
+  if (!json.bases.empty()) (void)read_scenario_config(json.bases.front());
   Problems problems(file);
-  read_fields(parse_json(text, file), problems, [&](Fields& f) { scenario_fields(f, scenario, problems); });
+  read_fields(json.value, problems, [&](Fields& f) { scenario_fields(f, scenario, problems); });
   problems.throw_if_any();
   return scenario;
 }

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "kadans/config/based_on.h"
+
 namespace kadans {
 namespace {
 
@@ -52,8 +54,10 @@ const char* name(Sampling sampling) noexcept { return sampling_names[static_cast
 SweepPlan read_sweep_plan_text(const std::string& text, const std::string& file) {
   SweepPlan plan;
   plan.file = file;
+  const BasedJson json = parse_based_json(text, file);
+  if (!json.bases.empty()) (void)read_sweep_plan(json.bases.front());
   Problems problems(file);
-  read_fields(parse_json(text, file), problems, [&](Fields& f) { plan_fields(f, plan, problems); });
+  read_fields(json.value, problems, [&](Fields& f) { plan_fields(f, plan, problems); });
   problems.throw_if_any();
   return plan;
 }

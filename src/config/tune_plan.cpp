@@ -1,5 +1,7 @@
 #include "kadans/config/tune_plan.h"
 
+#include "kadans/config/based_on.h"
+
 namespace kadans {
 namespace {
 
@@ -55,7 +57,7 @@ TunePlan read_tune_plan_text(const std::string& text, const std::string& file) {
   TunePlan plan;
   plan.file = file;
   Problems problems(file);
-  read_fields(parse_json(text, file), problems, [&](Fields& f) { plan_fields(f, plan, problems); });
+  read_fields(parse_based_json(text, file).value, problems, [&](Fields& f) { plan_fields(f, plan, problems); });
   problems.throw_if_any();
   return plan;
 }

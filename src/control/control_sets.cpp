@@ -1,5 +1,6 @@
 #include "kadans/control/control_sets.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -45,6 +46,7 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
   }
   if (objects_.size() != catalog.objects.size()) throw std::invalid_argument("the catalog lists other control objects");
   for (const ControlSetInfo& set : catalog.sets) check_set(catalog, set);
+  check_drives();
   if (active_ == 0 || std::bit_width(active_) > catalog.sets.size()) {
     throw std::invalid_argument("there is no initial control set");
   }
@@ -57,6 +59,24 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
   for (SetpointId id = 0; id < catalog.setpoints.size(); ++id) {
     const Setpoint& setpoint = catalog.setpoints[id];
     if (objects_[setpoint.owner]->setpoint_state(setpoint.channel, ignored)) catalog.setpoints.set_follows(id);
+  }
+}
+
+void ControlSets::check_drives() {
+  JointMask driven = 0;
+  for (const std::uint32_t index : catalog_.at_drives) {
+    const ObjectInfo& object = catalog_.objects.at(index);
+    at_drives_ |= ObjectMask{1} << index;
+    for (const ControlSetInfo& set : catalog_.sets) {
+      if (std::ranges::find(set.objects, index) == set.objects.end()) continue;
+      throw std::invalid_argument("control object " + object.name + " stands at the drives and in control set " +
+                                  set.name);
+    }
+    for (const std::size_t joint : object.joints) {
+      if ((std::exchange(driven, driven | joint_bit(joint)) & joint_bit(joint)) == 0) continue;
+      throw std::invalid_argument("two control objects stand at the drive of joint " +
+                                  catalog_.model->joints.at(joint).name);
+    }
   }
 }
 
@@ -146,6 +166,17 @@ void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationF
   unheld_.step(input.joints, actuation);
   if (touched != 0 && !first) switchover_.begin(input.joints, input.dt_s, input.last, actuation, touched);
   switchover_.apply(input.joints, input.dt_s, actuation);
+}
+
+void ControlSets::drive(const ControlInput& input, JointMask blind, ActuationFrame& actuation) noexcept {
+  for (const std::uint32_t index : catalog_.at_drives) {
+    ActuationFrame& motors = *proposals_[index];
+    motors = actuation;
+    objects_[index]->step(input, motors);
+    for (const std::size_t joint : catalog_.objects[index].joints) {
+      if ((blind & joint_bit(joint)) == 0) actuation.joints[joint] = motors.joints[joint];
+    }
+  }
 }
 
 void ControlSets::rehearse(std::uint64_t tick, const ControlInput& input, ActuationFrame& scratch) const noexcept {

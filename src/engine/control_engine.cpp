@@ -30,7 +30,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
                  .base = snapshot_.status.base,
                  .health = estimator_.health()},
                 actuation_, snapshot_.status.safety);
-  plant_.write(actuation_);
+  plant_.write(drive(time_ns, dt_s));
   copy_used(actuation_, written_);
   const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
   if (safety_.came_back()) sets_.restart(input);
@@ -39,6 +39,20 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
   sets_.step(tick_, input, actuation_);
   publish(time_ns);
   ++tick_;
+}
+
+// Objects at the drives turn what is wanted of the joints into what is asked of the motors.
+const ActuationFrame& ControlEngine::drive(std::int64_t time_ns, double dt_s) noexcept {
+  if (!sets_.drives()) return actuation_;
+  copy_used(actuation_, motors_);
+  const SensorHealth& health = estimator_.health();
+  JointMask blind = 0;
+  for (std::size_t i = 0; i < health.joint_count; ++i) {
+    const SensorState& joint = health.joints[i];
+    if (joint.silent_ticks >= joint.period_ticks || !joint.finite) blind |= joint_bit(i);
+  }
+  sets_.drive({snapshot_.joints, snapshot_.status, written_, time_ns, dt_s}, blind, motors_);
+  return motors_;
 }
 
 // Step by step as tick(). The snapshot's slots are left out: they would push out of the smallest cache what is needed

@@ -23,6 +23,7 @@ JointWatch::JointWatch(const SafetySettings& settings, const JointLimits& limits
       jump_rad_s_(2 * limits.velocity_max_rad_s),
       stuck_motion_rad_(settings.sensors.stuck_motion_rad),
       stuck_effort_Nm_(settings.sensors.stuck_effort_share * limits.effort_max_Nm),
+      spring_Nm_per_rad_(limits.spring_Nm_per_rad),
       warm_C_(settings.thermal.warm_C),
       hot_C_(settings.thermal.hot_C),
       lower_rad_(limits.lower_rad),
@@ -51,13 +52,16 @@ bool JointWatch::stuck(const Input& in) noexcept {
     asked_low_ = asked_high_ = asked_;
   }
   if (!in.follows) asked_low_ = asked_high_ = demand(in);
-  motor_low_rad_ = std::min(motor_low_rad_, in.sample.motor_position_rad);
-  motor_high_rad_ = std::max(motor_high_rad_, in.sample.motor_position_rad);
+  const double motor_rad = by_motor_rad(in);
+  motor_low_rad_ = std::min(motor_low_rad_, motor_rad);
+  motor_high_rad_ = std::max(motor_high_rad_, motor_rad);
   asked_low_ = std::min(asked_low_, demand(in));
   asked_high_ = std::max(asked_high_, demand(in));
   if (++same_ < stuck_ticks_ || passive_) return false;
+  if (motor_high_rad_ - motor_low_rad_ > stuck_motion_rad_) return true;
+  if (spring_Nm_per_rad_ > 0) return false;  // the motor's encoder has told all
   const double asked_max = in.asked.mode == ActuationMode::position ? stuck_motion_rad_ : stuck_effort_Nm_;
-  return motor_high_rad_ - motor_low_rad_ > stuck_motion_rad_ || asked_high_ - asked_low_ > asked_max;
+  return asked_high_ - asked_low_ > asked_max;
 }
 
 void JointWatch::describe(const Input& in, Fault& fault) const noexcept {

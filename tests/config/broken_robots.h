@@ -6,6 +6,10 @@
 namespace kadans {
 
 inline constexpr Broken broken_robots[] = {
+    {"\"initial_set\": \"posture\"", "\"at_drives\": [\"arm\"]",
+     "54:19: unknown control object 'arm', did you mean 'arms'?"},
+    {"\"initial_set\": \"posture\"", "\"at_drives\": [\"arms\"]",
+     "54:19: control object 'arms' is in control set 'wave': it cannot stand at the drives, too"},
     {"\"name\": \"tulip\"", "\"nmae\": \"tulip\"",
      "1:1: key 'name' is missing: the robot's name\n2:3: unknown key 'nmae', did you mean 'name'?"},
     {"\"name\": \"tulip\"", "\"name\": \"\"", "2:11: name must not be empty: the robot's name"},

@@ -93,6 +93,51 @@ TEST_CASE("Switching starts the objects that come in and leaves those that stay 
   CHECK(bench.knee->starts == 2);
 }
 
+TEST_CASE("An object at the drives makes motors of what is wanted of the joints, but of those that are not measured") {
+  struct Doubles final : ControlObject {
+    void declare(Declaration&) override {}
+    void start(const ControlInput&) noexcept override {}
+    void step(const ControlInput&, ActuationFrame& actuation) noexcept override {
+      for (JointActuation& joint : actuation.joints) joint.effort_Nm *= 2;
+    }
+    void set_point(std::uint32_t, double, double) noexcept override {}
+    void cancel_motion(std::uint32_t) noexcept override {}
+    double motion_remaining_s() const noexcept override { return 0; }
+  };
+  RobotModel model = two_joint_robot();
+  Catalog catalog;
+  catalog.model = &model;
+  catalog.objects = {{.name = "first", .joints = {1}}, {.name = "drives", .joints = {0, 1}}};
+  catalog.sets = {{.name = "all", .objects = {0}}};
+  catalog.at_drives = {1};
+  const auto objects = [] {
+    std::vector<std::unique_ptr<ControlObject>> made;
+    made.push_back(std::make_unique<Constant>(1, 4.0));
+    made.push_back(std::make_unique<Doubles>());
+    return made;
+  };
+  Catalog given = catalog;
+  ControlSets sets(given, objects());
+  ActuationFrame written, computed;
+  written.joint_count = computed.joint_count = 3;
+  const ControlInput input{{}, {}, written, 0, 0.001};
+  sets.step(0, input, computed);
+  CHECK(computed.joints[1].effort_Nm == 4);  // not in the sets
+  for (JointActuation& joint : computed.joints) joint.effort_Nm = 3;
+  sets.drive(input, joint_bit(0), computed);
+  CHECK(computed.joints[0].effort_Nm == 3);  // blind
+  CHECK(computed.joints[1].effort_Nm == 6);
+  CHECK(computed.joints[2].effort_Nm == 3);  // not its own
+  CHECK(sets.runs(1));
+
+  catalog.sets[0].objects = {0, 1};
+  catalog.objects[1].joints = {0};
+  CHECK(refusal(catalog, objects()) == "control object drives stands at the drives and in control set all");
+  catalog.sets[0].objects = {0};
+  catalog.at_drives = {1, 1};
+  CHECK(refusal(catalog, objects()) == "two control objects stand at the drive of joint hip");
+}
+
 TEST_CASE("A joint that no object of the new set drives goes off") {
   Bench bench;
   bench.step();

@@ -94,6 +94,49 @@ TEST_CASE("A reading that stays the same while more and more torque is asked is 
   CHECK(still.codes().empty());
 }
 
+TEST_CASE("Behind a spring a joint that is pressed against something is not stuck, however hard its motor pulls") {
+  SafetySettings springs = settings();
+  for (JointLimits& limits : springs.joints) limits.spring_Nm_per_rad = 200;
+  Bench bench(springs);
+  bench.knee_noise = false;
+  JointSample& knee = bench.sensors.joints[0];
+  const double joint_rad = knee.position_rad;
+  const auto pull = [&](double torque_Nm, double moved_rad) {
+    bench.ask(torque_Nm);
+    knee.motor_effort_Nm = torque_Nm;
+    knee.motor_position_rad = joint_rad + moved_rad + torque_Nm / 200;  // by 0.08 rad as the torque grows
+    bench.check();
+  };
+  for (int i = 0; i < 1000; ++i) pull(5 + 0.016 * i, 0);
+  CHECK(bench.codes().empty());
+  int ticks = 0;
+  while (bench.codes().empty() && ticks < 1000) pull(5, 0.002 * ++ticks);  // the joint moves, its encoder does not
+  CHECK(bench.codes() == "sensor_stuck");
+  CHECK(ticks <= 60);  // 0.05 rad, and the mean's delay of 0.05 s at most
+}
+
+TEST_CASE("A rotor that swings on its spring, the joint pressed against its stop, is no stuck sensor") {
+  SafetySettings springs = settings();
+  for (JointLimits& limits : springs.joints) limits.spring_Nm_per_rad = 300;
+  Bench bench(springs);
+  bench.knee_noise = false;
+  JointSample& knee = bench.sensors.joints[0];
+  const double joint_rad = knee.position_rad;
+  double deflection_rad = 0, rotor_rad_s = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double torque_Nm = i / 60 % 2 == 0 ? 20 : -20;  // 0.13 rad to and fro on the spring
+    for (int part = 0; part < 10; ++part) {
+      rotor_rad_s += 1e-4 * (torque_Nm - 300 * deflection_rad - 0.2 * rotor_rad_s) / 0.02;
+      deflection_rad += 1e-4 * rotor_rad_s;
+    }
+    bench.ask(torque_Nm);
+    knee.motor_effort_Nm = torque_Nm;
+    knee.motor_position_rad = joint_rad + deflection_rad;
+    bench.check();
+  }
+  CHECK(bench.codes().find("sensor_stuck") == std::string::npos);
+}
+
 TEST_CASE("A reading that follows its motor by a hair's breadth at a time is not stuck") {
   Bench bench;
   bench.knee_noise = false;

@@ -63,6 +63,7 @@ struct RobotConfig {
   std::vector<ObjectConfig> objects;
   std::vector<ControlSetInfo> sets;
   SetMask initial_sets = 1;
+  std::vector<std::uint32_t> at_drives;  // objects in no set, see control_sets.h
   SwitchSettings switching;
   std::vector<UnheldLaw> unheld;  // one a joint
   std::vector<PoseInfo> poses;

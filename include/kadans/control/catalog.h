@@ -61,6 +61,8 @@ struct Catalog {
   std::vector<ControlSetInfo> sets;
   std::vector<PoseInfo> poses;
   SetMask initial_sets = 1;
+  std::vector<std::uint32_t>
+      at_drives;                 // objects that are in no set: they make the drives do what sets and safety want
   std::vector<DriveLaw> drives;  // one a joint; empty: switching is not smoothed
   SwitchSettings switching;
   std::vector<UnheldLaw> unheld;  // one a joint; empty: off

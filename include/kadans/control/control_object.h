@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "kadans/control/object_options.h"
+#include "kadans/control/switchover.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/frames.h"
 #include "kadans/signal/parameter.h"
@@ -62,6 +63,7 @@ struct ObjectSetup {
   const RobotModel& model;
   std::vector<std::size_t> joints;  // the joints it drives, indices into the model; at least one, none twice
   ObjectOptions options{};
+  std::vector<DriveLaw> drives{};  // one a joint of the model; empty: not known
 };
 
 class ControlObject {
@@ -77,7 +79,8 @@ class ControlObject {
   // Control thread, in the tick that makes the object active: takes over without a jump from the measured state and the
   // last actuation.
   virtual void start(const ControlInput& input) noexcept = 0;
-  // Control thread: writes the actuation of its joints.
+  // Control thread: writes the actuation of its joints. One that stands at the drives (control_sets.h) finds there what
+  // is wanted of them, and replaces it by what the motors shall do.
   virtual void step(const ControlInput& input, ActuationFrame& actuation) noexcept = 0;
   // Control thread, in the wait before a tick: computes what step would, by the same functions but on copies, so that
   // its code and its memory are in the caches. Changes nothing; an object may leave it out.

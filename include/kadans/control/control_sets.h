@@ -4,6 +4,10 @@
 // says (unheld_joints.h). A change of the active sets makes no step (switchover.h), concerns the joints of the sets
 // that come or leave alone, and costs the starting of the objects that come in, whatever the number of sets.
 //
+// Objects that stand at the drives are in no set and always active. They work on what is left after composition and the
+// safety layer, in the tick that writes it: what they are given is wanted of the joint, what they leave is asked of its
+// motor (spring_torque.h). All others go on to see torques at joints, in ControlInput::last and everywhere.
+//
 // Signals     composition.<joint>.writers     the objects that have a share in its actuation, a bit each
 //             composition.switch_share        the largest step that the last switch absorbed, as a share of the limit
 // Parameters  <set>.<object>.weight           of an object that blends
@@ -39,6 +43,10 @@ class ControlSets {
   void start_newcomers(const ControlInput& input) noexcept;
   // Control thread, before step. All objects of the active sets start anew, as if they had just been switched to.
   void restart(const ControlInput& input) noexcept;
+  // Control thread, after the safety layer, before the plant is written. `blind`: joints that are not measured in this
+  // tick; they keep what is in `actuation`.
+  void drive(const ControlInput& input, JointMask blind, ActuationFrame& actuation) noexcept;
+  bool drives() const noexcept { return at_drives_ != 0; }  // whether drive() does anything
   // Control thread, before step. `object` is an index in the catalog.
   ControlObject& object(std::uint32_t index) noexcept { return *objects_[index]; }
   void fill(Snapshot& snapshot) const noexcept;  // which sets and objects are active
@@ -48,7 +56,7 @@ class ControlSets {
 
   SetMask active() const noexcept { return active_; }
   const SetPartition& partition() const noexcept { return partition_; }
-  bool runs(std::uint32_t object) const noexcept { return (running_ >> object & 1U) != 0; }
+  bool runs(std::uint32_t object) const noexcept { return ((running_ | at_drives_) >> object & 1U) != 0; }
   std::size_t size() const noexcept { return objects_.size(); }
 
  private:
@@ -61,6 +69,7 @@ class ControlSets {
   using Plan = std::vector<Member>;  // a set, laid out for the tick
   void make_plan(Catalog& catalog, const ControlSetInfo& set);
   void declare(Catalog& catalog);
+  void check_drives();
   using Writers = std::array<std::uint32_t, max_joints>;  // by joint: the objects that have a share, a bit each
   void compose_joints(const Member& member, Writers& writers, ActuationFrame& actuation) const noexcept;
 
@@ -74,6 +83,7 @@ class ControlSets {
   UnheldJoints unheld_;
   ObjectMask running_ = 0;
   ObjectMask fresh_ = 0;  // started since the last step
+  ObjectMask at_drives_ = 0;
   SetMask active_;
   JointMask touched_ = 0;  // of sets that came or left since the last step
   bool computed_ = false;  // at least one step

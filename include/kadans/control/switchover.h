@@ -25,12 +25,15 @@
 
 namespace kadans {
 
-// What the control side has to know of a drive to foresee its torque.
+// What the control side has to know of a drive to foresee its torque, and to make it.
 struct DriveLaw {
   double effort_max_Nm = 0;
   double position_gain_Nm_per_rad = 0;   // of its position mode
   double velocity_gain_Nms_per_rad = 0;  // of its position and velocity modes
   double velocity_delay_s = 0;           // of the joint's measured velocity, behind the true one
+  // Of a series elastic drive, for objects that stand at the drives.
+  double spring_Nm_per_rad = 0;  // 0: none
+  double rotor_inertia_kg_m2 = 0;
 };
 
 struct SwitchSettings {

@@ -59,6 +59,7 @@ class ControlEngine {
   EngineExchange& exchange() noexcept { return exchange_; }
 
  private:
+  const ActuationFrame& drive(std::int64_t time_ns, double dt_s) noexcept;
   void publish(std::int64_t time_ns) noexcept;
   void declare_signals(Catalog& catalog);
   void declare_joystick(SignalTable& table) const;
@@ -76,7 +77,8 @@ class ControlEngine {
   SensorFrame sensors_;
   Snapshot snapshot_;         // joints and status are estimated in place
   ActuationFrame actuation_;  // computed in the last tick, written in this one
-  ActuationFrame written_;    // as it went to the plant
+  ActuationFrame written_;    // in this tick: what is wanted of the joints
+  ActuationFrame motors_;     // and what went to the plant for it, when objects stand at the drives
   std::vector<double> row_;
   Rehearsal rehearsal_;
 };

@@ -2,9 +2,12 @@
 // what follows is the ladder's matter.
 //
 // A reading jumps when it is further from the last one than twice the speed limit allows for in the time between them.
-// A reading is stuck when it stays exactly the same for stuck_ticks readings although the motor, behind its spring,
-// moved, or was made to pull harder and harder; standing still alone is no fault, since a resolution that is finite
-// repeats itself. What is asked of a joint that damps or is off is not done, so it tells nothing.
+// A reading is stuck when it stays exactly the same for stuck_ticks readings although the motor moved; standing still
+// alone is no fault, since a resolution that is finite repeats itself. Behind a spring the motor moves by torque /
+// spring while the joint is pressed against something, so that much of its way counts for nothing; what is left, in the
+// mean over a time in which the rotor swings on its spring more than once, is the joint's own. A rigid drive has no
+// second encoder: there the reading is also stuck when the motor is made to pull harder and harder. What is asked of a
+// joint that damps or is off is not done, so it tells nothing.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -45,18 +48,26 @@ class JointWatch {
   double derating() const noexcept { return derating_; }
 
  private:
+  static constexpr double swing_s = 0.05;  // a rotor of 0.04 kg m2 on 100 Nm/rad swings in 0.13 s
   FaultMask look_at_reading(const Input& input) noexcept;
   bool stuck(const Input& input) noexcept;
   // What the motor was told, as one number that a joint follows: torque, or else the position.
   static double demand(const Input& input) noexcept {
     return input.asked.mode == ActuationMode::position ? input.asked.position_rad : input.written_Nm;
   }
+  // Where the joint is as its motor tells it: before the spring, but for what its torque deflects that.
+  double by_motor_rad(const Input& input) noexcept {
+    if (spring_Nm_per_rad_ == 0) return input.sample.motor_position_rad;
+    const double deflection_rad = input.sample.motor_effort_Nm / spring_Nm_per_rad_;
+    mean_rad_ += input.dt_s / (input.dt_s + swing_s) * (input.sample.motor_position_rad - deflection_rad - mean_rad_);
+    return mean_rad_;
+  }
   FaultMask derate() noexcept;
 
   double lowest_rad_ = 0, highest_rad_ = 0;  // limits with their margins
   double fastest_rad_s_ = 0;
   double jump_rad_ = 0, jump_rad_s_ = 0;
-  double stuck_motion_rad_ = 0, stuck_effort_Nm_ = 0;
+  double stuck_motion_rad_ = 0, stuck_effort_Nm_ = 0, spring_Nm_per_rad_ = 0;
   double warm_C_ = 0, hot_C_ = 0, continuous_share_ = 1;
   double lower_rad_ = 0, upper_rad_ = 0;
   std::uint32_t stuck_ticks_ = 0, silent_ticks_max_ = 0;
@@ -69,6 +80,7 @@ class JointWatch {
   double step_rad_ = 0, step_max_rad_ = 0;  // from the one before it, and what was possible
   double since_s_ = 0;                      // since the last one
   std::uint32_t same_ = 0;                  // readings in a row equal to it; what the motor did meanwhile:
+  double mean_rad_ = 0;                     // by_motor_rad, smoothed
   double motor_rad_ = 0, asked_ = 0;        // when it was first read
   double motor_low_rad_ = 0, motor_high_rad_ = 0, asked_low_ = 0, asked_high_ = 0;
 };
@@ -101,7 +113,8 @@ inline FaultMask JointWatch::look_at_reading(const Input& in) noexcept {
   seen_ = true;
   if (first || step_rad_ != 0) {
     same_ = 0;
-    motor_rad_ = in.sample.motor_position_rad;
+    mean_rad_ = position_rad;
+    motor_rad_ = by_motor_rad(in);
     asked_ = demand(in);
   }
   if (first) return 0;

@@ -16,6 +16,7 @@ struct JointLimits {
   double power_max_W = 0;               // |torque * velocity|; 0: effort_max times velocity_max
   double continuous_Nm = 0;             // torque that heats the winding just to thermal.hot_C; 0: 0.6 of effort_max
   double thermal_time_constant_s = 60;  // of the winding
+  double spring_Nm_per_rad = 0;         // between motor and joint, each with an encoder; 0: rigid
 };
 
 // The last piece before a position limit. Torque that pushes on fades to none across it; beyond the limit a spring
@@ -37,7 +38,7 @@ struct SensorWatchSettings {
   double jump_rad = 0.01;               // beyond what twice the speed limit allows for in the time between two readings
   std::uint32_t stuck_ticks = 25;       // readings exactly the same ...
   double stuck_motion_rad = 0.05;       // ... while the motor moved so far, or was told to,
-  double stuck_effort_share = 0.3;      // ... or while the torque asked changed by this share of its limit
+  double stuck_effort_share = 0.3;      // ... or, without a spring, the torque asked changed by this share of its limit
   bool imu = true;                      // false: the robot has none
   std::uint32_t imu_stuck_ticks = 25;   // readings exactly the same of a sensor whose noise has been seen
   double gyro_step_rad_s = 10;          // from one reading to the next
