@@ -12,6 +12,7 @@
 #include "kadans/control/joint_velocity.h"
 #include "kadans/control/profile_position.h"
 #include "kadans/control/spring_torque.h"
+#include "kadans/control/stance.h"
 #include "kadans/control/task_impedance.h"
 #include "kadans/control/trajectory_list.h"
 
@@ -29,6 +30,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   types.add("feedforward_player", make_feedforward_player);
   types.add("computed_torque", make_computed_torque);
   types.add("dcm_balance", make_dcm_balance);
+  types.add("stance", make_stance);
   types.add("gravity_compensation", make_gravity_compensation);
   types.add("gaze", make_gaze);
   types.add("spring_torque", make_spring_torque);
