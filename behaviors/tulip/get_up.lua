@@ -75,6 +75,7 @@ return k.behavior "get_up" {
       m.vars.still_s, m.vars.rolls = 0, 0
       m.posture:set_gains("get_up")
       m.balance:set_parameter("share", 0)
+      m.stance:set_parameter("share", 0)
       m.posture:move(floor.lying(), { time_s = 0.4 })
     end,
     during = function(m, s)

@@ -15,8 +15,9 @@ return k.behavior "step_out" {
 
   k.state "stand" {
     enter = function(m)
-      m.posture:set_gains("balance")
+      m.posture:set_gains("step")
       m.posture:move("poised", { time_s = P.settle_s })
+      m.stance:set_parameter("share", 0)
       m.balance:set_parameter("share", 1)
       m.step:set_parameter("enabled", 1)
     end,

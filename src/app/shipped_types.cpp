@@ -12,6 +12,7 @@
 #include "kadans/control/joint_pid.h"
 #include "kadans/control/joint_velocity.h"
 #include "kadans/control/profile_position.h"
+#include "kadans/control/stance.h"
 #include "kadans/control/task_impedance.h"
 #include "kadans/control/trajectory_list.h"
 
@@ -30,6 +31,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   types.add("computed_torque", make_computed_torque);
   types.add("dcm_balance", make_dcm_balance);
   types.add("dcm_step", make_dcm_step);
+  types.add("stance", make_stance);
   types.add("gravity_compensation", make_gravity_compensation);
   types.add("gaze", make_gaze);
   types.add("task_impedance", make_task_impedance);

@@ -5,34 +5,15 @@
 #include <stdexcept>
 #include <string>
 
-#include "kadans/signal/nearest_name.h"
-
 namespace kadans {
 namespace {
-
-constexpr double gravity_m_s2 = 9.81;
-constexpr double share_per_s = 5;
-constexpr double look_ahead_s = 0.001;
-constexpr double lowest_com_m = 0.1;  // below, it does not stand
-
-std::size_t foot_of(const ObjectSetup& setup, const char* option) {
-  const std::string* const name = setup.options.find(option);
-  if (name == nullptr) throw OptionError(option, "it needs the option '" + std::string(option) + "': a foot's link");
-  const auto link = setup.model.find_link(*name);
-  if (!link)
-    throw OptionError(option, "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
-  return *link;
-}
 
 double beyond(double error, double back, double front) noexcept { return error - std::clamp(error, -back, front); }
 
 }  // namespace
 
 DcmBalance::DcmBalance(const ObjectSetup& setup)
-    : feet_{foot_of(setup, "left_foot"), foot_of(setup, "right_foot")},
-      kinematics_(setup.model),
-      joint_count_(setup.model.joints.size()),
-      weight_N_(gravity_m_s2 * setup.model.mass_kg()) {
+    : standing_(setup), weight_N_(standing_gravity_m_s2 * setup.model.mass_kg()) {
   for (JointAxis& axis : joint_axes(setup)) {
     const Role role = role_of(axis.name);
     parts_.push_back({.axis = std::move(axis), .role = role});
@@ -84,38 +65,19 @@ void DcmBalance::start(const ControlInput&) noexcept {
   for (Part& part : parts_) part.effort_Nm = 0;
 }
 
-// In the heading frame: x forward, y left, z up.
-Vec3 DcmBalance::com_over_feet(const ControlInput& input, double ahead_s) noexcept {
-  std::array<double, max_joints> position_rad{};
-  for (std::size_t i = 0; i < joint_count_; ++i) {
-    const JointState& joint = input.joints.joints[i];
-    position_rad[i] = joint.position_rad + ahead_s * joint.velocity_rad_s;
-  }
-  const BaseStatus& base = input.status.base;
-  const Vec3& w = base.angular_velocity_rad_s;
-  const Quat upright = from_roll_pitch_yaw(base.roll_rad, base.pitch_rad, 0);
-  const Quat turn = normalized({1, 0.5 * ahead_s * w[0], 0.5 * ahead_s * w[1], 0.5 * ahead_s * w[2]});
-  kinematics_.update({position_rad.data(), joint_count_}, {{}, multiply(upright, turn)});
-  const Vec3 com = kinematics_.com_m();
-  const Vec3& left = kinematics_.link(feet_[0]).position_m;
-  const Vec3& right = kinematics_.link(feet_[1]).position_m;
-  return {com[0] - (left[0] + right[0]) / 2, com[1] - (left[1] + right[1]) / 2, com[2] - (left[2] + right[2]) / 2};
-}
-
 // False when it does not stand, or something is not measured.
 bool DcmBalance::measure(const ControlInput& input) noexcept {
-  const Vec3 com = com_over_feet(input, 0);
-  const Vec3 next = com_over_feet(input, look_ahead_s);
+  const bool stands = standing_.update(input);
+  const Vec3& com = standing_.com_m();
   State& s = state_;
   s.com_x_m = com[0];
   s.com_y_m = com[1];
   s.com_z_m = com[2];
-  const double time_s = std::sqrt(std::max(com[2], lowest_com_m) / gravity_m_s2) / look_ahead_s;
-  s.dcm_x_m = com[0] + time_s * (next[0] - com[0]);
-  s.dcm_y_m = com[1] + time_s * (next[1] - com[1]);
+  s.dcm_x_m = standing_.dcm_x_m();
+  s.dcm_y_m = standing_.dcm_y_m();
   s.beyond_x_m = beyond(s.dcm_x_m - config_.offset_x_m, config_.reach_back_m, config_.reach_front_m);
   s.beyond_y_m = beyond(s.dcm_y_m, config_.reach_side_m, config_.reach_side_m);
-  return com[2] > lowest_com_m && std::isfinite(s.dcm_x_m) && std::isfinite(s.dcm_y_m);
+  return stands;
 }
 
 double DcmBalance::law_Nm(Role role) const noexcept {
@@ -138,7 +100,7 @@ double DcmBalance::law_Nm(Role role) const noexcept {
 
 void DcmBalance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const bool stands = measure(input);
-  const double most = share_per_s * input.dt_s;
+  const double most = standing_share_per_s * input.dt_s;
   state_.share = stands ? state_.share + std::clamp(config_.share - state_.share, -most, most) : 0;
   const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
   for (Part& part : parts_) {

@@ -12,7 +12,7 @@
 namespace kadans {
 namespace {
 
-const std::vector<std::string> types{"joint_pid", "dcm_balance"};
+const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance", "dcm_step"};
 const std::string robot_file = KADANS_SOURCE_DIR "/config/tulip/robot.json";
 
 RobotConfig tulip() { return read_robot_config(robot_file, types); }
@@ -23,10 +23,10 @@ const PoseInfo& pose(const RobotConfig& config, const char* name) {
 }
 
 // Height of the hips over the left sole and the pitch of the sole, the base upright.
-struct Stance {
+struct Footing {
   double height_m, sole_pitch_rad;
 };
-Stance stance(const RobotConfig& config, const char* name) {
+Footing footing(const RobotConfig& config, const char* name) {
   std::vector<double> position_rad(config.model.joints.size());
   for (const auto& [joint, value] : pose(config, name).position_rad) position_rad[joint] = value;
   Kinematics kinematics(config.model);
@@ -41,10 +41,12 @@ TEST_CASE("TULip's configuration drives its twelve motors and leaves the ankle r
   const RobotConfig config = tulip();
   CHECK(config.name == "tulip");
   CHECK(config.model.joints.size() == 14);
-  REQUIRE(config.objects.size() == 2);
+  REQUIRE(config.objects.size() == 3);
   CHECK(config.objects[0].joints.size() == 12);
   CHECK(config.objects[1].type.name == "dcm_balance");
   CHECK(config.objects[1].joints.size() == 8);
+  CHECK(config.objects[2].type.name == "stance");
+  CHECK(config.objects[2].joints.size() == 10);
   const std::size_t ankle = config.model.find_joint("r_ankle_roll").value();
   const std::size_t knee = config.model.find_joint("r_knee").value();
   CHECK(config.plant.drives[ankle].torque_max_Nm == 0);
@@ -60,12 +62,12 @@ TEST_CASE("TULip's configuration drives its twelve motors and leaves the ankle r
 
 TEST_CASE("TULip's squat sinks the hips by 0.10 m with flat feet") {
   const RobotConfig config = tulip();
-  const Stance stand = stance(config, "stand");
-  const Stance squat = stance(config, "squat");
+  const Footing stand = footing(config, "stand");
+  const Footing squat = footing(config, "squat");
   CHECK(stand.height_m - squat.height_m == doctest::Approx(0.10).epsilon(1e-5));
   CHECK(std::abs(stand.sole_pitch_rad) < 1e-9);
   CHECK(std::abs(squat.sole_pitch_rad) < 1e-6);
-  CHECK(stance(config, "straight").height_m == doctest::Approx(0.258 + 0.55));
+  CHECK(footing(config, "straight").height_m == doctest::Approx(0.258 + 0.55));
 }
 
 TEST_CASE("TULip starts in its standing pose") {

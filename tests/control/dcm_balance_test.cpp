@@ -6,51 +6,22 @@
 
 #include <doctest/doctest.h>
 
+#include "biped.h"
 #include "kadans/control/catalog.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;
+using kadans::testing::biped;
+using kadans::testing::biped_feet;
 
 namespace {
 
 constexpr double weight_N = 9.81 * 12;
 constexpr double com_height_m = (10 * 0.7 + 2 * 0.25) / 12;  // over the ankles
 
-Link link(const char* name, double mass_kg, double com_z_m) {
-  Link link;
-  link.name = name;
-  link.inertia = {.mass_kg = mass_kg, .com_m = {0, 0, com_z_m}, .xx = 0.1, .yy = 0.1, .zz = 0.1};
-  return link;
-}
-
-Joint joint(const char* name, std::size_t parent, const Vec3& origin_m) {
-  Joint joint;
-  joint.name = name;
-  joint.parent = parent;
-  joint.origin.position_m = origin_m;
-  joint.axis = {0, 1, 0};
-  joint.lower_rad = -2;
-  joint.upper_rad = 2;
-  joint.effort_max_Nm = 20;
-  joint.velocity_max_rad_s = 8;
-  return joint;
-}
-
-// Two straight legs of 0.5 m and 1 kg under a torso of 10 kg; feet without mass.
-RobotModel biped() {
-  RobotModel model;
-  model.links = {link("torso", 10, 0), link("l_leg", 1, -0.25), link("l_foot", 0, 0), link("r_leg", 1, -0.25),
-                 link("r_foot", 0, 0)};
-  model.joints = {joint("l_hip_pitch", 0, {0, 0.1, -0.2}), joint("l_ankle_pitch", 1, {0, 0, -0.5}),
-                  joint("r_hip_pitch", 0, {0, -0.1, -0.2}), joint("r_ankle_pitch", 3, {0, 0, -0.5})};
-  return model;
-}
-
-const ObjectOptions feet{{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}};
-
 struct Bench {
   RobotModel model = biped();
-  DcmBalance balance{{.model = model, .joints = {0, 1, 2, 3}, .options = feet}};
+  DcmBalance balance{{.model = model, .joints = {0, 1, 2, 3}, .options = biped_feet}};
   ParameterTable parameters;
   SetpointTable setpoints;
   SignalTable signals;
@@ -168,5 +139,5 @@ TEST_CASE("DcmBalance needs feet, and joints that have a part in balance") {
                        OptionError);
   RobotModel other = biped();
   other.joints[0].name = "l_wing";
-  CHECK_THROWS_AS(DcmBalance({.model = other, .joints = {0}, .options = feet}), std::invalid_argument);
+  CHECK_THROWS_AS(DcmBalance({.model = other, .joints = {0}, .options = biped_feet}), std::invalid_argument);
 }

@@ -1,10 +1,7 @@
 // Keeps a standing robot's balance, in effort mode: type "dcm_balance". Meant to be composed onto a posture ("sum").
 //
-// The divergent component of motion is where the robot's pendulum is going (Hof 2008, Human Movement Science 27(1);
-// Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z), c being the centre of mass over the
-// middle between the feet's frames, v its velocity. The robot stays up while xi can be kept over the soles, so the
-// centre of pressure has to lie beyond xi. Three means, as people use them (Horak and Nashner 1986, J. Neurophysiology
-// 55(6)), each with what the one before leaves over:
+// xi is the divergent component of motion (standing.h). Three means, as people use them (Horak and Nashner 1986, J.
+// Neurophysiology 55(6)), each with what the one before leaves over:
 //
 //   ankles  tau = m g k_ankle e / 2 each, e = xi_x - offset_x; at most what the sole's length gives
 //   hips    tau = -k_hip r each, r what of e lies beyond reach_front or reach_back: the torso bows the way it falls
@@ -12,9 +9,6 @@
 //   roll    tau = k_roll e_y on both hip rolls: the load goes to the foot on the side that it falls to
 //
 // A foot that is pressed to its edge by torques without any delay chatters on the ground: smooth_s is for that.
-//
-// The velocity is the difference of two kinematics, one of them moved on by a millisecond with the filtered joint
-// velocities and the gyro: no position is differentiated. The feet are taken to stand flat.
 //
 // Joints      of each side *_ankle_pitch, *_hip_pitch, *_hip_roll, *_shoulder_pitch, all or some.
 // Options     left_foot, right_foot: the links that stand; required.
@@ -29,7 +23,7 @@
 
 #include "kadans/control/control_object.h"
 #include "kadans/control/joint_axis.h"
-#include "kadans/model/kinematics.h"
+#include "kadans/control/standing.h"
 
 namespace kadans {
 
@@ -74,14 +68,11 @@ class DcmBalance final : public ControlObject {
     double effort_Nm = 0;
   };
   static Role role_of(const std::string& joint);
-  Vec3 com_over_feet(const ControlInput& input, double ahead_s) noexcept;
   bool measure(const ControlInput& input) noexcept;
   double law_Nm(Role role) const noexcept;
 
   std::vector<Part> parts_;
-  std::array<std::size_t, 2> feet_{};
-  Kinematics kinematics_;
-  std::size_t joint_count_;
+  Standing standing_;
   double weight_N_;
   Config config_;
   State state_;

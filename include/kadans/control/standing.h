@@ -1,0 +1,55 @@
+// How a robot stands on two feet, for the control objects that balance it: where its centre of mass is, and where that
+// is going, over the middle between the feet's frames.
+//
+// The divergent component of motion is where the robot's pendulum is going (Hof 2008, Human Movement Science 27(1);
+// Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z), c being the centre of mass over the
+// middle between the feet's frames, v its velocity. The robot stays up while xi can be kept over the soles, so the
+// centre of pressure has to lie beyond xi.
+//
+// The velocity is the difference of two kinematics, one of them moved on by a millisecond with the filtered joint
+// velocities and the gyro: no position is differentiated. The feet are taken to stand flat.
+//
+// All in the heading frame: x forward along the ground where the base points, y left, z up.
+//
+// One owner, the control thread. Only the constructor allocates or throws.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "kadans/control/control_object.h"
+#include "kadans/model/kinematics.h"
+
+namespace kadans {
+
+inline constexpr double standing_gravity_m_s2 = 9.81;
+inline constexpr double standing_share_per_s = 5;  // how fast an object's share of torque comes and goes
+
+class Standing {
+ public:
+  // Of the options left_foot and right_foot: the links that stand. Throws OptionError. Keeps a reference to the model.
+  explicit Standing(const ObjectSetup& setup);
+
+  // False when it does not stand, or something is not measured.
+  bool update(const ControlInput& input) noexcept;
+
+  const Vec3& com_m() const noexcept { return com_m_; }
+  const Vec3& velocity_m_s() const noexcept { return velocity_m_s_; }  // of the centre of mass
+  double dcm_x_m() const noexcept { return dcm_x_m_; }
+  double dcm_y_m() const noexcept { return dcm_y_m_; }
+  const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }  // links, left and right
+  const Vec3& middle_m() const noexcept { return middle_m_; }                // between the feet, from the base's origin
+  // As of the last update, the base's origin at 0.
+  const Kinematics& kinematics() const noexcept { return kinematics_; }
+
+ private:
+  Vec3 com_over_feet(const ControlInput& input, double ahead_s) noexcept;
+
+  std::array<std::size_t, 2> feet_{};
+  Kinematics kinematics_;
+  std::size_t joint_count_;
+  Vec3 com_m_{}, velocity_m_s_{}, middle_m_{};
+  double dcm_x_m_ = 0, dcm_y_m_ = 0;
+};
+
+}  // namespace kadans

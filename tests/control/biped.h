@@ -1,0 +1,41 @@
+// A biped in the sagittal plane for tests of balance: a torso of 10 kg, two legs with feet without mass.
+#pragma once
+
+#include "kadans/control/object_options.h"
+#include "kadans/model/robot_model.h"
+
+namespace kadans::testing {
+
+inline Link biped_link(const char* name, double mass_kg, double com_z_m) {
+  Link link;
+  link.name = name;
+  link.inertia = {.mass_kg = mass_kg, .com_m = {0, 0, com_z_m}, .xx = 0.1, .yy = 0.1, .zz = 0.1};
+  return link;
+}
+
+inline Joint biped_joint(const char* name, std::size_t parent, const Vec3& origin_m, const Vec3& axis = {0, 1, 0}) {
+  Joint joint;
+  joint.name = name;
+  joint.parent = parent;
+  joint.origin.position_m = origin_m;
+  joint.axis = axis;
+  joint.lower_rad = -2;
+  joint.upper_rad = 2;
+  joint.effort_max_Nm = 20;
+  joint.velocity_max_rad_s = 8;
+  return joint;
+}
+
+// Straight legs of 0.5 m and 1 kg, 0.2 m apart.
+inline RobotModel biped() {
+  RobotModel model;
+  model.links = {biped_link("torso", 10, 0), biped_link("l_leg", 1, -0.25), biped_link("l_foot", 0, 0),
+                 biped_link("r_leg", 1, -0.25), biped_link("r_foot", 0, 0)};
+  model.joints = {biped_joint("l_hip_pitch", 0, {0, 0.1, -0.2}), biped_joint("l_ankle_pitch", 1, {0, 0, -0.5}),
+                  biped_joint("r_hip_pitch", 0, {0, -0.1, -0.2}), biped_joint("r_ankle_pitch", 3, {0, 0, -0.5})};
+  return model;
+}
+
+inline const ObjectOptions biped_feet{{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}};
+
+}  // namespace kadans::testing
