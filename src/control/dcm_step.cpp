@@ -33,12 +33,16 @@ void DcmStep::declare(Declaration& d) {
   d.parameter({"soft_share", "", 0.05, 2, 0.6, "Share of kp while both feet bear."}, &c.soft_share);
   d.parameter({"both_share", "", 0.001, 0.5, 0.1, "Share of the load, below which a foot counts as off the ground."},
               &c.both_share);
-  d.parameter({"alone_share", "", 0, 1, 0, "Share of the laws of a leg that bears alone, both down."}, &c.alone_share);
-  d.parameter({"crouch_m", "m", 0.1, 2, 0.42, "Least height of the hips, so that such a foot reaches the ground."},
-              &c.crouch_m);
   d.parameter({"seek_m", "m", 0, 0.1, 0.01, "How deep a foot that lost the ground looks for it."}, &c.seek_m);
   d.parameter({"come_s", "s", 0.05, 5, 0.4, "From a landing to the stance."}, &c.come_s);
   d.parameter({"carry", "", 0, 1, 0.7, "Share of the speeds of the landing that its motion begins with."}, &c.carry);
+  declare_gains(d);
+  declare_plan(d);
+  declare_signals(d);
+}
+
+void DcmStep::declare_gains(Declaration& d) {
+  Config& c = config_;
   for (std::size_t i = 0; i < leg_joints; ++i) {
     const std::string name = parts[i];
     d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 2000, kp_first[i], "Torque per position error."},
@@ -46,8 +50,6 @@ void DcmStep::declare(Declaration& d) {
     d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 200, kd_first[i], "Torque per velocity error."},
                 &c.kd_Nms_per_rad[i]);
   }
-  declare_plan(d);
-  declare_signals(d);
 }
 
 void DcmStep::declare_plan(Declaration& d) {
@@ -60,7 +62,6 @@ void DcmStep::declare_plan(Declaration& d) {
   d.parameter({"ahead_s", "s", 0, 0.2, 0.02, "How far xi is looked ahead."}, &c.ahead_s);
   d.parameter({"again_m", "m", 0, 0.5, 0.03, "Steps again when xi is so far beyond the soles."}, &c.again_m);
   d.parameter({"settle_s", "s", 0, 2, 0.1, "After a landing, before the next step."}, &c.settle_s);
-  d.parameter({"idle_s", "s", 0, 100, 100, "A foot that bore nothing for so long, both down, steps up."}, &c.idle_s);
   d.parameter({"swing_s", "s", 0.1, 2, 0.26, "Time of a swing."}, &c.swing_s);
   d.parameter({"lift_m", "m", 0, 0.3, 0.03, "Height of a swing."}, &c.lift_m);
   d.parameter({"extra_x_m", "m", -0.2, 0.2, 0.05, "Further than needed, along."}, &c.extra_x_m);

@@ -110,45 +110,46 @@ void DcmStep::bearing_torques(const ControlInput& input) noexcept {
   const Config& c = config_;
   const StepPlan::State& s = plan_.state();
   const BaseStatus& base = input.status.base;
-  const Vec3& w = base.angular_velocity_rad_s;
-  const Vec3& com_m = over_feet_.com_m();
-  const double x_m = s.goal.x_m - com_m[0], y_m = s.goal.y_m - com_m[1];  // of the base, over the stance foot
-  const Quat leaning = from_roll_pitch_yaw(0, lean_rad_, 0);
-  const double time = std::min(s.time_s / c.come_s, 1.0);
-  const double way = time * time * (3 - 2 * time), along_s = c.come_s * time * (1 - time) * (1 - time);
+  const double pitch_Nm =
+      c.torso_Nm_per_rad * (base.pitch_rad - lean_rad_) + c.torso_Nms_per_rad * base.angular_velocity_rad_s[1];
   const double left_N = std::max(input.status.feet[0].force_N, 0.0);
   const double right_N = std::max(input.status.feet[1].force_N, 0.0);
   const std::size_t light = left_N < right_N ? 0 : 1;
   const double least = std::min(left_N, right_N) / std::max(left_N + right_N, 1.0);
   alone_ += std::min(input.dt_s / alone_s, 1.0) * (std::clamp(2 - least / (0.5 * c.both_share), 0.0, 1.0) - alone_);
-  for (const std::size_t i : {light, 1 - light}) {
+  for (std::size_t i = 0; i < 2; ++i) {
     Leg& leg = legs_[i];
-    const Vec3 at_m = i == s.stance ? Vec3{} : s.from_m;
-    const Vec3 hip_m = rotate(leaning, leg.inverse.hip_m());
-    const Vec3 ankle_m{at_m[0] - x_m - hip_m[0], at_m[1] - y_m - hip_m[1], at_m[2] - c.hip_height_m};
-    LegInverse::Angles target_rad = leg.inverse.angles(rotate_inverse(leaning, ankle_m), 0);
-    target_rad[ankle_pitch] -= lean_rad_;
-    for (std::size_t j = 0; j < leg_joints; ++j)
-      target_rad[j] = (1 - way) * leg.landed_rad[j] + along_s * leg.landed_rad_s[j] + way * target_rad[j];
-    const LegInverse::Angles ground_rad = i == light ? seek_ground(i, input) : crouch(i);
-    const double alone = i == light ? alone_ : c.alone_share * alone_;
-    for (std::size_t j = 0; j < leg_joints; ++j) target_rad[j] += alone * (ground_rad[j] - target_rad[j]);
+    LegInverse::Angles target_rad = come_to_stance(i);
+    if (i == light) {
+      const LegInverse::Angles ground_rad = seek_ground(i, input);
+      for (std::size_t j = 0; j < leg_joints; ++j) target_rad[j] += alone_ * (ground_rad[j] - target_rad[j]);
+    }
     aim(leg, target_rad, input.dt_s);
-    const double share = i == 1 ? s.right_share : 1 - s.right_share, torso = c.bears_share * share;
+    const double share = i == 1 ? s.right_share : 1 - s.right_share;
     const Efforts held_Nm = spring(leg, c.soft_share, input), borne_Nm = bearing(i, share * weight_N_, input);
     for (std::size_t j = 0; j < leg_joints; ++j) leg.effort_Nm[j] = held_Nm[j] + c.forward_share * borne_Nm[j];
     leg.effort_Nm[ankle_pitch] = held_Nm[ankle_pitch] + borne_Nm[ankle_pitch];
-    leg.effort_Nm[hip_roll] += torso * (c.torso_Nm_per_rad * base.roll_rad + c.torso_Nms_per_rad * w[0]);
-    leg.effort_Nm[hip_pitch] +=
-        torso * (c.torso_Nm_per_rad * (base.pitch_rad - lean_rad_) + c.torso_Nms_per_rad * w[1]);
-    if (i == light) continue;
-    const auto [roll_Nm, pitch_Nm] = upright(i, input);
-    const Efforts all_Nm = bearing(i, weight_N_, input);
-    leg.effort_Nm[hip_roll] += alone * (roll_Nm - leg.effort_Nm[hip_roll]);
-    leg.effort_Nm[hip_pitch] += alone * (pitch_Nm - leg.effort_Nm[hip_pitch]);
-    leg.effort_Nm[knee] += alone * (held_Nm[knee] + all_Nm[knee] - leg.effort_Nm[knee]);
-    leg.effort_Nm[ankle_pitch] += alone * (all_Nm[ankle_pitch] - leg.effort_Nm[ankle_pitch]);
+    leg.effort_Nm[hip_pitch] += c.bears_share * share * pitch_Nm;
   }
+}
+
+// From how it landed to the stance, its speed at the landing carried on.
+LegInverse::Angles DcmStep::come_to_stance(std::size_t i) const noexcept {
+  const StepPlan::State& s = plan_.state();
+  const Leg& leg = legs_[i];
+  const Vec3& com_m = over_feet_.com_m();
+  const double x_m = s.goal.x_m - com_m[0], y_m = s.goal.y_m - com_m[1];  // of the base, over the stance foot
+  const Quat leaning = from_roll_pitch_yaw(0, lean_rad_, 0);
+  const Vec3 at_m = i == s.stance ? Vec3{} : s.from_m;
+  const Vec3 hip_m = rotate(leaning, leg.inverse.hip_m());
+  const Vec3 ankle_m{at_m[0] - x_m - hip_m[0], at_m[1] - y_m - hip_m[1], at_m[2] - config_.hip_height_m};
+  LegInverse::Angles target_rad = leg.inverse.angles(rotate_inverse(leaning, ankle_m), 0);
+  target_rad[ankle_pitch] -= lean_rad_;
+  const double time = std::min(s.time_s / config_.come_s, 1.0);
+  const double way = time * time * (3 - 2 * time), along_s = config_.come_s * time * (1 - time) * (1 - time);
+  for (std::size_t j = 0; j < leg_joints; ++j)
+    target_rad[j] = (1 - way) * leg.landed_rad[j] + along_s * leg.landed_rad_s[j] + way * target_rad[j];
+  return target_rad;
 }
 
 // A foot that lost the ground looks for it where it was.
@@ -156,19 +157,6 @@ LegInverse::Angles DcmStep::seek_ground(std::size_t i, const ControlInput& input
   const StepPlan::State& s = plan_.state();
   const double sign = i == s.stance ? -1 : 1;
   return reach(i, {sign * s.from_m[0], sign * s.from_m[1], sign * s.from_m[2] - config_.seek_m}, input);
-}
-
-// A leg that bears alone, bent so far that the other foot reaches the ground.
-LegInverse::Angles DcmStep::crouch(std::size_t i) const noexcept {
-  const StepPlan::State& s = plan_.state();
-  const double sign = i == s.stance ? 1 : -1;
-  const Vec3 foot_m = over_feet_.over(i).foot_m, hip_m = hip(i), other_m = hip(1 - i);
-  const double level_m =
-      std::hypot(foot_m[0] + sign * s.from_m[0] - other_m[0], foot_m[1] + sign * s.from_m[1] - other_m[1]);
-  const double longest_m = legs_[i].inverse.longest_m();
-  const double reach_m = std::sqrt(std::max(longest_m * longest_m - level_m * level_m, 0.01));
-  const double height_m = std::clamp(reach_m, config_.crouch_m, config_.hip_height_m);
-  return legs_[i].inverse.angles({foot_m[0] - hip_m[0], foot_m[1] - hip_m[1], -height_m}, 0);
 }
 
 }  // namespace kadans

@@ -9,7 +9,6 @@ namespace {
 constexpr double late_s = 0.2;          // a foot that finds no ground until then counts as put down
 constexpr double sink_m_s = 0.3;        // how it looks for it
 constexpr double far_m = 0.1;           // a step so long goes further than xi by the whole of what is told
-constexpr double idle_N = 20;           // a foot that bears less bears nothing
 constexpr double earliest_share = 0.5;  // of a swing, to land
 constexpr double place_s = 0.05;        // in which the feet's places are followed, both bearing
 constexpr double rate_smooth_s = 0.01;  // low pass of xi's rate
@@ -55,7 +54,6 @@ void StepPlan::look(const Config& c, const Sight& sight, double dt_s) noexcept {
 void StepPlan::enter(Phase phase) noexcept {
   state_.phase = phase;
   state_.time_s = 0;
-  idle_s_ = 0;
 }
 
 void StepPlan::begin_swing(const Sight& sight, std::size_t swing) noexcept {
@@ -119,8 +117,6 @@ void StepPlan::bear(const Config& c, const Sight& sight, double dt_s) noexcept {
       {s.dcm.x_m + c.pressure_gain * (s.dcm.x_m - s.goal.x_m), s.dcm.y_m + c.pressure_gain * (s.dcm.y_m - s.goal.y_m)});
   s.in_sole = split.in_sole;
   s.right_share = split.right_share;
-  idle_s_ = least_N < idle_N && s.time_s > c.settle_s ? idle_s_ + dt_s : 0;
-  if (idle_s_ > c.idle_s) return begin_swing(sight, sight.force_N[0] < sight.force_N[1] ? 0 : 1);
   if (s.time_s < c.settle_s || beyond_soles(c.sole, left, right, s.dcm) < c.again_m) return;
   begin_swing(sight, split_load({}, left, right, s.dcm).right_share < 0.5 ? 1 : 0);
 }

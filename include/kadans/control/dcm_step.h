@@ -39,7 +39,7 @@ class DcmStep final : public ControlObject {
     double hip_height_m = 0.5;  // over the ankle, both bearing
     double stance_knee_rad = 0.5;
     double torso_Nm_per_rad = 250, torso_Nms_per_rad = 15;
-    double bears_share = 0.3;    // of these two, while both feet bear
+    double bears_share = 0.3;    // of these two, forward and back, while both feet bear
     double lean_s = 0.5;         // in which it comes upright
     double weight_share = 0.85;  // of the weight that hangs beside the stance hip
     double counter_share = 0.8;  // of the swing hip's torque that the stance hip takes
@@ -48,8 +48,6 @@ class DcmStep final : public ControlObject {
     double forward_share = 0.5;  // of the torques that bear the weight, as feed-forward, both bearing
     double soft_share = 0.6;     // of kp, both bearing
     double both_share = 0.1;     // of the load on a foot, below which the other one stands alone
-    double alone_share = 0;      // of the laws of a leg that bears alone, both down
-    double crouch_m = 0.42;      // least height of the hips, so that this foot gets there
     double seek_m = 0.01;        // how deep a foot that lost the ground looks for it
     double come_s = 0.4;         // from a landing to the stance
     double carry = 0.7;          // share of the speeds of the landing
@@ -77,6 +75,7 @@ class DcmStep final : public ControlObject {
     Efforts effort_Nm{};
   };
 
+  void declare_gains(Declaration& declaration);
   void declare_plan(Declaration& declaration);
   void declare_signals(Declaration& declaration);
   void let_go(ActuationFrame& actuation) noexcept;
@@ -87,8 +86,8 @@ class DcmStep final : public ControlObject {
   Efforts bearing(std::size_t leg, double force_N, const ControlInput& input) const noexcept;
   std::array<double, 2> upright(std::size_t leg, const ControlInput& input) const noexcept;
   LegInverse::Angles reach(std::size_t leg, const Vec3& way_m, const ControlInput& input) const noexcept;
+  LegInverse::Angles come_to_stance(std::size_t leg) const noexcept;
   LegInverse::Angles seek_ground(std::size_t leg, const ControlInput& input) const noexcept;
-  LegInverse::Angles crouch(std::size_t leg) const noexcept;
   void swing_torques(const ControlInput& input) noexcept;
   void bearing_torques(const ControlInput& input) noexcept;
   void write(const ControlInput& input, ActuationFrame& actuation) noexcept;

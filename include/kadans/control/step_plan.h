@@ -4,8 +4,7 @@
 //           soles hold, forward or backward
 //   swings  the foot that xi leaves behind goes past the other one, to where xi will be when it comes down, seen anew
 //           each tick. Feet that stand staggered need no push off: the push itself loads the one in front
-//   bears   both feet as they landed. Steps again when xi leaves them, or when one of them bears nothing: a robot that
-//           comes to stand on the foot in front draws the other one up beside it
+//   bears   both feet as they landed. Steps again when xi leaves them
 //
 // Everything is seen from the foot `stance`, in the heading frame. One owner, the control thread; nothing allocates.
 #pragma once
@@ -29,7 +28,6 @@ class StepPlan {
     double ahead_s = 0.02;  // how far xi is looked ahead
     double again_m = 0.03;  // the same beyond the soles, once it has stepped
     double settle_s = 0.1;  // after a landing, before the next step
-    double idle_s = 100;    // a foot that bore nothing for so long after a landing steps up
     double swing_s = 0.26;
     double lift_m = 0.03;
     double extra_x_m = 0.05;  // further than xi
@@ -82,7 +80,6 @@ class StepPlan {
 
   State state_;
   bool looked_ = false;
-  double idle_s_ = 0;
 };
 
 }  // namespace kadans
