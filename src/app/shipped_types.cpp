@@ -2,6 +2,7 @@
 
 #include "kadans/control/computed_torque.h"
 #include "kadans/control/dcm_balance.h"
+#include "kadans/control/dcm_step.h"
 #include "kadans/control/feedforward_player.h"
 #include "kadans/control/gaze.h"
 #include "kadans/control/gravity_compensation.h"
@@ -30,6 +31,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   types.add("feedforward_player", make_feedforward_player);
   types.add("computed_torque", make_computed_torque);
   types.add("dcm_balance", make_dcm_balance);
+  types.add("dcm_step", make_dcm_step);
   types.add("stance", make_stance);
   types.add("gravity_compensation", make_gravity_compensation);
   types.add("gaze", make_gaze);

@@ -8,6 +8,7 @@
 
 #include "kadans/config/robot_config.h"
 #include "kadans/control/dcm_balance.h"
+#include "kadans/control/dcm_step.h"
 #include "kadans/control/joint_pid.h"
 #include "kadans/control/stance.h"
 
@@ -25,9 +26,10 @@ struct ControlObjects {
       for (const TextEntry& option : object.options) options[option.key] = option.text;
       const ObjectSetup setup{config.model, object.joints, options};
       const std::string& type = object.type.name;
-      owners.push_back(type == "joint_pid" ? make_joint_pid(setup)
-                       : type == "stance"  ? make_stance(setup)
-                                           : make_dcm_balance(setup));
+      owners.push_back(type == "joint_pid"  ? make_joint_pid(setup)
+                       : type == "stance"   ? make_stance(setup)
+                       : type == "dcm_step" ? make_dcm_step(setup)
+                                            : make_dcm_balance(setup));
       const auto first = static_cast<ParameterId>(catalog.parameters.size());
       Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);
       owners.back()->declare(declaration);

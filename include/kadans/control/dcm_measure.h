@@ -1,0 +1,64 @@
+// Where the centre of mass is over each foot, and how it moves: what laws of balance are made of.
+//
+// Everything is in the heading frame: x forward along the ground where the base points, or pointed when it was told to
+// keep its heading, y left, z up; its origin is the base frame's. The velocity is the difference of two kinematics, one
+// of them moved on by a millisecond with the filtered joint velocities and the gyro: no position is differentiated. A
+// velocity over a foot is one over the ground as long as that foot stands.
+//
+// The divergent component of motion is where the robot's pendulum is going (Hof 2008, Human Movement Science 27(1);
+// Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z).
+//
+// One owner, the control thread. Only the constructor allocates or throws.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "kadans/control/control_object.h"
+#include "kadans/model/kinematics.h"
+
+namespace kadans {
+
+inline constexpr double dcm_gravity_m_s2 = 9.81;
+
+class DcmMeasure {
+ public:
+  struct OverFoot {
+    Vec3 foot_m{};        // the foot's frame, from the base's origin
+    double toe_up_m = 0;  // how much its x axis points up, per metre
+    Vec3 com_m{}, velocity_m_s{};
+    double dcm_x_m = 0, dcm_y_m = 0;
+  };
+
+  // The links named by the options left_foot and right_foot. Throws OptionError.
+  explicit DcmMeasure(const ObjectSetup& setup);
+
+  // False when the robot does not stand, or something is not measured.
+  [[nodiscard]] bool update(const ControlInput& input) noexcept;
+
+  // From now on x is where the base points now; or it always is where the base points.
+  void keep_heading(const ControlInput& input) noexcept;
+  void follow_heading() noexcept { keeps_ = false; }
+  double yaw_rad() const noexcept { return yaw_rad_; }  // of the base in the heading frame
+
+  const OverFoot& over(std::size_t foot) const noexcept { return over_[foot]; }  // 0 left, 1 right
+  const Quat& upright() const noexcept { return upright_; }                      // of the base in the heading frame
+  const Vec3& com_m() const noexcept { return com_m_; }                          // from the base's origin
+  double rate_per_s() const noexcept { return rate_per_s_; }                     // w0
+
+ private:
+  void place(const ControlInput& input, double ahead_s) noexcept;
+  double dcm(std::size_t axis, const OverFoot& over) const noexcept;
+
+  Kinematics kinematics_;
+  std::size_t joint_count_;
+  std::array<std::size_t, 2> feet_{};
+  std::array<OverFoot, 2> over_{};
+  Quat upright_{1, 0, 0, 0};
+  Vec3 com_m_{};
+  double rate_per_s_ = 1;
+  bool keeps_ = false;
+  double heading_rad_ = 0, yaw_rad_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,54 @@
+#include "kadans/control/step_geometry.h"
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+using namespace kadans;
+
+namespace {
+
+constexpr Sole sole{.heel_m = 0.06, .toe_m = 0.12, .half_width_m = 0.03};
+constexpr GroundPoint left{0.1, 0.1}, right{-0.1, -0.1};  // the left one ahead
+
+}  // namespace
+
+TEST_CASE("a load over the middle of one sole is borne by that foot alone") {
+  const LoadSplit split = split_load(sole, left, right, {-0.1 + sole.middle_m(), -0.1});
+  CHECK(split.right_share == doctest::Approx(1));
+  CHECK(split.in_sole.x_m == doctest::Approx(sole.middle_m()));
+  CHECK(split.at.x_m == doctest::Approx(-0.1 + sole.middle_m()));
+}
+
+TEST_CASE("a load between the soles is shared, and both are pressed at the same place") {
+  const LoadSplit split = split_load(sole, left, right, {sole.middle_m(), 0});
+  CHECK(split.right_share == doctest::Approx(0.5));
+  CHECK(split.at.x_m == doctest::Approx(sole.middle_m()));
+  CHECK(split.at.y_m == doctest::Approx(0));
+}
+
+TEST_CASE("what lies beyond the soles is brought to their edge, and its distance told") {
+  const LoadSplit split = split_load(sole, left, right, {0.4, 0.1});
+  CHECK(split.right_share == 0);
+  CHECK(split.at.x_m == doctest::Approx(0.1 + sole.toe_m));
+  CHECK(beyond_soles(sole, left, right, {0.4, 0.1}) == doctest::Approx(0.4 - 0.1 - sole.toe_m));
+  CHECK(beyond_soles(sole, left, right, {-0.26, -0.1}) == doctest::Approx(0.26 - 0.1 - sole.heel_m));
+  CHECK(beyond_soles(sole, left, right, {0.02, 0.01}) == doctest::Approx(0));
+}
+
+TEST_CASE("xi runs away from the pressure by e in the pendulum's time") {
+  const GroundPoint then = run_away({0.15, -0.02}, {0.1, 0.03}, 4, 0.25);
+  CHECK(then.x_m == doctest::Approx(0.1 + 0.05 * std::exp(1)));
+  CHECK(then.y_m == doctest::Approx(0.03 - 0.05 * std::exp(1)));
+}
+
+TEST_CASE("a swing begins and ends at rest on the ground") {
+  for (const double end : {0.0, 1.0}) {
+    CHECK(swing_way(end) == doctest::Approx(end));
+    CHECK(swing_lift(end) == doctest::Approx(0));
+    CHECK(std::abs(swing_way(end + 1e-4) - swing_way(end - 1e-4)) < 1e-6);
+    CHECK(std::abs(swing_lift(end + 1e-4) - swing_lift(end - 1e-4)) < 1e-6);
+  }
+  CHECK(swing_lift(0.45) == doctest::Approx(1));
+  for (double share = 0; share < 1; share += 0.05) CHECK(swing_way(share + 0.05) > swing_way(share));
+}
