@@ -21,7 +21,6 @@ local P = k.params {
   turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
   face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
   flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
-  roll_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rolls over in" },
   rise_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rises in; soft springs want more" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
@@ -43,8 +42,8 @@ end
 
 local function is(posture) return function(s) return floor.posture(s.base) == posture end end
 
-local function play(m, steps, pace)
-  for _, step in ipairs(steps) do m.posture:move(step[1], { time_s = step.time_s * (pace or 1) }):wait() end
+local function play(m, steps)
+  for _, step in ipairs(steps) do m.posture:move(step[1], { time_s = step.time_s }):wait() end
 end
 
 local function roll(over)
@@ -52,7 +51,7 @@ local function roll(over)
     run = function(m, s)
       m.vars.rolls = m.vars.rolls + 1
       m.vars.turned = false
-      play(m, floor.roll(over, s.joints), P.roll_pace)
+      play(m, floor.roll(over, s.joints))
       m.posture:move(floor.lying(), { time_s = P.straight_s }):wait()
       m.vars.turned = true
       m:wait(P.turn_s)
