@@ -20,8 +20,8 @@ describe("stay_up", function()
   it("takes a pose that is ready for a push, and stays in it", function()
     run:advance(1)
     expect(run.state).to_equal "stand"
-    expect(run.joints.l_knee.position_rad).to_be_near(0.8, 0.05)
-    expect(run.joints.l_hip_roll.position_rad).to_be_near(0.11, 0.04)
+    expect(run.joints.l_knee.position_rad).to_be_near(1.2, 0.1)
+    expect(run.joints.l_hip_roll.position_rad).to_be_near(0.15, 0.05)
     run:advance(20)
     expect(run.state).to_equal "stand"
   end)
@@ -44,7 +44,7 @@ describe("stay_up", function()
     run:advance_to("stand")
     expect(run.states).to_contain "fallen"
     run:advance(1)
-    expect(run.joints.l_hip_roll.position_rad).to_be_near(0.11, 0.04)
+    expect(run.joints.l_hip_roll.position_rad).to_be_near(0.15, 0.05)
   end)
 
   it("gives up when it cannot get up", function()
