@@ -20,8 +20,8 @@ describe("stay_up", function()
   it("takes a pose that is ready for a push, and stays in it", function()
     run:advance(1)
     expect(run.state).to_equal "stand"
-    expect(run.joints.l_knee.position_rad).to_be_near(1.2, 0.1)
-    expect(run.joints.l_hip_roll.position_rad).to_be_near(0.15, 0.05)
+    expect(run.joints.r_hip_roll.position_rad).to_be_near(-0.1, 0.06)
+    expect(run.joints.l_hip_roll.position_rad).to_be_near(0.1, 0.06)
     run:advance(20)
     expect(run.state).to_equal "stand"
   end)

@@ -7,6 +7,7 @@
 namespace kadans {
 namespace {
 
+constexpr double most_effort = 0.9;   // of a joint's; the posture adds its own
 constexpr double narrowest_m = 0.02;  // feet apart by less do not share by p_y
 
 bool bears(std::span<const LegLoad::Bearing> bearings, std::size_t joint) {
@@ -63,6 +64,7 @@ void Stance::declare(Declaration& d) {
               &c.turn_max_Nm);
   d.parameter({"arm_Nm_per_m", "Nm/m", 0, 1000, c.arm_Nm_per_m, "Torque of a shoulder, per pressure beyond the soles."},
               &c.arm_Nm_per_m);
+  d.parameter({"arm_from_m", "m", 0, 1, c.arm_from_m, "How far beyond that begins."}, &c.arm_from_m);
   d.parameter({"smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
   const State& s = state_;
   d.signal({"dcm_x_m", "m", "Divergent component of motion, forward of the feet's middle."}, &s.dcm_x_m);
@@ -173,11 +175,14 @@ void Stance::step(const ControlInput& input, ActuationFrame& actuation) noexcept
     load(0, state_.left);
     load(1, 1 - state_.left);
   }
+  const State& s = state_;
+  const double arm_m = config_.arm_from_m;
   const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
   for (Part& part : parts_) {
-    if (part.arm) part.wanted_Nm = config_.arm_Nm_per_m * state_.beyond_x_m;
+    if (part.arm) part.wanted_Nm = config_.arm_Nm_per_m * (s.beyond_x_m - std::clamp(s.beyond_x_m, -arm_m, arm_m));
     const double wanted_Nm = stands ? state_.share * part.wanted_Nm : 0;
-    const double bounded_Nm = std::clamp(wanted_Nm, -part.axis.effort_max_Nm, part.axis.effort_max_Nm);
+    const double most_Nm = most_effort * part.axis.effort_max_Nm;
+    const double bounded_Nm = std::clamp(wanted_Nm, -most_Nm, most_Nm);
     part.effort_Nm = stands ? part.effort_Nm + smooth * (bounded_Nm - part.effort_Nm) : 0;
     actuation.joints[part.axis.joint] = {.effort_Nm = part.effort_Nm, .mode = ActuationMode::effort};
   }

@@ -88,6 +88,8 @@ constexpr std::array<Breakage, 49> breakages = {{
     {"stay_up_forward", robot, "\"ankle_per_m\": 1.5", "\"ankle_per_m\": 0", "stays up"},
     {"stay_up_left", robot, "\"l_hip_roll\": 0.13", "\"l_hip_roll\": 0", "stays up"},
     {"stay_up_right", robot, "\"r_hip_roll\": -0.13", "\"r_hip_roll\": 0", "stays up"},
+    {"step_forward", robot, "\"swing_s\": 0.327", "\"swing_s\": 1", "stays up"},
+    {"step_forward", "", "[10, 0, 0]", "[2, 0, 0]", "steps: a foot goes by"},
     {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
 }};

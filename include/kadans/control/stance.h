@@ -59,7 +59,7 @@ class Stance final : public ControlObject {
     double turn_max_Nm = 40;
     double height_m = 0.55, height_N_per_m = 0, height_Ns_per_m = 0;
     double lift_N_per_m = 0, lift_max = 0.6;
-    double arm_Nm_per_m = 0;
+    double arm_Nm_per_m = 0, arm_from_m = 0;
     double smooth_s = 0;  // of the torques' low pass
   };
   struct State {
