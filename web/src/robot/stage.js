@@ -48,6 +48,7 @@ export class Stage {
     this.add_lights();
     this.ground = new Mesh(new PlaneGeometry(5, 5), new ShadowMaterial());
     this.ground.receiveShadow = true;
+    this.ground.material.depthWrite = false; // or it would hide the grid below it
     this.ground.visible = fine;
     this.scene.add(this.ground);
     this.look_from_start();
