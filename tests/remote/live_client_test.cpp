@@ -27,7 +27,7 @@ struct Viewer {
   void row(double value) {
     std::vector<double> values(live.robot.catalog.signals.size(), 0);
     values.front() = value;
-    tick += 1600;  // a whole multiple of what the hub asks for
+    tick += 1400;  // a whole multiple of what the hub asks for
     live.control_side.record(tick, static_cast<std::int64_t>(tick) * 1'000'000, values);
   }
   // The hub asks for rows in the first beat with a client.

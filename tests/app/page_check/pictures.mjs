@@ -88,6 +88,7 @@ const views = {
     const chooser = page.waitForEvent('filechooser');
     await page.click('text=Open record…');
     await (await chooser).setFiles(`${folder}/bad.mcap`);
+    await page.waitForSelector('.start .error');
     await take(page, 'state-damaged');
     await page.goto(url);
     await read(page);

@@ -7,9 +7,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "kadans/realtime/machine.h"
-#include "kadans/realtime/placement.h"
-
 namespace kadans::bench {
 namespace {
 
@@ -59,7 +56,6 @@ Crowd::~Crowd() {
 }
 
 void Crowd::read() {
-  (void)leave_cpu(real_time_cpu("/"));  // viewers of a robot sit elsewhere
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
   std::vector<pollfd> wait;
   for (const auto& client : readers_) wait.push_back({client->descriptor(), POLLIN, 0});

@@ -109,6 +109,7 @@ export function Plot({ session, names, span, zoom, theme, frames, change, close 
     const plot = new uPlot(options_for(names, size(), theme, () => latest.current), [[], ...names.map(() => [])], host.current);
     let drawn = '';
     const draw = () => {
+      if (!host.current) return; // gone already, and soon told so
       const now = latest.current;
       const { width, height } = size();
       if (width < 40 || height < 40) return;

@@ -50,6 +50,7 @@ export class GazeMark {
     if (this.ray.intersectObject(this.grip).length === 0) return;
     this.plane.setFromNormalAndCoplanarPoint(this.stage.camera.getWorldDirection(new Vector3()), this.ball.position);
     this.held = this.ball.position.clone();
+    this.left = false;
     this.stage.controls.enabled = false;
     this.stage.renderer.domElement.setPointerCapture?.(event.pointerId);
     event.stopImmediatePropagation();
@@ -62,25 +63,29 @@ export class GazeMark {
       this.stage.renderer.domElement.style.cursor = over ? 'grab' : '';
       return;
     }
+    if (this.left) return;
     this.aim(event);
     if (!this.ray.ray.intersectPlane(this.plane, this.held)) return;
     this.stage.moved = true;
     if (!this.waits) this.tell();
   }
 
+  // Where the hand is, one order at a time; where it let go is always the last.
   async tell() {
-    const at = this.model.root.worldToLocal(this.held.clone()).clampLength(0, far_m);
+    const to = this.held.clone();
     this.waits = true;
+    const at = this.model.root.worldToLocal(to.clone()).clampLength(0, far_m);
     const text = ['x', 'y', 'z'].map((axis) => `${this.object.name}.${axis}_m=${at[axis].toFixed(4)}`).join();
     await this.send()?.(text, move_s);
     this.waits = false;
-    if (this.held && this.held.distanceTo(this.model.root.localToWorld(at)) > 1e-3) this.tell();
+    if (this.held && this.held.distanceTo(to) > 1e-3) await this.tell();
+    if (this.left) this.held = null;
   }
 
   let_go() {
     if (!this.held) return;
+    this.left = true;
     if (!this.waits) this.tell();
-    this.held = null;
     this.stage.moved = true;
     this.stage.controls.enabled = true;
   }

@@ -7,6 +7,7 @@ import { make_stage } from './stage.js';
 // A machine that draws slower than this gets coarser pictures while something moves, and a sharp one when it rests.
 const slow_ms = 26;
 const coarse_ratio = 0.6;
+const rest_ms = 500;
 
 export class RobotView {
   constructor(frames, fine) {
@@ -16,7 +17,8 @@ export class RobotView {
     this.canvas.id = 'robot';
     this.show = new Show(this.stage);
     this.drawn = '';
-    this.mean_ms = 0;
+    this.coarse = false;
+    this.mean_ms = this.moved_ms = 0;
     globalThis.kadans_stage = this.stage; // for the console, and for tests
     const may_push = () => this.now().session.remote?.writes && this.now().session.remote.verbs.has('push');
     const push = (link, impulse_Ns) => this.now().session.remote.command('push', { text: `${link}=${impulse_Ns.map((part) => part.toFixed(3)).join(',')}` });
@@ -30,10 +32,13 @@ export class RobotView {
     const { session, shown, theme } = this.now();
     if (!this.is_ready(session)) return;
     if (this.theme !== theme) this.stage.set_theme((this.theme = theme));
-    this.coarse = session.playing && (this.coarse || this.mean_ms > slow_ms);
+    const sign = [session.cursor_s, session.version, session.title, clientWidth, clientHeight, ...shown].join();
+    const [now_ms, was_coarse] = [performance.now(), this.coarse];
+    const still = sign === this.drawn && !this.stage.moved;
+    if (!still) this.moved_ms = now_ms;
+    this.coarse = now_ms - this.moved_ms < rest_ms && session.playing && (was_coarse || this.mean_ms > slow_ms);
+    if (still && this.coarse === was_coarse) return; // let the machine rest
     this.stage.resize(clientWidth, clientHeight, this.coarse ? coarse_ratio : undefined);
-    const sign = [this.coarse, session.cursor_s, session.version, session.title, clientWidth, clientHeight, ...shown].join();
-    if (sign === this.drawn && !this.stage.moved) return; // nothing that moved: let the machine rest
     this.note_pace(session);
     this.drawn = sign;
     this.stage.moved = false;

@@ -1,7 +1,7 @@
 // The place where the robot stands: light, ground, camera. Draws when told to; knows nothing of time.
 import {
-  AmbientLight, Color, DirectionalLight, Fog, GridHelper, HemisphereLight, Mesh, PCFShadowMap, PerspectiveCamera,
-  PlaneGeometry, Scene, ShadowMaterial, Vector3, WebGLRenderer,
+  AmbientLight, BufferGeometry, Color, DirectionalLight, Float32BufferAttribute, Fog, HemisphereLight, LineBasicMaterial,
+  LineSegments, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene, ShadowMaterial, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
@@ -11,6 +11,25 @@ const themes = {
 };
 
 const from_start = new Vector3(2.5, 1.7, 0.62);
+
+// Lines each quarter of a metre, whole metres stronger. In pieces: some machines lose a line that begins behind the eye.
+function make_grid(theme) {
+  const [reach, step, piece] = [7, 0.25, 1];
+  const [points, colors] = [[], []];
+  for (let at = -reach; at <= reach; at += step) {
+    const { r, g, b } = new Color(Number.isInteger(at) ? theme.grid : theme.lines);
+    for (let from = -reach; from < reach; from += piece) {
+      points.push(at, from, 0, at, from + piece, 0, from, at, 0, from + piece, at, 0);
+      for (let i = 0; i < 4; ++i) colors.push(r, g, b);
+    }
+  }
+  const lines = new BufferGeometry();
+  lines.setAttribute('position', new Float32BufferAttribute(points, 3));
+  lines.setAttribute('color', new Float32BufferAttribute(colors, 3));
+  const grid = new LineSegments(lines, new LineBasicMaterial({ vertexColors: true, toneMapped: false }));
+  grid.position.z = -0.001;
+  return grid;
+}
 
 const in_software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
@@ -48,6 +67,7 @@ export class Stage {
     this.add_lights();
     this.ground = new Mesh(new PlaneGeometry(5, 5), new ShadowMaterial());
     this.ground.receiveShadow = true;
+    this.ground.material.depthWrite = false; // or it would hide the grid below it
     this.ground.visible = fine;
     this.scene.add(this.ground);
     this.look_from_start();
@@ -71,9 +91,7 @@ export class Stage {
     this.scene.background = new Color(theme.back);
     this.scene.fog = new Fog(theme.back); // the ground has no edge
     if (this.grid) this.scene.remove(this.grid);
-    this.grid = new GridHelper(14, 56, theme.grid, theme.lines);
-    this.grid.rotation.x = Math.PI / 2;
-    this.grid.position.z = -0.001;
+    this.grid = make_grid(theme);
     this.scene.add(this.grid);
     this.sun.intensity = theme.sun;
     this.sky.intensity = theme.sky;
@@ -105,7 +123,7 @@ export class Stage {
     this.target.y += dy;
     for (const at of [this.controls.target, this.camera.position]) at.set(at.x + dx, at.y + dy, at.z);
     this.ground.position.set(point.x, point.y, 0);
-    this.grid.position.set(Math.round(point.x / 0.25) * 0.25, Math.round(point.y / 0.25) * 0.25, -0.001);
+    this.grid.position.set(Math.round(point.x), Math.round(point.y), -0.001);
     this.sun.target.position.set(point.x, point.y, 0.4);
     this.sun.position.set(point.x + 1.2, point.y + 1.6, 4.2);
   }
