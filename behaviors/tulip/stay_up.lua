@@ -5,6 +5,8 @@ local floor = require "floor"
 local P = k.params {
   settle_s = { 0.5, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
   bear_s   = { 0.25, min = 0, max = 5, unit = "s", doc = "time until the legs bear by force, and the pose gives way" },
+  gather_s = { 1.2, min = 0.1, max = 10, unit = "s", doc = "time to bring the arms back after a fall" },
+  arms_rad = { -0.5, min = -2, max = 2, unit = "rad", doc = "where to" },
 }
 
 local function lies(s) return floor.posture(s.base) ~= "upright" end
@@ -21,7 +23,16 @@ return k.behavior "stay_up" {
       m.balance:set_parameter("share", 0)
       m.posture:set_gains("balance")
     end,
-    { when = lies, to = "fallen" },
+    { when = lies, to = "fallen_gathers" },
+  },
+  k.state "fallen_gathers" {  -- the arms may have swung round
+    enter = function(m)
+      m:clear_faults()
+      m.stance:set_parameter("share", 0)
+      m.posture:set_gains("get_up")
+      m.posture:move({ l_shoulder_pitch = P.arms_rad, r_shoulder_pitch = P.arms_rad }, { time_s = P.gather_s })
+    end,
+    { after = P.gather_s, to = "fallen" },
   },
   k.state "fallen" {
     k.call "get_up",

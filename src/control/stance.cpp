@@ -31,6 +31,12 @@ Stance::Stance(const ObjectSetup& setup)
 }
 
 void Stance::declare(Declaration& d) {
+  declare_pressure(d);
+  declare_trunk(d);
+  declare_signals(d);
+}
+
+void Stance::declare_pressure(Declaration& d) {
   Config& c = config_;
   d.parameter({"share", "", 0, 1, c.share, "Share of all its torques."}, &c.share);
   d.parameter({"offset_x_m", "m", -0.2, 0.2, c.offset_x_m, "Where the divergent component shall be, forward."},
@@ -45,6 +51,10 @@ void Stance::declare(Declaration& d) {
   d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
   d.parameter({"side_m", "m", 0, 0.5, c.side_m, "How far out of the feet's frames the pressure may go."}, &c.side_m);
   d.parameter({"grip", "", 0, 2, c.grip, "Most of the force along the ground, per weight."}, &c.grip);
+}
+
+void Stance::declare_trunk(Declaration& d) {
+  Config& c = config_;
   d.parameter({"pitch_rad", "rad", -1, 1, c.pitch_rad, "How far the trunk leans forward."}, &c.pitch_rad);
   d.parameter({"upright_Nm_per_rad", "Nm/rad", 0, 2000, c.upright_Nm_per_rad, "Turns the trunk back, forward."},
               &c.upright_Nm_per_rad);
@@ -66,6 +76,9 @@ void Stance::declare(Declaration& d) {
               &c.arm_Nm_per_m);
   d.parameter({"arm_from_m", "m", 0, 1, c.arm_from_m, "How far beyond that begins."}, &c.arm_from_m);
   d.parameter({"smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
+}
+
+void Stance::declare_signals(Declaration& d) {
   const State& s = state_;
   d.signal({"dcm_x_m", "m", "Divergent component of motion, forward of the feet's middle."}, &s.dcm_x_m);
   d.signal({"dcm_y_m", "m", "Divergent component of motion, left of the feet's middle."}, &s.dcm_y_m);
@@ -89,7 +102,6 @@ void Stance::start(const ControlInput&) noexcept {
   for (Part& part : parts_) part.effort_Nm = 0;
 }
 
-// What the trunk would have, were the soles long enough.
 std::array<double, 2> Stance::righting_Nm(const BaseStatus& base) const noexcept {
   const Config& c = config_;
   return {

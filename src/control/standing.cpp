@@ -42,8 +42,7 @@ Vec3 Standing::com_over_feet(const ControlInput& input, double ahead_s) noexcept
   const Vec3 com = kinematics_.com_m();
   const Vec3& left = kinematics_.link(feet_[0]).position_m;
   const Vec3& right = kinematics_.link(feet_[1]).position_m;
-  for (std::size_t k = 0; k < 3; ++k) middle_m_[k] = (left[k] + right[k]) / 2;
-  return {com[0] - middle_m_[0], com[1] - middle_m_[1], com[2] - middle_m_[2]};
+  return {com[0] - (left[0] + right[0]) / 2, com[1] - (left[1] + right[1]) / 2, com[2] - (left[2] + right[2]) / 2};
 }
 
 bool Standing::update(const ControlInput& input) noexcept {

@@ -33,8 +33,10 @@ struct Bench {
     Declaration declaration("stance", 0, parameters, setpoints, signals);
     stance.declare(declaration);
     joints.count = 4;
-    for (const auto& [name, value] : {std::pair{"share", 1.0}, {"sole_m", 0.0}, {"pull_x", 2.0}, {"need", 1.0}})
-      set(name, value);
+    set("share", 1);
+    set("sole_m", 0);
+    set("pull_x", 2);
+    set("need", 1);
   }
   void set(const std::string& name, double value) {
     REQUIRE(parameters.set(parameters.find("stance." + name).value(), value));

@@ -89,11 +89,15 @@ class Stance final : public ControlObject {
     bool arm = false;
     double wanted_Nm = 0, effort_Nm = 0;
   };
+  void declare_pressure(Declaration& declaration);
+  void declare_trunk(Declaration& declaration);
+  void declare_signals(Declaration& declaration);
   struct Answer {
     double pressure_m = 0, beyond_m = 0, turn_Nm = 0;
   };
   Answer answer(double dcm_m, double rest_m, double pull, const std::array<double, 2>& sole_m,
                 double righting_Nm) const noexcept;
+  // About x and y: what the trunk would have, were the soles long enough.
   std::array<double, 2> righting_Nm(const BaseStatus& base) const noexcept;
   void find_pressure(const BaseStatus& base) noexcept;
   void find_force() noexcept;

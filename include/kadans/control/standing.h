@@ -38,7 +38,6 @@ class Standing {
   double dcm_x_m() const noexcept { return dcm_x_m_; }
   double dcm_y_m() const noexcept { return dcm_y_m_; }
   const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }  // links, left and right
-  const Vec3& middle_m() const noexcept { return middle_m_; }                // between the feet, from the base's origin
   // As of the last update, the base's origin at 0.
   const Kinematics& kinematics() const noexcept { return kinematics_; }
 
@@ -48,7 +47,7 @@ class Standing {
   std::array<std::size_t, 2> feet_{};
   Kinematics kinematics_;
   std::size_t joint_count_;
-  Vec3 com_m_{}, velocity_m_s_{}, middle_m_{};
+  Vec3 com_m_{}, velocity_m_s_{};
   double dcm_x_m_ = 0, dcm_y_m_ = 0;
 };
 
