@@ -31,7 +31,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 51> breakages = {{
+constexpr std::array<Breakage, 54> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -81,13 +81,17 @@ constexpr std::array<Breakage, 51> breakages = {{
     {"slippery_floor", "", "0.1 }", "0.8 }", "slides"},
     {"slope_across", "", "0.035", "0.25", "stays up"},
     {"slope_up", "", "0.035", "0.25", "stays up"},
+    {"soft_get_up_prone", getting_up, rises, sinks, "stands, height in m"},
+    {"soft_get_up_supine", getting_up, rises, sinks, "stands, height in m"},
+    {"soft_squat", "config/tulip/soft.json", "\"*_hip_pitch.damping_ratio\": 0.48",
+     "\"*_hip_pitch.damping_ratio\": 0.01", "torso upright, rad"},
     {"squat", squat, "P.depth_m)", "0.01)", "crouches, lowest height in m"},
     {"squat", squat, stiff, soft, "height follows, m"},
     {"squat_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "torso upright, rad"},
-    {"stay_up_backward_left", robot, "\"ankle_per_m\": 1.5", "\"ankle_per_m\": 0", "stays up"},
-    {"stay_up_forward", robot, "\"ankle_per_m\": 1.5", "\"ankle_per_m\": 0", "stays up"},
-    {"stay_up_left", robot, "\"l_hip_roll\": 0.13", "\"l_hip_roll\": 0", "stays up"},
-    {"stay_up_right", robot, "\"r_hip_roll\": -0.13", "\"r_hip_roll\": 0", "stays up"},
+    {"stay_up_backward_left", robot, "\"pull_x\": 6", "\"pull_x\": 0", "stays up"},
+    {"stay_up_forward", robot, "\"pull_x\": 6", "\"pull_x\": 0", "stays up"},
+    {"stay_up_left", robot, "\"pull_x\": 6", "\"pull_x\": 0", "stays up"},
+    {"stay_up_right", "behaviors/tulip/stay_up.lua", "(\"share\", 1)", "(\"share\", 0)", "stays up"},
     {"step_forward", robot, "\"swing_s\": 0.327", "\"swing_s\": 1", "stays up"},
     {"step_forward", "", "[10, 0, 0]", "[2, 0, 0]", "steps: a foot goes by"},
     {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},

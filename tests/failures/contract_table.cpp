@@ -1,7 +1,9 @@
 // The table of docs/failures.md, as a reporter of doctest:
 //   failures_test --test-suite=contract --reporters=contract_table
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -23,11 +25,14 @@ class ContractTable final : public doctest::IReporter {
   void test_case_start(const doctest::TestCaseData& test) override { test_ = &test; }
   void test_case_end(const doctest::CurrentTestCaseStats& stats) override {
     const std::string file = std::filesystem::path(test_->m_file.c_str()).filename().string();
-    out_ << "| " << test_->m_description << " | " << test_->m_name << " | tests/failures/" << file.c_str() << " | "
-         << (stats.testCaseSuccess ? "passed" : "FAILED") << " |\n";
+    rows_[{file, test_->m_line}] = std::string("| ") + test_->m_description + " | " + test_->m_name +
+                                   " | tests/failures/" + file + " | " + (stats.testCaseSuccess ? "passed" : "FAILED") +
+                                   " |\n";
   }
   void report_query(const doctest::QueryData&) override {}
-  void test_run_end(const doctest::TestRunStats&) override {}
+  void test_run_end(const doctest::TestRunStats&) override {
+    for (const auto& [place, row] : rows_) out_ << row.c_str();
+  }
   void test_case_reenter(const doctest::TestCaseData&) override {}
   void test_case_exception(const doctest::TestCaseException&) override {}
   void subcase_start(const doctest::SubcaseSignature&) override {}
@@ -39,6 +44,7 @@ class ContractTable final : public doctest::IReporter {
  private:
   std::ostream& out_;
   const doctest::TestCaseData* test_ = nullptr;
+  std::map<std::pair<std::string, unsigned>, std::string> rows_;  // by file and line, however they were compiled
 };
 
 }  // namespace
