@@ -25,6 +25,21 @@ describe("step_out", function()
     expect(run.state).to_equal "stand"
   end)
 
+  it("lets the legs bear by force, apart, once the foot that was behind has come down ahead", function()
+    run:advance(1)
+    run:set_sensor("joints.r_hip_pitch.position_rad", -0.9)
+    run:set_sensor("feet.left.contact", true)
+    run:advance(0.2)
+    expect(run.state).to_equal "stand"
+    run:set_sensor("feet.right.contact", true)
+    run:advance(0.1)
+    expect(run.state).to_equal "caught"
+    run:advance(1)
+    expect(run.state).to_equal "caught"
+    expect(run.joints.l_hip_roll.position_rad).to_be_near(0.15, 0.05)
+    expect(run.joints.r_hip_roll.position_rad).to_be_near(-0.15, 0.05)
+  end)
+
   it("gets up when it lies, and stands its ground on parallel feet", function()
     run:advance(1)
     lies()
