@@ -90,6 +90,8 @@ export async function check_files(page, record) {
   const empty = new URL('/?empty', url).href;
   await page.goto(empty);
   await page.waitForSelector('text=Drop a record here');
+  const visibility = () => page.evaluate(() => document.querySelector('#robot') && getComputedStyle(document.querySelector('#robot')).visibility);
+  check((await visibility()) !== 'visible', 'no picture hides what an empty page says');
   await drop(page, record);
   await shows_record(page);
   check(true, 'a file that is dropped on the page is shown');

@@ -15,6 +15,7 @@ export class RobotView {
     this.stage = make_stage(fine);
     this.canvas = this.stage.renderer.domElement;
     this.canvas.id = 'robot';
+    this.canvas.style.visibility = 'hidden'; // it would be black until the first picture
     this.show = new Show(this.stage);
     this.drawn = '';
     this.coarse = false;
@@ -45,6 +46,7 @@ export class RobotView {
     this.show.take(session);
     this.show.draw(session.cursor_s, shown);
     this.pictures = (this.pictures ?? 0) + 1;
+    this.canvas.style.visibility = '';
     globalThis.kadans_drawn = { pictures: this.pictures, robot: Boolean(this.show.model), posed: Boolean(this.show.framed) };
   }
 
