@@ -102,7 +102,6 @@ class DcmStep final : public ControlObject {
   StepPlan::Phase phase_ = StepPlan::Phase::stands;  // of the last tick
   bool given_up_ = false;
   double lean_rad_ = 0;               // of the torso, forward, as it shall be: what it was, then less
-  double stance_knee_rad_ = 0;        // as it was
   std::array<double, 2> ankle_Nm_{};  // smooth
   double alone_ = 0;                  // how much one foot bears alone, 0..1
   double phase_number_ = 0;
