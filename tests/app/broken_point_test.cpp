@@ -92,7 +92,7 @@ constexpr std::array<Breakage, 54> breakages = {{
     {"stay_up_forward", robot, "\"pull_x\": 6", "\"pull_x\": 0", "stays up"},
     {"stay_up_left", robot, "\"pull_x\": 6", "\"pull_x\": 0", "stays up"},
     {"stay_up_right", "behaviors/tulip/stay_up.lua", "(\"share\", 1)", "(\"share\", 0)", "stays up"},
-    {"step_forward", robot, "\"swing_s\": 0.327", "\"swing_s\": 1", "stays up"},
+    {"step_forward", robot, "\"swing_s\": 0.325", "\"swing_s\": 1", "stays up"},
     {"step_forward", "", "[10, 0, 0]", "[2, 0, 0]", "steps: a foot goes by"},
     {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
