@@ -27,7 +27,7 @@ struct RecordConfig {
   SignalChoice signals;
   bool single_precision = false;
   double flight_s = 30;  // what a flight recorder keeps; 0: there is none
-  double flight_MB = 7;  // in which it keeps that, packed
+  double flight_MB = 8;  // in which it keeps that, packed
 };
 
 void record_fields(Fields& f, RecordConfig& record);
