@@ -13,7 +13,7 @@ double beyond(double error, double back, double front) noexcept { return error -
 }  // namespace
 
 DcmBalance::DcmBalance(const ObjectSetup& setup)
-    : standing_(setup), weight_N_(standing_gravity_m_s2 * setup.model.mass_kg()) {
+    : standing_(setup), weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {
   for (JointAxis& axis : joint_axes(setup)) {
     const Role role = role_of(axis.name);
     parts_.push_back({.axis = std::move(axis), .role = role});

@@ -19,7 +19,7 @@ DcmStep::DcmStep(const ObjectSetup& setup)
     : axes_(joint_axes(setup)),
       over_feet_(setup),
       legs_{Leg{.inverse = LegInverse(setup.model, axes_, "l")}, Leg{.inverse = LegInverse(setup.model, axes_, "r")}},
-      weight_N_(dcm_gravity_m_s2 * setup.model.mass_kg()) {}
+      weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {}
 
 Vec3 DcmStep::hip(std::size_t leg) const noexcept { return rotate(over_feet_.upright(), legs_[leg].inverse.hip_m()); }
 

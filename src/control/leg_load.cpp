@@ -1,6 +1,6 @@
 #include "kadans/control/leg_load.h"
 
-#include "kadans/control/standing.h"
+#include "kadans/control/body_ahead.h"
 
 namespace kadans {
 namespace {
@@ -26,7 +26,7 @@ void LegLoad::update(const Kinematics& kinematics, const Vec3& force_N, const Ve
     const std::size_t link = bearing.joint + 1;
     const Pose& pose = kinematics.link(link);
     const Inertia& inertia = model_->links[link].inertia;
-    const Vec3 weight{0, 0, -standing_gravity_m_s2 * inertia.mass_kg};
+    const Vec3 weight{0, 0, -gravity_of_balance_m_s2 * inertia.mass_kg};
     const Vec3 weight_moment = moment(transform(pose, inertia.com_m), weight);
     for (std::size_t k = 0; k < 3; ++k) {
       force[k] += weight[k];

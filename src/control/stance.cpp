@@ -19,7 +19,7 @@ bool bears(std::span<const LegLoad::Bearing> bearings, std::size_t joint) {
 Stance::Stance(const ObjectSetup& setup)
     : standing_(setup),
       legs_{LegLoad(setup.model, standing_.feet()[0]), LegLoad(setup.model, standing_.feet()[1])},
-      weight_N_(standing_gravity_m_s2 * setup.model.mass_kg()) {
+      weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {
   for (JointAxis& axis : joint_axes(setup)) {
     const bool arm = axis.name.ends_with("_shoulder_pitch");
     if (!arm && !bears(legs_[0].bearings(), axis.joint) && !bears(legs_[1].bearings(), axis.joint)) {

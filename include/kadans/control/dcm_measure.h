@@ -1,9 +1,8 @@
 // Where the centre of mass is over each foot, and how it moves: what laws of balance are made of.
 //
 // Everything is in the heading frame: x forward along the ground where the base points, or pointed when it was told to
-// keep its heading, y left, z up; its origin is the base frame's. The velocity is the difference of two kinematics, one
-// of them moved on by a millisecond with the filtered joint velocities and the gyro: no position is differentiated. A
-// velocity over a foot is one over the ground as long as that foot stands.
+// keep its heading, y left, z up; its origin is the base frame's. The velocity is a difference over a millisecond
+// (body_ahead.h). A velocity over a foot is one over the ground as long as that foot stands.
 //
 // The divergent component of motion is where the robot's pendulum is going (Hof 2008, Human Movement Science 27(1);
 // Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z).
@@ -14,12 +13,9 @@
 #include <array>
 #include <cstddef>
 
-#include "kadans/control/control_object.h"
-#include "kadans/model/kinematics.h"
+#include "kadans/control/body_ahead.h"
 
 namespace kadans {
-
-inline constexpr double dcm_gravity_m_s2 = 9.81;
 
 class DcmMeasure {
  public:
@@ -31,7 +27,7 @@ class DcmMeasure {
   };
 
   // The links named by the options left_foot and right_foot. Throws OptionError.
-  explicit DcmMeasure(const ObjectSetup& setup);
+  explicit DcmMeasure(const ObjectSetup& setup) : body_(setup) {}
 
   // False when the robot does not stand, or something is not measured.
   [[nodiscard]] bool update(const ControlInput& input) noexcept;
@@ -47,12 +43,9 @@ class DcmMeasure {
   double rate_per_s() const noexcept { return rate_per_s_; }                     // w0
 
  private:
-  void place(const ControlInput& input, double ahead_s) noexcept;
   double dcm(std::size_t axis, const OverFoot& over) const noexcept;
 
-  Kinematics kinematics_;
-  std::size_t joint_count_;
-  std::array<std::size_t, 2> feet_{};
+  BodyAhead body_;
   std::array<OverFoot, 2> over_{};
   Quat upright_{1, 0, 0, 0};
   Vec3 com_m_{};

@@ -6,8 +6,7 @@
 // middle between the feet's frames, v its velocity. The robot stays up while xi can be kept over the soles, so the
 // centre of pressure has to lie beyond xi.
 //
-// The velocity is the difference of two kinematics, one of them moved on by a millisecond with the filtered joint
-// velocities and the gyro: no position is differentiated. The feet are taken to stand flat.
+// The velocity is a difference over a millisecond (body_ahead.h). The feet are taken to stand flat.
 //
 // All in the heading frame: x forward along the ground where the base points, y left, z up.
 //
@@ -17,18 +16,16 @@
 #include <array>
 #include <cstddef>
 
-#include "kadans/control/control_object.h"
-#include "kadans/model/kinematics.h"
+#include "kadans/control/body_ahead.h"
 
 namespace kadans {
 
-inline constexpr double standing_gravity_m_s2 = 9.81;
 inline constexpr double standing_share_per_s = 5;  // how fast an object's share of torque comes and goes
 
 class Standing {
  public:
   // Of the options left_foot and right_foot: the links that stand. Throws OptionError. Keeps a reference to the model.
-  explicit Standing(const ObjectSetup& setup);
+  explicit Standing(const ObjectSetup& setup) : body_(setup) {}
 
   // False when it does not stand, or something is not measured.
   bool update(const ControlInput& input) noexcept;
@@ -37,16 +34,14 @@ class Standing {
   const Vec3& velocity_m_s() const noexcept { return velocity_m_s_; }  // of the centre of mass
   double dcm_x_m() const noexcept { return dcm_x_m_; }
   double dcm_y_m() const noexcept { return dcm_y_m_; }
-  const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }  // links, left and right
+  const std::array<std::size_t, 2>& feet() const noexcept { return body_.feet(); }  // links, left and right
   // As of the last update, the base's origin at 0.
-  const Kinematics& kinematics() const noexcept { return kinematics_; }
+  const Kinematics& kinematics() const noexcept { return body_.kinematics(); }
 
  private:
   Vec3 com_over_feet(const ControlInput& input, double ahead_s) noexcept;
 
-  std::array<std::size_t, 2> feet_{};
-  Kinematics kinematics_;
-  std::size_t joint_count_;
+  BodyAhead body_;
   Vec3 com_m_{}, velocity_m_s_{};
   double dcm_x_m_ = 0, dcm_y_m_ = 0;
 };
