@@ -76,7 +76,7 @@ void McapWriter::put_statistics() {
   block_.put(static_cast<std::uint32_t>(channels_.size()));
   block_.put(static_cast<std::uint32_t>(attachments_.size()));
   block_.put(static_cast<std::uint32_t>(metadata_.size()));
-  block_.put(static_cast<std::uint32_t>(chunks_.size()));
+  block_.put(chunks_);
   block_.put(start_ns_);
   block_.put(end_ns_);
   block_.put(static_cast<std::uint32_t>(channels_.size() * (sizeof(std::uint16_t) + sizeof(std::uint64_t))));
@@ -86,24 +86,26 @@ void McapWriter::put_statistics() {
   }
 }
 
-void McapWriter::put_chunk_indexes() {
-  for (const Chunk& chunk : chunks_) {
-    const McapRecord record(block_, McapOpcode::chunk_index);
-    block_.put(chunk.start_ns);
-    block_.put(chunk.end_ns);
-    block_.put(chunk.offset);
-    block_.put(chunk.length);
-    block_.put(static_cast<std::uint32_t>(chunk.indexes.size() * (sizeof(std::uint16_t) + sizeof(std::uint64_t))));
-    for (const auto& [channel, offset] : chunk.indexes) {
-      block_.put(channel);
-      block_.put(offset);
-    }
-    block_.put(chunk.index_length);
-    block_.put_string(chunk.compression);
-    block_.put(chunk.packed);
-    block_.put(chunk.unpacked);
+void McapWriter::keep_chunk_index(const Chunk& chunk) {
+  const McapRecord record(chunk_indexes_, McapOpcode::chunk_index);
+  chunk_indexes_.put(chunk.start_ns);
+  chunk_indexes_.put(chunk.end_ns);
+  chunk_indexes_.put(chunk.offset);
+  chunk_indexes_.put(chunk.length);
+  chunk_indexes_.put(
+      static_cast<std::uint32_t>(chunk.indexes.size() * (sizeof(std::uint16_t) + sizeof(std::uint64_t))));
+  for (const auto& [channel, offset] : chunk.indexes) {
+    chunk_indexes_.put(channel);
+    chunk_indexes_.put(offset);
   }
+  chunk_indexes_.put(chunk.index_length);
+  chunk_indexes_.put_string(chunk.compression);
+  chunk_indexes_.put(chunk.packed);
+  chunk_indexes_.put(chunk.unpacked);
+  ++chunks_;
 }
+
+void McapWriter::put_chunk_indexes() { block_.put(chunk_indexes_.bytes()); }
 
 void McapWriter::put_attachment_indexes() {
   for (const Attachment& attachment : attachments_) {

@@ -149,7 +149,7 @@ void McapWriter::put_message_indexes(Chunk& chunk) {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if (channels_[i].index.empty()) continue;
     const auto channel = static_cast<std::uint16_t>(i + 1);
-    chunk.indexes[channel] = chunk.offset + block_.size();
+    chunk.indexes.emplace_back(channel, chunk.offset + block_.size());
     const McapRecord record(block_, McapOpcode::message_index);
     block_.put(channel);
     block_.put(static_cast<std::uint32_t>(channels_[i].index.size() * 2 * sizeof(std::uint64_t)));
@@ -170,7 +170,7 @@ bool McapWriter::flush() {
   records_.clear();
   ++chunk_number_;
   if (!append()) return false;
-  chunks_.push_back(std::move(chunk));
+  keep_chunk_index(chunk);
   return true;
 }
 

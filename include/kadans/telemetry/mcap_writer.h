@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -74,10 +73,10 @@ class McapWriter {
     std::uint64_t messages = 0;
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // of the open chunk: log time, offset
   };
-  struct Chunk {  // what the summary tells of a chunk in the file
+  struct Chunk {  // what the summary will tell of the chunk that is being written
     std::uint64_t start_ns = 0, end_ns = 0, offset = 0, length = 0, index_length = 0, packed = 0, unpacked = 0;
     std::string_view compression;
-    std::map<std::uint16_t, std::uint64_t> indexes;  // channel to offset in the file
+    std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes;  // channel, offset in the file
   };
   struct Attachment {
     std::uint64_t offset = 0, length = 0, time_ns = 0, data_size = 0;
@@ -96,6 +95,7 @@ class McapWriter {
   bool pack();
   void put_chunk(Chunk& chunk);
   void put_message_indexes(Chunk& chunk);
+  void keep_chunk_index(const Chunk& chunk);
   [[nodiscard]] bool append();
   void put_summary();
   void put_schemas();
@@ -117,7 +117,8 @@ class McapWriter {
   std::uint32_t chunk_number_ = 1;
 
   std::uint64_t messages_ = 0, start_ns_ = 0, end_ns_ = 0;
-  std::vector<Chunk> chunks_;
+  ByteWriter chunk_indexes_;  // for the summary, as they will stand there: a record of hours has ten thousands
+  std::uint32_t chunks_ = 0;
   std::vector<Attachment> attachments_;
   std::vector<Metadata> metadata_;
 };
