@@ -10,6 +10,7 @@
 #include "kadans/plant/bullet/bullet_plant.h"
 #include "kadans/plant/ideal_plant.h"
 #include "kadans/scenario/planned_faults.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {
@@ -131,9 +132,7 @@ void Assembly::start_in_pose() {
   const RobotConfig& config = robot_.config;
   const auto pose = std::ranges::find(config.poses, scenario_.start_pose.name, &PoseInfo::name);
   if (pose == config.poses.end()) {
-    std::vector<std::string> names;
-    for (const PoseInfo& known : config.poses) names.push_back(known.name);
-    refuse_unknown(scenario_.file, scenario_.start_pose, "pose", names);
+    refuse_unknown(scenario_.file, scenario_.start_pose, "pose", names_of(config.poses));
   }
   variant_.plant.position_rad.resize(config.model.joints.size());
   for (const auto& [joint, position_rad] : pose->position_rad) variant_.plant.position_rad[joint] = position_rad;

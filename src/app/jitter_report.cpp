@@ -8,25 +8,17 @@
 #include <nlohmann/json.hpp>
 
 #include "kadans/signal/number_text.h"
+#include "tick_report.h"
 
 namespace kadans {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Quantile {
-  const char* name;
-  double share;
-};
-constexpr std::array<Quantile, 6> quantiles{
-    {{"p50", 0.5}, {"p90", 0.9}, {"p99", 0.99}, {"p999", 0.999}, {"p9999", 0.9999}, {"p99999", 0.99999}}};
-constexpr std::array<double, 3> compared{0.5, 0.99, 0.999};
-constexpr std::array<const char*, 3> compared_names{"p50", "p99", "p999"};
+constexpr std::array quantiles{p50, p90, p99, p999, p9999, p99999};
+constexpr std::array compared{p50, p99, p999};
 constexpr std::array<std::int64_t, 10> band_ends_us{1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
 constexpr int bar_width = 40;
-
-double us(double ns) { return std::round(ns) / 1000; }
-double us(std::int64_t ns) { return us(static_cast<double>(ns)); }
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -42,31 +34,24 @@ double median_of(const Stretches& stretches, Value value) {
 }
 
 // The median of the pairs' ratios: what the machine did meanwhile changes both of a pair.
-double ratio(const JitterRun& run, double share) {
+double ratio(const JitterRun& run, const TickQuantile& quantile) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < run.yardstick.size(); ++i) {
-    ratios.push_back(run.own[i].statistics.lateness.percentile_ns(share) /
-                     std::max(run.yardstick[i].lateness.percentile_ns(share), 1.0));
+    ratios.push_back(run.own[i].statistics.lateness.percentile_ns(quantile.share) /
+                     std::max(run.yardstick[i].lateness.percentile_ns(quantile.share), 1.0));
   }
   return median(ratios);
 }
 
-Json json_of(const TickStatistics& statistics) {
-  Json json{{"min", us(statistics.min_ns())}, {"mean", us(statistics.mean_ns())}};
-  for (const Quantile& quantile : quantiles) json[quantile.name] = us(statistics.percentile_ns(quantile.share));
-  json["max"] = us(statistics.max_ns());
-  return json;
-}
-
 std::string row(const char* name, const TickStatistics& s) {
-  std::string text = printed("  %-22s %8.2f %8.2f", name, us(s.min_ns()), us(s.mean_ns()));
-  for (const Quantile& quantile : quantiles) text += printed(" %8.2f", us(s.percentile_ns(quantile.share)));
-  return text + printed(" %9.2f\n", us(s.max_ns()));
+  std::string text = printed("  %-22s %8.2f %8.2f", name, in_us(s.min_ns()), in_us(s.mean_ns()));
+  for (const TickQuantile& quantile : quantiles) text += printed(" %8.2f", in_us(s, quantile));
+  return text + printed(" %9.2f\n", in_us(s.max_ns()));
 }
 
 std::string table(const JitterSample& own, const YardstickSample& yardstick) {
   std::string text = printed("  %-22s %8s %8s", "us", "min", "mean");
-  for (const Quantile& quantile : quantiles) text += printed(" %8s", quantile.name);
+  for (const TickQuantile& quantile : quantiles) text += printed(" %8s", quantile.name);
   text += printed(" %9s\n", "max");
   text += row("lateness", own.statistics.lateness);
   if (yardstick.lateness.count() > 0) text += row("  of cyclictest", yardstick.lateness);
@@ -102,7 +87,8 @@ std::string verdict(const TickStatistics& jitter, std::int64_t period_ns) {
   const double within = static_cast<double>(jitter.count_until(bound_ns)) /
                         static_cast<double>(std::max<std::uint64_t>(jitter.count(), 1));
   const bool all = jitter.max_ns() <= bound_ns;
-  return printed("verdict: %.4f %% of the jitter within 1 %% of the period (%g us): %s\n", 100 * within, us(bound_ns),
+  return printed("verdict: %.4f %% of the jitter within 1 %% of the period (%g us): %s\n", 100 * within,
+                 in_us(bound_ns),
                  all               ? "every beat keeps the bound"
                  : within >= 0.999 ? "the bound is kept but for single beats"
                  : within >= 0.9   ? "the bound is kept most of the time"
@@ -112,25 +98,25 @@ std::string verdict(const TickStatistics& jitter, std::int64_t period_ns) {
 std::string comparison(const JitterRun& run) {
   if (run.yardstick.empty()) return "cyclictest is not there (package rt-tests): nothing to compare with\n";
   std::string text = printed("medians of %zu alternating pairs, lateness in us\n  %-22s", run.own.size(), "");
-  for (const char* name : compared_names) text += printed(" %8s", name);
+  for (const TickQuantile& quantile : compared) text += printed(" %8s", quantile.name);
   text += printed("\n  %-22s", "kadans");
-  for (const double share : compared) {
-    text += printed(" %8.2f", median_of(run.own, [&](const JitterSample& s) {
-                      return us(s.statistics.lateness.percentile_ns(share));
-                    }));
+  for (const TickQuantile& quantile : compared) {
+    text += printed(" %8.2f",
+                    median_of(run.own, [&](const JitterSample& s) { return in_us(s.statistics.lateness, quantile); }));
   }
   text += printed("\n  %-22s", "cyclictest");
-  for (const double share : compared) {
-    text += printed(" %8.2f", median_of(run.yardstick,
-                                        [&](const YardstickSample& s) { return us(s.lateness.percentile_ns(share)); }));
+  for (const TickQuantile& quantile : compared) {
+    text += printed(" %8.2f",
+                    median_of(run.yardstick, [&](const YardstickSample& s) { return in_us(s.lateness, quantile); }));
   }
   text += printed("\n  %-22s", "ratio");
-  for (const double share : compared) text += printed(" %8.3f", ratio(run, share));
+  for (const TickQuantile& quantile : compared) text += printed(" %8.3f", ratio(run, quantile));
   return text + "\n";
 }
 
 std::string mode(const JitterRun& run) {
-  std::string text = run.settings.spin_ns > 0 ? printed("sleep, then spin %g us", us(run.settings.spin_ns)) : "sleep";
+  std::string text =
+      run.settings.spin_ns > 0 ? printed("sleep, then spin %g us", in_us(run.settings.spin_ns)) : "sleep";
   text += printed(", CPU %d, ", run.settings.cpu);
   text += run.settings.priority > 0 ? printed("SCHED_FIFO %d", run.settings.priority) : "no real-time priority";
   text += run.keep_awake ? ", kept awake" : "";
@@ -167,7 +153,7 @@ std::string jitter_text(const JitterRun& run) {
   const JitterSample own = together(run.own);
   const TaskStatistics& s = own.statistics;
   std::string text = printed("%llu beats of %g us: ", static_cast<unsigned long long>(s.lateness.count()),
-                             us(run.settings.period_ns)) +
+                             in_us(run.settings.period_ns)) +
                      mode(run) + "\n\n" + table(own, together(run.yardstick)) + "\n";
   text += printed("  overruns %llu, wakes a period late or more %llu, beats left out %llu\n",
                   static_cast<unsigned long long>(s.overruns.get()),
@@ -182,14 +168,14 @@ std::string jitter_json(const JitterRun& run) {
   const JitterSample own = together(run.own);
   const TaskStatistics& s = own.statistics;
   Json json{{"samples", s.lateness.count()},
-            {"lateness_us", json_of(s.lateness)},
-            {"jitter_us", json_of(s.jitter)},
-            {"execution_us", json_of(s.execution)},
+            {"lateness_us", tick_json(s.lateness, quantiles)},
+            {"jitter_us", tick_json(s.jitter, quantiles)},
+            {"execution_us", tick_json(s.execution, quantiles)},
             {"overruns", s.overruns.get()},
             {"late_wakes", s.late_wakes.get()},
             {"missed", s.missed.get()},
-            {"period_us", us(run.settings.period_ns)},
-            {"spin_us", us(run.settings.spin_ns)},
+            {"period_us", in_us(run.settings.period_ns)},
+            {"spin_us", in_us(run.settings.spin_ns)},
             {"cpu", run.settings.cpu},
             {"priority", run.settings.priority},
             {"load", run.load},
@@ -200,10 +186,10 @@ std::string jitter_json(const JitterRun& run) {
   if (!run.yardstick.empty()) {
     const YardstickSample yardstick = together(run.yardstick);
     json["cyclictest"] = {{"samples", yardstick.lateness.count()},
-                          {"lateness_us", json_of(yardstick.lateness)},
-                          {"jitter_us", json_of(yardstick.jitter)}};
+                          {"lateness_us", tick_json(yardstick.lateness, quantiles)},
+                          {"jitter_us", tick_json(yardstick.jitter, quantiles)}};
     json["pairs"] = run.own.size();
-    for (std::size_t i = 0; i < compared.size(); ++i) json["ratio"][compared_names[i]] = ratio(run, compared[i]);
+    for (const TickQuantile& quantile : compared) json["ratio"][quantile.name] = ratio(run, quantile);
   }
   return json.dump();
 }

@@ -1,21 +1,19 @@
 #include "live_report.h"
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "tick_report.h"
 #include "udp_report.h"
 
 namespace kadans {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double in_us(double ns) { return std::round(ns) / 1000; }
 
 double resident_MB() {
   std::ifstream file("/proc/self/statm");
@@ -24,15 +22,9 @@ double resident_MB() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
-Json percentiles_of(const TickStatistics& s) {
-  return {{"min", in_us(static_cast<double>(s.min_ns()))},
-          {"mean", in_us(s.mean_ns())},
-          {"p50", in_us(s.percentile_ns(0.5))},
-          {"p99", in_us(s.percentile_ns(0.99))},
-          {"p999", in_us(s.percentile_ns(0.999))},
-          {"p9999", in_us(s.percentile_ns(0.9999))},
-          {"p99999", in_us(s.percentile_ns(0.99999))},
-          {"max", in_us(static_cast<double>(s.max_ns()))}};
+Json percentiles_of(const TickStatistics& statistics) {
+  constexpr std::array told{p50, p99, p999, p9999, p99999};
+  return tick_json(statistics, told);
 }
 
 double preparation_s(const TaskThread& thread) {
@@ -57,9 +49,8 @@ Json json_of(const TaskThread& thread) {
 
 std::string row(const char* name, const TickStatistics& s, const char* rest) {
   std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, in_us(s.percentile_ns(0.5)),
-                in_us(s.percentile_ns(0.99)), in_us(s.percentile_ns(0.999)), in_us(static_cast<double>(s.max_ns())),
-                rest);
+  std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, in_us(s, p50), in_us(s, p99),
+                in_us(s, p999), in_us(s.max_ns()), rest);
   return text.data();
 }
 

@@ -6,6 +6,7 @@
 #include "kadans/config/name_pattern.h"
 #include "kadans/config/project_root.h"
 #include "kadans/model/urdf.h"
+#include "kadans/signal/nearest_name.h"
 #include "robot_reader.h"
 
 namespace kadans {
@@ -32,8 +33,7 @@ void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
   f.number("after_s", config.safe.after_s, {0, 60, "s"}, "how long the last set-points are held before");
   f.number("time_s", config.safe.time_s, {0.01, 60, "s"}, "time to go there");
   if (!f.reading() || config.safe.pose.empty()) return;
-  std::vector<std::string> names;
-  for (const PoseInfo& pose : config.poses) names.push_back(pose.name);
+  const std::vector<std::string> names = names_of(config.poses);
   if (std::find(names.begin(), names.end(), config.safe.pose) != names.end()) return;
   problems.add_unknown(f.place("pose"), "pose", config.safe.pose, names);
 }

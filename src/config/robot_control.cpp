@@ -3,18 +3,11 @@
 
 #include "kadans/config/name_pattern.h"
 #include "kadans/control/set_partition.h"
+#include "kadans/signal/nearest_name.h"
 #include "robot_reader.h"
 
 namespace kadans {
 namespace {
-
-template <typename Named>
-std::vector<std::string> names_of(const std::vector<Named>& all) {
-  std::vector<std::string> names;
-  names.reserve(all.size());
-  for (const Named& one : all) names.push_back(one.name);
-  return names;
-}
 
 bool contains(const std::vector<PlacedName>& names, const std::string& name) {
   return std::any_of(names.begin(), names.end(), [&](const PlacedName& one) { return one.name == name; });

@@ -4,6 +4,7 @@
 
 #include "kadans/config/name_pattern.h"
 #include "kadans/model/kinematics.h"
+#include "kadans/signal/nearest_name.h"
 #include "robot_reader.h"
 
 namespace kadans {
@@ -146,9 +147,7 @@ void RobotReader::start(Fields& f) {
   const auto named = [&](const PoseInfo& pose) { return pose.name == config_.start_pose; };
   const auto found = std::find_if(config_.poses.begin(), config_.poses.end(), named);
   if (found == config_.poses.end()) {
-    std::vector<std::string> names;
-    for (const PoseInfo& pose : config_.poses) names.push_back(pose.name);
-    problems_.add_unknown(f.place("pose"), "pose", config_.start_pose, names);
+    problems_.add_unknown(f.place("pose"), "pose", config_.start_pose, names_of(config_.poses));
     return;
   }
   for (const auto& [joint, position_rad] : found->position_rad) plant.position_rad[joint] = position_rad;

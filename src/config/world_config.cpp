@@ -7,6 +7,7 @@
 #include <initializer_list>
 
 #include "kadans/model/kinematics.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {
@@ -228,10 +229,6 @@ const WorldSettings& world_for(const WorldConfig& world, const RobotModel& model
   return world.settings;
 }
 
-std::vector<std::string> object_names(const WorldSettings& world) {
-  std::vector<std::string> names;
-  for (const WorldObject& object : world.objects) names.push_back(object.name);
-  return names;
-}
+std::vector<std::string> object_names(const WorldSettings& world) { return names_of(world.objects); }
 
 }  // namespace kadans

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kadans/signal/nearest_name.h"
+
 namespace kadans {
 namespace {
 
@@ -37,10 +39,6 @@ const MakeControlObject* ControlObjectTypes::find(std::string_view name) const n
   return found == types_.end() ? nullptr : &found->make;
 }
 
-std::vector<std::string> ControlObjectTypes::names() const {
-  std::vector<std::string> names;
-  for (const Type& type : types_) names.push_back(type.name);
-  return names;
-}
+std::vector<std::string> ControlObjectTypes::names() const { return names_of(types_); }
 
 }  // namespace kadans

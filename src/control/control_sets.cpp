@@ -171,7 +171,7 @@ void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationF
 void ControlSets::drive(const ControlInput& input, JointMask blind, ActuationFrame& actuation) noexcept {
   for (const std::uint32_t index : catalog_.at_drives) {
     ActuationFrame& motors = *proposals_[index];
-    motors = actuation;
+    copy_used(actuation, motors);
     objects_[index]->step(input, motors);
     for (const std::size_t joint : catalog_.objects[index].joints) {
       if ((blind & joint_bit(joint)) == 0) actuation.joints[joint] = motors.joints[joint];
@@ -180,6 +180,11 @@ void ControlSets::drive(const ControlInput& input, JointMask blind, ActuationFra
 }
 
 void ControlSets::rehearse(std::uint64_t tick, const ControlInput& input, ActuationFrame& scratch) const noexcept {
+  for (const std::uint32_t index : catalog_.at_drives) {
+    objects_[index]->rehearse(input);
+    for (const std::size_t joint : catalog_.objects[index].joints)
+      scratch.joints[joint] = proposals_[index]->joints[joint];
+  }
   Writers writers{};
   each_bit(active_, [&](std::uint32_t set) {
     for (const Member& member : plans_[set]) {

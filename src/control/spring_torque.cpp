@@ -65,6 +65,14 @@ void SpringTorque::step(const ControlInput& input, ActuationFrame& actuation) no
   }
 }
 
+void SpringTorque::rehearse(const ControlInput& input) const noexcept {
+  for (const Part& part : parts_) {
+    SpringTorqueLoop loop = part.loop;
+    const std::size_t joint = part.axis.joint;
+    (void)loop.step(input.last.joints[joint].effort_Nm, input.joints.joints[joint], input.dt_s);
+  }
+}
+
 std::unique_ptr<ControlObject> make_spring_torque(const ObjectSetup& setup) {
   return std::make_unique<SpringTorque>(setup);
 }

@@ -78,6 +78,7 @@ void ControlEngine::rehearse() noexcept {
                   .base = r.snapshot.status.base,
                   .health = r.estimator.health()},
                  r.actuation, r.snapshot.status.safety);
+  if (sets_.drives()) copy_used(actuation_, motors_);  // as drive() does before all else
   sets_.rehearse(tick_, {r.snapshot.joints, r.snapshot.status, written_, snapshot_.time_ns, r.dt_s}, r.actuation);
   inbox_.fill(r.snapshot);
   sets_.fill(r.snapshot);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kadans/signal/nearest_name.h"
+
 namespace kadans {
 
 std::optional<std::size_t> RobotModel::find_joint(std::string_view wanted) const {
@@ -19,12 +21,7 @@ std::optional<std::size_t> RobotModel::find_link(std::string_view wanted) const 
   return std::nullopt;
 }
 
-std::vector<std::string> RobotModel::joint_names() const {
-  std::vector<std::string> names;
-  names.reserve(joints.size());
-  for (const Joint& joint : joints) names.push_back(joint.name);
-  return names;
-}
+std::vector<std::string> RobotModel::joint_names() const { return names_of(joints); }
 
 std::vector<std::string> RobotModel::link_names() const {
   std::vector<std::string> names;

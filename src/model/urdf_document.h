@@ -13,15 +13,6 @@
 
 namespace kadans {
 
-// The names of what has one: to find the nearest to a name that nothing has.
-template <typename Named>
-std::vector<std::string> names_of(const std::vector<Named>& all) {
-  std::vector<std::string> names;
-  names.reserve(all.size());
-  for (const Named& one : all) names.push_back(one.name);
-  return names;
-}
-
 class UrdfDocument {
  public:
   // Throws InputError when this is not text, not XML or unreasonably large. Keeps views of the text.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kadans/signal/nearest_name.h"
+
 namespace kadans {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kadans/config/problems.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 
@@ -57,8 +58,7 @@ bool InstancePort::next(Answer& answer) {
 }
 
 std::uint32_t Instance::set_named(const std::string& name) const {
-  std::vector<std::string> names;
-  for (const ControlSetInfo& set : catalog_.sets) names.push_back(set.name);
+  const std::vector<std::string> names = names_of(catalog_.sets);
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) throw InputError({.message = unknown_name("control set", name, names)});
   return static_cast<std::uint32_t>(found - names.begin());

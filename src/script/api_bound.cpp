@@ -3,22 +3,13 @@
 
 #include "kadans/script/api.h"
 #include "known_names.h"
+#include "silent_log.h"
 
 namespace kadans {
-namespace {
-
-class Silence final : public BehaviorLog {
- public:
-  void transition(const Transition& /*transition*/) override {}
-  void message(std::int64_t /*time_ns*/, Severity /*severity*/, const std::string& /*behavior*/,
-               const std::string& /*text*/) override {}
-};
-
-}  // namespace
 
 std::vector<std::string> bound_names(const std::filesystem::path& root, const std::filesystem::path& behavior,
                                      const Catalog& catalog) {
-  Silence silence;
+  SilentLog silence;
   Behavior::Parts parts({.root = root, .file = behavior}, catalog, silence);
   load_behavior(parts, parts.settings.limits.load_instructions);
   KnownNames known = read_known_names(parts);

@@ -7,22 +7,13 @@
 #include "check_chart.h"
 #include "check_source.h"
 #include "known_names.h"
+#include "silent_log.h"
 
 namespace kadans {
-namespace {
-
-class Silence final : public BehaviorLog {
- public:
-  void transition(const Transition& /*transition*/) override {}
-  void message(std::int64_t /*time_ns*/, Severity /*severity*/, const std::string& /*behavior*/,
-               const std::string& /*text*/) override {}
-};
-
-}  // namespace
 
 std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
                                          const Catalog& catalog) {
-  Silence silence;
+  SilentLog silence;
   const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
   Behavior::Parts parts(settings, catalog, silence);
   std::vector<InputProblem> problems;

@@ -33,9 +33,7 @@ int pose(lua_State* state) {
     }
     return 1;
   }
-  const Hint hint = make_hint(name, [&](auto& names) {
-    for (const PoseInfo& known : catalog.poses) names.push_back(known.name);
-  });
+  const Hint hint = make_hint(name, [&](auto& names) { names = names_of(catalog.poses); });
   return luaL_error(state, "unknown pose '%s'%s", name, hint.data());
 }
 

@@ -35,9 +35,7 @@ void named_pose(lua_State* state, const ObjectInfo& object, const char* name, Mo
     if (candidate.name == name) pose = &candidate;
   }
   if (pose == nullptr) {
-    const Hint hint = make_hint(name, [&](auto& names) {
-      for (const PoseInfo& known : catalog.poses) names.push_back(known.name);
-    });
+    const Hint hint = make_hint(name, [&](auto& names) { names = names_of(catalog.poses); });
     luaL_error(state, "unknown pose '%s'%s", name, hint.data());
   }
   for (const auto& [joint, position_rad] : pose->position_rad) {

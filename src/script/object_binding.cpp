@@ -69,9 +69,7 @@ int set_gains(lua_State* state) {
     }
     return lua_pushboolean(state, 1), 1;
   }
-  const Hint hint = make_hint(name, [&](auto& names) {
-    for (const Preset& preset : object.presets) names.push_back(preset.name);
-  });
+  const Hint hint = make_hint(name, [&](auto& names) { names = names_of(object.presets); });
   return luaL_error(state, "'%s' has no gains '%s'%s", object.name.c_str(), name, hint.data());
 }
 

@@ -3,17 +3,9 @@
 
 #include "kadans/script/script_host.h"
 #include "kadans/signal/input_error.h"
+#include "silent_log.h"
 
 namespace kadans {
-namespace {
-
-class Silence final : public BehaviorLog {
- public:
-  void transition(const Transition&) override {}
-  void message(std::int64_t, Severity, const std::string&, const std::string&) override {}
-};
-
-}  // namespace
 
 std::vector<std::filesystem::path> ScriptHost::files() const {
   std::vector<std::filesystem::path> all;
@@ -21,7 +13,7 @@ std::vector<std::filesystem::path> ScriptHost::files() const {
     for (std::filesystem::path& file : behavior.files()) all.push_back(std::move(file));
   };
   for (const PlayList::Entry& entry : list_.entries()) add(*entry.behavior);
-  Silence silence;
+  SilentLog silence;
   for (const Due& due : events_) {
     for (const PlayList::Entry& entry : due.loaded) add(*entry.behavior);
     if (due.order.file.empty()) continue;

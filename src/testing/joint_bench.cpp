@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kadans/signal/nearest_name.h"
 #include "name_search.h"
 
 namespace kadans::testing {
@@ -137,9 +138,7 @@ void JointBench::cancel_motion(std::string_view setpoint) {
 }
 
 void JointBench::switch_to(std::string_view object) {
-  std::vector<std::string> names;
-  for (const ControlSetInfo& set : catalog_.sets) names.push_back(set.name);
-  sets_->switch_to(static_cast<std::uint32_t>(find_by_ending("object", object, names)));
+  sets_->switch_to(static_cast<std::uint32_t>(find_by_ending("object", object, names_of(catalog_.sets))));
 }
 
 double JointBench::signal(std::string_view name) const {

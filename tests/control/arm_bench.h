@@ -9,9 +9,8 @@
 #include <Eigen/Cholesky>
 #include <doctest/doctest.h>
 
-#include "kadans/control/catalog.h"
-#include "kadans/control/control_object.h"
 #include "kadans/model/dynamics.h"
+#include "tested_object.h"
 
 namespace kadans::test {
 
@@ -41,31 +40,18 @@ inline RobotModel arm() {
   return model;
 }
 
-class ArmBench {
+class ArmBench : public TestedObject {
  public:
   template <typename Make>
   explicit ArmBench(Make make, ObjectOptions options = {})
       : model(arm()), object(make(ObjectSetup{model, {0, 1}, std::move(options)})), plant_(model) {
-    Declaration declaration("it", 0, catalog.parameters, catalog.setpoints, catalog.signals);
-    object->declare(declaration);
-    joints.count = written.joint_count = computed.joint_count = 3;
-    row_.resize(catalog.signals.size());
+    declare(*object, 3);
   }
 
-  void set(const std::string& parameter, double value) {
-    const auto id = catalog.parameters.find("it." + parameter);
-    REQUIRE_MESSAGE(id, parameter);
-    REQUIRE(catalog.parameters.set(*id, value));
-    object->parameters_changed();
-  }
   void set_point(const std::string& name, double value, double duration_s) {
     const SetpointId id = catalog.setpoints.find("it." + name).value();
     REQUIRE(catalog.setpoints.accepts(id, value));
     object->set_point(catalog.setpoints[id].channel, value, duration_s);
-  }
-  double signal(const std::string& name) {
-    catalog.signals.gather(row_);
-    return row_[catalog.signals.find("control.it." + name).value()];
   }
 
   void place(double shoulder_rad, double elbow_rad) {
@@ -82,40 +68,24 @@ class ArmBench {
     computed = written;
   }
 
-  ControlInput input() const noexcept { return {joints, status, written, time_ns, 0.001}; }
   void start() noexcept { object->start(input()); }
-  void update() {
-    snapshot.time_ns = time_ns;
-    snapshot.joints = joints;
-    object->update(snapshot);
-  }
   void tick() {
-    written = computed;
-    object->step(input(), computed);
-    if (high_level && time_ns % 10'000'000 == 0) update();
-    move(0.001);
+    control_tick();
+    move(dt_s);
     time_ns += 1'000'000;
   }
   void run(int ticks) {
     for (int i = 0; i < ticks; ++i) tick();
   }
-  double effort_Nm(std::size_t joint) const { return computed.joints[joint].effort_Nm; }
   double position_rad(std::size_t joint) const { return joints.joints[joint].position_rad; }
 
   RobotModel model;
   std::unique_ptr<ControlObject> object;
-  Catalog catalog;
-  JointStates joints;
-  RobotStatus status;
-  ActuationFrame written, computed;
-  Snapshot snapshot;
-  std::int64_t time_ns = 0;
-  bool high_level = true;
   double load_Nm = 0;  // on the shoulder, towards larger positions
 
  private:
   // Semi-implicit Euler.
-  void move(double dt_s) {
+  void move(double time_s) {
     std::vector<double> q(3), v(3);
     for (std::size_t i = 0; i < 3; ++i) {
       q[i] = joints.joints[i].position_rad;
@@ -128,13 +98,12 @@ class ArmBench {
     const Eigen::VectorXd acceleration = plant_.mass_matrix().llt().solve(force);
     for (std::size_t i = 0; i < 3; ++i) {
       JointState& joint = joints.joints[i];
-      joint.velocity_rad_s += dt_s * acceleration[static_cast<Eigen::Index>(i)];
-      joint.position_rad += dt_s * joint.velocity_rad_s;
+      joint.velocity_rad_s += time_s * acceleration[static_cast<Eigen::Index>(i)];
+      joint.position_rad += time_s * joint.velocity_rad_s;
     }
   }
 
   Dynamics plant_;
-  std::vector<double> row_;
 };
 
 // The largest step of any joint's torque from one tick to the next, over so many ticks, as a share of its limit; the

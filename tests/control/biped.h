@@ -1,10 +1,12 @@
-// A biped in the sagittal plane for tests of balance: a torso of 10 kg, two legs with feet without mass.
+// A biped in the sagittal plane for tests of balance: a torso of 10 kg, two legs with feet without mass; and a bench
+// for an object that balances it.
 #pragma once
 
 #include "kadans/control/object_options.h"
 #include "kadans/model/robot_model.h"
+#include "tested_object.h"
 
-namespace kadans::testing {
+namespace kadans::test {
 
 inline Link biped_link(const char* name, double mass_kg, double com_z_m) {
   Link link;
@@ -37,5 +39,33 @@ inline RobotModel biped() {
 }
 
 inline const ObjectOptions biped_feet{{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}};
+inline constexpr double biped_weight_N = 9.81 * 12;
+inline constexpr double biped_com_height_m = (10 * 0.7 + 2 * 0.25) / 12;  // over the ankles
 
-}  // namespace kadans::testing
+// The robot is where a test puts it: what the object computes moves nothing.
+template <class Object>
+class BalanceBench : public TestedObject {
+ public:
+  BalanceBench() { declare(object, 4); }
+
+  void step() { object.step(input(), computed); }
+  void settle() {
+    object.start(input());
+    for (int i = 0; i < 300; ++i) step();
+  }
+  // Rigid, leaning, and turning that way.
+  void lean(double pitch_rad, double roll_rad = 0, double rate_rad_s = 0) {
+    status.base.pitch_rad = pitch_rad;
+    status.base.roll_rad = roll_rad;
+    status.base.angular_velocity_rad_s = {0, rate_rad_s, 0};
+    settle();
+  }
+  const typename Object::State& state() const { return object.state(); }
+  double hip_Nm() const { return effort_Nm(0); }
+  double ankle_Nm(std::size_t joint = 1) const { return effort_Nm(joint); }
+
+  RobotModel model = biped();
+  Object object{{.model = model, .joints = {0, 1, 2, 3}, .options = biped_feet}};
+};
+
+}  // namespace kadans::test

@@ -2,53 +2,25 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include <doctest/doctest.h>
 
 #include "biped.h"
-#include "kadans/control/catalog.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;
-using kadans::testing::biped;
-using kadans::testing::biped_feet;
+using kadans::test::biped;
+using kadans::test::biped_feet;
 
 namespace {
 
-constexpr double weight_N = 9.81 * 12;
-constexpr double com_height_m = (10 * 0.7 + 2 * 0.25) / 12;  // over the ankles
+constexpr double weight_N = kadans::test::biped_weight_N, com_height_m = kadans::test::biped_com_height_m;
 
-struct Bench {
-  RobotModel model = biped();
-  DcmBalance balance{{.model = model, .joints = {0, 1, 2, 3}, .options = biped_feet}};
-  ParameterTable parameters;
-  SetpointTable setpoints;
-  SignalTable signals;
-  JointStates joints;
-  RobotStatus status;
-  ActuationFrame last, actuation;
-
+struct Bench : kadans::test::BalanceBench<DcmBalance> {
   Bench() {
-    Declaration declaration("balance", 0, parameters, setpoints, signals);
-    balance.declare(declaration);
-    joints.count = 4;
     set("offset_x_m", 0);
     set("hip_Nm_per_m", 300);
   }
-  void set(const std::string& name, double value) {
-    REQUIRE(parameters.set(parameters.find("balance." + name).value(), value));
-  }
-  ControlInput input() { return {joints, status, last, 0, 0.001}; }
-  // Rigid, leaning forward and turning that way.
-  void lean(double pitch_rad, double rate_rad_s = 0) {
-    status.base.pitch_rad = pitch_rad;
-    status.base.angular_velocity_rad_s = {0, rate_rad_s, 0};
-    balance.start(input());
-    for (int i = 0; i < 300; ++i) balance.step(input(), actuation);
-  }
-  double hip_Nm() const { return actuation.joints[0].effort_Nm; }
-  double ankle_Nm() const { return actuation.joints[1].effort_Nm; }
 };
 
 }  // namespace
@@ -57,19 +29,19 @@ TEST_CASE("DcmBalance presses with the toes against a lean forward, each ankle w
   Bench bench;
   bench.lean(0.05);
   const double error_m = com_height_m * std::sin(0.05);
-  CHECK(bench.balance.state().dcm_x_m == doctest::Approx(error_m));
+  CHECK(bench.state().dcm_x_m == doctest::Approx(error_m));
   CHECK(bench.ankle_Nm() == doctest::Approx(weight_N * error_m / 2));
-  CHECK(bench.actuation.joints[3].effort_Nm == bench.ankle_Nm());
+  CHECK(bench.ankle_Nm(3) == bench.ankle_Nm());
   bench.lean(-0.05);
   CHECK(bench.ankle_Nm() == doctest::Approx(-weight_N * error_m / 2));
 }
 
 TEST_CASE("DcmBalance counts where the robot is going, not only where it is") {
   Bench bench;
-  bench.lean(0, 0.2);
+  bench.lean(0, 0, 0.2);
   const double velocity_m_s = 0.2 * com_height_m;
-  CHECK(bench.balance.state().com_x_m == doctest::Approx(0));
-  CHECK(bench.balance.state().dcm_x_m == doctest::Approx(velocity_m_s * std::sqrt(com_height_m / 9.81)).epsilon(1e-3));
+  CHECK(bench.state().com_x_m == doctest::Approx(0));
+  CHECK(bench.state().dcm_x_m == doctest::Approx(velocity_m_s * std::sqrt(com_height_m / 9.81)).epsilon(1e-3));
 }
 
 TEST_CASE("DcmBalance keeps its ankles within their bound, and bows only beyond their reach") {
@@ -90,8 +62,8 @@ TEST_CASE("DcmBalance comes in from no torque, and goes as far as it is told") {
   Bench bench;
   bench.lean(0.05);
   const double whole_Nm = bench.ankle_Nm();
-  bench.balance.start(bench.input());
-  bench.balance.step(bench.input(), bench.actuation);
+  bench.object.start(bench.input());
+  bench.step();
   CHECK(bench.ankle_Nm() == doctest::Approx(0.005 * whole_Nm));
   bench.set("share", 0.5);
   bench.lean(0.05);
@@ -107,7 +79,7 @@ TEST_CASE("DcmBalance passes its torques through a low pass when it is told to")
   CHECK(bench.ankle_Nm() == doctest::Approx(whole_Nm).epsilon(0.01));
   bench.lean(-0.05);
   bench.status.base.pitch_rad = 0.05;
-  bench.balance.step(bench.input(), bench.actuation);
+  bench.step();
   CHECK(bench.ankle_Nm() == doctest::Approx(-0.8 * whole_Nm).epsilon(0.01));  // a tenth of the way
 }
 
@@ -115,7 +87,7 @@ TEST_CASE("DcmBalance gives no torque when something is not measured, or the rob
   Bench bench;
   bench.lean(0.05);
   bench.joints.joints[1].position_rad = std::numeric_limits<double>::quiet_NaN();
-  bench.balance.step(bench.input(), bench.actuation);
+  bench.step();
   CHECK(bench.ankle_Nm() == 0);
   CHECK(bench.hip_Nm() == 0);
   bench.joints.joints[1].position_rad = 0;
@@ -127,8 +99,8 @@ TEST_CASE("DcmBalance does not allocate") {
   Bench bench;
   const ControlInput input = bench.input();
   const kadans::testing::AllocationCount heap;
-  bench.balance.start(input);
-  bench.balance.step(input, bench.actuation);
+  bench.object.start(input);
+  bench.object.step(input, bench.computed);
   const long allocations = heap.count();
   CHECK(allocations == 0);
 }

@@ -2,13 +2,12 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include <doctest/doctest.h>
 
-#include "kadans/control/catalog.h"
 #include "kadans/testing/allocation_count.h"
 #include "leg_robot.h"
+#include "tested_object.h"
 
 using namespace kadans;
 using kadans::test::leg_robot;
@@ -19,20 +18,12 @@ const ObjectOptions feet{{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}};
 const std::vector<std::size_t> legs{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
 
 // Stands on bent knees, enabled.
-struct Bench {
+struct Bench : kadans::test::TestedObject {
   RobotModel model = leg_robot();
   DcmStep step{{.model = model, .joints = legs, .options = feet}};
-  ParameterTable parameters;
-  SetpointTable setpoints;
-  SignalTable signals;
-  JointStates joints;
-  RobotStatus status;
-  ActuationFrame last, actuation;
 
   Bench() {
-    Declaration declaration("step", 0, parameters, setpoints, signals);
-    step.declare(declaration);
-    joints.count = 10;
+    declare(step, 10);
     for (const std::size_t first : {std::size_t{0}, std::size_t{5}}) {
       joints.joints[first + hip_pitch].position_rad = -0.3;
       joints.joints[first + knee].position_rad = 0.6;
@@ -43,17 +34,13 @@ struct Bench {
     set("enabled", 1);
     step.start(input());
   }
-  void set(const std::string& name, double value) {
-    REQUIRE(parameters.set(parameters.find("step." + name).value(), value));
-  }
-  ControlInput input() { return {joints, status, last, 0, 0.001}; }
   void ticks(int count) {
-    for (int i = 0; i < count; ++i) step.step(input(), actuation);
+    for (int i = 0; i < count; ++i) step.step(input(), computed);
   }
   void push() { status.base.angular_velocity_rad_s = {0, 1.5, 0}; }  // xi 0.2 m ahead
   int claimed() const {
     int count = 0;
-    for (const std::size_t joint : legs) count += actuation.joints[joint].mode == ActuationMode::effort;
+    for (const std::size_t joint : legs) count += computed.joints[joint].mode == ActuationMode::effort;
     return count;
   }
 };
@@ -74,7 +61,7 @@ TEST_CASE("DcmStep claims both legs from its first step on, within their torques
   for (int tick = 0; tick < 800; ++tick) {
     if (tick == 300) bench.status.base.angular_velocity_rad_s = {};
     bench.ticks(1);
-    for (const std::size_t joint : legs) REQUIRE(std::abs(bench.actuation.joints[joint].effort_Nm) <= 25);
+    for (const std::size_t joint : legs) REQUIRE(std::abs(bench.computed.joints[joint].effort_Nm) <= 25);
   }
   CHECK(bench.claimed() == 10);
   CHECK(bench.step.plan().state().steps >= 1);
@@ -87,9 +74,9 @@ TEST_CASE("DcmStep swings the leg forward and lets the stance leg hold the torso
   bench.ticks(60);
   REQUIRE(bench.step.plan().state().phase == StepPlan::Phase::swings);
   const std::size_t swing = 5 * (1 - bench.step.plan().state().stance), stance = 5 - swing;
-  CHECK(bench.actuation.joints[swing + hip_pitch].effort_Nm < 0);
-  CHECK(bench.actuation.joints[swing + knee].effort_Nm > 0);
-  CHECK(bench.actuation.joints[stance + ankle_pitch].effort_Nm > 2);  // presses with the toes
+  CHECK(bench.computed.joints[swing + hip_pitch].effort_Nm < 0);
+  CHECK(bench.computed.joints[swing + knee].effort_Nm > 0);
+  CHECK(bench.computed.joints[stance + ankle_pitch].effort_Nm > 2);  // presses with the toes
 }
 
 TEST_CASE("DcmStep lets go when it is disabled, and forgets its step") {
@@ -133,7 +120,7 @@ TEST_CASE("DcmStep keeps the heading that it began with while the torso turns un
   const std::size_t swing = 5 * (1 - bench.step.plan().state().stance);
   bench.status.base.yaw_rad = 0.2;
   bench.ticks(1);
-  const double turned_Nm = bench.actuation.joints[swing + hip_yaw].effort_Nm;
+  const double turned_Nm = bench.computed.joints[swing + hip_yaw].effort_Nm;
   CHECK(turned_Nm < -5);  // the foot is to land straight
 }
 
@@ -141,7 +128,7 @@ TEST_CASE("DcmStep does not allocate") {
   Bench bench;
   bench.push();
   const kadans::testing::AllocationCount heap;
-  for (int i = 0; i < 700; ++i) bench.step.step(bench.input(), bench.actuation);
+  for (int i = 0; i < 700; ++i) bench.step.step(bench.input(), bench.computed);
   const long allocations = heap.count();
   CHECK(allocations == 0);
   CHECK(bench.step.plan().state().steps > 0);

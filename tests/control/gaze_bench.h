@@ -8,10 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <doctest/doctest.h>
-
-#include "kadans/control/catalog.h"
 #include "kadans/control/gaze.h"
+#include "tested_object.h"
 
 namespace kadans::test {
 
@@ -53,29 +51,18 @@ inline RobotModel head() {
 
 inline ObjectOptions eyes() { return {{{"head", "skull"}, {"left_eye", "left"}, {"right_eye", "right"}}}; }
 
-class GazeBench {
+class GazeBench : public TestedObject {
  public:
   static constexpr std::size_t joint_count = 7;
 
   GazeBench() : model(head()), object(make_gaze({model, {0, 1, 2, 3, 4, 5, 6}, eyes()})), kinematics_(model) {
-    Declaration declaration("it", 0, catalog.parameters, catalog.setpoints, catalog.signals);
-    object->declare(declaration);
+    declare(*object, joint_count);
     object->parameters_changed();
-    joints.count = written.joint_count = computed.joint_count = joint_count;
-    row_.resize(catalog.signals.size());
     object->start(input());
   }
 
-  void set(const std::string& parameter, double value) {
-    REQUIRE(catalog.parameters.set(catalog.parameters.find("it." + parameter).value(), value));
-    object->parameters_changed();
-  }
   void look(const Vec3& at_m, double duration_s = 0) {
     for (std::uint32_t i = 0; i < 3; ++i) object->set_point(i, at_m[i], duration_s);
-  }
-  double signal(const std::string& name) {
-    catalog.signals.gather(row_);
-    return row_[catalog.signals.find("control.it." + name).value()];
   }
   // The larger angle between an eye and the target, of the joints as they are, in degrees.
   double error_deg() {
@@ -94,16 +81,8 @@ class GazeBench {
     return worst_rad * 57.29577951308232;
   }
 
-  ControlInput input() const noexcept { return {joints, status, written, time_ns, 0.001}; }
-  void update() {
-    snapshot.time_ns = time_ns;
-    snapshot.joints = joints;
-    object->update(snapshot);
-  }
   void tick() {
-    written = computed;
-    object->step(input(), computed);
-    if (high_level && time_ns % 10'000'000 == 0) update();
+    control_tick();
     for (std::size_t i = 0; i < joint_count; ++i) {
       JointState& joint = joints.joints[i];
       if (written.joints[i].mode != ActuationMode::position || i == pushed) continue;
@@ -122,20 +101,12 @@ class GazeBench {
 
   RobotModel model;
   std::unique_ptr<ControlObject> object;
-  Catalog catalog;
-  JointStates joints;
-  RobotStatus status;
-  ActuationFrame written, computed;
-  Snapshot snapshot;
-  std::int64_t time_ns = 0;
-  bool high_level = true;
   std::size_t pushed = joint_count;           // a joint that the test moves
   double fastest_share = 0, inside_rad = 10;  // largest speed so far; least distance to a position limit
   double hardest_rad_s2 = 0;                  // largest acceleration of the neck
 
  private:
   Kinematics kinematics_;
-  std::vector<double> row_;
 };
 
 }  // namespace kadans::test

@@ -8,9 +8,9 @@
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;
-using kadans::testing::biped;
-using kadans::testing::biped_joint;
-using kadans::testing::biped_link;
+using kadans::test::biped;
+using kadans::test::biped_joint;
+using kadans::test::biped_link;
 
 namespace {
 

@@ -6,37 +6,25 @@
 #include <algorithm>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <doctest/doctest.h>
 
-#include "kadans/control/catalog.h"
-#include "kadans/control/control_object.h"
+#include "tested_object.h"
 #include "two_joint_robot.h"
 
 namespace kadans::test {
 
-class ObjectBench {
+class ObjectBench : public TestedObject {
  public:
-  static constexpr double dt_s = 0.001;
   static constexpr double inertia_kg_m2 = 0.05;
   static constexpr double position_gain_Nm_per_rad = 400, velocity_gain_Nms_per_rad = 8;
   static constexpr double load_Nm = 3;  // pulls towards smaller positions
 
   template <typename Make>
   explicit ObjectBench(Make make) : model(two_joint_robot()), object(make(ObjectSetup{model, {0, 1}})) {
-    Declaration declaration("it", 0, catalog.parameters, catalog.setpoints, catalog.signals);
-    object->declare(declaration);
-    joints.count = written.joint_count = computed.joint_count = 3;
-    row_.resize(catalog.signals.size());
+    declare(*object, 3);
   }
 
-  void set(const std::string& parameter, double value) {
-    const auto id = catalog.parameters.find("it." + parameter);
-    REQUIRE(id);
-    REQUIRE(catalog.parameters.set(*id, value));
-    object->parameters_changed();
-  }
   void set_if_there(const std::string& parameter, double value) {
     if (catalog.parameters.find("it." + parameter)) set(parameter, value);
   }
@@ -44,13 +32,6 @@ class ObjectBench {
     object->set_point(channel(name), value, duration_s);
   }
   void cancel(const std::string& name) { object->cancel_motion(channel(name)); }
-  double signal(const std::string& name) {
-    catalog.signals.gather(row_);
-    const auto id = catalog.signals.find("control.it." + name);
-    REQUIRE(id);
-    return row_[*id];
-  }
-  ControlInput input() const noexcept { return {joints, status, written, 0, dt_s}; }
   void start() const noexcept { object->start(input()); }
   void compute() noexcept { object->step(input(), computed); }
 
@@ -80,11 +61,7 @@ class ObjectBench {
   }
 
   RobotModel model;
-  Catalog catalog;
   std::unique_ptr<ControlObject> object;
-  JointStates joints;
-  RobotStatus status;
-  ActuationFrame written, computed;
 
  private:
   std::uint32_t channel(const std::string& name) const {
@@ -92,7 +69,6 @@ class ObjectBench {
     REQUIRE(id);
     return catalog.setpoints[*id].channel;
   }
-  std::vector<double> row_;
 };
 
 }  // namespace kadans::test

@@ -2,60 +2,27 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include <doctest/doctest.h>
 
 #include "biped.h"
-#include "kadans/control/catalog.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;
-using kadans::testing::biped;
-using kadans::testing::biped_feet;
+using kadans::test::biped;
+using kadans::test::biped_feet;
 
 namespace {
 
-constexpr double weight_N = 9.81 * 12;
-constexpr double com_height_m = (10 * 0.7 + 2 * 0.25) / 12;  // over the ankles
+constexpr double weight_N = kadans::test::biped_weight_N, com_height_m = kadans::test::biped_com_height_m;
 
-struct Bench {
-  RobotModel model = biped();
-  Stance stance{{.model = model, .joints = {0, 1, 2, 3}, .options = biped_feet}};
-  ParameterTable parameters;
-  SetpointTable setpoints;
-  SignalTable signals;
-  JointStates joints;
-  RobotStatus status;
-  ActuationFrame last, actuation;
-
+struct Bench : kadans::test::BalanceBench<Stance> {
   Bench() {
-    Declaration declaration("stance", 0, parameters, setpoints, signals);
-    stance.declare(declaration);
-    joints.count = 4;
     set("share", 1);
     set("sole_m", 0);
     set("pull_x", 2);
     set("need", 1);
   }
-  void set(const std::string& name, double value) {
-    REQUIRE(parameters.set(parameters.find("stance." + name).value(), value));
-  }
-  ControlInput input() { return {joints, status, last, 0, 0.001}; }
-  void settle() {
-    stance.start(input());
-    for (int i = 0; i < 300; ++i) stance.step(input(), actuation);
-  }
-  // Rigid, leaning, and turning that way.
-  void lean(double pitch_rad, double roll_rad = 0, double rate_rad_s = 0) {
-    status.base.pitch_rad = pitch_rad;
-    status.base.roll_rad = roll_rad;
-    status.base.angular_velocity_rad_s = {0, rate_rad_s, 0};
-    settle();
-  }
-  const Stance::State& state() const { return stance.state(); }
-  double hip_Nm() const { return actuation.joints[0].effort_Nm; }
-  double ankle_Nm(std::size_t joint = 1) const { return actuation.joints[joint].effort_Nm; }
 };
 
 }  // namespace
@@ -162,13 +129,13 @@ TEST_CASE("Stance comes in from no torque, as far as it is told, through a low p
   Bench bench;
   bench.lean(0.05);
   const double whole_Nm = bench.ankle_Nm();
-  bench.stance.start(bench.input());
-  bench.stance.step(bench.input(), bench.actuation);
+  bench.object.start(bench.input());
+  bench.step();
   CHECK(bench.ankle_Nm() == doctest::Approx(0.005 * whole_Nm));
   bench.set("smooth_s", 0.01);
   bench.settle();
   bench.status.base.pitch_rad = -0.05;
-  bench.stance.step(bench.input(), bench.actuation);
+  bench.step();
   CHECK(bench.ankle_Nm() == doctest::Approx(0.8 * whole_Nm).epsilon(0.02));  // a tenth of the way
   bench.set("share", 0);
   bench.settle();
@@ -180,7 +147,7 @@ TEST_CASE("Stance gives no torque when something is not measured, or the robot l
   bench.lean(0.05);
   bench.joints.joints[1].position_rad = std::numeric_limits<double>::quiet_NaN();
   bench.joints.joints[0].position_rad = std::numeric_limits<double>::quiet_NaN();
-  bench.stance.step(bench.input(), bench.actuation);
+  bench.step();
   CHECK(bench.ankle_Nm() == 0);
   CHECK(bench.hip_Nm() == 0);
   bench.joints.joints[0].position_rad = bench.joints.joints[1].position_rad = 0;
@@ -192,8 +159,8 @@ TEST_CASE("Stance does not allocate") {
   Bench bench;
   const ControlInput input = bench.input();
   const kadans::testing::AllocationCount heap;
-  bench.stance.start(input);
-  bench.stance.step(input, bench.actuation);
+  bench.object.start(input);
+  bench.object.step(input, bench.computed);
   const long allocations = heap.count();
   CHECK(allocations == 0);
 }
@@ -203,7 +170,7 @@ TEST_CASE("Stance needs feet, and joints of legs or arms") {
   CHECK_THROWS_WITH_AS(Stance({.model = model, .joints = {0}}), "it needs the option 'left_foot': a foot's link",
                        OptionError);
   RobotModel other = biped();
-  other.links.push_back(kadans::testing::biped_link("wing", 1, 0));
-  other.joints.push_back(kadans::testing::biped_joint("l_wing", 0, {}));
+  other.links.push_back(kadans::test::biped_link("wing", 1, 0));
+  other.joints.push_back(kadans::test::biped_joint("l_wing", 0, {}));
   CHECK_THROWS_AS(Stance({.model = other, .joints = {4}, .options = biped_feet}), std::invalid_argument);
 }

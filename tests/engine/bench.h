@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "kadans/control/joint_pid.h"
 #include "kadans/engine/behavior_engine.h"
@@ -46,35 +47,44 @@ inline SafetySettings safety_settings() {
   return settings;
 }
 
-inline std::vector<std::unique_ptr<ControlObject>> posture(Catalog& catalog, const RobotModel& model) {
+inline std::vector<std::unique_ptr<ControlObject>> posture(Catalog& catalog, const RobotModel& model,
+                                                           std::unique_ptr<ControlObject> at_drives = nullptr) {
   std::vector<std::unique_ptr<ControlObject>> objects;
-  for (const char* name : {"posture", "spare"}) {
-    auto object = std::make_unique<JointPid>(ObjectSetup{model, {0, 1}});
+  const auto add = [&](const char* name, std::unique_ptr<ControlObject> object) {
     Declaration declaration(name, static_cast<std::uint32_t>(objects.size()), catalog.parameters, catalog.setpoints,
                             catalog.signals);
     object->declare(declaration);
     objects.push_back(std::move(object));
+    catalog.objects.push_back({.name = name, .joints = {0, 1}});
+  };
+  for (const char* name : {"posture", "spare"}) add(name, std::make_unique<JointPid>(ObjectSetup{model, {0, 1}}));
+  if (at_drives) {
+    add("drives", std::move(at_drives));
+    catalog.at_drives = {2};
   }
   catalog.model = &model;
-  catalog.objects = {{.name = "posture", .type = "joint_pid", .joints = {0, 1}},
-                     {.name = "spare", .type = "joint_pid", .joints = {0, 1}}};
   catalog.sets = {{"posture", {0}}, {"spare", {1}}};
   for (const std::string& parameter : catalog.parameters.names()) {
     const ParameterId id = catalog.parameters.find(parameter).value();
     if (parameter.ends_with("kp_Nm_per_rad")) (void)catalog.parameters.set(id, 40);
     if (parameter.ends_with("kd_Nms_per_rad")) (void)catalog.parameters.set(id, 4);
+    if (parameter.ends_with("damping_ratio")) (void)catalog.parameters.set(id, 0);  // of a spring the plant has not
   }
   return objects;
 }
 
 struct Robot {
+  Robot() = default;
+  explicit Robot(std::unique_ptr<ControlObject> object) : at_drives(std::move(object)) {}
+
+  std::unique_ptr<ControlObject> at_drives;
   EngineSettings settings;
   RobotModel model = robot();
   IdealPlant plant{model, plant_settings()};
   Catalog catalog;
   Estimator estimator{model, {}, 0.001};
   Safety safety{safety_settings(), model};
-  std::vector<std::unique_ptr<ControlObject>> objects = posture(catalog, model);
+  std::vector<std::unique_ptr<ControlObject>> objects = posture(catalog, model, std::move(at_drives));
   ControlSets sets{catalog, std::move(objects)};
   std::unique_ptr<EngineExchange> exchange = std::make_unique<EngineExchange>();
   ControlEngine control{settings, plant, estimator, safety, sets, catalog, *exchange};

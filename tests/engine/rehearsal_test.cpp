@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "bench.h"
+#include "kadans/control/spring_torque.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;
@@ -19,9 +20,32 @@ struct Rows final : RecordSink {
   }
 };
 
+// Stands at the drives, hands on what is wanted of the joints, and counts.
+class Counted final : public ControlObject {
+ public:
+  explicit Counted(int& rehearsals) : rehearsals_(&rehearsals) {}
+  void declare(Declaration&) override {}
+  void start(const ControlInput&) noexcept override {}
+  void step(const ControlInput&, ActuationFrame&) noexcept override {}
+  void rehearse(const ControlInput&) const noexcept override { ++*rehearsals_; }
+  void set_point(std::uint32_t, double, double) noexcept override {}
+  void cancel_motion(std::uint32_t) noexcept override {}
+  double motion_remaining_s() const noexcept override { return 0; }
+
+ private:
+  int* rehearsals_;
+};
+
+// Loops around springs that the plant has not: they remember what was measured, and move the joints by it.
+std::unique_ptr<ControlObject> springs() {
+  const RobotModel model = bench::robot();
+  const DriveLaw drive{.spring_Nm_per_rad = 300, .rotor_inertia_kg_m2 = 0.02};
+  return make_spring_torque({.model = model, .joints = {0, 1}, .drives = {drive, drive}});
+}
+
 // Moves, switches its control set, is asked for nonsense, is asked for too much, and gives way: all that changes state.
-std::vector<double> run(int rehearsals_a_tick) {
-  bench::Robot robot;
+std::vector<double> run(std::unique_ptr<ControlObject> at_drives, int rehearsals_a_tick) {
+  bench::Robot robot(std::move(at_drives));
   Rows rows;
   robot.control.record_to(&rows);
   const SetpointId hip = robot.catalog.setpoints.find("posture.hip.position_rad").value();
@@ -49,7 +73,10 @@ std::vector<double> run(int rehearsals_a_tick) {
 }  // namespace
 
 TEST_CASE("A run with rehearsals computes bit for bit what a run without them does") {
-  const std::vector<double> plain = run(0), rehearsed = run(1), twice = run(2);
+  std::unique_ptr<ControlObject> (*at_drives)() = [] { return std::unique_ptr<ControlObject>(); };
+  SUBCASE("with rigid drives") {}
+  SUBCASE("with control objects at the drives") { at_drives = springs; }
+  const std::vector<double> plain = run(at_drives(), 0), rehearsed = run(at_drives(), 1), twice = run(at_drives(), 2);
   REQUIRE(plain.size() == rehearsed.size());
   CHECK(plain.size() > 600 * 20);
   CHECK(std::memcmp(plain.data(), rehearsed.data(), plain.size() * sizeof(double)) == 0);
@@ -57,8 +84,17 @@ TEST_CASE("A run with rehearsals computes bit for bit what a run without them do
   CHECK(std::memcmp(plain.data(), twice.data(), plain.size() * sizeof(double)) == 0);
 }
 
+TEST_CASE("A rehearsal goes through the objects at the drives, too") {
+  int rehearsals = 0;
+  bench::Robot robot(std::make_unique<Counted>(rehearsals));
+  robot.run(10);
+  CHECK(rehearsals == 0);
+  robot.control.rehearse();
+  CHECK(rehearsals == 1);
+}
+
 TEST_CASE("A rehearsal neither allocates, publishes, writes to the plant nor takes a command") {
-  bench::Robot robot;
+  bench::Robot robot(springs());
   robot.run(50);
   CommandSender sender(robot.exchange->commands);
   sender.begin(50'000'000);

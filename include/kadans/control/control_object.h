@@ -83,7 +83,8 @@ class ControlObject {
   // is wanted of them, and replaces it by what the motors shall do.
   virtual void step(const ControlInput& input, ActuationFrame& actuation) noexcept = 0;
   // Control thread, in the wait before a tick: computes what step would, by the same functions but on copies, so that
-  // its code and its memory are in the caches. Changes nothing; an object may leave it out.
+  // its code and its memory are in the caches. Changes nothing; an object may leave it out. At the drives what was
+  // last wanted of the joints is in input.last.
   virtual void rehearse(const ControlInput& input) const noexcept { (void)input; }
   // Control thread. The caller has checked the value against the set-point's range and duration_s >= 0; 0 is at once.
   virtual void set_point(std::uint32_t channel, double value, double duration_s) noexcept = 0;

@@ -34,7 +34,7 @@ class ControlSets {
 
   // Control thread. Computes the actuation of all joints.
   void step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept;
-  // Control thread, in the wait before a tick: what step would compute, on copies.
+  // Control thread, in the wait before a tick: what drive and step would compute, on copies.
   void rehearse(std::uint64_t tick, const ControlInput& input, ActuationFrame& scratch) const noexcept;
   // Control thread, before step. The set computes from the next step on, in place of the active ones that it shares a
   // joint with; objects that were not active start from the present state: in that step, or earlier by start_newcomers,

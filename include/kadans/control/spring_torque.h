@@ -32,6 +32,7 @@ class SpringTorque final : public ControlObject {
   void start(const ControlInput& input) noexcept override;
   // `actuation` holds the torques wanted at the joints; those of its own it replaces.
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
+  void rehearse(const ControlInput& input) const noexcept override;
   void set_point(std::uint32_t, double, double) noexcept override {}  // has none
   void cancel_motion(std::uint32_t) noexcept override {}
   double motion_remaining_s() const noexcept override { return 0; }

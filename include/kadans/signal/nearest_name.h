@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kadans {
 
@@ -13,5 +14,14 @@ std::string nearest_name(std::string_view wrong, std::span<const std::string> ca
 
 // ", did you mean 'NAME'?" or "" when nothing is near: to be appended to a message.
 std::string did_you_mean(std::string_view wrong, std::span<const std::string> candidates);
+
+// The names of what has one: candidates.
+template <typename Named>
+std::vector<std::string> names_of(const std::vector<Named>& all) {
+  std::vector<std::string> names;
+  names.reserve(all.size());
+  for (const Named& one : all) names.push_back(one.name);
+  return names;
+}
 
 }  // namespace kadans

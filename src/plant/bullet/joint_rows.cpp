@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "coordinate_row.h"
+
 namespace kadans::bullet {
 namespace {
 
@@ -57,49 +59,20 @@ void JointRows::activate_limit(double dt_s) {
                   .wanted_rad_s = at_lower ? -away : away};
 }
 
-btMultiBodySolverConstraint JointRows::prototype(btMultiBodyJacobianData& data, double& response) const {
-  btMultiBodySolverConstraint row;
-  const int dofs = m_bodyA->getNumDofs() + 6;
-  row.m_multiBodyA = m_bodyA;
-  row.m_linkA = m_linkA;
-  row.m_deltaVelAindex = m_bodyA->getCompanionId();
-  if (row.m_deltaVelAindex < 0) {
-    row.m_deltaVelAindex = data.m_deltaVelocities.size();
-    m_bodyA->setCompanionId(row.m_deltaVelAindex);
-    data.m_deltaVelocities.resize(row.m_deltaVelAindex + dofs, 0);
-  }
-  row.m_jacAindex = data.m_jacobians.size();
-  row.m_deltaVelBindex = row.m_jacBindex = -1;
-  data.m_jacobians.resize(row.m_jacAindex + dofs, 0);
-  data.m_deltaVelocitiesUnitImpulse.resize(row.m_jacAindex + dofs, 0);
-  const int own = row.m_jacAindex + 6 + m_bodyA->getLink(m_linkA).m_dofOffset;
-  data.m_jacobians[own] = 1;
-  m_bodyA->calcAccelerationDeltasMultiDof(&data.m_jacobians[row.m_jacAindex],
-                                          &data.m_deltaVelocitiesUnitImpulse[row.m_jacAindex], data.scratch_r,
-                                          data.scratch_v);
-  response = data.m_deltaVelocitiesUnitImpulse[own];
-  row.m_relpos1CrossNormal = row.m_contactNormal1 = row.m_relpos2CrossNormal = row.m_contactNormal2 =
-      row.m_angularComponentA = row.m_angularComponentB = btVector3(0, 0, 0);
-  row.m_appliedImpulse = row.m_appliedPushImpulse = 0;
-  row.m_friction = row.m_rhsPenetration = 0;
-  row.m_originalContactPoint = nullptr;
-  row.m_overrideNumSolverIterations = row.m_frictionIndex = -1;
-  return row;
-}
-
 void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
                                      const btContactSolverInfo& info) {
   activate_limit(info.m_timeStep);
   double response = 0;
   btMultiBodySolverConstraint row;
   bool made = false;
-  const double velocity = m_bodyA->getVelocityVector()[6 + m_bodyA->getLink(m_linkA).m_dofOffset];
+  const int coordinate = 6 + m_bodyA->getLink(m_linkA).m_dofOffset;
+  const double velocity = m_bodyA->getVelocityVector()[coordinate];
   for (const Kind kind : {linear, servo, friction, limit}) {
     if (!active_[kind]) {
       internalSetAppliedImpulse(kind, 0);
       continue;
     }
-    if (!made) row = prototype(data, response);
+    if (!made) row = coordinate_row(*m_bodyA, m_linkA, coordinate, data, response);
     made = true;
     const JointLaw& law = laws_[kind];
     if (law.stiff) {

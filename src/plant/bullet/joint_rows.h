@@ -73,7 +73,6 @@ class JointRows final : public btMultiBodyConstraint {
   double above_lower_rad() const { return m_bodyA->getJointPos(m_linkA) - lower_rad_; }
   double below_upper_rad() const { return upper_rad_ - m_bodyA->getJointPos(m_linkA); }
   void activate_limit(double dt_s);
-  btMultiBodySolverConstraint prototype(btMultiBodyJacobianData& data, double& response) const;
 
   double lower_rad_, upper_rad_;
   std::array<bool, 4> active_{};

@@ -24,8 +24,6 @@ class RollingRows final : public btMultiBodyConstraint {
   void debugDraw(btIDebugDraw*) override {}
 
  private:
-  btMultiBodySolverConstraint row(btMultiBodyJacobianData& data, int axis) const;
-
   double limit_Nms_ = 0;
 };
 
