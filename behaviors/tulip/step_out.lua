@@ -1,14 +1,16 @@
--- Stands its ground with one foot ahead; a push that standing does not hold it catches by stepping. What the step leaves
--- the legs bear by force, apart, as in stay_up. When it falls all the same it gets up, and stands its ground on parallel
--- feet.
+-- Stands its ground with one foot ahead, as stay_up does by forces, and catches a push forward that standing does not
+-- hold by stepping. It rests nearer to the foot ahead: on that foot it stands while it steps. What the step leaves the
+-- legs bear by force again, apart and in the middle. When it falls all the same it gets up, and stands its ground on
+-- parallel feet.
 local k = require "kadans"
 local floor = require "floor"
 
 local P = k.params {
   settle_s = { 0.5, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
+  firm_s   = { 0.5, min = 0, max = 5, unit = "s", doc = "time until the legs bear by force, and the pose gives way" },
+  aside_m  = { 0.035, min = -0.1, max = 0.1, unit = "m", doc = "how far from the middle it rests, to the foot ahead" },
   spread_s = { 0.1, min = 0, max = 5, unit = "s", doc = "time from the landing in which the hips roll apart" },
-  bear_s   = { 0.1, min = 0, max = 5, unit = "s", doc = "time from the landing until the legs bear by force" },
-  fade_s   = { 0.25, min = 0, max = 5, unit = "s", doc = "from then on, until the step and the pose give way" },
+  hold_s   = { 0.27, min = 0, max = 5, unit = "s", doc = "time from the landing until the step gives way" },
 }
 
 local function lies(s) return floor.posture(s.base) ~= "upright" end
@@ -24,11 +26,14 @@ return k.behavior "step_out" {
   initial  = "stand",
 
   k.state "stand" {
-    enter = function(m)
+    run = function(m)
       m.posture:set_gains("step")
       m.posture:move("poised", { time_s = P.settle_s })
-      m.stance:set_parameter("share", 0)
-      m.balance:set_parameter("share", 1)
+      m.stance:set_parameter("offset_y_m", P.aside_m)
+      m.stance:set_parameter("share", 1)
+      m:wait(P.firm_s)
+      m.balance:set_parameter("share", 0)
+      m.posture:set_gains("balance")
       m.step:set_parameter("enabled", 1)
     end,
     { when = lies, to = "fallen", why = "lies" },
@@ -37,17 +42,18 @@ return k.behavior "step_out" {
   k.state "caught" {
     run = function(m)
       m.posture:move("ready", { time_s = P.spread_s })
-      m:wait(P.bear_s)
-      m.stance:set_parameter("share", 1)
-      m:wait(P.fade_s)
-      m.balance:set_parameter("share", 0)
-      m.posture:set_gains("balance")
+      m.stance:set_parameter("offset_y_m", 0)
+      m:wait(P.hold_s)
       m.step:set_parameter("enabled", 0)
     end,
     { when = lies, to = "fallen", why = "lies" },
   },
   k.state "fallen" {
-    enter = function(m) m.step:set_parameter("enabled", 0) end,
+    enter = function(m)
+      m.step:set_parameter("enabled", 0)
+      m.stance:set_parameter("offset_y_m", 0)
+      m.stance:set_parameter("share", 0)
+    end,
     k.call "get_up",
     { on = "done", to = "upright" },
     { on = "failed", to = "failed" },

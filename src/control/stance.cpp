@@ -41,6 +41,7 @@ void Stance::declare_pressure(Declaration& d) {
   d.parameter({"share", "", 0, 1, c.share, "Share of all its torques."}, &c.share);
   d.parameter({"offset_x_m", "m", -0.2, 0.2, c.offset_x_m, "Where the divergent component shall be, forward."},
               &c.offset_x_m);
+  d.parameter({"offset_y_m", "m", -0.2, 0.2, c.offset_y_m, "The same, to the left."}, &c.offset_y_m);
   d.parameter({"pull_x", "", 0, 10, c.pull_x, "Shift of the pressure per error forward."}, &c.pull_x);
   d.parameter({"pull_y", "", 0, 10, c.pull_y, "Shift of the pressure per error to the side."}, &c.pull_y);
   d.parameter({"need", "", 1, 10, c.need, "Of pull, what the trunk has to bow for."}, &c.need);
@@ -120,7 +121,7 @@ void Stance::find_pressure(const BaseStatus& base) noexcept {
   const std::array<double, 2> righting = righting_Nm(base);
 
   const double reach_m = apart_m / 2 + c.side_m;
-  const Answer side = answer(s.dcm_y_m, 0, c.pull_y, {-reach_m, reach_m}, -righting[0]);
+  const Answer side = answer(s.dcm_y_m, c.offset_y_m, c.pull_y, {-reach_m, reach_m}, -righting[0]);
   s.cop_y_m = side.pressure_m;
   s.turn_x_Nm = -side.turn_Nm;
   s.left = std::clamp(0.5 + s.cop_y_m / apart_m, 0.0, 1.0);

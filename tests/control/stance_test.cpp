@@ -83,6 +83,19 @@ TEST_CASE("Stance rights the trunk only as far as the soles make up for it") {
   CHECK(bench.state().cop_x_m == doctest::Approx(2 * dcm_m + 10 / weight_N));
 }
 
+TEST_CASE("Stance pushes off to where it is told to rest, beside the middle, and bears there at rest") {
+  Bench bench;
+  bench.set("pull_y", 2);
+  bench.set("offset_y_m", 0.02);
+  bench.lean(0);
+  CHECK(bench.state().cop_y_m == doctest::Approx(-0.02));
+  CHECK(bench.state().left < 0.5);
+  bench.lean(0, -std::asin(0.02 / com_height_m));
+  CHECK(bench.state().dcm_y_m == doctest::Approx(0.02).epsilon(0.01));
+  CHECK(bench.state().cop_y_m == doctest::Approx(0.02).epsilon(0.01));
+  CHECK(bench.state().left > 0.5);
+}
+
 TEST_CASE("Stance puts the weight on the foot on the side that the robot falls to") {
   Bench bench;
   bench.lean(0, -0.02);  // to the left

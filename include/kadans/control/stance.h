@@ -44,8 +44,8 @@ namespace kadans {
 class Stance final : public ControlObject {
  public:
   struct Config {
-    double share = 0;       // 0..1
-    double offset_x_m = 0;  // rest: where xi shall be, from the middle between the feet's frames
+    double share = 0;                       // 0..1
+    double offset_x_m = 0, offset_y_m = 0;  // rest: where xi shall be, from the middle between the feet's frames
     double pull_x = 2, pull_y = 2;
     double need = 1.1;
     double toe_m = 0.12, heel_m = 0.07;  // from a foot's frame to where its pressure may go
