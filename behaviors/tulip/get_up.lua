@@ -21,6 +21,8 @@ local P = k.params {
   turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
   face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
   flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
+  roll_way    = { 1, min = 1, max = 2, doc = "how it rolls, 2: as soft springs want it" },
+  fold_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it folds onto hands and feet in" },
   rise_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rises in; soft springs want more" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
@@ -51,7 +53,7 @@ local function roll(over)
     run = function(m, s)
       m.vars.rolls = m.vars.rolls + 1
       m.vars.turned = false
-      play(m, floor.roll(over, s.joints))
+      play(m, floor.roll(over, s.joints, P.roll_way < 1.5 and 1 or 2))
       m.posture:move(floor.lying(), { time_s = P.straight_s }):wait()
       m.vars.turned = true
       m:wait(P.turn_s)
@@ -98,7 +100,7 @@ return k.behavior "get_up" {
   k.state "roll_right" (roll "right"),
   k.state "fold" {
     run = function(m, s)
-      local steps, turns = floor.fold(s.joints)
+      local steps, turns = floor.fold(s.joints, P.fold_pace)
       m.vars.arms = turns
       play(m, steps)
       m:wait(P.bear_s)
