@@ -33,11 +33,20 @@ local rise = {
   { 0.19, -0.150, 0.300, -0.194, -0.200 },
 }
 -- Seconds, then of the left and of the right side: hip pitch, knee, hip roll, hip yaw, shoulder. Rolls over the left side.
-local roll = {
-  { 0.43, { -0.48, 0.31, 0.42, -0.49, -4.00 }, { -0.76, 1.86, 0.10, 0.56, -0.06 } },
-  { 0.31, { 0.10, 1.13, -0.16, -0.07, -3.77 }, { 0.46, 1.11, 0.43, 0.11, 2.74 } },
-  { 0.26, { 0.14, 0.94, 0.35, -0.21, -3.38 }, { -1.23, 0.35, 0.15, 0.26, 1.40 } },
-  { 0.24, { -0.08, 1.09, 0.27, -0.61, -4.00 }, { -0.99, 1.00, 0.02, 0.20, 0.20 } },
+-- The second way is for soft springs: legs that give way need quicker and wider strokes.
+local rolls = {
+  {
+    { 0.43, { -0.48, 0.31, 0.42, -0.49, -4.00 }, { -0.76, 1.86, 0.10, 0.56, -0.06 } },
+    { 0.31, { 0.10, 1.13, -0.16, -0.07, -3.77 }, { 0.46, 1.11, 0.43, 0.11, 2.74 } },
+    { 0.26, { 0.14, 0.94, 0.35, -0.21, -3.38 }, { -1.23, 0.35, 0.15, 0.26, 1.40 } },
+    { 0.24, { -0.08, 1.09, 0.27, -0.61, -4.00 }, { -0.99, 1.00, 0.02, 0.20, 0.20 } },
+  },
+  {
+    { 0.29, { -0.42, 0.91, 0.29, -0.50, -4.60 }, { -0.52, 1.83, -0.13, 0.70, 0.36 } },
+    { 0.21, { -0.21, 1.19, -0.14, -0.56, -4.60 }, { 0.47, 0.99, 0.50, -0.09, 3.41 } },
+    { 0.30, { 0.23, 1.00, 0.32, -0.41, -2.07 }, { -0.78, 0.23, 0.04, 0.27, 2.24 } },
+    { 0.18, { 0.09, 1.06, 0.29, -0.26, -3.42 }, { -0.76, 1.40, -0.03, 0.06, -0.41 } },
+  },
 }
 
 local shoulder_max = 4.65  -- inside the limit of 4.7 rad
@@ -103,11 +112,12 @@ local function timed(pose, time_s) return { pose, time_s = time_s } end
 -- Straight legs; the arms stay where they are.
 function floor.lying() return poses.with(lie, {}) end
 
--- From the face onto hands and feet: { pose, time_s = }, one motion each, and the turns of the arms.
-function floor.fold(joints)
+-- From the face onto hands and feet: { pose, time_s = }, one motion each, in `pace` times their time, and the turns of
+-- the arms.
+function floor.fold(joints, pace)
   local turns = arms(even(fold[1]), joints)
   local steps = {}
-  for i, frame in ipairs(fold) do steps[i] = timed(turned(even(frame), turns), frame[1]) end
+  for i, frame in ipairs(fold) do steps[i] = timed(turned(even(frame), turns), frame[1] * (pace or 1)) end
   return steps, turns
 end
 
@@ -133,10 +143,10 @@ function floor.rise(turns, lean, pace)
   return points
 end
 
--- From the back, or the side, onto the face, over the left or the right side.
-function floor.roll(over, joints)
+-- From the back, or the side, onto the face, over the left or the right side, in the first or the second `way`.
+function floor.roll(over, joints, way)
   local steps, turns = {}, nil
-  for i, frame in ipairs(roll) do
+  for i, frame in ipairs(rolls[way or 1]) do
     local pose = poses.with(side("l", frame[2]), side("r", frame[3]))
     if over == "right" then pose = poses.mirrored(pose) end
     turns = turns or arms(pose, joints)

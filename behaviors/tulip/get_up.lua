@@ -17,10 +17,13 @@ local P = k.params {
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
   lean_rad    = { 0.0, min = -0.2, max = 0.2, unit = "rad", doc = "how far back it leans in the ankles while it rises" },
   learn_rad   = { 0.03, min = 0, max = 0.2, unit = "rad", doc = "change of that after a fall, away from where it fell" },
+  folded      = { -1, min = -1, max = 1, doc = "up, along its height, below which it is still folded when it falls" },
   straight_s  = { 0.22, min = 0.02, max = 2, unit = "s", doc = "time to stretch the legs after a roll" },
   turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
   face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
   flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
+  roll_way    = { 1, min = 1, max = 2, doc = "how it rolls first in a try, 2: as soft springs want it; then as 1" },
+  fold_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it folds onto hands and feet in" },
   rise_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rises in; soft springs want more" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
 }
@@ -40,6 +43,12 @@ local function bears(s)
   return s.feet.left.contact and s.feet.right.contact and up.x < -0.4 and math.abs(up.y) < 0.4
 end
 
+-- Rather than backward. Who falls backward while still folded has its face down, too, but its head below its hips.
+local function fell_forward(s)
+  local up = floor.up(s.base)
+  return up.x < 0 and up.z > P.folded
+end
+
 local function is(posture) return function(s) return floor.posture(s.base) == posture end end
 
 local function play(m, steps)
@@ -51,7 +60,7 @@ local function roll(over)
     run = function(m, s)
       m.vars.rolls = m.vars.rolls + 1
       m.vars.turned = false
-      play(m, floor.roll(over, s.joints))
+      play(m, floor.roll(over, s.joints, m.vars.rolls == 1 and P.roll_way > 1.5 and 2 or 1))
       m.posture:move(floor.lying(), { time_s = P.straight_s }):wait()
       m.vars.turned = true
       m:wait(P.turn_s)
@@ -98,7 +107,7 @@ return k.behavior "get_up" {
   k.state "roll_right" (roll "right"),
   k.state "fold" {
     run = function(m, s)
-      local steps, turns = floor.fold(s.joints)
+      local steps, turns = floor.fold(s.joints, P.fold_pace)
       m.vars.arms = turns
       play(m, steps)
       m:wait(P.bear_s)
@@ -133,7 +142,7 @@ return k.behavior "get_up" {
   },
   k.state "fell" {
     enter = function(m, s)
-      m.vars.learnt_rad = m.vars.learnt_rad + (floor.up(s.base).x < 0 and P.learn_rad or -P.learn_rad)
+      m.vars.learnt_rad = m.vars.learnt_rad + (fell_forward(s) and P.learn_rad or -P.learn_rad)
     end,
     { after = 0, to = "again" },
   },
