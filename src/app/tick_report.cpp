@@ -1,5 +1,7 @@
 #include "tick_report.h"
 
+#include <nlohmann/json.hpp>
+
 namespace kadans {
 
 nlohmann::ordered_json tick_json(const TickStatistics& statistics, std::span<const TickQuantile> quantiles) {
