@@ -8,6 +8,7 @@
 
 #include "kadans/config/fields.h"
 #include "kadans/remote/page_files.h"
+#include "kadans/telemetry/mcap_reader.h"
 #include "live/chromium.h"
 #include "live/live_service.h"
 #include "terminal.h"
@@ -76,6 +77,7 @@ std::string pictures_missing() {
 void draw_record(const PictureOrder& order,
                  const std::function<void(const std::string& name, std::string bytes)>& take) {
   if (const std::string missing = pictures_missing(); !missing.empty()) throw InputError({.message = missing});
+  (void)McapReader(order.record);  // says by its name what is wrong with it
   Frames frames;
   LiveServer server(
       {.port = 0}, nullptr,
