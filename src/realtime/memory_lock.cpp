@@ -12,6 +12,12 @@
 #include <malloc.h>
 #include <sys/mman.h>
 
+// Bounds of what cmake/soft_layers.ld.in puts apart; null in a program that is linked without it.
+extern "C" {
+[[gnu::weak]] extern const std::byte kadans_soft_code_begin[], kadans_soft_code_end[];
+[[gnu::weak]] extern const std::byte kadans_soft_constants_begin[], kadans_soft_constants_end[];
+}
+
 namespace kadans {
 namespace {
 
@@ -26,6 +32,10 @@ struct LeftOut {
   std::span<const std::string_view> unused;
   std::array<Range, 256> ranges;
   std::size_t count = 0;
+
+  void add(const std::byte* begin, const std::byte* end) noexcept {
+    add(reinterpret_cast<std::uintptr_t>(begin), reinterpret_cast<std::uintptr_t>(end), false);
+  }
 
   // What was touched of it so far goes too, if nobody can have written to it.
   void add(std::uintptr_t begin, std::uintptr_t end, bool written) noexcept {
@@ -90,6 +100,8 @@ bool parse(const char* line, Range& mapping) noexcept {
 int lock_used(std::span<const std::string_view> unused) noexcept {
   LeftOut out{.unused = unused, .ranges = {}};
   dl_iterate_phdr(leave_out, &out);
+  out.add(kadans_soft_code_begin, kadans_soft_code_end);
+  out.add(kadans_soft_constants_begin, kadans_soft_constants_end);
   const std::span<Range> ranges(out.ranges.data(), out.count);
   std::ranges::sort(ranges, {}, &Range::begin);
   if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0) return errno;
@@ -115,7 +127,7 @@ int lock_memory(std::size_t reserve_bytes, std::span<const std::string_view> unu
   std::free(const_cast<char*>(reserve));
   if (unused.empty()) return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
   const int refused = lock_used(unused);
-  return mlockall(MCL_FUTURE) == 0 ? refused : errno;
+  return mlockall(MCL_FUTURE | MCL_ONFAULT) == 0 ? refused : errno;
 }
 
 }  // namespace kadans

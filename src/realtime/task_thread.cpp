@@ -15,10 +15,11 @@
 namespace kadans {
 namespace {
 
-// All that is left of this thread's stack, but for a reserve at its end, is in memory before the first beat. What the
-// thread's own variables take of it differs: a sanitizer's are large.
+// What is left of this thread's stack, but for a reserve at its end, is in memory before the first beat, or as much as
+// a beat can need: a larger stack is for Lua's and the model's rarest. What the thread's own variables take of it
+// differs: a sanitizer's are large.
 void touch_stack() noexcept {
-  constexpr std::size_t page = 4096, reserve = 16 * 1024;
+  constexpr std::size_t page = 4096, reserve = 16 * 1024, most = 256 * 1024;
   pthread_attr_t attributes;
   if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;
   void* lowest = nullptr;
@@ -28,8 +29,9 @@ void touch_stack() noexcept {
   const auto* const here = static_cast<const char*>(__builtin_frame_address(0));
   const auto left = static_cast<std::size_t>(here - static_cast<const char*>(lowest));
   if (left <= 2 * reserve) return;
-  auto* const deep = static_cast<volatile char*>(__builtin_alloca(left - 2 * reserve));
-  for (std::size_t i = 0; i < left - 2 * reserve; i += page) deep[i] = 0;
+  const std::size_t touched = std::min(left - 2 * reserve, most);
+  auto* const deep = static_cast<volatile char*>(__builtin_alloca(touched));
+  for (std::size_t i = 0; i < touched; i += page) deep[i] = 0;
 }
 
 std::uint64_t faults_of_this_thread() noexcept {

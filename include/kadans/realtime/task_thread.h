@@ -1,9 +1,9 @@
 // A periodic task on a thread of its own: its period, priority, CPU and stack, and what became of it.
 //
-// The thread blocks all signals, so that they disturb only the thread that started it, touches its whole stack before
-// the first beat, and has its scheduling from the start: SCHED_FIFO above 0, the usual one at 0. What the system
-// refuses of that is kept and may be asked for; the task runs all the same, whoever must not go on without looks at
-// refused().
+// The thread blocks all signals, so that they disturb only the thread that started it, touches its stack before the
+// first beat (of a large one 256 kB), and has its scheduling from the start: SCHED_FIFO above 0, the usual one at 0.
+// What the system refuses of that is kept and may be asked for; the task runs all the same, whoever must not go on
+// without looks at refused().
 //
 // pthreads, not std::thread: Xenomai replaces the pthread calls when the program is linked, not those inside libstdc++.
 // Threads: start, stop, join by the owner; the others by any.
