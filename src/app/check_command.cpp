@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "commands.h"
 #include "kadans/app/assembly.h"
@@ -26,10 +27,24 @@ std::string check_urdf(const std::string& file) {
   return text;
 }
 
+// Whether the behaviors that the robot gives parameters take them.
+void check_behavior_values(const RobotConfig& config, const Catalog& catalog) {
+  std::set<std::string> behaviors;
+  for (const BehaviorValue& given : config.behavior_values) behaviors.insert(given.behavior);
+  const fs::path root = project_root(config.file);
+  std::vector<InputProblem> problems;
+  for (const std::string& behavior : behaviors) {
+    const fs::path file = fs::path("behaviors") / config.name / (behavior + ".lua");
+    for (InputProblem& problem : check_behavior(root, file, catalog)) problems.push_back(std::move(problem));
+  }
+  if (!problems.empty()) throw InputError(problems);
+}
+
 std::string check_robot(const std::string& file) {
   const Robot robot = read_robot(file);
   const auto system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));
+  check_behavior_values(robot.config, system->catalog);
   return "robot: " + std::to_string(sets.size()) + " control objects, " + std::to_string(system->catalog.sets.size()) +
          " control sets, " + std::to_string(system->catalog.parameters.size()) + " parameters";
 }

@@ -106,6 +106,7 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
   catalog.drives = drive_laws(config);
   catalog.switching = config.switching;
   catalog.unheld = config.unheld;
+  catalog.behavior_values = config.behavior_values;
   for (const ObjectConfig& object : config.objects) {
     const auto index = static_cast<std::uint32_t>(system->objects.size());
     system->objects.push_back(make_object(robot, object, catalog.drives));

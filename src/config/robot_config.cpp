@@ -51,6 +51,7 @@ void RobotReader::read(Fields& f) {
   f.object("engine", "periods and bounds of the engines",
            [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
   f.map("poses", "positions in radians by joint pattern, for behaviors and the start", [&](Fields& e) { pose(e); });
+  f.map("behaviors", "parameters of behaviors on this robot, by behavior", [&](Fields& e) { behavior(e); });
   f.object("safe", "the posture the robot goes to when a behavior failed",
            [&](Fields& safe) { safe_fields(safe, config_, problems_); });
   f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });

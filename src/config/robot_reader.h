@@ -40,6 +40,9 @@ class RobotReader {
   void limits(Fields& entry);
   bool within_urdf(const Fields& entry, const JointLimits& limits, const Joint& joint);
 
+  // robot_behaviors.cpp
+  void behavior(Fields& entry);
+
   // robot_control.cpp
   void control(Fields& f);
   void initial_sets(Fields& f);

@@ -1,4 +1,7 @@
-// The arguments that a behavior is played with: values of its `args`, as from k.call, or of its parameters.
+// What a behavior is played with: the robot's values of its parameters, and arguments, which are values of its `args`,
+// as from k.call, or of its parameters.
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "behavior_parts.h"
@@ -74,33 +77,71 @@ ScriptParameter* find_parameter(Behavior::Parts& parts, const std::string& name)
   return nullptr;
 }
 
+std::string who(const std::string& behavior) { return "of behavior '" + behavior + "'"; }
+
+// "", or why it cannot be set so.
+std::string set(ScriptParameter& parameter, double value, const std::string& behavior) {
+  if (value >= parameter.min && value <= parameter.max) {
+    parameter.value = value;
+    return "";
+  }
+  return "parameter '" + parameter.name + "' " + who(behavior) + " = " + number(value) + " is outside its range " +
+         number(parameter.min) + ".." + number(parameter.max) + " " + parameter.unit;
+}
+
+bool declared_by(const std::string& behavior, const std::string& chunk) {
+  return std::filesystem::path(chunk).stem() == behavior;
+}
+
+// What is wrong with it, or "".
+std::string give(Behavior::Parts& parts, const BehaviorValue& given) {
+  std::vector<std::string> names;
+  for (ScriptParameter& parameter : parts.lua->core().parameters) {
+    if (!declared_by(given.behavior, parameter.chunk)) continue;
+    if (parameter.name == given.parameter) {
+      const std::string wrong = set(parameter, given.value, given.behavior);
+      parameter.initial = parameter.value;
+      return wrong;
+    }
+    names.push_back(parameter.name);
+  }
+  return "behavior '" + given.behavior + "' has no parameter '" + given.parameter + "'" +
+         hint_text(given.parameter, names);
+}
+
 // What is wrong with it, or "".
 std::string give(Giving& giving, const PlayArgument& argument) {
-  const std::string who = "of behavior '" + giving.parts.chart.name + "'";
+  const std::string& behavior = giving.parts.chart.name;
   for (const auto& [name, type] : giving.declared) {
     if (name != argument.name) continue;
-    if (type != type_of(argument.value)) return "argument '" + name + "' " + who + " is " + kind_name(type);
+    if (type != type_of(argument.value)) return "argument '" + name + "' " + who(behavior) + " is " + kind_name(type);
     giving.given.push_back(&argument);
     return "";
   }
   if (ScriptParameter* parameter = find_parameter(giving.parts, argument.name)) {
     const auto* value = std::get_if<double>(&argument.value);
-    if (value == nullptr) return "parameter '" + argument.name + "' " + who + " is a number";
-    if (!(*value >= parameter->min && *value <= parameter->max)) {
-      return "parameter '" + argument.name + "' " + who + " = " + number(*value) + " is outside its range " +
-             number(parameter->min) + ".." + number(parameter->max) + " " + parameter->unit;
-    }
-    parameter->value = *value;
-    return "";
+    if (value == nullptr) return "parameter '" + argument.name + "' " + who(behavior) + " is a number";
+    return set(*parameter, *value, behavior);
   }
   std::vector<std::string> names;
   for (const auto& declared : giving.declared) names.push_back(declared.first);
   for (const ScriptParameter& known : giving.parts.lua->core().parameters) names.push_back(known.name);
-  return "behavior '" + giving.parts.chart.name + "' takes no argument '" + argument.name + "'" +
+  return "behavior '" + behavior + "' takes no argument '" + argument.name + "'" +
          hint_text(argument.name, names);
 }
 
 }  // namespace
+
+void give_robot_values(Behavior::Parts& parts) {
+  std::vector<InputProblem> problems;
+  for (const BehaviorValue& given : parts.catalog.behavior_values) {
+    const auto is_its = [&](const LuaState::Source& source) { return declared_by(given.behavior, source.chunk); };
+    if (std::ranges::none_of(parts.lua->sources(), is_its)) continue;
+    const std::string wrong = give(parts, given);
+    if (!wrong.empty()) problems.push_back({given.file, given.line, given.column, wrong});
+  }
+  if (!problems.empty()) throw InputError(problems);
+}
 
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions) {
   const Behavior::Settings& settings = parts.settings;

@@ -65,6 +65,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   parts.chart.resolve(parts.problems);
   find_control_sets(parts);
   if (!parts.problems.empty()) throw InputError(parts.problems);
+  give_robot_values(parts);
   give_arguments(parts, instructions);
   if (!parts.lua->call(open_bindings, &parts, instructions, 0)) {
     throw InputError(problem_of(parts.lua->error()));

@@ -67,6 +67,10 @@ struct Behavior::Past {
 // Reads the file, makes the chart and the bindings. 0 instructions: as many as loading may take. Throws InputError.
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
 
+// behavior_arguments.cpp. Gives the parameters of the behavior, and of those that it calls, the robot's values. Throws
+// InputError.
+void give_robot_values(Behavior::Parts& parts);
+
 // behavior_arguments.cpp. Gives the behavior what Settings::arguments holds. Throws InputError.
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
 

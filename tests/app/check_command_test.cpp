@@ -28,6 +28,15 @@ TEST_CASE("check reports each broken file with its place, goes on with the other
   CHECK(outcome.out.empty());
 }
 
+TEST_CASE("check names the parameter of a behavior that a robot's file has wrong") {
+  const auto project = project_copy("check_behavior_value");
+  REQUIRE(edit(project / "config/tulip/soft.json", "\"roll_way\":", "\"roll_wya\":"));
+  const Outcome outcome = run("check config/tulip/soft.json", project);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "config/tulip/soft.json:"));
+  CHECK(has(outcome.err, "behavior 'get_up' has no parameter 'roll_wya', did you mean 'roll_way'?"));
+}
+
 TEST_CASE("check names a signal that nobody declares, with the nearest that somebody does") {
   const auto project = project_copy("check_signal");
   REQUIRE(edit(project / "config/scenarios/squat.json", "plant.base.tilt_rad", "plant.base.titl_rad"));

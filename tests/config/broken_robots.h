@@ -10,6 +10,8 @@ inline constexpr Broken broken_robots[] = {
      "54:19: unknown control object 'arm', did you mean 'arms'?"},
     {"\"initial_set\": \"posture\"", "\"at_drives\": [\"arms\"]",
      "54:19: control object 'arms' is in control set 'wave': it cannot stand at the drives, too"},
+    {"\"name\": \"tulip\"", "\"name\": \"tulip\", \"behaviors\": {\"get_pu\": {\"roll_way\": 2}}",
+     "2:34: unknown behavior 'get_pu' in behaviors/tulip, did you mean 'get_up'?"},
     {"\"name\": \"tulip\"", "\"nmae\": \"tulip\"",
      "1:1: key 'name' is missing: the robot's name\n2:3: unknown key 'nmae', did you mean 'name'?"},
     {"\"name\": \"tulip\"", "\"name\": \"\"", "2:11: name must not be empty: the robot's name"},

@@ -257,6 +257,42 @@ TEST_CASE("a list gives a behavior its arguments, and values of its parameters")
   CHECK(refusal({"depth_m", true}) == "--play: parameter 'depth_m' of behavior 'says' is a number");
 }
 
+TEST_CASE("a robot's values are the first ones of a behavior's parameters, called or played; arguments go before them") {
+  Theatre theatre;
+  theatre.scripts.write("behaviors/deep.lua",
+                        "local k = require 'kadans'\n"
+                        "local P = k.params { depth_m = { 0.1, min = 0.02, max = 0.15, unit = 'm' } }\n"
+                        "return k.behavior 'deep' { initial = 'a', k.state 'a' { enter = function() print(P.depth_m) "
+                        "end, { after = 0.01, to = 'b' } }, k.final 'b' { outcome = 'done' } }\n");
+  theatre.scripts.write("behaviors/caller.lua",
+                        "local k = require 'kadans'\n"
+                        "local P = k.params { depth_m = 7 }\n"
+                        "return k.behavior 'caller' { initial = 'a', k.state 'a' { enter = function() print(P.depth_m) "
+                        "end, k.call 'deep', { on = 'done', to = 'b' } }, k.final 'b' { outcome = 'done' } }\n");
+  auto& given = theatre.robot.catalog.behavior_values;
+  given = {{"deep", "depth_m", 0.05, "robot.json", 3, 4}, {"elsewhere", "x", 1, "robot.json", 5, 6}};
+  auto list = theatre.list({"deep", "deep", "caller"});
+  list[1].arguments = {{"depth_m", 0.03}};
+  theatre.open({.play = list});
+  CHECK(theatre.host->behavior(0).parameters().front().initial == 0.05);
+  theatre.tick(20);
+  CHECK(theatre.log.joined() == "0.05\n0.03\n7\n0.05\n");
+
+  const auto refusal = [&](const BehaviorValue& value) {
+    given = {value};
+    try {
+      theatre.host->order({.kind = Kind::play, .list = theatre.list({"caller"})});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(refusal({"deep", "dept_m", 0.05, "robot.json", 3, 4}) ==
+        "robot.json:3:4: behavior 'deep' has no parameter 'dept_m', did you mean 'depth_m'?");
+  CHECK(refusal({"deep", "depth_m", 0.5, "robot.json", 3, 4}) ==
+        "robot.json:3:4: parameter 'depth_m' of behavior 'deep' = 0.5 is outside its range 0.02..0.15 m");
+}
+
 TEST_CASE("a reload keeps the arguments") {
   Theatre theatre;
   const std::string text =

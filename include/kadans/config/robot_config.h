@@ -67,6 +67,7 @@ struct RobotConfig {
   SwitchSettings switching;
   std::vector<UnheldLaw> unheld;  // one a joint
   std::vector<PoseInfo> poses;
+  std::vector<BehaviorValue> behavior_values;  // whether a behavior has the parameter shows when it is loaded
   std::string start_pose;
   SafeConfig safe;
   RecordConfig record;

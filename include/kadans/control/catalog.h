@@ -52,6 +52,14 @@ struct UnheldLaw {
   double damping_Nms_per_rad = 0;
 };
 
+// What a parameter of a behavior is on this robot, before anybody changes it.
+struct BehaviorValue {
+  std::string behavior, parameter;
+  double value = 0;
+  std::string file{};  // where it stands
+  int line = 0, column = 0;
+};
+
 struct Catalog {
   const RobotModel* model = nullptr;
   ParameterTable parameters;
@@ -66,6 +74,7 @@ struct Catalog {
   std::vector<DriveLaw> drives;  // one a joint; empty: switching is not smoothed
   SwitchSettings switching;
   std::vector<UnheldLaw> unheld;  // one a joint; empty: off
+  std::vector<BehaviorValue> behavior_values;
 };
 
 }  // namespace kadans
