@@ -86,25 +86,27 @@ std::string set(ScriptParameter& parameter, double value, const std::string& beh
     return "";
   }
   return "parameter '" + parameter.name + "' " + who(behavior) + " = " + number(value) + " is outside its range " +
-         number(parameter.min) + ".." + number(parameter.max) + " " + parameter.unit;
+         number(parameter.min) + ".." + number(parameter.max) + (parameter.unit.empty() ? "" : " " + parameter.unit);
 }
 
 bool declared_by(const std::string& behavior, const std::string& chunk) {
   return std::filesystem::path(chunk).stem() == behavior;
 }
 
-// What is wrong with it, or "".
+// What is wrong with it, or "". A behavior that is called in two places declares its parameters twice.
 std::string give(Behavior::Parts& parts, const BehaviorValue& given) {
   std::vector<std::string> names;
+  bool found = false;
   for (ScriptParameter& parameter : parts.lua->core().parameters) {
     if (!declared_by(given.behavior, parameter.chunk)) continue;
-    if (parameter.name == given.parameter) {
-      const std::string wrong = set(parameter, given.value, given.behavior);
-      parameter.initial = parameter.value;
-      return wrong;
-    }
     names.push_back(parameter.name);
+    if (parameter.name != given.parameter) continue;
+    found = true;
+    const std::string wrong = set(parameter, given.value, given.behavior);
+    if (!wrong.empty()) return wrong;
+    parameter.initial = parameter.value;
   }
+  if (found) return "";
   return "behavior '" + given.behavior + "' has no parameter '" + given.parameter + "'" +
          hint_text(given.parameter, names);
 }
