@@ -31,7 +31,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 56> breakages = {{
+constexpr std::array<Breakage, 57> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -85,6 +85,7 @@ constexpr std::array<Breakage, 56> breakages = {{
     {"soft_get_up_supine", getting_up, rises, sinks, "stands, height in m"},
     {"soft_squat", "config/tulip/soft.json", "\"*_hip_pitch.damping_ratio\": 0.48",
      "\"*_hip_pitch.damping_ratio\": 0.01", "torso upright, rad"},
+    {"soft_step_forward", "config/tulip/soft.json", "\"swing_s\": 0.217", "\"swing_s\": 0.45", "stays up"},
     {"squat", squat, "P.depth_m)", "0.01)", "crouches, lowest height in m"},
     {"squat", squat, stiff, soft, "height follows, m"},
     {"squat_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "torso upright, rad"},
