@@ -128,8 +128,7 @@ std::string give(Giving& giving, const PlayArgument& argument) {
   std::vector<std::string> names;
   for (const auto& declared : giving.declared) names.push_back(declared.first);
   for (const ScriptParameter& known : giving.parts.lua->core().parameters) names.push_back(known.name);
-  return "behavior '" + behavior + "' takes no argument '" + argument.name + "'" +
-         hint_text(argument.name, names);
+  return "behavior '" + behavior + "' takes no argument '" + argument.name + "'" + hint_text(argument.name, names);
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ constexpr std::array<Breakage, 57> breakages = {{
     {"soft_get_up_supine", getting_up, rises, sinks, "stands, height in m"},
     {"soft_squat", "config/tulip/soft.json", "\"*_hip_pitch.damping_ratio\": 0.48",
      "\"*_hip_pitch.damping_ratio\": 0.01", "torso upright, rad"},
-    {"soft_step_forward", "config/tulip/soft.json", "\"swing_s\": 0.217", "\"swing_s\": 0.45", "stays up"},
+    {"soft_step_forward", "config/tulip/soft.json", "\"swing_s\": 0.217", "\"swing_s\": 1", "stays up"},
     {"squat", squat, "P.depth_m)", "0.01)", "crouches, lowest height in m"},
     {"squat", squat, stiff, soft, "height follows, m"},
     {"squat_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "torso upright, rad"},

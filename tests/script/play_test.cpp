@@ -257,7 +257,8 @@ TEST_CASE("a list gives a behavior its arguments, and values of its parameters")
   CHECK(refusal({"depth_m", true}) == "--play: parameter 'depth_m' of behavior 'says' is a number");
 }
 
-TEST_CASE("a robot's values are the first ones of a behavior's parameters, called or played; arguments go before them") {
+TEST_CASE(
+    "a robot's values are the first ones of a behavior's parameters, called or played, and arguments go before them") {
   Theatre theatre;
   theatre.scripts.write("behaviors/deep.lua",
                         "local k = require 'kadans'\n"
