@@ -104,6 +104,7 @@ std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembl
   for (const fs::path& file : files_of(scenario.file)) files.add(file);
   for (const fs::path& file : files_of(robot.file)) files.add(file);
   files.add(robot.model.file);
+  for (const BehaviorValue& given : robot.behavior_values) files.add(project_root(robot.file) / given.chunk);
   if (!scenario.joystick.recording.empty()) files.add(scenario.joystick.recording);
   for (const fs::path& file : assembly.host().files()) files.add(file);
   return files.take();

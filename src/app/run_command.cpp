@@ -20,6 +20,7 @@
 #include "kadans/remote/behavior_side.h"
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/record_side.h"
+#include "kadans/remote/truth_task.h"
 #include "leaving.h"
 #include "live_joystick.h"
 #include "live_log.h"
@@ -89,19 +90,6 @@ std::string environment(const char* name) {
   const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread is started
   return value == nullptr ? "" : value;
 }
-
-// The truth of the model, for the record: on the control thread, whose row it becomes part of, after the tick.
-class TruthTask final : public BesideTick {
- public:
-  TruthTask(TruthSignals& truth, ControlEngine& control) : truth_(truth), control_(control) {}
-  void beside_tick(std::int64_t time_ns) override {
-    truth_.update(1e-9 * static_cast<double>(time_ns), control_.row());
-  }
-
- private:
-  TruthSignals& truth_;
-  ControlEngine& control_;
-};
 
 class LiveRun {
  public:

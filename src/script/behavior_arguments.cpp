@@ -1,7 +1,6 @@
 // What a behavior is played with: the robot's values of its parameters, and arguments, which are values of its `args`,
 // as from k.call, or of its parameters.
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include "behavior_parts.h"
@@ -89,24 +88,23 @@ std::string set(ScriptParameter& parameter, double value, const std::string& beh
          number(parameter.min) + ".." + number(parameter.max) + (parameter.unit.empty() ? "" : " " + parameter.unit);
 }
 
-bool declared_by(const std::string& behavior, const std::string& chunk) {
-  return std::filesystem::path(chunk).stem() == behavior;
+// What a robot's file calls it: the chunk, or, when the behavior was reloaded from another file, that of its first one.
+const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk) {
+  return chunk == parts.lua->sources().front().chunk ? parts.settings.chunk : chunk;
 }
 
-// What is wrong with it, or "". A behavior that is called in two places declares its parameters twice.
+// What is wrong with it, or "".
 std::string give(Behavior::Parts& parts, const BehaviorValue& given) {
   std::vector<std::string> names;
-  bool found = false;
   for (ScriptParameter& parameter : parts.lua->core().parameters) {
-    if (!declared_by(given.behavior, parameter.chunk)) continue;
+    if (first_name(parts, parameter.chunk) != given.chunk) continue;
+    if (parameter.name == given.parameter) {
+      const std::string wrong = set(parameter, given.value, given.behavior);
+      parameter.initial = parameter.value;
+      return wrong;
+    }
     names.push_back(parameter.name);
-    if (parameter.name != given.parameter) continue;
-    found = true;
-    const std::string wrong = set(parameter, given.value, given.behavior);
-    if (!wrong.empty()) return wrong;
-    parameter.initial = parameter.value;
   }
-  if (found) return "";
   return "behavior '" + given.behavior + "' has no parameter '" + given.parameter + "'" +
          hint_text(given.parameter, names);
 }
@@ -134,9 +132,10 @@ std::string give(Giving& giving, const PlayArgument& argument) {
 }  // namespace
 
 void give_robot_values(Behavior::Parts& parts) {
+  if (parts.settings.chunk.empty()) parts.settings.chunk = parts.lua->sources().front().chunk;
   std::vector<InputProblem> problems;
   for (const BehaviorValue& given : parts.catalog.behavior_values) {
-    const auto is_its = [&](const LuaState::Source& source) { return declared_by(given.behavior, source.chunk); };
+    const auto is_its = [&](const LuaState::Source& source) { return first_name(parts, source.chunk) == given.chunk; };
     if (std::ranges::none_of(parts.lua->sources(), is_its)) continue;
     const std::string wrong = give(parts, given);
     if (!wrong.empty()) problems.push_back({given.file, given.line, given.column, wrong});

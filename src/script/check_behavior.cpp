@@ -24,12 +24,15 @@ std::vector<InputProblem> check_behavior(const std::filesystem::path& root, cons
   } catch (const InputError& error) {
     return error.problems();
   }
-  // A behavior that is called twice is told once.
+  tell_once(problems);  // a behavior that is called twice
+  return problems;
+}
+
+void tell_once(std::vector<InputProblem>& problems) {
   const auto key = [](const InputProblem& problem) { return std::tie(problem.file, problem.line, problem.message); };
   std::ranges::stable_sort(problems, {}, key);
   const auto same = [&](const InputProblem& a, const InputProblem& b) { return key(a) == key(b); };
   problems.erase(std::unique(problems.begin(), problems.end(), same), problems.end());
-  return problems;
 }
 
 }  // namespace kadans

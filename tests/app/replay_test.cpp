@@ -43,6 +43,15 @@ TEST_CASE("A record replays bit for bit with what was set and drawn for it, from
   CHECK(same(run("replay '" + (project / "run.mcap").string() + "'", elsewhere)));
 }
 
+TEST_CASE("A record replays from itself when its robot gives parameters to behaviors that it did not play") {
+  const fs::path project = project_copy("replay_behavior_values");
+  REQUIRE(run("sim config/scenarios/soft_squat.json --duration 1.2 --record run.mcap", project).err.empty());
+  const fs::path elsewhere = fresh_folder("replay_behavior_values_elsewhere");
+  fs::copy(project / "run.mcap", elsewhere / "run.mcap");
+  const Outcome outcome = run("replay run.mcap --from-record", elsewhere);
+  CHECK_MESSAGE(same(outcome), outcome.err);
+}
+
 TEST_CASE("After a change of script, configuration or model the replay says where it parts and which file changed") {
   const fs::path project = recorded_project("replay_changed");
   struct Change {

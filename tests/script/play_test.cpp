@@ -271,7 +271,8 @@ TEST_CASE(
                         "return k.behavior 'caller' { initial = 'a', k.state 'a' { enter = function() print(P.depth_m) "
                         "end, k.call 'deep', { on = 'done', to = 'b' } }, k.final 'b' { outcome = 'done' } }\n");
   auto& given = theatre.robot.catalog.behavior_values;
-  given = {{"deep", "depth_m", 0.05, "robot.json", 3, 4}, {"elsewhere", "x", 1, "robot.json", 5, 6}};
+  given = {{"deep", "depth_m", 0.05, "behaviors/deep.lua", "robot.json", 3, 4},
+           {"elsewhere", "x", 1, "behaviors/elsewhere.lua", "robot.json", 5, 6}};
   auto list = theatre.list({"deep", "deep", "caller"});
   list[1].arguments = {{"depth_m", 0.03}};
   theatre.open({.play = list});
@@ -288,10 +289,26 @@ TEST_CASE(
     }
     return std::string();
   };
-  CHECK(refusal({"deep", "dept_m", 0.05, "robot.json", 3, 4}) ==
+  CHECK(refusal({"deep", "dept_m", 0.05, "behaviors/deep.lua", "robot.json", 3, 4}) ==
         "robot.json:3:4: behavior 'deep' has no parameter 'dept_m', did you mean 'depth_m'?");
-  CHECK(refusal({"deep", "depth_m", 0.5, "robot.json", 3, 4}) ==
+  CHECK(refusal({"deep", "depth_m", 0.5, "behaviors/deep.lua", "robot.json", 3, 4}) ==
         "robot.json:3:4: parameter 'depth_m' of behavior 'deep' = 0.5 is outside its range 0.02..0.15 m");
+}
+
+TEST_CASE("a reload from another file keeps the robot's values") {
+  Theatre theatre;
+  const std::string text =
+      "local k = require 'kadans'\nlocal P = k.params { depth_m = 0.1 }\nreturn k.behavior 'says' { k.state 'a' { "
+      "during "
+      "= function() print(P.depth_m) end } }\n";
+  theatre.scripts.write("behaviors/says.lua", text);
+  theatre.robot.catalog.behavior_values = {{"says", "depth_m", 0.05, "behaviors/says.lua", "robot.json", 3, 4}};
+  theatre.open({.play = theatre.list({"says"})});
+  theatre.tick(1);
+  const auto later = theatre.scripts.write("behaviors/later.lua", text + "-- new\n");
+  theatre.host->order({.kind = Kind::reload, .behavior = {"says", {}}, .file = later});
+  theatre.tick(1);
+  CHECK(theatre.log.joined() == "0.05\nreloaded behaviors/later.lua\n0.05\n");
 }
 
 TEST_CASE("a reload keeps the arguments") {

@@ -56,7 +56,8 @@ struct UnheldLaw {
 struct BehaviorValue {
   std::string behavior, parameter;
   double value = 0;
-  std::string file{};  // where it stands
+  std::string chunk{};  // the behavior's file, from the project root
+  std::string file{};   // where it stands
   int line = 0, column = 0;
 };
 

@@ -44,6 +44,7 @@ class Behavior {
     std::vector<std::string> feet{"left", "right"};  // names of the feet in the snapshot's order
     std::vector<PlayArgument> arguments{};           // values of its `args` or of its parameters
     std::string source{};                            // where the arguments were written
+    std::string chunk{};                             // of `file` when it was first read; found by itself
   };
   // The catalog and the log must outlive the behavior. Throws InputError.
   Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log);

@@ -13,4 +13,7 @@ namespace kadans {
 std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
                                          const Catalog& catalog);
 
+// Of several that say the same of the same line one is left; by file and line.
+void tell_once(std::vector<InputProblem>& problems);
+
 }  // namespace kadans
