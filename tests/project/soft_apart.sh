@@ -17,8 +17,8 @@ done
 
 begin=$(address kadans_soft_code_begin) end=$(address kadans_soft_code_end)
 functions=$(c++filt <<<"$symbols")
-for called in ControlSide::record ControlSide::warm TruthTask::beside_tick TruthSignals::update UdpPlant::sample \
-  LinkedPlant::sample Recorder::record; do
+for called in ControlSide::record ControlSide::warm TruthTask::beside_tick TruthSignals::update UdpPlant::read \
+  LinkedPlant::read LinkedPlant::write Recorder::record; do
   at=$(awk -v name="kadans::$called(" 'index($0, name) && !at {at = $1} END {print at}' <<<"$functions")
   [ -n "$at" ] || { echo "no $called"; exit 1; }
   [[ "$at" < "$begin" || ! "$at" < "$end" ]] || { echo "$called is left out"; exit 1; }
