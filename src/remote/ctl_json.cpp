@@ -89,9 +89,7 @@ Json record_json(const RecordStatus& record) {
 
 }  // namespace
 
-std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-std::string refusal(const std::string& why) { return line_of({{"ok", false}, {"error", why}}); }
+std::string refusal(const std::string& why) { return json_text({{"ok", false}, {"error", why}}); }
 
 Json behaviors_json(const Answer& report) {
   Json all = Json::array();

@@ -58,7 +58,7 @@ std::string CtlRequests::at_once(CtlSession& session, const CtlRequest& request)
     instance_.stop_now();
     (void)port_.send({.kind = Order::Kind::note, .text = "asked for the emergency stop", .who = session.who()});
   }
-  return line_of({{"ok", true}});
+  return json_text({{"ok", true}});
 }
 
 std::string CtlRequests::send(CtlSession& session, const CtlRequest& request) {
@@ -117,7 +117,7 @@ std::string CtlRequests::told(const CtlSession& session, const CtlRequest& reque
   } else if (!answer.text.empty()) {
     json["text"] = answer.text;
   }
-  return line_of(json);
+  return json_text(json);
 }
 
 std::string CtlRequests::status(const Answer* report) {
@@ -130,7 +130,7 @@ std::string CtlRequests::status(const Answer* report) {
     json["paused"] = report->paused;
     json["behaviors"] = behaviors_json(*report);
   }
-  return line_of(json);
+  return json_text(json);
 }
 
 std::string CtlRequests::get(const std::string& name, const Answer& report) {
@@ -143,14 +143,14 @@ std::string CtlRequests::get(const std::string& name, const Answer& report) {
     Json json{{"ok", true},        {"kind", "signal"}, {"name", name},
               {"unit", info.unit}, {"doc", info.doc},  {"time_s", 1e-9 * static_cast<double>(row.time_ns)}};
     json["value"] = std::isfinite(value) ? Json(value) : Json(nullptr);
-    return line_of(json);
+    return json_text(json);
   }
   std::vector<std::string> names = catalog.signals.names();
   for (Json& one : list_json("parameters", instance_, port_.status(), report)) {
     names.push_back(one["name"].get<std::string>());
     if (names.back() != name) continue;
     one.update({{"ok", true}, {"kind", "parameter"}});
-    return line_of(one);
+    return json_text(one);
   }
   throw InputError({.message = unknown_name("parameter or signal", name, names)});
 }
@@ -158,11 +158,11 @@ std::string CtlRequests::get(const std::string& name, const Answer& report) {
 // The file is written here, not on the behavior thread, which is told then.
 std::string CtlRequests::save(const CtlSession& session, const Answer& answer) {
   Json json{{"ok", true}, {"file", instance_.configuration().file().string()}, {"saved", Json::array()}};
-  if (answer.changes.empty()) return line_of(json);
+  if (answer.changes.empty()) return json_text(json);
   instance_.configuration().save(answer.changes, instance_.catalog());
   for (const ParameterChange& change : answer.changes) json["saved"].push_back(change_json(change));
   (void)port_.send({.kind = Order::Kind::saved, .who = session.who(), .changes = answer.changes});
-  return line_of(json);
+  return json_text(json);
 }
 
 std::string CtlRequests::watch(CtlSession& session, const CtlRequest& request) {
@@ -183,7 +183,7 @@ std::string CtlRequests::watch(CtlSession& session, const CtlRequest& request) {
   session.every_ticks = static_cast<std::uint32_t>(std::max(1.0, std::round(std::min(every, 1e9))));
   session.next_tick = 0;
   if (session.every_ticks < row_every_ticks) port_.want_signals(1);
-  return line_of({{"ok", true}, {"signals", std::move(signals)}});
+  return json_text({{"ok", true}, {"signals", std::move(signals)}});
 }
 
 std::string CtlRequests::sample(CtlSession& session) {
@@ -193,7 +193,7 @@ std::string CtlRequests::sample(CtlSession& session) {
   Json values = Json::array();
   for (const SignalId id : session.watched)
     values.push_back(std::isfinite(row.values[id]) ? Json(row.values[id]) : Json(nullptr));
-  return line_of({{"tick", row.tick}, {"time_s", 1e-9 * static_cast<double>(row.time_ns)}, {"values", values}});
+  return json_text({{"tick", row.tick}, {"time_s", 1e-9 * static_cast<double>(row.time_ns)}, {"values", values}});
 }
 
 std::string CtlRequests::faults() {
@@ -208,7 +208,7 @@ std::string CtlRequests::faults() {
   }
   Json json{{"ok", true}, {"level", name(safety.level)}, {"since_clearing", safety.fault_count}, {"faults", all}};
   if (safety.fault_count > 0) json["first"] = fault_json(safety.first_fault, model);
-  return line_of(json);
+  return json_text(json);
 }
 
 void CtlRequests::forget(const CtlSession& session) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/problems.h"
 
 namespace kadans {
@@ -95,8 +96,9 @@ void check_fields(const CtlVerb& verb, const Json& json) {
 
 CtlRequest read_request(const std::string& line, Role role) {
   CtlRequest request;
-  request.json = Json::parse(line, nullptr, false);
-  if (!request.json.is_object()) fail("this is no JSON object on one line");
+  std::optional<Json> json = read_foreign_json(line);
+  if (!json || !json->is_object()) fail("this is no JSON object on one line");
+  request.json = std::move(*json);
   const auto verb = request.json.find("verb");
   if (verb == request.json.end() || !verb->is_string()) fail("a request needs \"verb\", a string");
   request.verb = &verb_named(verb->get<std::string>());

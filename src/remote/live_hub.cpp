@@ -87,6 +87,16 @@ bool LiveHub::send(Order order, std::uint64_t client, std::uint32_t call) {
   return true;
 }
 
+void LiveHub::bound_replies() noexcept {
+  std::size_t sum = 0;
+  LiveClient* largest = nullptr;
+  for (const auto& [id, client] : clients_) {
+    sum += client->reply_bytes();
+    if (largest == nullptr || client->reply_bytes() > largest->reply_bytes()) largest = client;
+  }
+  if (sum > replies_max_bytes && largest != nullptr) largest->give_up();
+}
+
 void LiveHub::take_answers() {
   for (Answer answer; p_.port.next(answer); answer = {}) {
     const auto found = waiting_.find(answer.number);

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/scenario/report.h"
 #include "kadans/signal/number_text.h"
 
@@ -80,7 +81,7 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
     for (auto it = from; it != all.end(); ++it) json["transitions"].push_back(transition_line(*it));
     json["evidence"] = evidence_json(context.evidence);
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace kadans

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/number_text.h"
 
 namespace kadans {
@@ -22,8 +23,8 @@ Signal signal_in(const std::string& line) {
 
 // Nothing in a file is trusted: what is no object, or lacks a field, reads as empty.
 Json object_in(std::string_view text) {
-  Json json = Json::parse(text, nullptr, false);
-  return json.is_object() ? json : Json::object();
+  const std::optional<Json> json = read_foreign_json(text);
+  return json && json->is_object() ? *json : Json::object();
 }
 
 std::string text_in(const Json& json, const char* key) {

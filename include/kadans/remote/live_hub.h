@@ -57,6 +57,9 @@ class LiveHub {
   // that a beat that is late by its whole period costs none.
   static constexpr double rows_hz = 70, beats_hz = 2 * rows_hz, idle_hz = 60;
 
+  // Replies that wait for all clients together.
+  static constexpr std::size_t replies_max_bytes = std::size_t{64} << 20U;
+
   explicit LiveHub(Parts parts);
 
   // Before the first beat; what is given is read while it runs.
@@ -77,6 +80,8 @@ class LiveHub {
 
   void enter(std::uint64_t id, LiveClient& client) { clients_[id] = &client; }
   void leave(std::uint64_t id) { clients_.erase(id); }
+  // A client's replies were put into its queue: the client that lets most wait goes when all are too many.
+  void bound_replies() noexcept;
   // `call`: what the client knows its answer by. False: too many orders wait.
   [[nodiscard]] bool send(Order order, std::uint64_t client, std::uint32_t call);
   // An order has set this parameter.

@@ -17,6 +17,15 @@ void add_live_place(CLI::App& command, LivePlace& place) {
       ->type_name("IP");
   command.add_option("--live-token", place.token, "What a client must know to change anything (default: a new one)")
       ->type_name("TEXT");
+  add_live_hosts(command, place);
+}
+
+void add_live_hosts(CLI::App& command, LivePlace& place) {
+  command
+      .add_option("--live-host", place.hosts,
+                  "A name that clients without the token may call this machine by, beside its addresses")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
 }
 
 ViewerSubjects viewer_subjects(const RobotConfig& robot) {
@@ -45,7 +54,8 @@ LiveService::LiveService(const LivePlace& place, Instance& instance, const Assem
                                                   .timing = {},
                                                   .pace = pace});
   server_ = std::make_unique<LiveServer>(
-      LiveSettings{.address = place.address, .port = place.port_number(), .token = place.token}, hub_.get());
+      LiveSettings{.address = place.address, .port = place.port_number(), .token = place.token, .hosts = place.hosts},
+      hub_.get());
 }
 
 void LiveService::start(const std::vector<TimingSource>& timing) {

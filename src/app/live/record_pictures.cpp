@@ -80,7 +80,7 @@ void draw_record(const PictureOrder& order,
   (void)McapReader(order.record);  // says by its name what is wrong with it
   Frames frames;
   LiveServer server(
-      {.port = 0}, nullptr,
+      {.port = 0, .token = "", .hosts = {}}, nullptr,
       {.file = std::filesystem::absolute(order.record).string(),
        .take_frame = [&frames](const std::string& name, const std::string& bytes) { frames.take(name, bytes); }});
   server.start();

@@ -2,27 +2,29 @@
 
 #include <exception>
 
+#include "kadans/config/foreign_json.h"
+#include "kadans/signal/input_error.h"
 #include "live_protocol.h"
 
 namespace kadans {
 namespace {
 
-constexpr std::size_t id_max_bytes = 256, verb_max_bytes = 64, said_max_bytes = 300;
+constexpr std::size_t id_max_bytes = 256, verb_max_bytes = 64;
 
 std::string answer_text(const std::string& id, const std::string& verb, bool done, const std::string& text) {
   Json json = Json::object();
-  if (!id.empty()) json["id"] = Json::parse(id);
+  if (!id.empty()) json["id"] = parse_foreign_json(id);
   if (!verb.empty()) json["verb"] = verb;
   json["done"] = done;
   json["text"] = text;
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // what came need not be UTF-8
+  return json_text(json);
 }
 
 // A number or a short text, as it came; else none.
 std::string id_of(const Json& json) {
   const auto id = json.find("id");
   if (id == json.end() || !(id->is_number() || id->is_string())) return "";
-  const std::string text = id->dump();
+  const std::string text = json_text(*id);
   return text.size() <= id_max_bytes ? text : "";
 }
 
@@ -33,16 +35,17 @@ std::optional<std::string> TextCommands::take(std::string_view text) {
     return answer_text("", "", false, "an order may have " + std::to_string(text_max_bytes) + " bytes");
   Asked asked;
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_foreign_json(text);
     if (!json.is_object()) return answer_text("", "", false, "this is no JSON object");
     asked.id = id_of(json);
     const std::string verb = json.at("verb");
     if (verb.size() > verb_max_bytes) return answer_text(asked.id, "", false, "there is no verb as long as this");
     asked.verb = verb;
     return obey(asked, json.value("text", ""), json.value("value", 0.0));
-  } catch (const nlohmann::json::exception& error) {
-    return answer_text(asked.id, asked.verb, false,
-                       "not understood: " + std::string(error.what()).substr(0, said_max_bytes));
+  } catch (const InputError& error) {
+    return answer_text("", "", false, std::string("not understood: ") + error.what());
+  } catch (const nlohmann::json::exception& error) {  // a field is missing or of another type
+    return answer_text(asked.id, asked.verb, false, std::string("not understood: ") + error.what());
   }
 }
 
