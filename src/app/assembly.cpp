@@ -75,7 +75,11 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
 
 Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
                    ProcessHost* outside)
-    : scenario_(scenario), log_(log), link_(link), outside_(outside), robot_(read_robot(scenario.robot)) {
+    : scenario_(scenario),
+      log_(log),
+      link_(link),
+      outside_(outside),
+      robot_(read_robot(scenario.robot, scenario.plugins)) {
   control_system_ = make_control_system(robot_);
   Catalog& catalog = control_system_->catalog;
   robot_.config.engine.joystick = has_joystick(scenario, robot_.config);

@@ -77,7 +77,7 @@ int run_behavior_process(const RunOptions& options) {
   const KeptState& kept = link.setup.kept;
   const std::span bytes = std::span(kept.bytes).first(std::min<std::size_t>(kept.size, kept.bytes.size()));
   const ScenarioConfig scenario = live_scenario(options);
-  const Robot robot = read_robot(scenario.robot);
+  const Robot robot = read_robot(scenario.robot, scenario.plugins);
   const std::unique_ptr<ControlSystem> system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));  // declares parameters too
   SpokenLines lines(link);

@@ -77,7 +77,7 @@ std::string check_lua(const std::string& file, const std::string& robot) {
 }
 
 std::string check_json(const std::string& file) {
-  const JsonValue json = parse_based_json(read_text_file(file), file).value;
+  const JsonValue json = parse_based_json(read_input_file(file), file).value;
   if (json.find("tune") != nullptr) return check_tune_plan(file);
   if (json.find("scenarios") != nullptr) return check_sweep_plan(file);
   return json.find("urdf") != nullptr || json.find("control") != nullptr ? check_robot(file) : check_scenario(file);

@@ -30,6 +30,7 @@ struct SimOptions : RunRequest {
   RecordOptions recording;
   std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
   std::string from;                      // a checkpoint; then what is set and played counts from there
+  bool allow_plugins = false;            // with from: the project's own, be they others than the checkpoint's
   std::vector<std::string> push;         // with it
   std::vector<std::string> branches;     // "hard: push torso=0,3,0"
   std::optional<double> hash_every_s;

@@ -220,15 +220,18 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   CLI::App* replay = app.add_subcommand("replay", "Run a record again, and say where and why it is not the same");
   replay->add_option("record", options.record, "What kadans sim left (MCAP)")->required()->type_name("FILE");
   replay->add_flag("--from-record", options.from_record, "With the files inside the record, not those on the disk");
+  replay->add_flag("--allow-plugins", options.allow_plugins,
+                   "Load the project's plug-ins, be they others than the record's or of another project");
   replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
 int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
   std::unique_ptr<UnpackedInputs> unpacked;
-  if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record);
+  if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record, options.allow_plugins);
   RunRequest request = request_of(inputs.run, options.record);
   request.scenario = unpacked ? unpacked->scenario().string() : find_scenario(inputs, options.record).string();
+  request.plugins = unpacked ? unpacked->plugins() : plugins_beside(request.scenario, options.allow_plugins);
   const std::vector<InputChange> program = changed_program(inputs);
   try {
     Replay replay(options.record, inputs, request);

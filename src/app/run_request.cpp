@@ -63,6 +63,7 @@ ScenarioPush parse_push(const std::string& text, double at_s) {
 
 ScenarioConfig read_scenario(const RunRequest& request) {
   ScenarioConfig scenario = read_scenario_config(request.scenario);
+  scenario.plugins = request.plugins;
   if (!request.play.empty()) scenario.behaviors = read_play_items(request.play, "--play", folders_of(scenario));
   for (const std::string& setting : request.set) scenario.set_last.push_back(parse_setting(setting));
   return scenario;

@@ -21,11 +21,12 @@ std::vector<RunBranch> branches_of(const SimOptions& options) {
 int go_on(const SimOptions& options) {
   SimContinuation continuation{.from = read_checkpoint(options.from), .branches = branches_of(options)};
   RunInputs& inputs = continuation.from.inputs;
-  const UnpackedInputs unpacked(inputs, options.from);
+  const UnpackedInputs unpacked(inputs, options.from, options.allow_plugins);
   if (std::ranges::any_of(continuation.branches, [](const RunBranch& branch) { return !branch.play.empty(); }))
     unpacked.add_behaviors(inputs);
   RunRequest request = request_of(inputs.run, options.from);
   request.scenario = unpacked.scenario().string();
+  request.plugins = unpacked.plugins();
   if (options.duration_s) request.duration_s = options.duration_s;
   const double at_s = static_cast<double>(continuation.from.at.time_ns) / 1e9;
   if (!(*request.duration_s > at_s))
@@ -47,6 +48,8 @@ void refuse_wrong_mixtures(const SimOptions& options) {
   if (options.from.empty()) {
     if (!options.branches.empty()) refuse_option("--branch", "parts from a checkpoint: it goes with --from");
     if (!options.push.empty()) refuse_option("--push", "parts from a checkpoint: it goes with --from");
+    if (options.allow_plugins)
+      refuse_option("--allow-plugins", "is for the plug-ins of a checkpoint: it goes with --from");
     return;
   }
   if (options.seed) refuse_option("--seed", "a checkpoint goes on with the seed that it began with");
@@ -85,6 +88,8 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->allow_extra_args(false);
   sim->add_option("--from", options.from, "Go on from a checkpoint; --set, --play and --push count from there")
       ->type_name("FILE");
+  sim->add_flag("--allow-plugins", options.allow_plugins,
+                "With --from: load the project's plug-ins, be they others than the checkpoint's");
   sim->add_option("--push", options.push, "With --from: an impulse in Ns on a link, such as torso=0,2,0")
       ->type_name("LINK=X,Y,Z")
       ->allow_extra_args(false);

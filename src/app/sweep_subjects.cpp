@@ -48,7 +48,7 @@ void verify_ranges(const ExperimentConfig& plan, const Robot& robot, Problems& p
 
 SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig& plan, Problems& problems) {
   const ScenarioConfig scenario = read_scenario_config(named.file);
-  const Robot robot = read_robot(scenario.robot);
+  const Robot robot = read_robot(scenario.robot, scenario.plugins);
   verify_ranges(plan, robot, problems);
   RunLog log;
   const Assembly assembly(scenario, plan.seed, log);

@@ -63,7 +63,7 @@ GoldenHashes::GoldenHashes(fs::path file) : file_(std::move(file)) {
   if (!fs::exists(file_)) return;
   std::string of;
   try {
-    const Json json = parse_foreign_json(read_text_file(file_), file_.string());
+    const Json json = parse_foreign_json(read_input_file(file_), file_.string());
     of = json.at("machine");
     for (const Json& run : json.at("runs")) runs_.push_back(golden_from(run));
   } catch (const Json::exception& error) {

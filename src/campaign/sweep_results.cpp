@@ -59,7 +59,7 @@ SweepManifest read_manifest(const fs::path& folder) {
   if (!fs::exists(file))
     throw InputError({.file = folder.string(), .message = "holds no results of a sweep: there is no sweep.json"});
   try {
-    return manifest_from(parse_foreign_json(read_text_file(file), file.string()));
+    return manifest_from(parse_foreign_json(read_input_file(file), file.string()));
   } catch (const Json::exception& error) {
     throw InputError({.file = file.string(), .message = std::string("cannot be read: ") + error.what()});
   }
@@ -158,7 +158,7 @@ fs::path SweepResults::file_of(const SweepCase& one) const {
 bool SweepResults::has(const SweepCase& one) const {
   const fs::path file = file_of(one);
   if (!fs::exists(file)) return false;
-  const std::optional<Json> json = read_foreign_json(read_text_file(file));
+  const std::optional<Json> json = read_foreign_json(read_input_file(file));
   return !json || !json->is_object() || json->value("status", "") != name(RunStatus::timed_out);
 }
 
@@ -182,7 +182,7 @@ std::vector<CaseRow> SweepResults::rows() const {
     const fs::path& file = entry.path();
     if (file.filename().string().starts_with('.') || file.extension() != ".json") continue;
     try {
-      const Json json = parse_foreign_json(read_text_file(file), file.string());
+      const Json json = parse_foreign_json(read_input_file(file), file.string());
       if (json.at("plan") != manifest_.plan)
         throw InputError({.file = file.string(), .message = "is a result of another sweep than sweep.json beside it"});
       rows.push_back(row_from(json));

@@ -112,11 +112,11 @@ RobotConfig read_robot_config_text(const std::string& text, const std::string& f
 }
 
 RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types) {
-  return read_robot_config_text(read_text_file(file), file.string(), object_types);
+  return read_robot_config_text(read_input_file(file), file.string(), object_types);
 }
 
 std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot) {
-  const JsonValue json = parse_based_json(read_text_file(robot), robot.string()).value;
+  const JsonValue json = parse_based_json(read_input_file(robot), robot.string()).value;
   const JsonMember* list = json.find("plugins");
   std::vector<PluginFile> files;
   if (list == nullptr) return files;

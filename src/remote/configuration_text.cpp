@@ -24,14 +24,14 @@ ParameterEdit edit_of(const ParameterChange& change, const Catalog& catalog) {
 }  // namespace
 
 ConfigurationText::ConfigurationText(std::filesystem::path file) : file_(std::move(file)) {
-  if (!file_.empty()) text_ = read_text_file(file_);
+  if (!file_.empty()) text_ = read_input_file(file_);
 }
 
 void ConfigurationText::save(const std::vector<ParameterChange>& changes, const Catalog& catalog) {
   const std::lock_guard lock(mutex_);
   const std::string name = file_.string();
   if (file_.empty()) throw InputError({.message = "this instance was not made from a configuration file"});
-  if (read_text_file(file_) != text_)
+  if (read_input_file(file_) != text_)
     throw InputError({.file = name, .message = "was changed since this instance read it; nothing was saved"});
   std::vector<ParameterEdit> edits;
   for (const ParameterChange& change : changes) edits.push_back(edit_of(change, catalog));

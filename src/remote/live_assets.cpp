@@ -55,7 +55,7 @@ std::optional<std::string> LiveAssets::read(std::string_view uri) const {
   if (found == files_.end()) return std::nullopt;
   if (!is_mesh(found->second)) return std::nullopt;
   try {
-    return read_text_file(found->second, file_max_bytes);
+    return read_input_file(found->second, file_max_bytes);
   } catch (const InputError&) {
     return std::nullopt;
   }

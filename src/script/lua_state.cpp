@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <new>
 
+#include "kadans/signal/input_error.h"
+#include "kadans/signal/input_file.h"
 #include "lua_core.h"
 #include "sandbox.h"
 #include "tick_code.h"
@@ -107,15 +107,15 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   source.path = path;
   source.chunk = path.lexically_relative(settings_.root).generic_string();
   if (source.chunk.empty() || source.chunk.starts_with("..")) source.chunk = path.generic_string();
-  std::ifstream file(path, std::ios::binary);
-  source.text.assign(std::istreambuf_iterator<char>(file), {});
   const std::string chunk = "@" + source.chunk;
-  if (!file.good() && source.text.empty()) {
-    lua_pushfstring(state, "%s:1: cannot be read, or is empty", source.chunk.c_str());
+  try {
+    source.text = read_input_file(path, source_bytes_max);
+  } catch (const InputError& error) {
+    lua_pushfstring(state, "%s:1: %s", source.chunk.c_str(), error.problems().front().message.c_str());
     return false;
   }
-  if (source.text.size() > source_bytes_max) {
-    lua_pushfstring(state, "%s:1: is larger than 1 MB", source.chunk.c_str());
+  if (source.text.empty()) {
+    lua_pushfstring(state, "%s:1: the file is empty", source.chunk.c_str());
     return false;
   }
   if (source.text.starts_with('\x1b')) {

@@ -30,8 +30,9 @@ struct Robot {
   ControlObjectTypes types;  // shipped, registered by this program, brought by the robot's plug-ins
   RobotConfig config;
 };
-// Loads the plug-ins that the file names; they stay loaded. Throws InputError with everything that is wrong.
-Robot read_robot(const std::filesystem::path& file);
+// Loads the plug-ins that the file names; they stay loaded. Throws InputError with everything that is wrong, and where
+// the gate does not let a plug-in in.
+Robot read_robot(const std::filesystem::path& file, const PluginGate& gate = {});
 
 // Control objects of a configuration with their parameters set, and the catalog that describes them.
 struct ControlSystem {

@@ -37,7 +37,7 @@ ViewerSubjects viewer_subjects(const RobotConfig& robot) {
 RobotTexts robot_texts(const Assembly& assembly) {
   const RobotConfig& robot = assembly.robot();
   return {.name = robot.model.name,
-          .urdf = read_text_file(robot.model.file),
+          .urdf = read_input_file(robot.model.file),
           .description = run_description(robot, assembly.catalog(), assembly.own_host()),
           .subjects = viewer_subjects(robot)};
 }

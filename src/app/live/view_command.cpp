@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "kadans/remote/page_files.h"
+#include "kadans/signal/input_file.h"
 #include "live/page_commands.h"
 #include "terminal.h"
 
@@ -41,6 +42,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
 int run_view(const ViewOptions& options) {
   if (page_files().empty()) throw InputError({.message = std::string(page_is_missing)});
   const std::filesystem::path file = options.record.empty() ? "" : std::filesystem::absolute(options.record);
+  if (!file.empty()) check_input_file(file);
   LiveServer server(
       {.address = options.live.address, .port = options.live.port_number(), .token = "", .hosts = options.live.hosts},
       nullptr, {.file = file.string(), .take_frame = {}});

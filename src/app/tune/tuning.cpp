@@ -179,7 +179,7 @@ void Tuning::write_configuration(const std::vector<double>& values) const {
     edits.push_back(std::move(edit));
   }
   const std::string& file = robot_.config.file;
-  write_durably(configuration_, edit_parameters(read_text_file(file), file, edits));
+  write_durably(configuration_, edit_parameters(read_input_file(file), file, edits));
 }
 
 void Tuning::report(const std::vector<double>& values, const TuningEffect& effect) const {

@@ -1,6 +1,8 @@
 // Plug-ins that do not keep to the seam, one a library: HOSTILE says which.
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 
 #include "kadans/control/plugin_glue.h"
@@ -30,7 +32,16 @@ struct [[maybe_unused]] NoException {};
 
 #define EXPORT extern "C" __attribute__((visibility("default"))) const kadans::Plugin* kadans_plugin()
 
-#if defined(HOSTILE_wrong_version)
+#if defined(HOSTILE_loaded)  // tells that it was, by a file
+namespace {
+const struct Loaded {
+  Loaded() {
+    if (const char* file = std::getenv("KADANS_TEST_LOADED")) std::ofstream(file) << "loaded";
+  }
+} loaded;
+}  // namespace
+EXPORT { return good(); }
+#elif defined(HOSTILE_wrong_version)
 EXPORT {
   Plugin* plugin = good();
   plugin->abi_version = 7;
