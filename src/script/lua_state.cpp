@@ -114,10 +114,6 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
     lua_pushfstring(state, "%s:1: %s", source.chunk.c_str(), error.problems().front().message.c_str());
     return false;
   }
-  if (source.text.empty()) {
-    lua_pushfstring(state, "%s:1: the file is empty", source.chunk.c_str());
-    return false;
-  }
   if (source.text.starts_with('\x1b')) {
     lua_pushfstring(state, "%s:1: is bytecode; scripts are text", source.chunk.c_str());
     return false;
