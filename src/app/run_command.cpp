@@ -203,10 +203,8 @@ class LiveRun {
       leaving_.ask();
       pass(threads, assembly_.robot().safe.time_s + 0.2);
     }
-    control_.degrade(SafetyLevel::damp);
-    pass(threads, safety.damp_s);
-    control_.degrade(SafetyLevel::off);
-    pass(threads, 0.05);
+    parts_.control.safety().emergency_stop().leave();
+    pass(threads, safety.damp_s + 0.05);
   }
 
   void pass(LiveThreads& threads, double seconds) {
@@ -273,8 +271,9 @@ class LiveRun {
   std::unique_ptr<PlantTask> plant_;  // likewise
   std::unique_ptr<LiveJoystick> joystick_;
   Leaving leaving_;
-  Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog()};
-  ControlSide control_side_{instance_, parts_.control.safety()};
+  Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog(),
+                     parts_.control.safety().emergency_stop()};
+  ControlSide control_side_{instance_};
   RecordSide record_side_{instance_,
                           control_side_,
                           record_log_,

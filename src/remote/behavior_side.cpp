@@ -70,9 +70,6 @@ bool BehaviorSide::carry_out_now(const Order& order, Answer& answer) {
       for (const ParameterChange& change : order.changes)
         say(time_ns_, order.who, "saved " + change.name + " = " + number_text(change.now));
       return true;
-    case Order::Kind::note:
-      say(time_ns_, order.who, order.text);
-      return true;
     case Order::Kind::complete: {
       Console::Completion found = console_of(order).complete(order.text);
       answer.begin = found.begin;

@@ -93,9 +93,12 @@ void BehaviorSide::give(const Order& order) {
     if (p_.host != nullptr) return;
     throw InputError({.message = "behaviors play in a process of their own: name the one to be read again"});
   }
+  const bool plays = kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace;
+  if (plays && p_.exchange.snapshot.read(0).status.safety.stopped)
+    throw InputError(
+        {.message = "the emergency stop keeps the robot down: clear the faults first (kadans ctl fault clear)"});
   PlayOrder given{.kind = kind, .behavior = {kind == PlayOrder::Kind::reload ? order.text : "", {}}};
-  if (kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace)
-    given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
+  if (plays) given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
   orders().order(given);
   p_.echo.listen();
 }

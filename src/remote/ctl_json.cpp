@@ -107,6 +107,7 @@ Json fault_json(const Fault& fault, const RobotModel& model) {
   Json json{{"code", name(fault.code)}, {"tick", fault.tick}, {"text", fault_text(fault, model)}};
   put_finite(json, "value", fault.value);
   put_finite(json, "limit", fault.limit);
+  if (fault.words[0] != '\0') json["words"] = fault.words.data();
   if (fault.joint < model.joints.size()) json["joint"] = model.joints[fault.joint].name;
   return json;
 }
@@ -118,7 +119,8 @@ Json status_json(const Instance& instance, const InstanceStatus& status) {
   for (std::uint32_t set = 0; set < catalog.sets.size(); ++set) {
     if ((status.control_sets & set_bit(set)) != 0) sets.push_back(catalog.sets[set].name);
   }
-  Json safety{{"level", name(status.safety.level)}, {"faults", status.safety.fault_count}};
+  Json safety{
+      {"level", name(status.safety.level)}, {"faults", status.safety.fault_count}, {"stopped", status.safety.stopped}};
   if (status.safety.fault_count > 0) safety["first"] = fault_json(status.safety.first_fault, *catalog.model);
   return {{"ok", true},
           {"name", facts.name},

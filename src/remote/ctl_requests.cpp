@@ -55,8 +55,7 @@ std::string CtlRequests::at_once(CtlSession& session, const CtlRequest& request)
   if (verb == "unwatch") {
     session.watched.clear();
   } else {  // estop
-    instance_.stop_now();
-    (void)port_.send({.kind = Order::Kind::note, .text = "asked for the emergency stop", .who = session.who()});
+    instance_.stop_now(session.who());
   }
   return json_text({{"ok", true}});
 }

@@ -1,7 +1,6 @@
 #include "kadans/remote/instance.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -99,9 +98,8 @@ void Instance::tell(const Fault& fault) noexcept {
 
 std::string fault_text(const Fault& fault, const RobotModel& model) {
   const bool of_joint = fault.joint < model.joints.size();
-  char numbers[64];
-  std::snprintf(numbers, sizeof numbers, ": %g, limit %g", fault.value, fault.limit);
-  return name(fault.code) + (of_joint ? " at " + model.joints[fault.joint].name : std::string()) + numbers;
+  return name(fault.code) + (of_joint ? " at " + model.joints[fault.joint].name : std::string()) + ": " +
+         fault_detail(fault);
 }
 
 }  // namespace kadans

@@ -234,12 +234,7 @@ void LiveClient::call_service(std::span<const std::byte> bytes) {
 void LiveClient::command(std::uint32_t service_call, const std::string& verb, const std::string& text, double value) {
   const std::optional<Order::Kind> kind = order_of(verb);
   if (!kind) {
-    if (hub_.act(verb, text, value)) {
-      if (verb == "estop")
-        (void)hub_.send({.kind = Order::Kind::note, .text = "asked for the emergency stop", .who = who_}, id_,
-                        ++next_call_);
-      return answer_service(service_call, true, "");
-    }
+    if (hub_.act(verb, text, value, who_)) return answer_service(service_call, true, "");
     return say(service_failure(service_call, "'" + verb + "' is no order; there are " + verbs_text(hub_.can_pace())));
   }
   const std::uint32_t call = ++next_call_;

@@ -168,9 +168,9 @@ std::string LiveHub::save(const std::vector<ParameterChange>& changes) {
   return std::to_string(changes.size()) + " parameters stand in " + configuration.file().filename().string();
 }
 
-bool LiveHub::act(const std::string& verb, const std::string& text, double value) {
+bool LiveHub::act(const std::string& verb, const std::string& text, double value, const std::string& who) {
   if (verb == "estop") {
-    p_.instance.stop_now();
+    p_.instance.stop_now(who);
     return true;
   }
   if (p_.pace == nullptr || !p_.pace->obey(verb, text, value)) return false;

@@ -230,7 +230,8 @@ class HtmlRun {
     table({"time", "fault", "joint", "value", "limit", "set by"}, 1);
     for (const Fault& fault : run_.faults)
       add("<tr>" + cell(printed("%.3f s", fault_s(fault)), number) + cell(name(fault.code)) + cell(joint_of(fault)) +
-          cell(printed("%.5g", fault.value), number) + cell(printed("%.5g", fault.limit), number) +
+          cell(fault.words[0] != '\0' ? fault.words.data() : printed("%.5g", fault.value), number) +
+          cell(fault.words[0] != '\0' ? "" : printed("%.5g", fault.limit), number) +
           cell(configuration_key(fault.code)) + "</tr>\n");
     add("</table></div>\n");
   }

@@ -17,6 +17,7 @@ Json fault_json(const Fault& fault, const RobotModel& model) {
   if (fault.joint != no_joint) json["joint"] = model.joints.at(fault.joint).name;
   json["value"] = fault.value;
   json["limit"] = fault.limit;
+  if (fault.words[0] != '\0') json["words"] = fault.words.data();
   json["key"] = configuration_key(fault.code);
   return json;
 }

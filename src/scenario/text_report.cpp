@@ -78,6 +78,12 @@ class TextReport {
     }
   }
 
+  // Where its limit is set.
+  static std::string key(const Fault& fault) {
+    const std::string key = configuration_key(fault.code);
+    return key.empty() ? "" : " (" + key + ")";
+  }
+
   void troubles() {
     const RunResult& result = subject_.result;
     for (const LogLine& line : subject_.log.lines()) {
@@ -89,8 +95,8 @@ class TextReport {
       const Fault& fault = result.faults[i];
       const std::string joint = fault.joint == no_joint ? "" : " of " + subject_.model.joints.at(fault.joint).name;
       text_ += red("  fault: ") + name(fault.code) + joint +
-               printed(" in tick %llu: %g, limit %g (%s)\n", static_cast<unsigned long long>(fault.tick), fault.value,
-                       fault.limit, configuration_key(fault.code));
+               printed(" in tick %llu: ", static_cast<unsigned long long>(fault.tick)) + fault_detail(fault) +
+               key(fault) + "\n";
     }
     if (result.faults.size() > shown) text_ += printed("  ... and %zu more faults\n", result.faults.size() - shown);
   }

@@ -93,8 +93,12 @@ std::optional<Event> event_in(const RecordTopic& topic, std::string_view json, s
 std::optional<RecordedFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns) {
   if (!topic.is_json() || topic.schema != "kadans.Fault") return std::nullopt;
   const Json read = object_in(json);
-  return RecordedFault{time_ns, text_in(read, "name"), text_in(read, "joint"), number_in(read, "value"),
-                       number_in(read, "limit")};
+  return RecordedFault{time_ns,
+                       text_in(read, "name"),
+                       text_in(read, "joint"),
+                       number_in(read, "value"),
+                       number_in(read, "limit"),
+                       text_in(read, "words")};
 }
 
 std::string transition_text(const Transition& transition) {
@@ -104,7 +108,7 @@ std::string transition_text(const Transition& transition) {
 
 std::string fault_text(const RecordedFault& fault) {
   return fault.name + (fault.joint.empty() ? "" : " of " + fault.joint) +
-         printed(": %g, limit %g", fault.value, fault.limit);
+         (fault.words.empty() ? printed(": %g, limit %g", fault.value, fault.limit) : ": " + fault.words);
 }
 
 }  // namespace kadans

@@ -59,7 +59,7 @@ std::vector<double> run(std::unique_ptr<ControlObject> at_drives, int rehearsals
     if (tick == 100) send(tick, {.kind = CommandKind::switch_set, .index = 1});
     if (tick == 300) send(tick, {.kind = CommandKind::switch_set, .index = 0});
     if (tick == 350) send(tick, {.kind = CommandKind::set_point, .index = hip, .value = -1.9});  // as hard as it can
-    if (tick == 450) robot.safety.latch(SafetyLevel::damp);
+    if (tick == 450) robot.safety.emergency_stop().leave();
     if (tick == 500) send(tick, {.kind = CommandKind::clear_faults});
     for (int i = 0; i < rehearsals_a_tick; ++i) robot.control.rehearse();
     robot.lockstep.step();

@@ -109,11 +109,22 @@ TEST_CASE("estop damps and then switches off, orders are refused with the reason
   const auto off = [](const Json& a) { return a["safety"]["level"] == "off"; };
   CHECK(off(live.ask_until({{"verb", "status"}}, off)));
   CHECK(says(live.ask({{"verb", "set"}, {"name", kp}, {"value", 50}}), "held"));
-  CHECK(live.ask({{"verb", "faults"}})["level"] == "off");
+  const std::string who = "uid " + std::to_string(getuid()) + " (operate)";
+  const Json status = live.ask({{"verb", "status"}})["safety"];
+  CHECK(status["faults"] >= 1);
+  CHECK(status["stopped"] == true);
+  CHECK(status["first"]["text"] == "emergency_stop: " + who);
+  const Json faults = live.ask({{"verb", "faults"}});
+  CHECK(faults["level"] == "off");
+  CHECK(faults["first"]["code"] == "emergency_stop");
+  CHECK(faults["first"]["words"] == who);
+  for (const bool replace : {false, true})
+    CHECK(says(live.ask({{"verb", "play"}, {"list", "nod"}, {"replace", replace}}), "the emergency stop keeps"));
   CHECK(live.ask({{"verb", "clear_faults"}})["ok"] == true);
   const auto well = [](const Json& a) { return a["safety"]["level"] == "normal"; };
   CHECK(well(live.ask_until({{"verb", "status"}}, well)));
   CHECK(says(live.ask({{"verb", "faults"}}), "command_refused"));
+  CHECK(live.ask({{"verb", "play"}, {"list", "nod"}})["ok"] == true);
 }
 
 TEST_CASE("estop and status work although the behavior thread is dead, everything else says why not") {

@@ -110,11 +110,13 @@ TEST_CASE("every change stands in the record with who made it, the old value and
   McapReader record((live.project.root / "tuned.mcap").string());
   std::string log;
   for (McapMessage message; record.next(message);) {
-    if (record.channels().at(message.channel).topic == "/log")
+    const std::string& topic = record.channels().at(message.channel).topic;
+    if (topic == "/log" || topic == "/faults")
       log += std::string(reinterpret_cast<const char*>(message.payload.data()), message.payload.size()) + "\n";
   }
   const std::string who = "uid " + std::to_string(getuid()) + " (develop)";
   CHECK(has(log, who + " set " + kp + ": 40 -> 55"));
-  CHECK(has(log, who + " asked for the emergency stop"));
+  CHECK(has(log, "\"emergency_stop\""));
+  CHECK(has(log, "\"words\":\"" + who));
   CHECK(has(log, who + " undid " + kp + ": 55 -> 40"));
 }

@@ -85,13 +85,16 @@ std::string Project::read(const std::string& file) const {
 
 bool Supervisor::beat(const Beat&) {
   instance.publish(status_of(exchange.snapshot.read(1), record.status()));
-  for (Fault fault; safety.log().try_pop(fault);) instance.tell(fault);
+  for (Fault fault; safety.log().try_pop(fault);) {
+    instance.tell(fault);
+    record.tell(fault);
+  }
   return true;
 }
 
 LiveInstance::LiveInstance(const CtlServer::Settings& settings)
     : host({.root = project.root}, with_parameters_by_object(robot.catalog), echo),
-      instance(facts_of(project), robot.catalog),
+      instance(facts_of(project), robot.catalog, robot.safety.emergency_stop()),
       server(std::make_unique<CtlServer>(instance, sockets, settings)) {
   robot.control.record_to(&control_side);
   robot.script.at = [this](std::int64_t time_ns) {

@@ -5,7 +5,7 @@
 // values, the events and the answers; orders go the other way. It never touches what the engines work on: the tables
 // (catalog) do not change once the loop runs, everything else crosses by storages and rings that block nobody.
 //
-//   control thread   control_side.h     rows of signals to the ports that want them; the emergency stop
+//   control thread   control_side.h     rows of signals to the ports that want them
 //   behavior thread  behavior_side.h    carries out orders, between its ticks
 //   record thread    record_side.h      starts and stops records
 //   supervisor       publish(), tell()  status, words, transitions, faults
@@ -14,7 +14,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -28,6 +27,7 @@
 #include "kadans/remote/configuration_text.h"
 #include "kadans/remote/latest_row.h"
 #include "kadans/remote/order.h"
+#include "kadans/safety/emergency_stop.h"
 #include "kadans/signal/fault.h"
 #include "kadans/signal/status.h"
 #include "kadans/telemetry/event_log.h"
@@ -101,11 +101,12 @@ class Instance {
     std::filesystem::path records;  // folder of records that are asked for
     double control_period_s = 0.001, behavior_period_s = 0.01;
   };
-  // When all signals are declared. The catalog must outlive it. Throws InputError when the configuration cannot be
+  // When all signals are declared. Catalog and stop must outlive it. Throws InputError when the configuration cannot be
   // read.
-  Instance(Facts facts, const Catalog& catalog)
+  Instance(Facts facts, const Catalog& catalog, EmergencyStop& stop)
       : facts_(std::move(facts)),
         catalog_(catalog),
+        stop_(stop),
         configuration_(facts_.configuration),
         console_row_(catalog.signals.size()) {}
 
@@ -115,7 +116,7 @@ class Instance {
   // Threads that serve clients.
   ConfigurationText& configuration() noexcept { return configuration_; }
   // Any thread, without asking anybody: the robot damps from the next tick on, then is off, until faults are cleared.
-  void stop_now() noexcept { stop_now_.store(true, std::memory_order_relaxed); }
+  void stop_now(const std::string& who) noexcept { stop_.ask(who); }
 
   // Any thread. The number of the control set; throws InputError with the nearest name.
   std::uint32_t set_named(const std::string& name) const;
@@ -138,10 +139,10 @@ class Instance {
 
   Facts facts_;
   const Catalog& catalog_;
+  EmergencyStop& stop_;
   ConfigurationText configuration_;
   LatestRow console_row_;
   std::vector<std::unique_ptr<InstancePort>> ports_;
-  std::atomic<bool> stop_now_{false};
 };
 
 // "position_limit at l_knee: 2.1, limit 2"

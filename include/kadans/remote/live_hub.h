@@ -87,7 +87,7 @@ class LiveHub {
   // An order has set this parameter.
   void settled(const std::string& name, double value);
   // What needs no order: the emergency stop and the pace. False: `verb` is no such thing.
-  [[nodiscard]] bool act(const std::string& verb, const std::string& text, double value);
+  [[nodiscard]] bool act(const std::string& verb, const std::string& text, double value, const std::string& who);
   bool can_pace() const noexcept { return p_.pace != nullptr; }
 
  private:

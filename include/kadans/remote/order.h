@@ -38,7 +38,6 @@ struct Order {
     changes,        // Answer::changes: what set_parameter changed since the start or the last `saved`
     saved,          // `changes` stand in the configuration now
     clear_faults,
-    note,           // `text` for the log: what was done without the behavior thread
     line,           // `text` for the console of this client
     complete,       // `text` = the beginning of a line
     leave_console,  // the client is gone

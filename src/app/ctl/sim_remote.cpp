@@ -50,8 +50,8 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
       model_(assembly.robot().model),
       log_(logs.all),
       told_(logs.told),
-      instance_(facts_of(scenario, assembly.robot()), assembly.catalog()),
-      control_side_(instance_, parts_.control.safety()),
+      instance_(facts_of(scenario, assembly.robot()), assembly.catalog(), parts_.control.safety().emergency_stop()),
+      control_side_(instance_),
       record_side_(instance_, control_side_, logs.record, {{"robot", scenario.robot}, {"kadans", version}}),
       behavior_side_(
           {instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),

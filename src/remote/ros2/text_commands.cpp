@@ -53,7 +53,7 @@ std::optional<std::string> TextCommands::obey(const Asked& asked, const std::str
   const auto refused = [&](const std::string& why) { return answer_text(asked.id, asked.verb, false, why); };
   if (!p_.allowed) return refused(p_.refusal);
   if (asked.verb == "estop") {
-    p_.instance.stop_now();
+    p_.instance.stop_now(p_.who);
     return answer_text(asked.id, asked.verb, true, "");
   }
   const std::optional<Order::Kind> kind = order_of(asked.verb);
