@@ -21,7 +21,7 @@ BehaviorLink::Setup setup_of(const RunOptions& options) {
   BehaviorLink::Setup setup;
   setup.memory_bytes = static_cast<std::uint64_t>(std::llround(1e6 * options.behaviors_memory_MB));
   if (options.virtual_time) return setup;
-  setup.priority = read_rights("/").priority(control_priority) ? behavior_priority : 0;
+  setup.priority = read_rights("/").priority(control_priority) ? behavior_process_priority : 0;
   setup.cpu_to_leave = options.cpu >= 0 ? options.cpu : real_time_cpu("/");
   setup.locks_memory = 1;
   return setup;

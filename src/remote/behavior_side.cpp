@@ -114,10 +114,10 @@ void BehaviorSide::begin(Pending& pending) {
 
 void BehaviorSide::settle(std::int64_t time_ns) {
   if (pending_.empty()) return;
-  const Snapshot& snapshot = p_.exchange.snapshot.read(0);
+  const auto snapshot = p_.exchange.snapshot.read(0);
   lines_ = p_.echo.take();
   std::erase_if(pending_, [&](Pending& pending) {
-    if (!settled(pending, snapshot, time_ns)) return false;
+    if (!settled(pending, *snapshot, time_ns)) return false;
     pending.from->answer(std::move(pending.order));
     return true;
   });
@@ -128,7 +128,8 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
   Answer& answer = pending.order->answer;
   const bool late = time_ns - pending.asked_ns > control_answers_in_ns;
   if (order.kind == Order::Kind::line) {
-    if (p_.instance.console_row().values.empty() && !late) return false;
+    const auto row = p_.instance.console_row();
+    if (row->values.empty() && !late) return false;
     evaluate(order, answer);
     return true;
   }

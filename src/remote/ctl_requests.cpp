@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ctl_json.h"
 #include "ctl_verbs.h"
@@ -29,6 +30,8 @@ CtlRequests::~CtlRequests() = default;
 std::string CtlRequests::take(CtlSession& session, const std::string& line) {
   try {
     const CtlRequest request = read_request(line, session.role());
+    if (session.leaves && std::string_view(request.verb->name) != "estop")
+      return refusal("orders expire with their client");
     if (known_here(request)) return told(session, request, {});
     return request.verb->order ? send(session, request) : at_once(session, request);
   } catch (const std::exception& error) {
@@ -76,8 +79,9 @@ std::string CtlRequests::send(CtlSession& session, const CtlRequest& request) {
 
 std::string CtlRequests::answered(CtlSession& session, const Answer* answer) {
   const CtlRequest request = asked_.at(session.number());
-  session.order = 0;
+  const std::uint64_t order = std::exchange(session.order, 0);
   try {
+    if (answer == nullptr) port_.withdraw(order);
     if (answer == nullptr && !reports(session))
       return refusal("the behavior thread does not answer; estop works without it");
     if (answer == nullptr) {
@@ -135,12 +139,12 @@ std::string CtlRequests::status(const Answer* report) {
 std::string CtlRequests::get(const std::string& name, const Answer& report) {
   const Catalog& catalog = instance_.catalog();
   if (const auto id = catalog.signals.find(name)) {
-    const LatestRow::View row = port_.signals();
-    if (row.values.empty()) throw InputError({.message = "no tick was seen yet"});
-    const double value = row.values[*id];
+    const auto row = port_.signals();
+    if (row->values.empty()) throw InputError({.message = "no tick was seen yet"});
+    const double value = row->values[*id];
     const Signal& info = catalog.signals.info(*id);
     Json json{{"ok", true},        {"kind", "signal"}, {"name", name},
-              {"unit", info.unit}, {"doc", info.doc},  {"time_s", 1e-9 * static_cast<double>(row.time_ns)}};
+              {"unit", info.unit}, {"doc", info.doc},  {"time_s", 1e-9 * static_cast<double>(row->time_ns)}};
     json["value"] = std::isfinite(value) ? Json(value) : Json(nullptr);
     return json_text(json);
   }
@@ -186,13 +190,13 @@ std::string CtlRequests::watch(CtlSession& session, const CtlRequest& request) {
 }
 
 std::string CtlRequests::sample(CtlSession& session) {
-  const LatestRow::View row = port_.signals();
-  if (row.values.empty() || row.tick < session.next_tick) return {};
-  session.next_tick = row.tick + session.every_ticks;
+  const auto row = port_.signals();
+  if (row->values.empty() || row->tick < session.next_tick) return {};
+  session.next_tick = row->tick + session.every_ticks;
   Json values = Json::array();
   for (const SignalId id : session.watched)
-    values.push_back(std::isfinite(row.values[id]) ? Json(row.values[id]) : Json(nullptr));
-  return json_text({{"tick", row.tick}, {"time_s", 1e-9 * static_cast<double>(row.time_ns)}, {"values", values}});
+    values.push_back(std::isfinite(row->values[id]) ? Json(row->values[id]) : Json(nullptr));
+  return json_text({{"tick", row->tick}, {"time_s", 1e-9 * static_cast<double>(row->time_ns)}, {"values", values}});
 }
 
 std::string CtlRequests::faults() {
@@ -211,6 +215,7 @@ std::string CtlRequests::faults() {
 }
 
 void CtlRequests::forget(const CtlSession& session) {
+  if (session.order != 0) port_.withdraw(session.order);
   asked_.erase(session.number());
   if (session.has_console) leaving_.push_back(session.number());
 }

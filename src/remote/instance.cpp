@@ -16,22 +16,33 @@ OrderQueue::~OrderQueue() {
 }
 
 bool OrderQueue::ask(std::unique_ptr<OrderCase> order) {
-  if (on_their_way_ == orders_waiting_max || !asked_.try_push(order.get())) return false;
-  (void)order.release();  // now the ring's
-  ++on_their_way_;
-  return true;
+  if (on_their_way_.size() == orders_waiting_max) return false;
+  on_their_way_.push_back(order.get());
+  if (asked_.try_push(order.get())) return order.release() != nullptr;  // now the ring's
+  on_their_way_.pop_back();
+  return false;
+}
+
+void OrderQueue::withdraw(std::uint64_t number) noexcept {
+  for (OrderCase* order : on_their_way_) {
+    if (order->answer.number == number) (void)order->withdraw();
+  }
 }
 
 std::unique_ptr<OrderCase> OrderQueue::answered() noexcept {
   OrderCase* order = nullptr;
-  if (answered_.try_pop(order)) --on_their_way_;
+  if (answered_.try_pop(order)) std::erase(on_their_way_, order);
   return std::unique_ptr<OrderCase>(order);
 }
 
 std::unique_ptr<OrderCase> OrderQueue::take() noexcept {
-  OrderCase* order = nullptr;
-  (void)asked_.try_pop(order);
-  return std::unique_ptr<OrderCase>(order);
+  for (OrderCase* order = nullptr; asked_.try_pop(order);) {
+    std::unique_ptr<OrderCase> taken(order);
+    if (taken->take_up()) return taken;
+    taken->answer.text = "withdrawn: its client is gone, or waits no more";
+    answer(std::move(taken));
+  }
+  return nullptr;
 }
 
 void OrderQueue::answer(std::unique_ptr<OrderCase> order) noexcept {

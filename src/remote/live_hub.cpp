@@ -68,10 +68,10 @@ void LiveHub::beat() {
   changed_.clear();
   take_answers();
   if (!wanted_) return;
-  const LatestRow::View row = p_.port.signals();
-  if (!row.values.empty() && row.tick != last_tick_) {
-    last_tick_ = row.tick;
-    channels_.take(row);
+  const auto row = p_.port.signals();
+  if (!row->values.empty() && row->tick != last_tick_) {
+    last_tick_ = row->tick;
+    channels_.take(*row);
   }
   if (beats_ % parameters_every == 0) take_parameters();
   if (beats_ % timing_every == 0 && !p_.timing.empty()) channels_.take_timing(timing_json(p_.timing), time_ns);
@@ -85,6 +85,13 @@ bool LiveHub::send(Order order, std::uint64_t client, std::uint32_t call) {
   if (number == 0) return false;
   waiting_[number] = {client, call};
   return true;
+}
+
+void LiveHub::leave(std::uint64_t id) {
+  clients_.erase(id);
+  for (const auto& [order, caller] : waiting_) {
+    if (caller.client == id) p_.port.withdraw(order);
+  }
 }
 
 void LiveHub::bound_replies() noexcept {

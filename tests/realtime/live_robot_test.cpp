@@ -131,9 +131,9 @@ TEST_CASE("A model that comes late catches up a little, and the rest of the time
   PlantTask task(*link, plant, tick_ns);
   SensorFrame sensors;
   CHECK(task.beat({.missed = 3}));
-  CHECK(link->sensors.read().time_ns == 4 * tick_ns);
+  CHECK(link->sensors.newest().time_ns == 4 * tick_ns);
   CHECK(task.lost_periods() == 0);
   CHECK(task.beat({.missed = 25}));
-  CHECK(link->sensors.read().time_ns == 14 * tick_ns);
+  CHECK(link->sensors.newest().time_ns == 14 * tick_ns);
   CHECK(task.lost_periods() == 16);
 }

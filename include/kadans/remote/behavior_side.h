@@ -56,6 +56,7 @@ class BehaviorSide final : public BesideTick {
   bool carry_out_now(const Order& order, Answer& answer);
   void begin(Pending& pending);
   void settle(std::int64_t time_ns);
+  bool stopped() const;
   bool settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns);
   void finish(Pending& pending);
   void say(std::int64_t time_ns, const std::string& who, const std::string& what);

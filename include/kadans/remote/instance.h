@@ -60,10 +60,10 @@ class InstancePort {
   explicit InstancePort(std::size_t signals) : row_(signals) {}
 
   // All of it: the client's thread.
-  const InstanceStatus& status() noexcept { return status_.read(); }
+  InstanceStatus status() noexcept { return status_.newest(); }
   // The newest row of the catalog's signals, each n-th of which was wanted. 0: none any more.
   void want_signals(std::uint32_t every_ticks) noexcept { row_.want(every_ticks); }
-  LatestRow::View signals() noexcept { return row_.read(); }
+  LatestRow::Reading signals() noexcept { return row_.read(); }
   // Transitions and words of behaviors; false when none waits.
   [[nodiscard]] bool next(Event& event) { return events_.pop(INT64_MAX, event); }
   [[nodiscard]] bool next(Fault& fault) noexcept { return faults_.try_pop(fault); }
@@ -72,6 +72,11 @@ class InstancePort {
   // The order's number, from 1; 0: refused, too many wait for their answers.
   std::uint64_t send(Order order);
   [[nodiscard]] bool next(Answer& answer);
+  // Whoever asked is gone or waits no more: the order is not carried out, unless it is being already. Its answer comes.
+  void withdraw(std::uint64_t order) noexcept {
+    behaviors_.withdraw(order);
+    records_.withdraw(order);
+  }
 
  private:
   friend class Instance;
@@ -127,7 +132,7 @@ class Instance {
 
   // Behavior thread: the newest row for consoles.
   void want_console_row(bool wanted) noexcept { console_row_.want(wanted ? 1 : 0); }
-  LatestRow::View console_row() noexcept { return console_row_.read(); }
+  LatestRow::Reading console_row() noexcept { return console_row_.read(); }
 
   // Supervisor.
   void publish(const InstanceStatus& status) noexcept;

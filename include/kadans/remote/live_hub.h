@@ -79,7 +79,8 @@ class LiveHub {
   std::uint64_t state_count() const noexcept { return state_count_; }
 
   void enter(std::uint64_t id, LiveClient& client) { clients_[id] = &client; }
-  void leave(std::uint64_t id) { clients_.erase(id); }
+  // Its orders that were not taken up yet expire.
+  void leave(std::uint64_t id);
   // A client's replies were put into its queue: the client that lets most wait goes when all are too many.
   void bound_replies() noexcept;
   // `call`: what the client knows its answer by. False: too many orders wait.

@@ -3,6 +3,7 @@
 // carry pointers, so no side waits for the other and an order may be as long as it is.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -74,9 +75,19 @@ struct Answer {
   bool incomplete = false, writes = false, leaves = false;  // a console's
 };
 
-struct OrderCase {
+// Whoever asked may withdraw an order until it is taken up: it expires with its client.
+class OrderCase {
+ public:
   Order order;
   Answer answer;
+
+  // The thread that carries out, once. False: it was withdrawn.
+  [[nodiscard]] bool take_up() noexcept { return !decided_.exchange(true, std::memory_order_acq_rel); }
+  // Client's thread. False: it is taken up already.
+  bool withdraw() noexcept { return !decided_.exchange(true, std::memory_order_acq_rel); }
+
+ private:
+  std::atomic<bool> decided_{false};
 };
 
 // From one client's thread to one that carries out, and back. At most `orders_waiting_max` are on their way.
@@ -91,16 +102,18 @@ class OrderQueue {
 
   // Client's thread. False: too many wait.
   [[nodiscard]] bool ask(std::unique_ptr<OrderCase> order);
+  // Client's thread: the order of this number is not carried out, unless it is being already.
+  void withdraw(std::uint64_t number) noexcept;
   std::unique_ptr<OrderCase> answered() noexcept;  // nullptr: none
 
   // The thread that carries out.
-  std::unique_ptr<OrderCase> take() noexcept;  // nullptr: none
+  std::unique_ptr<OrderCase> take() noexcept;  // nullptr: none; what was withdrawn goes back unanswered
   void answer(std::unique_ptr<OrderCase> order) noexcept;
 
  private:
   using Cases = Ring<OrderCase*, 16>;
   Cases asked_, answered_;
-  std::size_t on_their_way_ = 0;  // client's
+  std::vector<OrderCase*> on_their_way_;  // client's
 };
 
 }  // namespace kadans

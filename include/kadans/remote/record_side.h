@@ -67,7 +67,7 @@ class RecordSide final : public Task {
   void tell(const Fault& fault) noexcept {
     if (Recorder* recorder = told_.load(std::memory_order_acquire); recorder != nullptr) recorder->fault(fault);
   }
-  const RecordStatus& status() noexcept { return status_.read(); }
+  RecordStatus status() noexcept { return status_.newest(); }
   // After the loop; nullptr: there was no record.
   const Recorder* recorder() const noexcept { return recorder_.get(); }
 

@@ -66,10 +66,14 @@ std::optional<std::string> TextCommands::obey(const Asked& asked, const std::str
   if (number == 0) return refused("too many orders wait");
   waiting_[number] = asked;
   waiting_[number].save = *kind == Order::Kind::changes;
+  waiting_[number].asked_ns = clock_.now_ns();
   return std::nullopt;
 }
 
 std::optional<std::string> TextCommands::next() {
+  for (const auto& [number, asked] : waiting_) {
+    if (clock_.now_ns() > asked.asked_ns + patience_ns) p_.port.withdraw(number);
+  }
   for (Answer answer; p_.port.next(answer); answer = {}) {
     const auto found = waiting_.find(answer.number);
     if (found == waiting_.end()) continue;

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include <unistd.h>
+
 #include "kadans/control/plugin_glue.h"
 #include "spring.h"
 
@@ -27,6 +29,12 @@ using namespace kadans;
 [[maybe_unused]] std::unique_ptr<ControlObject> make_nothing(const ObjectSetup&) { return nullptr; }
 
 struct [[maybe_unused]] NoException {};
+
+// For ever; who tests it hears of it.
+[[maybe_unused]] void hang() {
+  (void)!write(STDERR_FILENO, "hangs now\n", 10);
+  for (;;) pause();
+}
 
 }  // namespace
 
@@ -125,6 +133,22 @@ EXPORT {
   Plugin* plugin = good();
   type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame*) {
     if (input->time_ns >= 100'000'000) std::raise(SIGSEGV);
+  };
+  return plugin;
+}
+#elif defined(HOSTILE_hanging_step)
+EXPORT {
+  Plugin* plugin = good();
+  type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame*) {
+    if (input->time_ns >= 100'000'000) hang();
+  };
+  return plugin;
+}
+#elif defined(HOSTILE_hanging_update)
+EXPORT {
+  Plugin* plugin = good();
+  type_of(plugin).update = [](void*, const Snapshot* snapshot) {
+    if (snapshot->time_ns >= 100'000'000) hang();
   };
   return plugin;
 }
