@@ -30,7 +30,8 @@ struct LuaCore {
   int (*entry)(lua_State*) = nullptr;  // what LuaState::call() runs
   int called = LUA_NOREF;              // registry: the function of a state that was called last
   bool loading = true;
-  int depth = 0;  // of library functions that call back
+  int depth = 0;       // of library functions that call back
+  int coroutines = 0;  // that resume one another
 };
 
 inline LuaCore& core_of(lua_State* state) noexcept {

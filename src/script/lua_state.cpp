@@ -103,7 +103,7 @@ KADANS_TICK_CODE std::size_t LuaState::used_bytes() const noexcept { return core
 
 KADANS_TICK_CODE bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
                                      std::int64_t wall_ns) noexcept {
-  core_->depth = 0;
+  core_->depth = core_->coroutines = 0;
   core_->running = nullptr;
   core_->budget.begin(lua_, instructions, wall_ns);
   core_->entry = function;

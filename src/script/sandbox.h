@@ -22,7 +22,7 @@ int raise_unknown_field(lua_State* state, const char* name, int content, int key
 
 // The parts of the library.
 void open_base(lua_State* state, int globals);  // [-0 +0] into the table at `globals`
-// [-0 +0] pcall, xpcall into the table at `globals`, resume into the coroutine library at the top.
+// [-0 +0] pcall, xpcall into the table at `globals`, resume, wrap into the coroutine library at the top.
 void open_protected_calls(lua_State* state, int globals);
 void open_math(lua_State* state);       // [-0 +0] into the math table at the top
 void open_strings(lua_State* state);    // [-0 +0] wraps what is in the string table at the top

@@ -11,20 +11,38 @@ namespace kadans {
 namespace {
 
 constexpr double number_text_instructions = 150, line_instructions = 1000, caught_instructions = 400;
+constexpr int depths_apart = 256;  // two counts in one number
+constexpr int coroutines_max = 100;
 
 // settle(depth, ok, ...): what pcall and coroutine.resume return, unless the budget is gone. An error may have passed
 // through library functions that count their depth; its message may have taken a look through its whole function.
 int settle(lua_State* state) {
   LuaCore& core = core_of(state);
   core.budget.raise_again(state);
-  core.depth = static_cast<int>(lua_tointeger(state, 1));
+  const auto depths = static_cast<int>(lua_tointeger(state, 1));
+  core.depth = depths % depths_apart;
+  core.coroutines = depths / depths_apart;
   if (lua_toboolean(state, 2) == 0) {
     core.budget.charge(state, caught_instructions);
     core.budget.charge_scan(state);
   }
   return lua_gettop(state) - 1;
 }
-int depth(lua_State* state) { return lua_pushinteger(state, core_of(state).depth), 1; }
+int depth(lua_State* state) {
+  const LuaCore& core = core_of(state);
+  return lua_pushinteger(state, core.depth + depths_apart * core.coroutines), 1;
+}
+// The same, for a coroutine that is about to be resumed: an error passes those around it one by one.
+int enter_coroutine(lua_State* state) {
+  const int depths = depth(state);
+  LuaCore& core = core_of(state);
+  if (core.coroutines >= coroutines_max) {
+    lua_pushliteral(state, "coroutines resume one another too deeply");
+    return lua_error(state);  // a place would be in the prelude
+  }
+  ++core.coroutines;
+  return depths;
+}
 
 // print(...): one line to the log.
 int print(lua_State* state) {
@@ -161,15 +179,23 @@ int random(lua_State* state) {
 // In Lua, so that coroutines may yield through pcall. A handler of xpcall runs after the stack has unwound: inside the
 // raising it could not be stopped.
 const char prelude[] = R"(
-local settle, depth, raw_pcall, raw_resume = ...
+local settle, depth, enter_coroutine, raw_pcall, raw_resume, create, error = ...
 local function pcall(f, ...) return settle(depth(), raw_pcall(f, ...)) end
 local function handled(handler, ok, ...)
   if ok then return ok, ... end
   return false, handler(...)
 end
 local function xpcall(f, handler, ...) return handled(handler, pcall(f, ...)) end
-local function resume(thread, ...) return settle(depth(), raw_resume(thread, ...)) end
-return pcall, xpcall, resume
+local function resume(thread, ...) return settle(enter_coroutine(), raw_resume(thread, ...)) end
+local function result(ok, ...)
+  if ok then return ... end
+  error((...), 2)
+end
+local function wrap(f)
+  local thread = create(f)
+  return function(...) return result(resume(thread, ...)) end
+end
+return pcall, xpcall, resume, wrap
 )";
 
 }  // namespace
@@ -196,9 +222,13 @@ void open_protected_calls(lua_State* state, int globals) {
   if (luaL_loadbuffer(state, prelude, sizeof prelude - 1, "=kadans") != 0) lua_error(state);
   lua_pushcfunction(state, settle);
   lua_pushcfunction(state, depth);
+  lua_pushcfunction(state, enter_coroutine);
   lua_getglobal(state, "pcall");
   lua_getfield(state, coroutines, "resume");
-  lua_call(state, 4, 3);
+  lua_getfield(state, coroutines, "create");
+  lua_pushcfunction(state, raise);
+  lua_call(state, 7, 4);
+  lua_setfield(state, coroutines, "wrap");
   lua_setfield(state, coroutines, "resume");
   lua_setfield(state, globals, "xpcall");
   lua_setfield(state, globals, "pcall");

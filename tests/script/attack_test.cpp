@@ -28,7 +28,8 @@ const Attack attacks[] = {
     {"a loop in a coroutine", "coroutine.wrap(function() while true do end end)()", time_out},
     {"coroutines resumed in a loop",
      "while true do coroutine.resume(coroutine.create(function() while true do end end)) end", time_out},
-    {"coroutines within coroutines", "local function f() return coroutine.wrap(f)() end f()", memory},
+    {"coroutines within coroutines, again and again",
+     "local function f() return coroutine.wrap(f)() end while true do pcall(f) end", time_out},
     {"a yield in a loop",
      "local c = coroutine.wrap(function() while true do coroutine.yield() end end) while true do c() end", time_out},
     {"recursion without end", "local function f() return 1 + f() end while true do pcall(f) end", time_out},
@@ -241,6 +242,7 @@ TEST_CASE("what no budget can hold is refused at the line") {
       "local t t = setmetatable({}, { __index = function() m.posture:move(t, { time_s = 1 }) end })\n"
       "m.posture:move(t, { time_s = 1 })",
       "nested too deeply");
+  refused("local function f() return (coroutine.wrap(f)()) end f()", "coroutines resume one another too deeply");
   refused("local x = ('%-5p'):format(print)", "string.format has no %p");
   refused("local x = ('\\0%p'):format(print)", "string.format has no %p");
   refused("local x = (('('):rep(100) .. ('a'):rep(100)):find(('('):rep(100))", "too many captures");

@@ -75,6 +75,12 @@ TEST_CASE("table functions and error do and raise as in LuaJIT itself") {
            "error('x', -1)",
            "error(7)",
            "local function deep(n) if n == 0 then error('x', 3) end deep(n - 1) return 1 end deep(5)",
+           "local w = coroutine.wrap(function(a, b) local c = coroutine.yield(a + b) return c, nil, 3 end) return w(1, "
+           "2), w(5)",
+           "local w = coroutine.wrap(function() error('x') end) w()",
+           "local w = coroutine.wrap(function() end) w() w() return 1",
+           "local w = coroutine.wrap(function() error(nil) end) w() return 1",
+           "local c = coroutine.create(function() coroutine.yield(1) end) return coroutine.resume(c)",
            "return math.fmod(7, 3), math.fmod(-7, 3), math.fmod(7, -3), math.fmod(1e308, 3.1), math.fmod(5, 1 / 0)",
            "return math.fmod('7', 3), math.fmod(0, 5) == 0",
            "local x = math.fmod({}, 1) return x",
