@@ -6,12 +6,17 @@
 
 #include <unistd.h>
 
+#include "kadans/script/budget.h"
+
 namespace kadans {
 namespace {
 
 volatile std::sig_atomic_t interrupt_flag = 0;
 
-void note_interrupt(int) { interrupt_flag = 1; }
+void note_interrupt(int) {
+  interrupt_flag = 1;
+  interrupt_scripts();
+}
 
 bool color_wanted() {
   const char* no_color = std::getenv("NO_COLOR");  // NOLINT(concurrency-mt-unsafe): before any thread is started

@@ -16,7 +16,7 @@ bool stderr_is_terminal();
 void print_problems(const InputError& error);
 void print_error(const std::string& message);
 
-// From now on SIGINT and SIGTERM set a flag instead of ending the program.
+// From now on SIGINT and SIGTERM set a flag instead of ending the program, and end scripts that go on nevertheless.
 void catch_interrupts();
 bool interrupted() noexcept;
 

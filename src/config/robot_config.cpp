@@ -18,6 +18,8 @@ void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
   f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
   f.number("behavior_period_s", engine.behavior_period_s, {1e-5, 10, "s"},
            "period of the behavior engine, a whole multiple of control_period_s");
+  f.number("behavior_time_max_s", engine.behavior_time_max_s, {0, 10, "s"},
+           "wall-clock time that one behavior may take in one tick of kadans run; 0: half of behavior_period_s");
   f.integer("commands_per_tick_max", engine.commands_per_tick_max, {max_transaction - 1, command_capacity},
             "commands applied in one control tick at most; the largest transaction must pass");
   f.number("command_age_max_s", engine.command_age_max_s, {1e-3, 60, "s"}, "older commands are refused");

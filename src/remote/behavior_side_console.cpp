@@ -8,6 +8,7 @@ namespace {
 constexpr ScriptLimits console_limits{.tick_instructions = 200'000,
                                       .load_instructions = 5'000'000,
                                       .tick_wall_ns = 20'000'000,
+                                      .load_wall_ns = 100'000'000,
                                       .memory_bytes = std::size_t{4} << 20};
 
 }  // namespace

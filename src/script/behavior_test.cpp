@@ -152,6 +152,7 @@ int new_test(lua_State* state) {
   testing_of(state).played.clear();
   lua_gc(state, LUA_GCCOLLECT, 0);
   lua_gc(state, LUA_GCSTOP, 0);
+  core_of(state).heap.forgive();
   return 0;
 }
 

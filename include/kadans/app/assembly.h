@@ -43,7 +43,7 @@ struct ControlSystem {
 std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 
 // The host of a scenario's behaviors. Throws InputError.
-std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const SafeConfig& safe,
+std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept = {});
 // A model of the robot on its own. `kind` is bullet or ideal.

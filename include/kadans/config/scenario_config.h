@@ -60,6 +60,7 @@ struct ScenarioConfig {
   WorldConfig world;
   ScenarioJoystick joystick;
   std::string joystick_device;  // not in the file: of a live run
+  bool on_wall_clock = false;   // likewise: time does not stand while a behavior is slow
   std::vector<ScenarioCheck> checks;
   PluginGate plugins;  // not in the file
 };
