@@ -64,6 +64,7 @@ bool BehaviorSide::carry_out_now(const Order& order, Answer& answer) {
       return true;
     case Order::Kind::changes:
       answer.changes = tuning_.unsaved();
+      answer.set = tuning_.set();
       return true;
     case Order::Kind::saved:
       tuning_.saved(order.changes);
@@ -104,7 +105,7 @@ void BehaviorSide::begin(Pending& pending) {
     case Order::Kind::undo: {
       const ParameterChange* last = tuning_.newest();
       if (last == nullptr) throw InputError({.message = "there is nothing to undo"});
-      return begin_change(pending, {last->name, last->now, last->before});
+      return begin_change(pending, {last->name, last->now, last->before, last->chunk});
     }
     case Order::Kind::line:
       p_.instance.want_console_row(true);

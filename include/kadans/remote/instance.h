@@ -106,7 +106,7 @@ class Instance {
   Instance(Facts facts, const Catalog& catalog)
       : facts_(std::move(facts)),
         catalog_(catalog),
-        configuration_(facts_.configuration),
+        configuration_(facts_.configuration, facts_.folders.robot),
         console_row_(catalog.signals.size()) {}
 
   // Any thread. Of the catalog: names, units, ranges, and parameters.newest(id).

@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "kadans/config/json_text.h"
 #include "live_protocol.h"
 
 namespace kadans {
@@ -15,7 +16,7 @@ std::string answer_text(const std::string& id, const std::string& verb, bool don
   if (!verb.empty()) json["verb"] = verb;
   json["done"] = done;
   json["text"] = text;
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // what came need not be UTF-8
+  return json_text(json);  // what came need not be UTF-8
 }
 
 // A number or a short text, as it came; else none.
@@ -83,9 +84,9 @@ std::optional<std::string> TextCommands::next() {
 void TextCommands::save(const Answer& answer, bool& done, std::string& text) {
   try {
     ConfigurationText& configuration = p_.instance.configuration();
-    configuration.save(answer.changes, p_.instance.catalog());
+    const auto overridden = configuration.save(answer.changes, p_.instance.catalog());
     (void)p_.port.send({.kind = Order::Kind::saved, .changes = answer.changes});
-    text = std::to_string(answer.changes.size()) + " parameters stand in " + configuration.file().filename().string();
+    text = configuration.told(answer.changes.size(), overridden);
   } catch (const std::exception& error) {
     done = false;
     text = error.what();
