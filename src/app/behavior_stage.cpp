@@ -168,7 +168,7 @@ fs::path robot_of_behavior(const fs::path& behavior) {
   }
   if (robots.size() == 1) return robots.front();
   throw InputError({.file = behavior.string(),
-                    .message = "no robot to go with it: there is no " + own.string() + "; name one with --robot FILE"});
+                    .message = "no robot goes with it: there is no " + own.string() + "; name one with --robot FILE"});
 }
 
 std::unique_ptr<TestStage> IdealStages::make(const fs::path& behavior, const std::string& robot) {

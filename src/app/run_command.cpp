@@ -26,6 +26,7 @@
 #include "live_log.h"
 #include "live_report.h"
 #include "live_threads.h"
+#include "played_behaviors.h"
 #include "real_time_start.h"
 #include "terminal.h"
 #include "version.h"
@@ -111,6 +112,7 @@ class LiveRun {
                  assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
   int run() {
+    refuse_faulty_behaviors(scenario_, assembly_.catalog());
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
     RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
@@ -146,7 +148,10 @@ class LiveRun {
     assembly_.plant().write(off);
     if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->leave();
     tell(threads.supervisor().now_ns());
-    if (!record_side_.end()) print_error("the record is not complete: " + record_side_.recorder()->error());
+    if (!record_side_.end()) {
+      print_error("the record is not complete: " + record_side_.error());
+      failed_ = true;
+    }
     tell_flights(record_side_.status());
     LiveResult result{threads,
                       control_,
@@ -161,8 +166,7 @@ class LiveRun {
                       ended,
                       failed_};
     result.failed = result.failed || log_.has_errors();
-    std::fputs(live_text(result).c_str(), stdout);
-    if (options_.json) std::puts(live_json(result).c_str());
+    std::fputs((options_.json ? live_json(result) + "\n" : live_text(result)).c_str(), stdout);
     return result.failed ? exit_failed : exit_passed;
   }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kadans/campaign/durable_file.h"
+#include "kadans/config/json_text.h"
 #include "kadans/config/json_value.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/machine_name.h"
@@ -123,7 +124,7 @@ void GoldenHashes::write() const {
     std::string each_s;
     for (const std::string& hash : run.each_s) each_s += (each_s.empty() ? "" : " ") + hash;
     const Json json{{"scenario", run.scenario}, {"seed", run.seed}, {"hash", run.hash}, {"each_s", each_s}};
-    text += "    " + json.dump() + (&run == &runs_.back() ? "\n" : ",\n");
+    text += "    " + json_text(json) + (&run == &runs_.back() ? "\n" : ",\n");
   }
   text += "  ]\n}\n";
   write_durably(file_, text);

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/json_text.h"
+
 namespace kadans {
 namespace {
 
@@ -22,7 +24,8 @@ CheckResult check_of(const Json& json) {
           .passed = json.at("passed"),
           .value = number(json.at("value")),
           .at_s = number(json.at("at_s")),
-          .note = json.value("note", "")};
+          .note = json.value("note", ""),
+          .wanted = json.value("wanted", "")};
 }
 
 EvidenceTrace trace_of(const Json& json) {
@@ -108,7 +111,7 @@ std::string run_json(const RunOutcome& run) {
   } else {
     json["errors"] = run.errors;
   }
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace kadans

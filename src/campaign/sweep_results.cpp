@@ -7,6 +7,7 @@
 
 #include "kadans/campaign/content_hash.h"
 #include "kadans/campaign/durable_file.h"
+#include "kadans/config/json_text.h"
 #include "kadans/config/json_value.h"
 
 namespace kadans {
@@ -142,7 +143,7 @@ SweepResults::SweepResults(fs::path folder, const SweepManifest& manifest)
            .message = "holds the results of another sweep: " + other + "; name another folder with --out"});
     return;
   }
-  write_durably(folder_ / manifest_file, to_json(manifest_).dump(2) + "\n");
+  write_durably(folder_ / manifest_file, json_text(to_json(manifest_), 2) + "\n");
 }
 
 SweepResults::SweepResults(fs::path folder) : folder_(std::move(folder)), manifest_(read_manifest(folder_)) {}
@@ -171,7 +172,7 @@ std::string case_json(const SweepManifest& manifest, const SweepCase& one, const
     json["quantities"] = Json::object();
     for (const QuantityValue& setting : one.quantities) json["quantities"][setting.name] = setting.value;
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 std::vector<CaseRow> SweepResults::rows() const {
@@ -200,7 +201,7 @@ std::string difference(const SweepManifest& a, const SweepManifest& b) {
   std::string text;
   for (const auto& [key, value] : one.items()) {
     if (key == "doc" || value == other.at(key)) continue;
-    text += (text.empty() ? "" : ", ") + key + " " + value.dump() + " and " + other.at(key).dump();
+    text += (text.empty() ? "" : ", ") + key + " " + json_text(value) + " and " + json_text(other.at(key));
   }
   return text;
 }

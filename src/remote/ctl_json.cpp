@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include "kadans/config/json_text.h"
 #include "kadans/config/problems.h"
 #include "kadans/control/set_partition.h"
 
@@ -89,7 +90,7 @@ Json record_json(const RecordStatus& record) {
 
 }  // namespace
 
-std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string line_of(const Json& json) { return json_text(json); }
 
 std::string refusal(const std::string& why) { return line_of({{"ok", false}, {"error", why}}); }
 

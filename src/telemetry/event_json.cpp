@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/json_text.h"
 #include "kadans/telemetry/event_log.h"
 
 namespace kadans {
@@ -37,7 +38,7 @@ std::string json_of(const Event& event) {
     json["line"] = 0;
   }
   // Scripts may say bytes that are no UTF-8.
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(json);
 }
 
 std::string json_of(const Fault& fault, const std::string& joint, std::int64_t time_ns) {
@@ -46,7 +47,7 @@ std::string json_of(const Fault& fault, const std::string& joint, std::int64_t t
                                     {"joint", joint},
                                     {"value", fault.value},
                                     {"limit", fault.limit}};
-  return json.dump();
+  return json_text(json);
 }
 
 const char* const log_schema = R"({

@@ -13,7 +13,8 @@ void write_durably(const std::filesystem::path& file, std::string_view bytes);
 
 // Something that bytes flow through, /dev/stdout: no file can take its place.
 bool is_device_or_pipe(const std::filesystem::path& file);
-// Where a file of this name lies: at the end of a link, which need not be there yet, else there. Throws InputError.
+// Where a file of this name lies: at the end of a link, which need not be there yet, else there; a device or pipe stays
+// as it is named. Throws InputError.
 std::filesystem::path end_of_link(const std::filesystem::path& file);
 
 }  // namespace kadans
