@@ -89,7 +89,7 @@ bool is_device_or_pipe(const fs::path& file) {
 }
 
 fs::path end_of_link(const fs::path& file) {
-  constexpr int links_max = 40;  // as the system's own
+  constexpr int links_max = 40;              // as the system's own
   if (is_device_or_pipe(file)) return file;  // a pipe behind /dev/stdout has no name
   fs::path end = file;
   std::error_code error;
