@@ -39,7 +39,7 @@ void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from,
       order->answer.done = true;
       return from.answer(std::move(order));
     }
-    Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns};
+    Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns, .asked_tick = p_.engine.ticks()};
     try {
       begin(pending);
     } catch (...) {
@@ -116,10 +116,16 @@ void BehaviorSide::begin(Pending& pending) {
   }
 }
 
+bool BehaviorSide::waits_for_tick(const Pending& pending) const noexcept {
+  return pending.sequence == 0 && pending.order->order.kind != Order::Kind::line &&
+         p_.engine.ticks() == pending.asked_tick;
+}
+
 void BehaviorSide::settle(std::int64_t time_ns) {
   if (pending_.empty()) return;
   const Snapshot& snapshot = p_.exchange.snapshot.read(0);
-  lines_ = p_.echo.take();
+  const bool ticked = std::ranges::none_of(pending_, [this](const Pending& one) { return waits_for_tick(one); });
+  if (ticked) lines_ = p_.echo.take();
   std::erase_if(pending_, [&](Pending& pending) {
     if (!settled(pending, snapshot, time_ns)) return false;
     pending.from->answer(std::move(pending.order));
@@ -135,6 +141,10 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
     if (p_.instance.console_row().values.empty() && !late) return false;
     evaluate(order, answer);
     return true;
+  }
+  if (waits_for_tick(pending)) {
+    if (late) answer.text = "the behaviors did not tick within a second";
+    return late;
   }
   if (pending.sequence == 0) {
     answer.done = true;

@@ -104,6 +104,21 @@ TEST_CASE("what ctl save wrote counts in the next run, and what a preset makes o
   CHECK(has(run("repl config/scenarios/squat.json <look.txt", project).out, "250"));  // `squat` chooses stiff
 }
 
+TEST_CASE("ctl reload beside a simulation tells of every new version, whenever in the behaviors' period it comes") {
+  const auto project = project_copy("ctl_reload_sim");
+  std::string commands;
+  for (int i = 1; i <= 8; ++i)
+    commands += "sed -i 's/hold_s *= { *[0-9.]*/hold_s = { 0." + std::to_string(i) +
+                "/' behaviors/tulip/squat.lua; ctl reload; ctl get squat.hold_s\n";
+  REQUIRE(beside(project, "sim config/scenarios/squat.json --play 'squat{repeats=20}' --duration 1000 --no-record",
+                 commands + "ctl reload\n") == 0);
+  const std::string said = read(project / "said");
+  CAPTURE(read(project / "wrong"));
+  std::string wanted;
+  for (int i = 1; i <= 8; ++i) wanted += "squat: reloaded behaviors/tulip/squat.lua\n0." + std::to_string(i) + " s\n";
+  CHECK(said == wanted + "no new version: the files are as they were loaded\n");
+}
+
 TEST_CASE("ctl says what it could not do, with the reason, by its exit code") {
   const auto project = project_copy("ctl_refused");
   REQUIRE(beside(project, live,
