@@ -25,6 +25,8 @@ std::vector<std::string> test_files(const std::vector<std::string>& named) {
   std::vector<std::string> files;
   for (const std::string& name : named) {
     if (!fs::is_directory(name)) {
+      if (!name.ends_with("_test.lua"))
+        throw InputError({.file = name, .message = "is no file of tests: those are called ..._test.lua"});
       files.push_back(name);
       continue;
     }

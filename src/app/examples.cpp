@@ -52,7 +52,7 @@ constexpr Examples all_examples[] = {
      "  kadans sweep config/sweeps/push_varied.json --shard 0/4    a quarter, on each of four machines\n"},
     {"merge",
      "  kadans merge part --csv push.csv\n"
-     "  kadans merge part --heat-map push.svg --x ground.friction --y torso.mass_scale\n"},
+     "  kadans merge part --heat-map push.svg --x ground.friction --y link.torso.mass_scale\n"},
     {"tune",
      "  kadans tune config/tuning/squat_height.json --generations 2 --runs 1 --out tuned\n"
      "  kadans tune config/tuning/squat_height.json --write better.json --overwrite\n"},

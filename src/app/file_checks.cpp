@@ -4,6 +4,7 @@
 #include <set>
 
 #include "behavior_stage.h"
+#include "json_kind.h"
 #include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
 #include "kadans/model/urdf.h"
@@ -64,12 +65,19 @@ std::string check_scenario(const std::string& file) {
 }  // namespace
 
 std::string FileChecks::check_json(const fs::path& file) {
-  const JsonValue json = parse_based_json(read_text_file(file), file).value;
-  const auto has = [&](const char* key) { return json.find(key) != nullptr; };
-  if (has("tune")) return check_tune_plan(file);
-  if (has("scenarios")) return check_sweep_plan(file);
-  if (has("urdf") || has("control")) return check_robot(file);
-  return has("robot") || has("duration_s") || has("checks") ? check_scenario(file) : "";
+  switch (kind_of(parse_based_json(read_text_file(file), file).value)) {
+    case JsonKind::tuning:
+      return check_tune_plan(file);
+    case JsonKind::sweep:
+      return check_sweep_plan(file);
+    case JsonKind::robot:
+      return check_robot(file);
+    case JsonKind::scenario:
+      return check_scenario(file);
+    case JsonKind::other:
+      break;
+  }
+  return "";
 }
 
 const FileChecks::Known& FileChecks::robot_at(const fs::path& config) {

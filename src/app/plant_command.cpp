@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "commands.h"
+#include "json_kind.h"
 #include "kadans/app/assembly.h"
 #include "kadans/config/json_text.h"
 #include "kadans/plant/udp/plant_server.h"
@@ -161,6 +162,7 @@ void add_plant(CLI::App& app, PlantOptions& options) {
 }
 
 int run_plant(const PlantOptions& options) {
+  require_kind(options.robot, JsonKind::robot);
   if (!rights_suffice(plant_priority, options.soft)) return exit_usage;
   PlantService service(options);
   catch_interrupts();

@@ -1,5 +1,6 @@
 #include "kadans/app/program.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "command_line.h"
@@ -73,6 +74,23 @@ void add_behavior_process(CLI::App& app, RunOptions& options) {
 
 namespace {
 
+// "--sed 1": the option that was meant.
+std::string unknown_option(const CLI::App& command, int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const CLI::App* app = &command; app != nullptr; app = app->get_parent()) {
+    for (const CLI::Option* option : app->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  }
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const std::string name = word.substr(0, word.find('='));
+    if (!name.starts_with("--") || name == "--" || std::ranges::find(names, name) != names.end()) continue;
+    return command.get_name() + " has no option '" + name + "'" + did_you_mean(name, names);
+  }
+  return {};
+}
+
 // "kadans smi", "kadans ctl stauts": the word that was meant.
 std::string hint(const CLI::App& app, int argc, char** argv, const std::string& before = {}) {
   int at = 1;
@@ -83,7 +101,8 @@ std::string hint(const CLI::App& app, int argc, char** argv, const std::string& 
       return hint(*command, argc - at, argv + at, before + command->get_name() + " ");
     names.push_back(command->get_name());
   }
-  if (at >= argc || names.empty()) return {};
+  if (names.empty()) return unknown_option(app, argc, argv);
+  if (at >= argc) return {};
   return "unknown command '" + before + argv[at] + "'" + did_you_mean(argv[at], names);
 }
 

@@ -12,6 +12,7 @@
 
 #include "behavior_process.h"
 #include "commands.h"
+#include "json_kind.h"
 #include "kadans/app/assembly.h"
 #include "kadans/config/project_root.h"
 #include "kadans/realtime/machine.h"
@@ -300,6 +301,7 @@ class LiveRun {
 }  // namespace
 
 int run_live(const RunOptions& options) {
+  require_kind(options.robot, JsonKind::robot);
   if (options.virtual_time && options.plant == "udp") {
     print_error("--threads-on-virtual-time: a plant on another machine has its own time");
     return exit_usage;

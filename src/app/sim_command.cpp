@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "input_files.h"
+#include "json_kind.h"
 #include "option_checks.h"
 #include "sim_run.h"
 #include "terminal.h"
@@ -112,6 +113,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
 int run_sim(const SimOptions& options) {
   refuse_wrong_mixtures(options);
   if (!options.from.empty()) return go_on(options);
+  require_kind(options.scenario, JsonKind::scenario);
   SimRun sim(options, options);
   catch_interrupts();
   return sim.run();

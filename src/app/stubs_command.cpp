@@ -45,6 +45,7 @@ std::vector<Row> rows_of_robot(const std::string& file) {
 }
 
 std::vector<Row> rows_of_behavior(const ParamsOptions& options) {
+  (void)read_text_file(options.file);  // tells what is not there
   const Robot robot = read_robot(options.robot.empty() ? robot_of_behavior(options.file) : fs::path(options.robot));
   const auto system = make_control_system(robot);
   RunLog log;
@@ -89,8 +90,7 @@ int run_stubs(const StubsOptions& options) {
     std::fputs(api_reference().c_str(), stdout);
     return exit_passed;
   }
-  const Robot robot =
-      read_robot(options.robot.empty() ? robot_of_behavior("behaviors/lib/x.lua") : fs::path(options.robot));
+  const Robot robot = read_robot(options.robot.empty() ? only_robot(fs::current_path()) : fs::path(options.robot));
   const auto system = make_control_system(robot);
   fs::create_directories(options.output);
   write_durably(fs::path(options.output) / "kadans.lua", lua_stubs(system->catalog));

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "json_kind.h"
 #include "kadans/campaign/shard.h"
 #include "kadans/campaign/sweep_results.h"
 #include "kadans/campaign/sweep_summary.h"
@@ -49,6 +50,7 @@ void tell(const MergedSweep& part, const SweepResults& results, const Shard& sha
 }  // namespace
 
 int run_sweep(const SweepOptions& options) {
+  require_kind(options.plan, JsonKind::sweep);
   const SweepPlan plan = read_plan(options);
   const std::vector<SweepSubject> subjects = read_sweep_subjects(plan);
   const std::string build = build_version();
