@@ -9,6 +9,7 @@
 
 #include "input_files.h"
 #include "kadans/app/assembly.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/number_text.h"
 #include "kadans/telemetry/record_comparison.h"
 #include "observers.h"
@@ -160,7 +161,7 @@ void print_json(const Findings& findings) {
   json["files"] = change_json(findings.files);
   json["program"] = change_json(findings.program);
   json["notes"] = findings.notes;
-  std::puts(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+  std::puts(json_text(json).c_str());
 }
 
 void print_differences(const RecordComparison& comparison) {

@@ -13,6 +13,7 @@
 
 #include "behavior_process.h"
 #include "commands.h"
+#include "json_kind.h"
 #include "kadans/app/assembly.h"
 #include "kadans/config/project_root.h"
 #include "kadans/realtime/machine.h"
@@ -29,6 +30,7 @@
 #include "live_log.h"
 #include "live_report.h"
 #include "live_threads.h"
+#include "played_behaviors.h"
 #include "real_time_start.h"
 #include "terminal.h"
 #include "version.h"
@@ -117,6 +119,7 @@ class LiveRun {
                  assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
   int run() {
+    refuse_faulty_behaviors(scenario_, assembly_.catalog());
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
     RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
@@ -161,8 +164,7 @@ class LiveRun {
                       ended,
                       failed_};
     result.failed = result.failed || log_.has_errors() || !hanging.empty();
-    std::fputs(live_text(result).c_str(), stdout);
-    if (options_.json) std::puts(live_json(result).c_str());
+    std::fputs((options_.json ? live_json(result) + "\n" : live_text(result)).c_str(), stdout);
     if (!hanging.empty()) leave_behind(hanging);
     return result.failed ? exit_failed : exit_passed;
   }
@@ -355,6 +357,7 @@ class LiveRun {
 }  // namespace
 
 int run_live(const RunOptions& options) {
+  require_kind(options.robot, JsonKind::robot);
   if (options.virtual_time && options.plant == "udp") {
     print_error("--threads-on-virtual-time: a plant on another machine has its own time");
     return exit_usage;

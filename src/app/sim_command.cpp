@@ -4,6 +4,8 @@
 
 #include "commands.h"
 #include "input_files.h"
+#include "json_kind.h"
+#include "option_checks.h"
 #include "sim_run.h"
 #include "terminal.h"
 
@@ -66,10 +68,12 @@ void refuse_wrong_mixtures(const SimOptions& options) {
 void add_sim(CLI::App& app, SimOptions& options) {
   CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
   sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->type_name("FILE");
-  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")->type_name("N");
+  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")
+      ->type_name("N")
+      ->check(any_seed());
   sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
       ->type_name("S")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(number_within(0.001, 1e6));
   sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
       ->type_name("LIST");
   sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
@@ -99,14 +103,14 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->allow_extra_args(false);
   sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
       ->type_name("S")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(number_within(0.001, 1e6));
   add_report_place(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
   add_ctl_place(*sim, options.ctl);
   add_live_place(*sim, options.live);
   add_ros2_place(*sim, options.ros2);
   sim->add_option("--speed", options.speed, "With --live or --ros2: as a multiple of the wall clock's pace")
       ->type_name("X")
-      ->check(CLI::Range(0.01, 100.0));
+      ->check(number_within(0.01, 100.0));
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");
   sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
 }
@@ -114,6 +118,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
 int run_sim(const SimOptions& options) {
   refuse_wrong_mixtures(options);
   if (!options.from.empty()) return go_on(options);
+  require_kind(options.scenario, JsonKind::scenario);
   SimRun sim(options, options);
   catch_interrupts();
   return sim.run();

@@ -83,6 +83,9 @@ const GoldenRun* GoldenHashes::find(const std::string& scenario, std::uint64_t s
 
 std::string GoldenHashes::difference(const RunOutcome& run) const {
   const GoldenRun* const known = find(run.scenario, run.seed);
+  const bool other_seed = std::ranges::find(runs_, run.scenario, &GoldenRun::scenario) != runs_.end();
+  if (known == nullptr && other_seed)
+    return "no golden hash is known of this seed, only of those that the scenario says: leave out --seed and --repeat";
   if (known == nullptr) return "no golden hash is known of this run: kadans test --renew-golden takes it";
   const std::string where = parting(*known, golden_of(run));
   if (where.empty()) return {};

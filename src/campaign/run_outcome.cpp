@@ -24,7 +24,8 @@ CheckResult check_of(const Json& json) {
           .passed = json.at("passed"),
           .value = number(json.at("value")),
           .at_s = number(json.at("at_s")),
-          .note = json.value("note", "")};
+          .note = json.value("note", ""),
+          .wanted = json.value("wanted", "")};
 }
 
 EvidenceTrace trace_of(const Json& json) {

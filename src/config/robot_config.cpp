@@ -34,7 +34,8 @@ void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
   f.string("pose", config.safe.pose, "the pose", Need::required);
   f.number("after_s", config.safe.after_s, {0, 60, "s"}, "how long the last set-points are held before");
   f.number("time_s", config.safe.time_s, {0.01, 60, "s"}, "time to go there");
-  if (!f.reading() || config.safe.pose.empty()) return;
+  if (!f.reading() || config.safe.pose.empty() || config.model.joints.empty())
+    return;  // without a model no pose is read
   const std::vector<std::string> names = names_of(config.poses);
   if (std::find(names.begin(), names.end(), config.safe.pose) != names.end()) return;
   problems.add_unknown(f.place("pose"), "pose", config.safe.pose, names);

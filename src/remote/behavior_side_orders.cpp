@@ -165,7 +165,7 @@ ParameterChange BehaviorSide::change_of(const Order& order) const {
     for (const Pending& other : pending_) {
       if (other.change.name == order.text) before = other.change.now;
     }
-    return {order.text, before, order.value};
+    return {order.text, before, order.value, {}};
   }
   std::vector<std::string> names = table.names();
   for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
@@ -174,7 +174,7 @@ ParameterChange BehaviorSide::change_of(const Order& order) const {
       names.push_back(behavior.name() + "." + own.name);
       if (names.back() != order.text) continue;
       check_range(order.text, own.unit, order.value, own.min, own.max);
-      return {order.text, own.value, order.value};
+      return {order.text, own.value, order.value, own.chunk};
     }
   }
   if (p_.process != nullptr) check_is_no_behavior(p_.process->names(), order.text);
@@ -190,7 +190,9 @@ void BehaviorSide::begin_change(Pending& pending, const ParameterChange& change)
   for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
     Behavior& behavior = p_.host->behavior(i);
     const std::string own = behavior.name() + ".";
-    if (change.name.starts_with(own) && behavior.set_parameter(change.name.substr(own.size()), change.now)) return;
+    if (!change.name.starts_with(own) || !behavior.set_parameter(change.name.substr(own.size()), change.now)) continue;
+    pending.lasting = true;
+    return;
   }
   throw InputError({.message = change.name + " is not there any more"});
 }

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/problems.h"
 #include "kadans/control/set_partition.h"
 

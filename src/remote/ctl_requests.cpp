@@ -106,7 +106,7 @@ std::string CtlRequests::told(const CtlSession& session, const CtlRequest& reque
   } else if (verb == "get") {
     return get(request.text("name"), answer);
   } else if (verb == "save") {
-    return save(session, answer);
+    return save(session, request.text("preset"), answer);
   } else if (verb == "set" || verb == "undo") {
     json.update(change_json(answer.changes.at(0)));
   } else if (verb == "complete") {
@@ -159,11 +159,16 @@ std::string CtlRequests::get(const std::string& name, const Answer& report) {
 }
 
 // The file is written here, not on the behavior thread, which is told then.
-std::string CtlRequests::save(const CtlSession& session, const Answer& answer) {
+std::string CtlRequests::save(const CtlSession& session, const std::string& preset, const Answer& answer) {
   Json json{{"ok", true}, {"file", instance_.configuration().file().string()}, {"saved", Json::array()}};
-  if (answer.changes.empty()) return json_text(json);
-  instance_.configuration().save(answer.changes, instance_.catalog());
+  if (answer.changes.empty() && preset.empty()) return json_text(json);
+  const std::vector<PresetOverride> overridden =
+      instance_.configuration().save(answer.changes, instance_.catalog(), {.preset = preset, .values = answer.set});
   for (const ParameterChange& change : answer.changes) json["saved"].push_back(change_json(change));
+  if (!preset.empty()) json["preset"] = preset;
+  json["overridden"] = Json::array();
+  for (const PresetOverride& one : overridden)
+    json["overridden"].push_back({{"name", one.name}, {"preset", one.preset}, {"value", one.value}});
   (void)port_.send({.kind = Order::Kind::saved, .who = session.who(), .changes = answer.changes});
   return json_text(json);
 }

@@ -31,7 +31,7 @@ const CtlVerb verbs[] = {
     {"record_dump", Role::operate, Is::record_dump, {{{"file", text}}}},
     {"set", Role::develop, Is::set_parameter, {{{"name", text, true}, {"value", number, true}}}},
     {"undo", Role::develop, Is::undo},
-    {"save", Role::develop, Is::changes},
+    {"save", Role::develop, Is::changes, {{{"preset", text}}}},
     {"reload", Role::develop, Is::reload, {{{"name", text}}}},
     {"line", Role::develop, Is::line, {{{"text", text, true}}}},
     {"complete", Role::develop, Is::complete, {{{"text", text, true}}}},

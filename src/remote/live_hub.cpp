@@ -170,9 +170,9 @@ void LiveHub::take_parameters() {
 
 std::string LiveHub::save(const std::vector<ParameterChange>& changes) {
   ConfigurationText& configuration = p_.instance.configuration();
-  configuration.save(changes, p_.instance.catalog());
+  const auto overridden = configuration.save(changes, p_.instance.catalog());
   (void)send({.kind = Order::Kind::saved, .changes = changes}, own, saved_call);
-  return std::to_string(changes.size()) + " parameters stand in " + configuration.file().filename().string();
+  return configuration.told(changes.size(), overridden);
 }
 
 bool LiveHub::act(const std::string& verb, const std::string& text, double value, const std::string& who) {

@@ -49,8 +49,11 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   Json json{{"scenario", result.scenario}, {"seed", result.seed}, {"passed", result.passed}};
   json["checks"] = Json::array();
   for (const CheckResult& check : result.checks) {
-    json["checks"].push_back(
-        {{"name", check.name}, {"passed", check.passed}, {"value", check.value}, {"at_s", check.at_s}});
+    json["checks"].push_back({{"name", check.name},
+                              {"passed", check.passed},
+                              {"value", check.value},
+                              {"at_s", check.at_s},
+                              {"wanted", check.wanted}});
     if (!check.note.empty()) json["checks"].back()["note"] = check.note;
   }
   json["duration_s"] = result.duration_s;
@@ -67,6 +70,7 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   for (const LogLine& line : context.log.lines()) {
     if (line.severity == BehaviorLog::Severity::error) json["errors"].push_back(line.text);
   }
+  for (const std::string& what : context.lost) json["errors"].push_back(what);
   json["record"] = context.record;
   json["quantities"] = Json::object();
   for (const QuantityValue& quantity : context.quantities) json["quantities"][quantity.name] = quantity.value;

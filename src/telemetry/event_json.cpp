@@ -38,7 +38,7 @@ std::string json_of(const Event& event) {
     json["line"] = 0;
   }
   // Scripts may say bytes that are no UTF-8.
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(json);
 }
 
 std::string json_of(const Fault& fault, const std::string& joint, std::int64_t time_ns) {

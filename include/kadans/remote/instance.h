@@ -112,7 +112,7 @@ class Instance {
       : facts_(std::move(facts)),
         catalog_(catalog),
         stop_(stop),
-        configuration_(facts_.configuration),
+        configuration_(facts_.configuration, facts_.folders.robot),
         console_row_(catalog.signals.size()) {}
 
   // Any thread. Of the catalog: names, units, ranges, and parameters.newest(id).

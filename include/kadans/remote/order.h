@@ -19,6 +19,7 @@ namespace kadans {
 struct ParameterChange {
   std::string name;
   double before = 0, now = 0;
+  std::string chunk{};  // the file that declares it, of a behavior's
 };
 
 struct Order {
@@ -70,7 +71,8 @@ struct Answer {
   std::vector<BehaviorReport> behaviors{};
   bool paused = false;
   std::vector<ParameterChange> changes{};
-  std::vector<std::string> words{};  // of a completion, in place of what begins at `begin`
+  std::vector<ParameterChange> set{};  // of `changes`: also what stands in the configuration already
+  std::vector<std::string> words{};    // of a completion, in place of what begins at `begin`
   std::size_t begin = 0;
   bool incomplete = false, writes = false, leaves = false;  // a console's
 };

@@ -54,11 +54,12 @@ class RecordSide final : public Task {
   void begin();
   // Record thread, or before the loop and after it. Throws InputError when there can be none.
   void start(const std::string& file);
-  [[nodiscard]] bool stop();  // false: recorder()->error() says why the record is not complete
+  [[nodiscard]] bool stop();  // false: error() says why the record is not complete
   // Any thread: the robot is about to be let go. No flight record any more.
   void expect_end() noexcept { ending_.store(true, std::memory_order_relaxed); }
   // After the loop: stop(), and the flight record that is still to be written.
   [[nodiscard]] bool end();
+  std::string error() const;  // of the record, else of the flight record
   // Before the loop: somebody else has a record that goes on to the end.
   void leave_to(RecordSink& own, const std::string& file);
   bool beat(const Beat&) override;

@@ -2,7 +2,6 @@
 
 #include "kadans/config/project_root.h"
 #include "run_request.h"
-#include "terminal.h"
 #include "version.h"
 
 namespace kadans {
@@ -68,8 +67,10 @@ SimRemote::~SimRemote() {
   live_.stop();
   service_.stop();
   told_.tell(nullptr);
-  if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
+  (void)record_side_.stop();  // of a run that threw
 }
+
+std::string SimRemote::end_record() { return record_side_.stop() ? "" : record_side_.error(); }
 
 void SimRemote::begin(RecordSink* own, const std::string& own_file) {
   told_.tell(&instance_);

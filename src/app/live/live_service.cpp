@@ -7,12 +7,13 @@
 #include "kadans/config/json_value.h"
 #include "kadans/remote/page_files.h"
 #include "kadans/remote/run_description.h"
+#include "option_checks.h"
 
 namespace kadans {
 
 void add_live_place(CLI::App& command, LivePlace& place) {
   command.add_flag("--live{8765}", place.port, "Show it in a browser and to Foxglove's kin; --live=PORT, 0: any")
-      ->check(CLI::Range(0, 65535));
+      ->check(whole_within(0, 65535));
   command.add_option("--live-address", place.address, "Address to listen on (default: this machine alone)")
       ->type_name("IP");
   command.add_option("--live-token", place.token, "What a client must know to change anything (default: a new one)")

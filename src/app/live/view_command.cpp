@@ -8,6 +8,7 @@
 #include "kadans/remote/page_files.h"
 #include "kadans/signal/input_file.h"
 #include "live/page_commands.h"
+#include "option_checks.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -33,7 +34,9 @@ void add_view(CLI::App& app, ViewOptions& options) {
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
   options.live.port = "0";
-  view->add_option("--port", options.live.port, "Port (default: one that is free)")->check(CLI::Range(0, 65535));
+  view->add_option("--port", options.live.port, "Port (default: one that is free)")
+      ->type_name("N")
+      ->check(whole_within(0, 65535));
   view->add_option("--live-address", options.live.address, "Address to listen on (default: this machine alone)")
       ->type_name("IP");
   add_live_hosts(*view, options.live);

@@ -90,9 +90,9 @@ std::optional<std::string> TextCommands::next() {
 void TextCommands::save(const Answer& answer, bool& done, std::string& text) {
   try {
     ConfigurationText& configuration = p_.instance.configuration();
-    configuration.save(answer.changes, p_.instance.catalog());
+    const auto overridden = configuration.save(answer.changes, p_.instance.catalog());
     (void)p_.port.send({.kind = Order::Kind::saved, .changes = answer.changes});
-    text = std::to_string(answer.changes.size()) + " parameters stand in " + configuration.file().filename().string();
+    text = configuration.told(answer.changes.size(), overridden);
   } catch (const std::exception& error) {
     done = false;
     text = error.what();
