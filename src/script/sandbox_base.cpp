@@ -11,8 +11,8 @@ namespace kadans {
 namespace {
 
 constexpr double number_text_instructions = 150, line_instructions = 1000, caught_instructions = 400;
-constexpr int depths_apart = 256;  // two counts in one number
-constexpr int coroutines_max = 100;
+constexpr int depths_apart = 256;   // two counts in one number
+constexpr int coroutines_max = 20;  // each names its place in an error that passes
 
 // settle(depth, ok, ...): what pcall and coroutine.resume return, unless the budget is gone. An error may have passed
 // through library functions that count their depth; its message may have taken a look through its whole function.
@@ -139,6 +139,16 @@ int raise(lua_State* state) {
   return lua_error(state);
 }
 
+// wrap(f, ...): the prelude's wrap, its upvalue, of f alone.
+int wrap(lua_State* state) {
+  luaL_checktype(state, 1, LUA_TFUNCTION);
+  lua_settop(state, 1);
+  lua_pushvalue(state, lua_upvalueindex(1));
+  lua_insert(state, 1);
+  lua_call(state, 1, 1);
+  return 1;
+}
+
 // fmod(a, b): as in Lua; divides bit by bit.
 int remainder(lua_State* state) {
   const double a = luaL_checknumber(state, 1), b = luaL_checknumber(state, 2);
@@ -228,6 +238,7 @@ void open_protected_calls(lua_State* state, int globals) {
   lua_getfield(state, coroutines, "create");
   lua_pushcfunction(state, raise);
   lua_call(state, 7, 4);
+  lua_pushcclosure(state, wrap, 1);
   lua_setfield(state, coroutines, "wrap");
   lua_setfield(state, coroutines, "resume");
   lua_setfield(state, globals, "xpcall");
