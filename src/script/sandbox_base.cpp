@@ -142,6 +142,7 @@ int raise(lua_State* state) {
 // wrap(f, ...): the prelude's wrap, its upvalue, of f alone.
 int wrap(lua_State* state) {
   luaL_checktype(state, 1, LUA_TFUNCTION);
+  core_of(state).budget.charge(state, 0.6 * lua_gettop(state));  // the stack may grow, behind what lies on it
   lua_settop(state, 1);
   lua_pushvalue(state, lua_upvalueindex(1));
   lua_insert(state, 1);
