@@ -139,17 +139,6 @@ int raise(lua_State* state) {
   return lua_error(state);
 }
 
-// wrap(f, ...): the prelude's wrap, its upvalue, of f alone.
-int wrap(lua_State* state) {
-  luaL_checktype(state, 1, LUA_TFUNCTION);
-  core_of(state).budget.charge(state, 0.6 * lua_gettop(state));  // the stack may grow, behind what lies on it
-  lua_settop(state, 1);
-  lua_pushvalue(state, lua_upvalueindex(1));
-  lua_insert(state, 1);
-  lua_call(state, 1, 1);
-  return 1;
-}
-
 // fmod(a, b): as in Lua; divides bit by bit.
 int remainder(lua_State* state) {
   const double a = luaL_checknumber(state, 1), b = luaL_checknumber(state, 2);
@@ -204,7 +193,7 @@ local function result(ok, ...)
 end
 local function wrap(f)
   local thread = create(f)
-  return function(...) return result(resume(thread, ...)) end
+  return function(...) return result(settle(enter_coroutine(), raw_resume(thread, ...))) end
 end
 return pcall, xpcall, resume, wrap
 )";
@@ -239,7 +228,6 @@ void open_protected_calls(lua_State* state, int globals) {
   lua_getfield(state, coroutines, "create");
   lua_pushcfunction(state, raise);
   lua_call(state, 7, 4);
-  lua_pushcclosure(state, wrap, 1);
   lua_setfield(state, coroutines, "wrap");
   lua_setfield(state, coroutines, "resume");
   lua_setfield(state, globals, "xpcall");
