@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A sweep as a Slurm array on a cluster of this one machine: a real slurmctld, slurmd and munged, in folders of their own.
-# Exit code 77, skipped, without the packages slurmctld, slurmd, slurm-client and munge, or without root.
+# Exit code 77, skipped, without root or where scripts/setup did not run.
 #   KADANS_SOURCE_DIR=. KADANS_BINARY_DIR=build tests/project/slurm.sh
 set -euo pipefail
 skip() { echo "skipped: $1"; exit 77; }
