@@ -263,6 +263,11 @@ void UnpackedInputs::link_plugin(const InputFile& file, const std::string& recor
   const auto refuse = [&](const std::string& why) {
     throw InputError({.file = record, .message = "needs the plug-in " + file.path + ", " + why});
   };
+  // By its recorded hash alone a sender could choose among the files of this machine, those that came with the record
+  // included.
+  const std::string inside = here.lexically_normal().lexically_relative(project_here()).generic_string();
+  if (!any_plugins && (inside.empty() || inside.starts_with("..")))
+    refuse("which is not in the project around the working directory: --allow-plugins takes it from there");
   const std::optional<std::string> now = read_all(here);
   if (!now) refuse("which is not " + std::string(here == file.path ? "there" : "in this project"));
   if (!any_plugins && content_hash(*now) != file.hash)

@@ -1,5 +1,6 @@
 #include "run_request.h"
 
+#include <cmath>
 #include <sstream>
 
 #include "kadans/signal/number_text.h"
@@ -43,6 +44,8 @@ NumberEntry parse_setting(const std::string& text, const std::string& option) {
   return {.key = text.substr(0, equals), .value = *value};
 }
 
+constexpr double push_max_Ns = 1e4;  // as in a scenario
+
 ScenarioPush parse_push(const std::string& text, double at_s) {
   const std::size_t equals = text.find('=');
   ScenarioPush push;
@@ -52,13 +55,13 @@ ScenarioPush parse_push(const std::string& text, double at_s) {
   std::size_t count = 0;
   for (std::string number; std::getline(numbers, number, ',') && count < 4; ++count) {
     const std::optional<double> impulse_Ns = number_of<double>(number);
-    if (count == 3 || !impulse_Ns)
+    if (count == 3 || !impulse_Ns || !(std::abs(*impulse_Ns) <= push_max_Ns))
       count = 9;
     else
       push.impulse_Ns[count] = *impulse_Ns;
   }
   if (count != 3)
-    throw InputError({.file = "--push", .message = "'" + text + "' must be LINK=X,Y,Z in Ns, such as torso=0,2,0"});
+    throw InputError({.file = "--push", .message = "'" + text + "' must be LINK=X,Y,Z in Ns, at most 1e4 each, such as torso=0,2,0"});
   return push;
 }
 
@@ -96,7 +99,8 @@ RunRequest request_of(const TextMap& facts, const std::string& record) {
   RunRequest request;
   request.seed = number_of<std::uint64_t>(fact(facts, "seed"));
   request.duration_s = number_of<double>(fact(facts, "duration_s"));
-  if (!request.seed || !request.duration_s || !(*request.duration_s > 0))
+  constexpr double duration_max_s = 1e6;
+  if (!request.seed || !request.duration_s || !(*request.duration_s > 0 && *request.duration_s <= duration_max_s))
     throw InputError({.file = record, .message = "does not say with which seed and for how long it was recorded"});
   request.play = fact(facts, "play");
   request.set = split(fact(facts, "set"));

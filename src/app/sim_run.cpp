@@ -124,6 +124,11 @@ int SimRun::run() {
   RunResult result = run_scenario(assembly_.parts(), duration_s_, checks_, observers);
   if (split_) return processes_.finish();
   if (parted_) return tell_parting();
+  if (continuation_ && !reached_ && !result.interrupted) {
+    print_error(options_.from + ": this run ended without coming to the tick of the checkpoint, " +
+                std::to_string(continuation_->from.at.ticks));
+    return exit_failed;
+  }
   return report(result);
 }
 

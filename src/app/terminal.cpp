@@ -73,6 +73,12 @@ void catch_interrupts() {
   action.sa_handler = note_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction before = {};
+  if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)  // else by nohup
+    sigaction(SIGHUP, &action, nullptr);
+  action.sa_handler = SIG_IGN;  // writing fails then, which is told
+  sigaction(SIGPIPE, &action, nullptr);
+  sigaction(SIGXFSZ, &action, nullptr);
 }
 
 bool interrupted() noexcept { return interrupt_flag != 0; }

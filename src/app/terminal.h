@@ -21,7 +21,8 @@ void print_error(const std::string& message);
 // on stderr. Never 0 when stdout did not take all that was printed on it, a full disk. Throws nothing.
 int ended_well(const std::function<int()>& run);
 
-// From now on SIGINT and SIGTERM set a flag instead of ending the program, and end scripts that go on nevertheless.
+// From now on SIGINT, SIGTERM and SIGHUP, a terminal that closes, set a flag instead of ending the program, and end
+// scripts that go on nevertheless; a reader that has gone, or a file that may not grow, ends nothing.
 void catch_interrupts();
 bool interrupted() noexcept;
 

@@ -55,8 +55,8 @@ RefusalReason CommandInbox::judge(const Command& command) const noexcept {
 
 RefusalReason CommandInbox::held(const Command& command, const Safety& safety, SetMask active,
                                  std::uint16_t& joint) const noexcept {
-  if (command.kind == CommandKind::clear_faults || command.kind == CommandKind::cancel_motion)
-    return RefusalReason::none;
+  const bool clears = command.kind == CommandKind::clear_faults && !safety.stopped();
+  if (clears || command.kind == CommandKind::cancel_motion) return RefusalReason::none;
   if (safety.robot_level() >= SafetyLevel::hold) return RefusalReason::robot_held;
   const auto joint_held = [&](std::size_t at) {
     if (safety.joint_level(at) != SafetyLevel::hold) return false;
@@ -96,7 +96,7 @@ Refusal CommandInbox::judge_transaction(std::uint32_t count, const Safety& safet
   for (std::uint32_t i = 1; i <= count; ++i) {
     const Command& command = queue_.peek(i);
     Refusal refusal{.kind = command.kind, .reason = judge(command), .index = command.index, .value = command.value};
-    cleared = cleared || command.kind == CommandKind::clear_faults;
+    cleared = cleared || (command.kind == CommandKind::clear_faults && !safety.stopped());
     if (refusal.reason == RefusalReason::none && !cleared)
       refusal.reason = held(command, safety, active, refusal.joint);
     if (refusal.reason != RefusalReason::none) return refusal;

@@ -25,6 +25,7 @@ bool names_transaction(const Snapshot& snapshot, std::uint32_t sequence, Refusal
 
 void BehaviorSide::beside_tick(std::int64_t time_ns) {
   time_ns_ = time_ns;
+  heed_stop();
   settle(time_ns);
   for (const auto& port : p_.instance.ports()) {
     while (std::unique_ptr<OrderCase> order = port->behaviors_.take())
@@ -51,6 +52,14 @@ void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from,
     order->answer.text = error.what();
     from.answer(std::move(order));
   }
+}
+
+// What played when the emergency stop came does not go on by itself when it is lifted.
+void BehaviorSide::heed_stop() {
+  const auto snapshot = p_.exchange.snapshot.read(0);
+  const bool stopped_before = std::exchange(stopped_, snapshot->status.safety.stopped);
+  lifts_ = snapshot->status.safety.lifts;
+  if (stopped_ && !stopped_before) orders().order({.kind = PlayOrder::Kind::stop, .behavior = {}});
 }
 
 // False: it takes its time. Throws why not.
@@ -94,7 +103,8 @@ void BehaviorSide::begin(Pending& pending) {
       return send(pending,
                   std::array{Command{.kind = CommandKind::switch_set, .index = p_.instance.set_named(order.text)}});
     case Order::Kind::clear_faults:
-      return send(pending, std::array{Command{.kind = CommandKind::clear_faults}});
+      pending.lifts = lifts_;
+      return p_.instance.clear_faults();
     case Order::Kind::set_point:
       return send(pending, set_points_of(order));
     case Order::Kind::set_parameter:
@@ -114,7 +124,8 @@ void BehaviorSide::begin(Pending& pending) {
 }
 
 bool BehaviorSide::waits_for_tick(const Pending& pending) const noexcept {
-  return pending.sequence == 0 && pending.order->order.kind != Order::Kind::line &&
+  const Order::Kind kind = pending.order->order.kind;
+  return pending.sequence == 0 && kind != Order::Kind::line && kind != Order::Kind::clear_faults &&
          p_.engine.ticks() == pending.asked_tick;
 }
 
@@ -139,6 +150,14 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
     if (row->values.empty() && !late) return false;
     evaluate(order, answer);
     return true;
+  }
+  if (order.kind == Order::Kind::clear_faults && snapshot.status.safety.lifts != pending.lifts) {
+    finish(pending);
+    return true;
+  }
+  if (order.kind == Order::Kind::clear_faults) {
+    if (late) answer.text = "the control thread did not clear them within a second, or was stopped again";
+    return late;
   }
   if (waits_for_tick(pending)) {
     if (late) answer.text = "the behaviors did not tick within a second";

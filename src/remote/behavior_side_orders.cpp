@@ -82,11 +82,6 @@ void BehaviorSide::report_process(Answer& answer) const {
   }
 }
 
-bool BehaviorSide::stopped() const {
-  const auto snapshot = p_.exchange.snapshot.read(0);
-  return snapshot->status.safety.stopped;
-}
-
 // To the behaviors; the next tick carries it out.
 void BehaviorSide::give(const Order& order) {
   const PlayOrder::Kind kind = kind_of(order.kind);
@@ -99,7 +94,7 @@ void BehaviorSide::give(const Order& order) {
     throw InputError({.message = "behaviors play in a process of their own: name the one to be read again"});
   }
   const bool plays = kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace;
-  if (plays && stopped())
+  if ((plays || kind == PlayOrder::Kind::resume) && stopped_)
     throw InputError(
         {.message = "the emergency stop keeps the robot down: clear the faults first (kadans ctl fault clear)"});
   PlayOrder given{.kind = kind, .behavior = {kind == PlayOrder::Kind::reload ? order.text : "", {}}};

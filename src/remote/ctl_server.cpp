@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <map>
 #include <system_error>
 
 #include <poll.h>
@@ -21,7 +22,6 @@ constexpr int busy_ms = 2;                     // between looks for an answer or
 constexpr std::int64_t deaf_ns = 100'000'000;  // after the process ran out of descriptors
 constexpr std::array roles{Role::read, Role::operate, Role::develop};
 
-// Gave up before it was heard: what it asked for is not wanted any more.
 bool has_left(int socket) noexcept {
   pollfd watched{.fd = socket, .events = 0, .revents = 0};
   return poll(&watched, 1, 0) > 0 && (watched.revents & (POLLHUP | POLLERR)) != 0;
@@ -74,6 +74,7 @@ void* CtlServer::enter(void* self) {
 }
 
 void CtlServer::run() {
+  accept_waiting();
   while (!stop_.load(std::memory_order_relaxed)) {
     wait();
     take_answers();
@@ -112,10 +113,35 @@ void CtlServer::wait() {
   }
 }
 
-bool CtlServer::has_room(Role role) const noexcept {
-  const auto there = std::ranges::count_if(
-      guests_, [role](const Guest& guest) { return !guest.gone && guest.session->role() == role; });
-  return static_cast<std::size_t>(there) < settings_.clients_max[static_cast<std::size_t>(role)];
+// Who came before anybody served, and gave up: what it asked for is not wanted any more, be it the emergency stop.
+void CtlServer::accept_waiting() {
+  for (const Role role : roles) accept_all(role);
+  for (Guest& guest : guests_) guest.gone = guest.session->leaves;
+}
+
+// Room for one more of this user: where there is none, the one that has been idle for longest goes, of the user who has
+// most of the role, so that nobody keeps others out by staying. Who waits for an answer stays, and among those of one
+// user who watches.
+bool CtlServer::make_room(Role role, std::uint32_t user) {
+  std::map<std::uint32_t, std::size_t> of_user;
+  std::size_t there = 0;
+  for (const Guest& guest : guests_) {
+    if (guest.gone || guest.session->role() != role) continue;
+    ++of_user[guest.session->user()];
+    ++there;
+  }
+  if (there < settings_.clients_max[static_cast<std::size_t>(role)]) return true;
+  const auto most = std::ranges::max_element(of_user, {}, [](const auto& entry) { return entry.second; });
+  Guest* idle = nullptr;
+  for (Guest& guest : guests_) {
+    const CtlSession& session = *guest.session;
+    if (guest.gone || session.role() != role || session.user() != most->first || session.order != 0) continue;
+    if (!session.watched.empty() && most->first == user) continue;
+    if (idle == nullptr || session.heard_ns() < idle->session->heard_ns()) idle = &guest;
+  }
+  if (idle == nullptr) return false;
+  drop(*idle, "another client needed the place");
+  return true;
 }
 
 void CtlServer::accept_all(Role role) {
@@ -123,18 +149,16 @@ void CtlServer::accept_all(Role role) {
     const int socket = accept4(sockets_.listener(role), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (socket < 0 && (errno == EMFILE || errno == ENFILE)) deaf_until_ns_ = now_ns_ + deaf_ns;
     if (socket < 0) return;
-    if (has_left(socket)) {
-      close(socket);
-      continue;
-    }
-    if (has_room(role)) {
-      guests_.push_back({std::make_unique<CtlSession>(socket, role, next_number_++)});
-      counts_.served.fetch_add(1, std::memory_order_relaxed);
+    const bool left = has_left(socket);
+    auto session = std::make_unique<CtlSession>(socket, role, next_number_++, now_ns_);
+    session->leaves = left;
+    if (make_room(role, session->user())) {
+      guests_.push_back({std::move(session)});
+      counts_.served.fetch_add(left ? 0 : 1, std::memory_order_relaxed);
       continue;
     }
     const std::string line = refusal(std::string("there are too many clients with the role ") + name(role)) + "\n";
     (void)send(socket, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    close(socket);
     counts_.refused.fetch_add(1, std::memory_order_relaxed);
   }
 }

@@ -7,19 +7,15 @@
 #include <unistd.h>
 
 namespace kadans {
-namespace {
 
-std::string peer_of(int socket, Role role) {
+CtlSession::CtlSession(int socket, Role role, std::uint64_t number, std::int64_t now_ns)
+    : socket_(socket), role_(role), number_(number), heard_ns_(now_ns) {
   ucred peer{};
   socklen_t size = sizeof peer;
-  if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return std::string("(") + name(role) + ")";
-  return "uid " + std::to_string(peer.uid) + " (" + name(role) + ")";
+  const bool known = getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+  if (known) user_ = peer.uid;
+  who_ = (known ? "uid " + std::to_string(user_) + " (" : std::string("(")) + name(role) + ")";
 }
-
-}  // namespace
-
-CtlSession::CtlSession(int socket, Role role, std::uint64_t number)
-    : socket_(socket), role_(role), number_(number), who_(peer_of(socket, role)) {}
 
 CtlSession::~CtlSession() { close(socket_); }
 
@@ -36,6 +32,7 @@ bool CtlSession::receive(std::int64_t now_ns) {
   const ssize_t count = recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (count < 0) return errno == EAGAIN || errno == EINTR;
   ended_ = count == 0;
+  if (count > 0) heard_ns_ = now_ns;
   in_.append(bytes.data(), static_cast<std::size_t>(count));
   note_half(now_ns);
   return !too_long();

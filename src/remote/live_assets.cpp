@@ -38,7 +38,9 @@ std::string place_of(const std::string& name, const fs::path& folder) {
 }  // namespace
 
 LiveAssets::LiveAssets(const RobotTexts& texts, const std::string& urdf_file)
-    : urdf_(texts.urdf), urdf_uri_(std::string(package) + texts.name + "/" + texts.name + ".urdf") {
+    : urdf_(texts.urdf),
+      urdf_uri_(std::string(package) + texts.name + "/" + texts.name + ".urdf"),
+      urdf_shared_(std::make_shared<const std::string>(urdf_)) {
   const fs::path folder = fs::absolute(urdf_file).parent_path();
   constexpr std::string_view key = "filename=\"";
   for (std::size_t at = urdf_.find(key); at != std::string::npos; at = urdf_.find(key, at)) {
@@ -48,16 +50,19 @@ LiveAssets::LiveAssets(const RobotTexts& texts, const std::string& urdf_file)
   }
 }
 
-std::optional<std::string> LiveAssets::read(std::string_view uri) const {
-  if (uri == "robot.urdf" || uri == urdf_uri_) return urdf_;
+LiveAssets::Content LiveAssets::read(std::string_view uri) {
+  if (uri == "robot.urdf" || uri == urdf_uri_) return urdf_shared_;
   auto found = files_.find(uri);
   if (found == files_.end()) found = files_.find(std::string(package) + std::string(uri));
-  if (found == files_.end()) return std::nullopt;
-  if (!is_mesh(found->second)) return std::nullopt;
+  if (found == files_.end() || !is_mesh(found->second)) return nullptr;
+  std::weak_ptr<const std::string>& kept = read_[found->second];
+  if (Content content = kept.lock()) return content;
   try {
-    return read_input_file(found->second, file_max_bytes);
+    const auto content = std::make_shared<const std::string>(read_input_file(found->second, file_max_bytes));
+    kept = content;
+    return content;
   } catch (const InputError&) {
-    return std::nullopt;
+    return nullptr;
   }
 }
 

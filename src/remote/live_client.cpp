@@ -14,7 +14,7 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t overhead_bytes = 64;  // of a reply in the queue
-constexpr std::size_t name_max_bytes = 256, id_max_bytes = 256;
+constexpr std::size_t id_max_bytes = 256;
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -136,7 +136,12 @@ void LiveClient::obey(const J& json) {
   } else if (op == "unsubscribeParameterUpdates") {
     const J& names = json.at("parameterNames");
     if (names.empty()) watches_all_ = false;
-    for (const J& name : names) watched_.erase(name.template get<std::string>());
+    for (const J& name : names) {
+      const auto watched = watched_.find(name.template get<std::string>());
+      if (watched == watched_.end()) continue;
+      watched_bytes_ -= watched->size();
+      watched_.erase(watched);
+    }
   } else if (op == "fetchAsset") {
     fetch_asset(json);
   } else {
@@ -161,9 +166,11 @@ void LiveClient::watch(const J& names) {
   watches_all_ = watches_all_ || names.empty();
   for (const J& name : names) {
     const std::string text = name;
-    if (text.size() > name_max_bytes || (watched_.size() >= watched_max && !watched_.contains(text)))
+    if (watched_.contains(text)) continue;
+    if (watched_.size() >= watched_max || watched_bytes_ + text.size() > watched_max_bytes)
       return complain("a client watches at most " + std::to_string(watched_max) + " parameters, whose names have " +
-                      std::to_string(name_max_bytes) + " bytes");
+                      std::to_string(watched_max_bytes) + " bytes together");
+    watched_bytes_ += text.size();
     watched_.insert(text);
   }
 }
@@ -207,7 +214,8 @@ void LiveClient::set_parameters(const J& json) {
 template <typename J>
 void LiveClient::fetch_asset(const J& json) {
   const std::string uri = json.at("uri");
-  put({true, asset_response(whole_number(json.at("requestId")), uri, hub_.assets().read(uri))});
+  const LiveAssets::Content content = hub_.assets().read(uri);
+  put({true, asset_response(whole_number(json.at("requestId")), uri, content.get())});
 }
 
 void LiveClient::binary(std::span<const std::byte> bytes) noexcept {

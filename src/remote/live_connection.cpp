@@ -171,7 +171,7 @@ class Connection final : public LiveConnection {
     http::async_read(stream_.next_layer(), buffer_, *parser_, counted([this] {
                        const std::string_view path = path_of(view(parser_->get().target()));
                        site_.record.take_frame(std::string(path.substr(8)), parser_->get().body());
-                       reply(http::status::ok, "text/plain", "");
+                       reply(http::status::ok, "text/plain", {});
                      }));
   }
 
@@ -179,14 +179,14 @@ class Connection final : public LiveConnection {
     if (page_files().empty()) return refuse(http::status::service_unavailable, std::string(page_is_missing));
     const auto found = std::ranges::find(page_files(), path, &PageFile::path);
     if (found == page_files().end()) return refuse(http::status::not_found, "there is no such file\n");
-    const std::string body(reinterpret_cast<const char*>(found->gzip.data()), found->gzip.size());
-    reply(http::status::ok, media_type(path), body, true);
+    reply(http::status::ok, media_type(path), {reinterpret_cast<const char*>(found->gzip.data()), found->gzip.size()},
+          true);
   }
 
   void send_asset(std::string_view name) {
-    const std::optional<std::string> content = site_.hub->assets().read(name);
-    if (!content) return refuse(http::status::not_found, "there is no such asset\n");
-    reply(http::status::ok, media_type(name), *content);
+    content_ = site_.hub->assets().read(name);
+    if (!content_) return refuse(http::status::not_found, "there is no such asset\n");
+    reply(http::status::ok, media_type(name), *content_);
   }
 
   void send_record() {
@@ -215,10 +215,12 @@ class Connection final : public LiveConnection {
   // What may still come of the request is not waited for.
   void refuse(http::status status, const std::string& why) {
     leaves_ = !parser_->is_done();
-    reply(status, "text/plain; charset=utf-8", why);
+    content_ = std::make_shared<const std::string>(why);
+    reply(status, "text/plain; charset=utf-8", *content_);
   }
 
-  void reply(http::status status, std::string_view type, const std::string& body, bool gzip = false) {
+  // The body stays where it is until it is sent: in the program, or in content_.
+  void reply(http::status status, std::string_view type, std::string_view body, bool gzip = false) {
     response_ = {};
     response_.result(status);
     response_.version(11);
@@ -228,11 +230,12 @@ class Connection final : public LiveConnection {
     response_.set("Referrer-Policy", "no-referrer");
     if (gzip) response_.set(http::field::content_encoding, "gzip");
     response_.keep_alive(!leaves_);
-    response_.body() = body;
+    response_.body() = {body.data(), body.size()};
     response_.prepare_payload();
     tcp().expires_after(stall_time);
     http::async_write(stream_.next_layer(), response_, counted([this] {
                         response_ = {};
+                        content_.reset();
                         leaves_ ? say_farewell() : read_request();
                       }));
   }
@@ -319,7 +322,8 @@ class Connection final : public LiveConnection {
   std::uint64_t id_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
-  http::response<http::string_body> response_;
+  http::response<http::span_body<const char>> response_;
+  std::shared_ptr<const std::string> content_;  // of the response, unless it is the program's own
   std::optional<http::response<http::file_body>> file_;
   std::optional<http::response_serializer<http::file_body>> sender_;
   std::unique_ptr<LiveClient> client_;

@@ -98,9 +98,13 @@ void LiveHub::leave(std::uint64_t id) {
 void LiveHub::bound_replies() noexcept {
   std::size_t sum = 0;
   LiveClient* largest = nullptr;
+  const auto before = [](const LiveClient& a, const LiveClient& b) {  // those without the token go first
+    const bool a_reads = !a.writes() && a.reply_bytes() > 0, b_reads = !b.writes() && b.reply_bytes() > 0;
+    return a_reads != b_reads ? a_reads : a.reply_bytes() > b.reply_bytes();
+  };
   for (const auto& [id, client] : clients_) {
     sum += client->reply_bytes();
-    if (largest == nullptr || client->reply_bytes() > largest->reply_bytes()) largest = client;
+    if (largest == nullptr || before(*client, *largest)) largest = client;
   }
   if (sum > replies_max_bytes && largest != nullptr) largest->give_up();
 }
@@ -181,6 +185,7 @@ bool LiveHub::act(const std::string& verb, const std::string& text, double value
     p_.instance.stop_now(who);
     return true;
   }
+  if (p_.pace != nullptr && verb == "push" && p_.pace->check_push) p_.pace->check_push(text);
   if (p_.pace == nullptr || !p_.pace->obey(verb, text, value)) return false;
   tell_state();
   return true;

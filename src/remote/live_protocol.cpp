@@ -105,7 +105,7 @@ std::vector<std::byte> service_response(std::uint32_t call, const std::string& j
 }
 
 std::vector<std::byte> asset_response(std::uint32_t request, const std::string& uri,
-                                      const std::optional<std::string>& content) {
+                                      const std::string* content) {
   ByteWriter to;
   to.put(std::uint8_t{4});
   to.put(request);

@@ -39,7 +39,7 @@ std::vector<std::byte> message_data(std::uint32_t subscription, std::uint64_t ti
                                     std::span<const std::byte> payload);
 std::vector<std::byte> service_response(std::uint32_t call, const std::string& json);
 std::vector<std::byte> asset_response(std::uint32_t request, const std::string& uri,
-                                      const std::optional<std::string>& content);
+                                      const std::string* content);
 std::optional<ServiceCall> read_service_call(std::span<const std::byte> bytes);
 
 }  // namespace kadans

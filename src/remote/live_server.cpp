@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <csignal>
 #include <system_error>
@@ -10,11 +11,13 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <arpa/inet.h>
 #include <pthread.h>
 #include <sys/random.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "kadans/config/problems.h"
 #include "kadans/signal/input_error.h"
 #include "live_connection.h"
 #include "live_crowd.h"
@@ -128,8 +131,29 @@ struct LiveServer::Parts {
   std::thread thread;
 };
 
+namespace {
+
+// What would not come back as it was said, out of an address or a browser.
+void refuse_unusable(const LiveSettings& settings) {
+  const auto only = [](const std::string& text, std::string_view more) {
+    return std::ranges::all_of(text, [more](unsigned char c) {
+      return (c < 0x80U && std::isalnum(c) != 0) || more.find(static_cast<char>(c)) != std::string_view::npos;
+    });
+  };
+  if (!only(settings.token, "-._~"))
+    throw InputError({.message = "a token stands in addresses: letters, digits and any of -._~"});
+  for (const std::string& host : settings.hosts) {
+    in6_addr ignored{};
+    if (!host.empty() && (only(host, "-._") || inet_pton(AF_INET6, host.c_str(), &ignored) == 1)) continue;
+    throw InputError({.message = in_quotes(host) + " is no name of a machine: it goes without a port or brackets"});
+  }
+}
+
+}  // namespace
+
 LiveServer::LiveServer(LiveSettings settings, LiveHub* hub, RecordSite site) {
   if (settings.token.empty()) settings.token = new_token();
+  refuse_unusable(settings);
   parts_ = std::make_unique<Parts>(std::move(settings), hub, std::move(site));
 }
 
@@ -156,7 +180,8 @@ std::uint32_t LiveServer::clients() const noexcept { return parts_->clients.load
 
 std::string LiveServer::url() const {
   const std::string& address = parts_->settings.address;
-  const std::string host = address == "0.0.0.0" ? "127.0.0.1" : address;
+  std::string host = address == "0.0.0.0" ? "127.0.0.1" : address == "::" ? "::1" : address;
+  if (host.find(':') != std::string::npos) host = "[" + host + "]";
   return "http://" + host + ":" + std::to_string(port()) + "/?token=" + token();
 }
 

@@ -17,6 +17,7 @@ void Safety::raise(const Fault& fault) noexcept {
 }
 
 void Safety::clear() noexcept {
+  if (stopped_) return;
   came_back_ = false;
   for (std::size_t i = 0; i < joint_count_; ++i) {
     joints_[i].ladder.clear();
@@ -28,7 +29,6 @@ void Safety::clear() noexcept {
   engine_.clear();
   pending_ = cut_ = 0;
   lasting_s_ = 0;
-  stopped_ = false;
   fault_count_ = 0;
   first_fault_ = {};
 }
@@ -117,8 +117,10 @@ void Safety::judge_robot(const SafetyInput& in, FaultMask body, FaultMask others
   }
 }
 
-FaultMask Safety::take_stop() noexcept {
+FaultMask Safety::take_stop(bool& lift) noexcept {
+  lift = stop_.take_lift();
   if (!stop_.take(stopped_by_)) return 0;
+  lift = false;
   stopped_ = true;
   return bit(FaultCode::emergency_stop);
 }
@@ -211,10 +213,12 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   const FaultMask raised = pending_ | cut_;
   pending_ = cut_ = 0;
   came_back_ = false;
+  bool lift = false;
+  const FaultMask stop = take_stop(lift);
   const FaultMask joints = watch_joints(in, actuation, dt_s);
   const FaultMask feet = watch_feet(in, dt_s);
   const FaultMask body =
-      watch_body(in, dt_s) | bit_if(lost_ > settings_.joints_lost_max, FaultCode::joints_lost) | take_stop();
+      watch_body(in, dt_s) | bit_if(lost_ > settings_.joints_lost_max, FaultCode::joints_lost) | stop;
   const FaultMask others = raised | joints | feet;
   judge_robot(in, body, others, dt_s);
   go_down(body | others, dt_s);
@@ -226,10 +230,18 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
     worst = std::max(worst, joint_level(i));
   }
   pending_ = 0;
+  if (lift) {  // what is written in this tick is still what the latches allow
+    const bool came_back = came_back_;
+    stopped_ = false;
+    clear();
+    came_back_ = came_back_ || came_back;
+    ++lifts_;
+  }
   status.level = worst;
   status.fault_count = fault_count_;
   status.first_fault = first_fault_;
   status.stopped = stopped_;
+  status.lifts = lifts_;
   level_number_ = static_cast<std::uint32_t>(worst);
   robot_level_number_ = static_cast<std::uint32_t>(robot_.level());
 }

@@ -26,7 +26,7 @@ bool RecordFile::open(const std::string& path) {
   size_ = 0;
   crc_ = Crc32{};
   error_.clear();
-  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644);
   return is_open() || fail("cannot create the record");
 }
 

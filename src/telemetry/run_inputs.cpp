@@ -15,7 +15,8 @@ namespace kadans {
 namespace {
 
 constexpr std::string_view prefix = "inputs/", suffix = ".zst";
-constexpr std::size_t text_max_bytes = std::size_t{64} << 20U;
+constexpr std::size_t texts_max_bytes = std::size_t{64} << 20U;  // of all together, unpacked
+constexpr std::size_t inputs_max = 10'000;
 constexpr int compression_level = 19;  // small texts, once a run
 
 [[noreturn]] void refuse(const std::string& record, const std::string& why) {
@@ -29,9 +30,9 @@ std::vector<std::byte> packed(const std::string& text) {
   return bytes;
 }
 
-std::string unpacked(const McapAttachment& attachment, const std::string& record) {
+std::string unpacked(const McapAttachment& attachment, std::size_t max_bytes, const std::string& record) {
   const unsigned long long size = ZSTD_getFrameContentSize(attachment.data.data(), attachment.data.size());
-  if (size > text_max_bytes) refuse(record, "its input " + attachment.name + " is damaged or too large");
+  if (size > max_bytes) refuse(record, "its input " + attachment.name + " is damaged or too large");
   std::string text(static_cast<std::size_t>(size), '\0');
   const std::size_t got = ZSTD_decompress(text.data(), text.size(), attachment.data.data(), attachment.data.size());
   if (ZSTD_isError(got) != 0 || got != text.size()) refuse(record, "its input " + attachment.name + " is damaged");
@@ -80,7 +81,9 @@ RunInputs read_inputs(const McapReader& file, const std::string& path) {
   };
   inputs.run = known("run");
   inputs.program = known("program");
+  std::size_t left_bytes = texts_max_bytes;
   for (auto& [name, hash] : known("inputs")) {
+    if (inputs.files.size() == inputs_max) refuse(path, "it has more than " + std::to_string(inputs_max) + " inputs");
     if (!right_path(name)) refuse(path, "its input " + in_quotes(name) + " is no path inside a project");
     inputs.files.push_back({name, hash, std::nullopt});
   }
@@ -89,8 +92,9 @@ RunInputs read_inputs(const McapReader& file, const std::string& path) {
     if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
     const std::string of = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
     const auto input = std::ranges::find(inputs.files, of, &InputFile::path);
-    if (input == inputs.files.end()) continue;
-    input->text = unpacked(attachment, path);
+    if (input == inputs.files.end() || input->text) continue;
+    input->text = unpacked(attachment, left_bytes, path);
+    left_bytes -= input->text->size();
     if (content_hash(*input->text) != input->hash) refuse(path, "its input " + of + " is damaged");
   }
   return inputs;

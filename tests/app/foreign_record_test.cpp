@@ -114,6 +114,51 @@ TEST_CASE("Native code that a record brings is not loaded, whatever its robot li
   }
 }
 
+TEST_CASE("A record's plug-in is none that lies elsewhere on this machine, although its path and content are known") {
+  const Sent sent("foreign_absolute");
+  const std::string listed = (sent.elsewhere.parent_path() / "absolute.so").string();
+  fs::copy(plugin_source, listed, fs::copy_options::overwrite_existing);
+  RunInputs inputs = sent.inputs();
+  inputs.files.push_back({listed, content_hash(read(plugin_source)), std::nullopt});
+  const auto robot = std::ranges::find(inputs.files, "config/tulip/robot.json", &InputFile::path);
+  const std::string name = "\"name\": \"tulip\",";
+  robot->text->replace(robot->text->find(name), name.size(), name + " \"plugins\": [\"" + listed + "\"],");
+  *robot = input(robot->path, *robot->text);
+  (void)sent.forged(inputs);
+  for (const std::string& way : ways) {
+    const Outcome outcome = run(way, sent.elsewhere);
+    CHECK(outcome.exit_code == 2);
+    CHECK_MESSAGE(has(outcome.err, "which is not in the project around the working directory"), outcome.err);
+  }
+  CHECK_FALSE(fs::exists(sent.loaded));
+  fs::remove(listed);
+}
+
+TEST_CASE("What a record brings is bounded before it is unpacked, all of it together") {
+  const Sent sent("foreign_bomb");
+  RunInputs inputs = sent.inputs();
+  for (int i = 0; i < 3; ++i)
+    inputs.files.push_back(input("models/" + std::to_string(i), std::string(std::size_t{24} << 20U, ' ')));
+  (void)sent.forged(inputs);
+  for (const std::string& way : ways) {
+    const Outcome outcome = run(way, sent.elsewhere);
+    CHECK(outcome.exit_code == 2);
+    CHECK_MESSAGE(has(outcome.err, "models/2 is damaged or too large"), outcome.err);
+  }
+}
+
+TEST_CASE("A checkpoint whose tick never comes is no run that passed") {
+  const Sent sent("foreign_tick");
+  McapWriter writer;
+  REQUIRE(writer.open((sent.elsewhere / "late.mcap").string()));
+  REQUIRE(write_inputs(writer, sent.inputs()));
+  REQUIRE(writer.add_metadata("checkpoint", {{"tick", "99999"}, {"time_ns", "100000000"}, {"state_hash", "0"}}));
+  REQUIRE(writer.close());
+  const Outcome outcome = run("sim --from late.mcap --no-record", sent.elsewhere);
+  CHECK(outcome.exit_code == 1);
+  CHECK(has(outcome.err, "without coming to the tick of the checkpoint, 99999"));
+}
+
 TEST_CASE("A record's plug-in is the one of this project when it is the same, or when that is allowed") {
   const Sent sent("foreign_plugin", true);
   fs::copy(sent.project / "run.mcap", sent.elsewhere / "run.mcap");

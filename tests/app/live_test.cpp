@@ -61,22 +61,40 @@ TEST_CASE("run binds all functions of its libraries before main(): no thread loo
   CHECK(processes == 2);
 }
 
-TEST_CASE("run ends cleanly on SIGTERM: behaviors leave, the robot is off, the record is closed") {
-  const auto project = project_copy("live_term");
-  // Waits for the first transition, then sends the signal.
-  write(project / "term.sh",
-        "mkfifo told\n"
-        "$1 run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time -v --record r.mcap"
-        " --json >out 2>told &\n"
-        "exec 3<told; read -r line <&3; kill -TERM $!; cat <&3 >err; wait $!\n");
+TEST_CASE(
+    "run ends cleanly on SIGTERM and when its terminal closes: behaviors leave, the robot is off, the record closed") {
+  for (const std::string signal : {"TERM", "HUP"}) {
+    CAPTURE(signal);
+    const auto project = project_copy("live_term");
+    // Waits for the first transition, then sends the signal.
+    write(project / "term.sh",
+          "mkfifo told\n"
+          "env --default-signal=HUP $1 run config/tulip/robot.json --plant ideal --play squat "
+          "--threads-on-virtual-time -v"
+          " --record r.mcap --json >out 2>told &\n"
+          "exec 3<told; read -r line <&3; kill -$2 $!; cat <&3 >err; wait $!\n");
+    const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
+    const int status = std::system(("cd '" + project.string() + "' && sh term.sh '" + program + "' " + signal).c_str());
+    CHECK(status == 0);
+    const Json result = result_of(read(project / "out"));
+    CHECK(result["ended"] == "told to stop");
+    CHECK(result["safety_level"] == "off");
+    CHECK(result["record"]["rows"] == result["control_ticks"]);
+    CHECK(has(read(project / "err"), "supervisor: stop"));
+  }
+}
+
+TEST_CASE("run goes on when nobody reads any more what it says, and ends with its record closed") {
+  const auto project = project_copy("live_unread");
+  write(project / "unread.sh",
+        "{ $1 run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time -v --record r.mcap"
+        " --duration 4; echo $? >code; } 2>&1 | head -1 >first\n");
   const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
-  const int status = std::system(("cd '" + project.string() + "' && sh term.sh '" + program + "'").c_str());
-  CHECK(status == 0);
-  const Json result = result_of(read(project / "out"));
-  CHECK(result["ended"] == "told to stop");
-  CHECK(result["safety_level"] == "off");
-  CHECK(result["record"]["rows"] == result["control_ticks"]);
-  CHECK(has(read(project / "err"), "supervisor: stop"));
+  REQUIRE(std::system(("cd '" + project.string() + "' && sh unread.sh '" + program + "'").c_str()) == 0);
+  CHECK(read(project / "code") == "1\n");  // its results were not written
+  const Outcome info = run("log info r.mcap", project);
+  CHECK_MESSAGE(has(info.out, "4.0"), info.out);
+  CHECK_FALSE(has(info.out, "CUT SHORT"));
 }
 
 TEST_CASE("run is led by a joystick's recording, also when behaviors play in a process of their own") {

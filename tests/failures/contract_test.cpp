@@ -36,7 +36,7 @@ TEST_CASE("after heartbeat_timeout_s the robot holds, after hold_s it damps, aft
   CHECK(robot.broken_promise().empty());
 }
 
-TEST_CASE("in that tick the robot damps, after damp_s it is off, as one fault that says who, latched until cleared" *
+TEST_CASE("in that tick the robot damps, after damp_s it is off, as one fault that says who, until somebody outside lifts it" *
           description("somebody asks for the emergency stop")) {
   LightRobot robot(1);
   robot.run(200);
@@ -51,7 +51,11 @@ TEST_CASE("in that tick the robot damps, after damp_s it is off, as one fault th
   CHECK(robot.safety.robot_level() == SafetyLevel::off);
   CHECK(robot.control.inbox().state().refused == 1);
   CHECK(robot.first(FaultCode::emergency_stop) > 0);
-  robot.send({.kind = CommandKind::clear_faults});
+  robot.send({.kind = CommandKind::clear_faults});  // of a behavior
+  robot.run(50);
+  CHECK(robot.control.inbox().state().refused == 2);
+  CHECK(robot.safety.robot_level() == SafetyLevel::off);
+  robot.safety.emergency_stop().lift();
   robot.run(50);
   CHECK(robot.safety.robot_level() == SafetyLevel::normal);
 }

@@ -121,6 +121,7 @@ TEST_CASE("estop damps and then switches off, orders are refused with the reason
   CHECK(faults["first"]["words"] == who);
   for (const bool replace : {false, true})
     CHECK(says(live.ask({{"verb", "play"}, {"list", "nod"}, {"replace", replace}}), "the emergency stop keeps"));
+  CHECK(says(live.ask({{"verb", "resume"}}), "the emergency stop keeps"));
   CHECK(live.ask({{"verb", "clear_faults"}})["ok"] == true);
   const auto well = [](const Json& a) { return a["safety"]["level"] == "normal"; };
   CHECK(well(live.ask_until({{"verb", "status"}}, well)));
@@ -220,4 +221,39 @@ TEST_CASE("the flight recorder's last seconds are written when somebody asks, wi
   CHECK(reader.complete());
   CHECK(last >= first + 2000);
   CHECK(last < first + 2300);
+}
+
+TEST_CASE("an emergency stop counts although its client leaves at once, and what played does not go on after it") {
+  LiveInstance live;
+  live.start();
+  CHECK(live.ask({{"verb", "play"}, {"list", "nod"}})["ok"] == true);
+  {
+    RawClient hasty(live.socket(Role::operate));
+    REQUIRE(hasty.send("{\"verb\":\"estop\"}\n"));
+    hasty.close();
+  }
+  const auto off = [](const Json& a) { return a["safety"]["level"] == "off"; };
+  REQUIRE(off(live.ask_until({{"verb", "status"}}, off)));
+  const auto rests = [](const Json& a) { return a["behaviors"].empty() || a["behaviors"][0]["plays"] == false; };
+  CHECK(rests(live.ask_until({{"verb", "status"}}, rests)));
+  CHECK(live.ask({{"verb", "clear_faults"}})["ok"] == true);
+  const auto well = [](const Json& a) { return a["safety"]["level"] == "normal"; };
+  CHECK(rests(live.ask_until({{"verb", "status"}}, well)));
+}
+
+TEST_CASE("who holds all places of a role keeps nobody out: the one that was idle for longest goes") {
+  LiveInstance live({.clients_max = {3, 2, 2}});
+  live.start();
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 2; ++i) idle.push_back(std::make_unique<RawClient>(live.socket(Role::operate)));
+  CHECK(live.ask({{"verb", "estop"}}, Role::operate)["ok"] == true);
+  CHECK(has(idle[0]->line().value_or(""), "another client needed the place"));
+}
+
+TEST_CASE("a line of more than 64 kB is refused, also when its end came with it") {
+  LiveInstance live;
+  live.start();
+  RawClient client(live.socket(Role::read));
+  REQUIRE(client.send("{\"verb\":\"status\",\"x\":\"" + std::string(CtlSession::line_bytes_max, 'x') + "\"}\n"));
+  CHECK(has(client.line().value_or(""), "a line has at most 64 kB"));
 }

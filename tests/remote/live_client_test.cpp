@@ -253,8 +253,8 @@ TEST_CASE("the live server hands out no file that is no mesh, whatever a URDF fr
 
 TEST_CASE("the live server hands out the robot's URDF and no file that it does not name") {
   Viewer viewer;
-  CHECK(viewer.hub.assets().read("package://bench/bench.urdf") == "<robot name=\"bench\"/>");
+  CHECK(*viewer.hub.assets().read("package://bench/bench.urdf") == "<robot name=\"bench\"/>");
   for (const char* wrong :
        {"", "/etc/passwd", "file:///etc/passwd", "package://bench/../../etc/passwd", "../robot.json"})
-    CHECK_FALSE(viewer.hub.assets().read(wrong).has_value());
+    CHECK(viewer.hub.assets().read(wrong) == nullptr);
 }

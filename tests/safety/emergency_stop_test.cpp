@@ -54,8 +54,14 @@ TEST_CASE("Who asks for the emergency stop again adds nothing until faults are c
   bench.safety->emergency_stop().ask("two");
   bench.check_for(0.1);
   CHECK(bench.codes() == "emergency_stop");
-  bench.safety->clear();
+  bench.safety->clear();  // as a behavior's command would
   bench.check_for(2);
+  CHECK(bench.status.stopped);
+  CHECK(bench.status.level == SafetyLevel::off);
+  CHECK(bench.status.lifts == 0);
+  bench.safety->emergency_stop().lift();
+  bench.check_for(2);
+  CHECK(bench.status.lifts == 1);
   CHECK(bench.status.level <= SafetyLevel::limited);  // the torque has come back
   CHECK_FALSE(bench.status.stopped);
   bench.safety->emergency_stop().ask("three");
@@ -113,4 +119,13 @@ TEST_CASE("Words that are longer than a fault has room for are cut, and threads 
   }
   for (std::thread& thread : threads) thread.join();
   CHECK((taken > 0 || stop.take(who)));
+}
+
+TEST_CASE("Who asks for the emergency stop in the tick of a lift is heard, the lift is not") {
+  Bench bench;
+  bench.safety->emergency_stop().lift();
+  bench.safety->emergency_stop().ask("somebody");
+  bench.check_for(0.01);
+  CHECK(bench.status.stopped);
+  CHECK(bench.status.lifts == 0);
 }

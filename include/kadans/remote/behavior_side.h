@@ -51,13 +51,14 @@ class BehaviorSide final : public BesideTick {
     std::uint32_t sequence = 0;  // of its transaction; 0: it waits for the end of a tick
     ParameterChange change{};    // of set_parameter and undo
     bool lasting = false;
+    std::uint32_t lifts = 0;  // of clear_faults: SafetyStatus::lifts before
   };
 
   void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
   bool carry_out_now(const Order& order, Answer& answer);
   void begin(Pending& pending);
   void settle(std::int64_t time_ns);
-  bool stopped() const;
+  void heed_stop();
   bool waits_for_tick(const Pending& pending) const noexcept;
   bool settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns);
   void finish(Pending& pending);
@@ -80,6 +81,8 @@ class BehaviorSide final : public BesideTick {
 
   Parts p_;
   BesideTick* next_;
+  bool stopped_ = false;     // by the emergency stop, in the last tick
+  std::uint32_t lifts_ = 0;  // of it
   std::vector<Pending> pending_;
   TuningHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client

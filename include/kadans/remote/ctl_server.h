@@ -56,7 +56,8 @@ class CtlServer {
   void run();
   void wait();
   void accept_all(Role role);
-  bool has_room(Role role) const noexcept;
+  void accept_waiting();
+  bool make_room(Role role, std::uint32_t user);
   void serve(Guest& guest, short events);
   void answer_requests(Guest& guest);
   void take_answers();

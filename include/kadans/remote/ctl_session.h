@@ -4,6 +4,7 @@
 // keeps nobody but itself, and what waits for it is one answer and one sample. Server thread.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <string>
@@ -25,7 +26,7 @@ class CtlSession {
  public:
   static constexpr std::size_t line_bytes_max = std::size_t{64} * 1024;
 
-  CtlSession(int socket, Role role, std::uint64_t number);
+  CtlSession(int socket, Role role, std::uint64_t number, std::int64_t now_ns);
   ~CtlSession();
   CtlSession(const CtlSession&) = delete;
   CtlSession& operator=(const CtlSession&) = delete;
@@ -33,6 +34,8 @@ class CtlSession {
   int socket() const noexcept { return socket_; }
   Role role() const noexcept { return role_; }
   std::uint64_t number() const noexcept { return number_; }
+  std::uint32_t user() const noexcept { return user_; }           // uid; of nobody where the system does not say
+  std::int64_t heard_ns() const noexcept { return heard_ns_; }    // when it last said something
   const std::string& who() const noexcept { return who_; }  // "uid 1000 (develop)"
 
   // Reads what came. False: the client is gone, or sent a line that is too long (then too_long()).
@@ -42,7 +45,7 @@ class CtlSession {
   bool wants_to_write() const noexcept { return !out_.empty(); }
   // It has said its last word and got all answers.
   bool finished() const noexcept { return ended_ && out_.empty() && order == 0 && watched.empty() && !has_line(); }
-  bool too_long() const noexcept { return in_.size() > line_bytes_max && !has_line(); }
+  bool too_long() const noexcept { return std::min(in_.find('\n'), in_.size()) > line_bytes_max; }
 
   // A line, when there is one and nothing waits to be answered or read.
   [[nodiscard]] bool take_line(std::string& line, std::int64_t now_ns);
@@ -67,6 +70,8 @@ class CtlSession {
   int socket_;
   Role role_;
   std::uint64_t number_;
+  std::uint32_t user_ = UINT32_MAX;
+  std::int64_t heard_ns_;
   std::string who_, in_, out_;
   bool ended_ = false;
   std::int64_t half_ns_ = INT64_MAX;  // since when half a line is there

@@ -122,6 +122,7 @@ class Instance {
   ConfigurationText& configuration() noexcept { return configuration_; }
   // Any thread, without asking anybody: the robot damps from the next tick on, then is off, until faults are cleared.
   void stop_now(const std::string& who) noexcept { stop_.ask(who); }
+  void clear_faults() noexcept { stop_.lift(); }  // the emergency stop, too
 
   // Any thread. The number of the control set; throws InputError with the nearest name.
   std::uint32_t set_named(const std::string& name) const;

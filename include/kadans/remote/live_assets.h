@@ -2,7 +2,7 @@
 #pragma once
 
 #include <map>
-#include <optional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -14,13 +14,16 @@ class LiveAssets {
  public:
   LiveAssets(const RobotTexts& texts, const std::string& urdf_file);
 
+  using Content = std::shared_ptr<const std::string>;
   // "package://tulip/tulip.urdf", "robot.urdf", or a mesh as the URDF names it, also without "package://". Reads the
-  // file; none: no such asset, or it cannot be read.
-  std::optional<std::string> read(std::string_view uri) const;
+  // file, once for all who hold its content at a time; null: no such asset, or it cannot be read.
+  Content read(std::string_view uri);
 
  private:
   std::string urdf_, urdf_uri_;
-  std::map<std::string, std::string, std::less<>> files_;  // by name in the URDF
+  Content urdf_shared_;
+  std::map<std::string, std::string, std::less<>> files_;      // by name in the URDF
+  std::map<std::string, std::weak_ptr<const std::string>> read_;  // by file
 };
 
 }  // namespace kadans

@@ -27,7 +27,7 @@ namespace kadans {
 class LiveClient {
  public:
   static constexpr std::size_t replies_max_bytes = std::size_t{16} << 20U;
-  static constexpr std::size_t subscriptions_max = 256, watched_max = 4096, calls_max = 256;
+  static constexpr std::size_t subscriptions_max = 256, watched_max = 4096, watched_max_bytes = 64 * 1024, calls_max = 256;
 
   struct Outgoing {
     bool binary = false;
@@ -51,6 +51,7 @@ class LiveClient {
   // Does not read what it asked for, or could not be served: to be closed.
   bool hopeless() const noexcept { return hopeless_; }
   std::size_t reply_bytes() const noexcept { return reply_bytes_; }
+  bool writes() const noexcept { return writes_; }  // it has the token
   void give_up() noexcept;
 
  private:
@@ -99,6 +100,7 @@ class LiveClient {
   std::map<std::uint32_t, Subscription> subscriptions_;  // by the client's number
   std::uint32_t last_served_ = 0;
   std::set<std::string, std::less<>> watched_;
+  std::size_t watched_bytes_ = 0;
   bool watches_all_ = false;
   std::map<std::uint32_t, Call> calls_;
   std::uint32_t next_call_ = 0;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -22,6 +23,8 @@ struct LivePace {
   std::atomic<double> speed{1};
   std::atomic<bool> held{false};
   std::atomic<std::uint32_t> steps{0};  // to take while it is held
+  // Set before the server starts. Throws InputError on a push that is none.
+  std::function<void(const std::string&)> check_push;
 
   // Server's thread. False: too many wait.
   [[nodiscard]] bool push(const std::string& what);
@@ -70,7 +73,7 @@ class LiveHub {
 
   const Instance& instance() const noexcept { return p_.instance; }
   const LiveChannels& channels() const noexcept { return channels_; }
-  const LiveAssets& assets() const noexcept { return assets_; }
+  LiveAssets& assets() noexcept { return assets_; }
   const std::vector<LiveParameter>& parameters() const noexcept { return parameters_; }
   const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // in the last beat
   const std::string& state() const noexcept { return state_; }                     // JSON: paused, held, speed

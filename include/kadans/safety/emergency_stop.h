@@ -1,6 +1,6 @@
 // The emergency stop. Anybody asks for it, on any thread, without waiting; the safety layer takes it in the tick in
-// which it arrives: a fault like others, named, with the words of who asked, latched until faults are cleared. The
-// robot damps from that tick on and is off safety.damp_s later.
+// which it arrives: a fault like others, named, with the words of who asked. The robot damps from that tick on and is
+// off safety.damp_s later. It stays so until somebody outside lifts it; no command of a behavior does.
 //
 // The same way down ends every run. Then nothing failed, so it is no fault, and nothing takes it back.
 #pragma once
@@ -17,17 +17,24 @@ class EmergencyStop {
  public:
   // Any thread, wait-free. Of those who ask in one tick the first is named; nobody when he is still writing.
   void ask(std::string_view who) noexcept;
+  // Any thread, wait-free: all faults are cleared, this one among them. Who asks in the same tick is heard, then this is
+  // not.
+  void lift() noexcept { lifted_.store(true, std::memory_order_relaxed); }
   // Any thread: the run is over, the robot goes down and stays down.
   void leave() noexcept { leaving_.store(true, std::memory_order_relaxed); }
 
   // Control thread: somebody asked since the last time.
   [[nodiscard]] bool take(FaultWords& who) noexcept;
+  // Control thread: likewise, of lift().
+  [[nodiscard]] bool take_lift() noexcept {
+    return lifted_.load(std::memory_order_relaxed) && lifted_.exchange(false, std::memory_order_relaxed);
+  }
   bool leaving() const noexcept { return leaving_.load(std::memory_order_relaxed); }
 
  private:
   enum class Words : std::uint8_t { none, being_written, there };
 
-  std::atomic<bool> asked_{false}, leaving_{false};
+  std::atomic<bool> asked_{false}, lifted_{false}, leaving_{false};
   std::atomic<Words> words_{Words::none};
   FaultWords who_{};  // whoever moved words_ from none writes it; the control thread reads it when it is there
 };

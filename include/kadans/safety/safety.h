@@ -68,8 +68,9 @@ class Safety {
   void raise(const Fault& fault) noexcept;
   // For whoever wants the robot down; it outlives clear() and imitate().
   EmergencyStop& emergency_stop() noexcept { return stop_; }
-  // Lifts all latches: the next check judges anew.
+  // Lifts all latches: the next check judges anew. Nothing while the emergency stop holds: that one is lifted first.
   void clear() noexcept;
+  bool stopped() const noexcept { return stopped_; }  // by the emergency stop
   // In the last check, or by clearing since: joints that damped or were off follow again what is asked of them. What is
   // computed for the next tick must start from the measured state.
   bool came_back() const noexcept { return came_back_; }
@@ -103,7 +104,7 @@ class Safety {
   FaultMask watch_feet(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_joints(const SafetyInput& input, const ActuationFrame& actuation, double dt_s) noexcept;
   void judge_robot(const SafetyInput& input, FaultMask body, FaultMask others, double dt_s) noexcept;
-  FaultMask take_stop() noexcept;
+  FaultMask take_stop(bool& lift) noexcept;
   void go_down(FaultMask faults, double dt_s) noexcept;
   bool passes(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept;
   bool gives_way(std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
@@ -129,7 +130,8 @@ class Safety {
   bool came_back_ = false;
   EmergencyStop stop_;
   FaultWords stopped_by_{};
-  bool stopped_ = false;  // by it, until cleared
+  bool stopped_ = false;  // by it, until it is lifted
+  std::uint32_t lifts_ = 0;
   std::uint32_t fault_count_ = 0;
   Fault first_fault_;
   FaultLog log_;

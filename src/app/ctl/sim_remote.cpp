@@ -57,6 +57,7 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
       service_(places.ctl, instance_),
       live_(places.live, instance_, assembly, &pace_),
       ros2_(places.ros2, instance_, assembly, &pace_, -1) {
+  pace_.check_push = [this](const std::string& text) { (void)Pushes({parse_push(text, 0)}, model_, "push"); };
   record_side_.describe_with(robot_texts(assembly));
   record_side_.record_as(std::move(plan));
   assembly.record_to(&control_side_);
