@@ -9,46 +9,6 @@
 
 namespace kadans {
 
-OrderQueue::~OrderQueue() {
-  for (Cases* cases : {&asked_, &answered_}) {
-    for (OrderCase* left = nullptr; cases->try_pop(left);) delete left;
-  }
-}
-
-bool OrderQueue::ask(std::unique_ptr<OrderCase> order) {
-  if (on_their_way_.size() == orders_waiting_max) return false;
-  on_their_way_.push_back(order.get());
-  if (asked_.try_push(order.get())) return order.release() != nullptr;  // now the ring's
-  on_their_way_.pop_back();
-  return false;
-}
-
-void OrderQueue::withdraw(std::uint64_t number) noexcept {
-  for (OrderCase* order : on_their_way_) {
-    if (order->answer.number == number) (void)order->withdraw();
-  }
-}
-
-std::unique_ptr<OrderCase> OrderQueue::answered() noexcept {
-  OrderCase* order = nullptr;
-  if (answered_.try_pop(order)) std::erase(on_their_way_, order);
-  return std::unique_ptr<OrderCase>(order);
-}
-
-std::unique_ptr<OrderCase> OrderQueue::take() noexcept {
-  for (OrderCase* order = nullptr; asked_.try_pop(order);) {
-    std::unique_ptr<OrderCase> taken(order);
-    if (taken->take_up()) return taken;
-    taken->answer.text = "withdrawn: its client is gone, or waits no more";
-    answer(std::move(taken));
-  }
-  return nullptr;
-}
-
-void OrderQueue::answer(std::unique_ptr<OrderCase> order) noexcept {
-  if (answered_.try_push(order.get())) (void)order.release();  // there is room for all that were asked
-}
-
 std::uint64_t InstancePort::send(Order order) {
   const bool to_records = order.kind == Order::Kind::record_start || order.kind == Order::Kind::record_stop ||
                           order.kind == Order::Kind::record_dump;

@@ -24,11 +24,8 @@ struct Harm {
   Doorbell& bell;
   RandomStream random{0, "harm"};
 
-  std::uint32_t number() { return std::atomic_ref(link.request.number).load(); }
-  void answer() {
-    std::atomic_ref(link.answer.number).store(number());
-    bell.ring();
-  }
+  std::uint32_t number() { return link.request.number.given(); }
+  void answer() { link.answer.number.give(number(), bell); }
 
   // Where counts and positions are.
   std::size_t start_of(std::size_t which) const {
@@ -113,11 +110,9 @@ int main(int, char** arguments) {
   ready.fingerprint = std::strtoull(arguments[2], nullptr, 10);
   ready.count = what == "nameless" ? 1'000'000 : 1;
   std::strcpy(ready.names[0].data(), "harm");
-  std::atomic_ref(ready.is).store(1);
-  bell.ring();
-  for (std::uint32_t done = 0; bell.wait(-1) != Doorbell::Heard::end;) {
-    if (harm.number() == done) continue;
-    done = harm.number();
+  ready.is.give(1, bell);
+  for (std::uint32_t done = 0; const auto number = harm.link.request.number.next(done, bell);) {
+    done = *number;
     harm.at_request(what);
   }
   return 0;

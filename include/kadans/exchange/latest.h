@@ -7,6 +7,9 @@
 //
 // Memory order: every exchange both releases the slot that is given away (the writer's new value, or the reader's end
 // of reading) and acquires the one that comes back, so a slot has one owner at any time and its bytes need no atomics.
+// The look whether there is news orders nothing, since nothing is read on its word: read() exchanges after it, and
+// finds that news or newer. Each order is needed: tests/interleavings weakens one after the other and finds what
+// breaks.
 //
 // Latest is trivially copyable and holds no pointer, so it may live in memory shared between two processes. Copy it
 // only while nobody reads or writes. Where there is a copy_used(from, to) for T, publishing copies by that. A process
@@ -15,22 +18,22 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
+
+#include "kadans/exchange/memory.h"
 
 namespace kadans {
 
-template <typename T, std::size_t Readers = 1>
+template <typename T, std::size_t Readers = 1, typename Memory = MachineMemory>
 class Latest {
-  static_assert(std::is_trivially_copyable_v<T>, "T crosses threads by plain copy");
+  static_assert(Memory::template can_cross<T>, "T crosses threads by plain copy");
   static_assert(Readers >= 1);
-  static_assert(std::atomic_ref<std::uint32_t>::is_always_lock_free, "also on 32-bit machines");
 
   static constexpr std::size_t cache_line = 64;
   static constexpr std::uint32_t slot_mask = 3;
   static constexpr std::uint32_t fresh = 4;
+  using Word = typename Memory::template Word<std::uint32_t>;
 
   // Slots share no cache line, so writing one does not slow down reading another.
   struct alignas(cache_line) Slot {
@@ -39,7 +42,7 @@ class Latest {
   struct Channel {
     std::array<Slot, 3> slots;
     alignas(cache_line) std::uint32_t write_slot = 0;  // writer
-    alignas(cache_line) std::uint32_t middle = 1;      // both, through atomic_ref alone
+    alignas(cache_line) Word middle{1};                // both
     alignas(cache_line) std::uint32_t read_slot = 2;   // reader
     std::uint32_t readings = 0;                        // likewise: that live
   };
@@ -54,7 +57,8 @@ class Latest {
   void publish(const T& value) noexcept {
     for (Channel& channel : channels_) {
       put(value, channel.slots[channel.write_slot].value);
-      const std::uint32_t previous = middle(channel).exchange(channel.write_slot | fresh, std::memory_order_acq_rel);
+      const std::uint32_t previous =
+          Memory::at(channel.middle).exchange(channel.write_slot | fresh, std::memory_order_acq_rel);
       channel.write_slot = previous & slot_mask;
     }
   }
@@ -66,7 +70,7 @@ class Latest {
   // Thread of reader `reader` only: brings what read() will find near, unless something newer comes. Changes nothing.
   void warm_read(std::size_t reader = 0) noexcept {
     Channel& channel = channels_[reader];
-    const std::uint32_t middle_slot = middle(channel).load(std::memory_order_relaxed) & slot_mask;
+    const std::uint32_t middle_slot = Memory::at(channel.middle).load(std::memory_order_relaxed) & slot_mask;
     bring_near<0>(channel.slots[has_news(reader) ? middle_slot : channel.read_slot]);
   }
 
@@ -93,7 +97,7 @@ class Latest {
   Reading read(std::size_t reader = 0) noexcept {
     Channel& channel = channels_[reader];
     if (channel.readings == 0 && has_news(reader)) {
-      const std::uint32_t newest = middle(channel).exchange(channel.read_slot, std::memory_order_acq_rel);
+      const std::uint32_t newest = Memory::at(channel.middle).exchange(channel.read_slot, std::memory_order_acq_rel);
       channel.read_slot = newest & slot_mask;
     }
     return Reading(channel);
@@ -106,7 +110,7 @@ class Latest {
 
   // Thread of reader `reader` only: whether read() would bring a value that this reader has not seen. Wait-free.
   bool has_news(std::size_t reader = 0) noexcept {
-    return (middle(channels_[reader]).load(std::memory_order_acquire) & fresh) != 0;
+    return (Memory::at(channels_[reader].middle).load(std::memory_order_relaxed) & fresh) != 0;
   }
 
   static constexpr std::size_t readers() noexcept { return Readers; }
@@ -125,9 +129,6 @@ class Latest {
     const auto* const bytes = reinterpret_cast<const unsigned char*>(&slot);
     for (std::size_t i = 0; i < sizeof slot; i += cache_line) __builtin_prefetch(bytes + i, to_write);
   }
-
-  // A plain integer seen through atomic_ref keeps the type trivially copyable, which std::atomic would not.
-  static std::atomic_ref<std::uint32_t> middle(Channel& channel) noexcept { return std::atomic_ref(channel.middle); }
 
   std::array<Channel, Readers> channels_;
 };

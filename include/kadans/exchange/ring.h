@@ -3,7 +3,8 @@
 //
 // Two positions count what was pushed and what was popped, modulo 2^32; the difference is what waits. Each side stores
 // its own position with release after it has touched the slots and loads the other's with acquire before it touches
-// them. A position is only ever seen through atomic_ref, by its owner too.
+// them. Its own it loads relaxed: nobody else stores there. Each order is needed: tests/interleavings weakens one after
+// the other and finds what breaks.
 //
 // Wait-free on both sides, trivially copyable and without pointers, so that it also works in memory shared between two
 // processes. Copy it only while nobody pushes or pops. A producer that is killed inside a push leaves nothing behind; a
@@ -12,20 +13,19 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <type_traits>
+
+#include "kadans/exchange/memory.h"
 
 namespace kadans {
 
-template <typename T, std::size_t Capacity>
+template <typename T, std::size_t Capacity, typename Memory = MachineMemory>
 class Ring {
-  static_assert(std::is_trivially_copyable_v<T>, "T crosses threads by plain copy");
+  static_assert(Memory::template can_cross<T>, "T crosses threads by plain copy");
   static_assert(Capacity >= 2 && (Capacity & (Capacity - 1)) == 0, "the capacity is a power of two");
   static_assert(Capacity <= (std::size_t{1} << 31), "positions are counted modulo 2^32");
-  static_assert(std::atomic_ref<std::uint32_t>::is_always_lock_free, "also on 32-bit machines");
 
  public:
   // Producer thread only. False, and nothing is queued, when the batch does not fit. The batch is no part of the ring.
@@ -37,7 +37,7 @@ class Ring {
     const std::uint32_t head = own(head_);
     copy_in(head, first);
     copy_in(head + static_cast<std::uint32_t>(first.size()), second);
-    store(head_, head + static_cast<std::uint32_t>(size));
+    Memory::at(head_).store(head + static_cast<std::uint32_t>(size), std::memory_order_release);
     return true;
   }
   // Producer thread only.
@@ -52,17 +52,21 @@ class Ring {
   }
 
   // Producer thread only: places left. It can only grow until the producer pushes again.
-  std::size_t free() const noexcept { return Capacity - (own(head_) - other(tail_)); }
+  std::size_t free() const noexcept {
+    return Capacity - (own(head_) - Memory::at(tail_).load(std::memory_order_acquire));
+  }
 
   // Consumer thread only: elements waiting. It can only grow until the consumer pops.
-  std::size_t size() const noexcept { return other(head_) - own(tail_); }
+  std::size_t size() const noexcept { return Memory::at(head_).load(std::memory_order_acquire) - own(tail_); }
 
   // Consumer thread only: element `i` of those waiting, i < size() as last asked; it stays in the queue. The reference
   // holds until the element is dropped.
   const T& peek(std::size_t i = 0) const noexcept { return slots_[(own(tail_) + i) & mask]; }
 
   // Consumer thread only: removes the first `count` elements, count <= size() as last asked.
-  void drop(std::size_t count) noexcept { store(tail_, own(tail_) + static_cast<std::uint32_t>(count)); }
+  void drop(std::size_t count) noexcept {
+    Memory::at(tail_).store(own(tail_) + static_cast<std::uint32_t>(count), std::memory_order_release);
+  }
 
   // Consumer thread only. False, and `value` untouched, when nothing waits.
   [[nodiscard]] bool try_pop(T& value) noexcept {
@@ -86,22 +90,13 @@ class Ring {
     std::copy_n(batch.begin() + static_cast<std::ptrdiff_t>(before_end), batch.size() - before_end, slots_.begin());
   }
 
-  // atomic_ref wants a non-const object even to load; the positions are never const objects.
-  static std::atomic_ref<std::uint32_t> shared(const std::uint32_t& position) noexcept {
-    return std::atomic_ref(const_cast<std::uint32_t&>(position));
-  }
-  static std::uint32_t own(const std::uint32_t& position) noexcept {
-    return shared(position).load(std::memory_order_relaxed);
-  }
-  static std::uint32_t other(const std::uint32_t& position) noexcept {
-    return shared(position).load(std::memory_order_acquire);
-  }
-  static void store(std::uint32_t& position, std::uint32_t value) noexcept {
-    shared(position).store(value, std::memory_order_release);
+  using Position = typename Memory::template Word<std::uint32_t>;
+  static std::uint32_t own(const Position& position) noexcept {
+    return Memory::at(position).load(std::memory_order_relaxed);
   }
 
-  alignas(cache_line) std::uint32_t head_ = 0;  // pushed so far, modulo 2^32; written by the producer
-  alignas(cache_line) std::uint32_t tail_ = 0;  // popped so far, modulo 2^32; written by the consumer
+  alignas(cache_line) Position head_{};  // pushed so far, modulo 2^32; written by the producer
+  alignas(cache_line) Position tail_{};  // popped so far, modulo 2^32; written by the consumer
   alignas(cache_line) std::array<T, Capacity> slots_{};
 };
 

@@ -51,7 +51,7 @@ class BehaviorSide final : public BesideTick {
     std::uint32_t sequence = 0;  // of its transaction; 0: it waits for the end of a tick
     ParameterChange change{};    // of set_parameter and undo
     bool lasting = false;
-    std::uint32_t lifts = 0;  // of clear_faults: SafetyStatus::lifts before
+    std::uint16_t lifts = 0;  // of clear_faults: SafetyStatus::lifts before
   };
 
   void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
@@ -82,7 +82,7 @@ class BehaviorSide final : public BesideTick {
   Parts p_;
   BesideTick* next_;
   bool stopped_ = false;     // by the emergency stop, in the last tick
-  std::uint32_t lifts_ = 0;  // of it
+  std::uint16_t lifts_ = 0;  // of it
   std::vector<Pending> pending_;
   TuningHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client

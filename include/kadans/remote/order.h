@@ -1,16 +1,12 @@
-// What somebody outside asks of a running instance, and what comes back. An order travels as a case: made by the thread
-// of the client, carried out and answered by the thread that owns what it changes, freed where it was made. The rings
-// carry pointers, so no side waits for the other and an order may be as long as it is.
+// What somebody outside asks of a running instance, and what comes back; order_queue.h says how they travel.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "kadans/exchange/ring.h"
+#include "kadans/remote/order_queue.h"
 #include "kadans/script/script_parameter.h"
 #include "kadans/signal/parameter.h"
 
@@ -77,45 +73,7 @@ struct Answer {
   bool incomplete = false, writes = false, leaves = false;  // a console's
 };
 
-// Whoever asked may withdraw an order until it is taken up: it expires with its client.
-class OrderCase {
- public:
-  Order order;
-  Answer answer;
-
-  // The thread that carries out, once. False: it was withdrawn.
-  [[nodiscard]] bool take_up() noexcept { return !decided_.exchange(true, std::memory_order_acq_rel); }
-  // Client's thread. False: it is taken up already.
-  bool withdraw() noexcept { return !decided_.exchange(true, std::memory_order_acq_rel); }
-
- private:
-  std::atomic<bool> decided_{false};
-};
-
-// From one client's thread to one that carries out, and back. At most `orders_waiting_max` are on their way.
-inline constexpr std::size_t orders_waiting_max = 15;
-
-class OrderQueue {
- public:
-  OrderQueue() = default;
-  ~OrderQueue();
-  OrderQueue(const OrderQueue&) = delete;
-  OrderQueue& operator=(const OrderQueue&) = delete;
-
-  // Client's thread. False: too many wait.
-  [[nodiscard]] bool ask(std::unique_ptr<OrderCase> order);
-  // Client's thread: the order of this number is not carried out, unless it is being already.
-  void withdraw(std::uint64_t number) noexcept;
-  std::unique_ptr<OrderCase> answered() noexcept;  // nullptr: none
-
-  // The thread that carries out.
-  std::unique_ptr<OrderCase> take() noexcept;  // nullptr: none; what was withdrawn goes back unanswered
-  void answer(std::unique_ptr<OrderCase> order) noexcept;
-
- private:
-  using Cases = Ring<OrderCase*, 16>;
-  Cases asked_, answered_;
-  std::vector<OrderCase*> on_their_way_;  // client's
-};
+using OrderCase = BasicOrderCase<Order, Answer>;
+using OrderQueue = BasicOrderQueue<OrderCase>;
 
 }  // namespace kadans

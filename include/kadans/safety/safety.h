@@ -131,7 +131,7 @@ class Safety {
   EmergencyStop stop_;
   FaultWords stopped_by_{};
   bool stopped_ = false;  // by it, until it is lifted
-  std::uint32_t lifts_ = 0;
+  std::uint16_t lifts_ = 0;
   std::uint32_t fault_count_ = 0;
   Fault first_fault_;
   FaultLog log_;

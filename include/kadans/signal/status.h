@@ -43,7 +43,7 @@ struct alignas(8) SupportStatus {
 struct SafetyStatus {
   SafetyLevel level = SafetyLevel::normal;
   bool stopped = false;           // by the emergency stop, until it is lifted
-  std::uint32_t lifts = 0;        // times that somebody outside cleared all faults
+  std::uint16_t lifts = 0;        // times that somebody outside cleared all faults; begins anew beyond its range
   std::uint32_t fault_count = 0;  // since the start or the last clearing
   Fault first_fault;              // kept until cleared
 };

@@ -51,17 +51,13 @@ BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& h
 }
 
 int BehaviorServer::serve() {
-  std::atomic_ref(link_.ready.is).store(1, std::memory_order_release);
-  bell_.ring();
-  for (;;) {
-    if (bell_.wait(-1) == Doorbell::Heard::end) return 0;
-    const std::uint32_t number = std::atomic_ref(link_.request.number).load(std::memory_order_acquire);
-    if (number == done_) continue;
+  link_.ready.is.give(1, bell_);
+  while (const auto number = link_.request.number.next(done_, bell_)) {
     if (!answer()) return 1;
-    done_ = number;
-    std::atomic_ref(link_.answer.number).store(number, std::memory_order_release);
-    bell_.ring();
+    done_ = *number;
+    link_.answer.number.give(done_, bell_);
   }
+  return 0;
 }
 
 bool BehaviorServer::answer() {

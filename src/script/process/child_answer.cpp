@@ -10,10 +10,10 @@
 namespace kadans {
 namespace {
 
-// Once, whatever the other side does meanwhile.
+// Once, whatever the other side does meanwhile. That it is whole is_ready() or answers() has said.
 template <typename T>
 T once(T& shared) noexcept {
-  return std::atomic_ref(shared).load(std::memory_order_acquire);
+  return std::atomic_ref(shared).load(std::memory_order_relaxed);
 }
 
 // A copy that the compiler cannot trade for a second look at the original.
@@ -48,11 +48,11 @@ ChildAnswer::ChildAnswer() {
   commands_.reserve(CommandQueue::capacity());
 }
 
-bool ChildAnswer::is_ready(BehaviorLink& link) noexcept { return once(link.ready.is) == 1; }
+bool ChildAnswer::is_ready(BehaviorLink& link) noexcept { return link.ready.is.given() == 1; }
 std::uint64_t ChildAnswer::fingerprint(BehaviorLink& link) noexcept { return copy_of(link.ready.fingerprint); }
 
 bool ChildAnswer::answers(BehaviorLink& link, std::uint32_t number) noexcept {
-  return once(link.answer.number) == number;
+  return link.answer.number.given() == number;
 }
 
 std::optional<std::vector<std::string>> ChildAnswer::names(BehaviorLink& link) {

@@ -126,8 +126,7 @@ void ProcessHost::ask(const Snapshot& snapshot, const CommandSender& commands) n
   asked_for_ns_ = snapshot.time_ns;
   asked_wall_ns_ = clock_.now_ns();
   asked_ = true;
-  std::atomic_ref(request.number).store(++number_, std::memory_order_release);
-  child_->process.bell().ring();
+  request.number.give(++number_, child_->process.bell());
 }
 
 // As long as this tick may wait, unless the process is gone or its time is over.

@@ -2,11 +2,11 @@
 // killed in the midst of a push or a write leaves it half done, and nobody else ever looks at it.
 //
 // The two take turns. The runtime writes a request and rings; the process ticks its behaviors, writes its answer, names
-// the request's number in it last of all, and rings. So nothing here is written and read at once as long as both keep
-// the rules, and what an unfinished answer holds counts as if it were not there. The runtime does not rely on it: it
-// reads nothing from here that it wrote itself, and takes copies of what the process wrote before it looks at them
-// (child_answer.h). For this reason the snapshot goes through plain memory and not through Latest, whose writer keeps
-// the index of its slot beside the slots.
+// the request's number in it last of all, and rings (exchange/turn.h). So nothing here is written and read at once
+// as long as both keep the rules, and what an unfinished answer holds counts as if it were not there. The runtime does
+// not rely on it: it reads nothing from here that it wrote itself, and takes copies of what the process wrote before it
+// looks at them (child_answer.h). For this reason the snapshot goes through plain memory and not through Latest, whose
+// writer keeps the index of its slot beside the slots.
 //
 // Trivially copyable, no pointers. Both ends are the same program, so its layout is.
 #pragma once
@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "kadans/exchange/turn.h"
 #include "kadans/signal/command.h"
 #include "kadans/signal/status.h"
 
@@ -48,13 +49,13 @@ struct BehaviorLink {
   };
   // Written by the process once, then it rings.
   struct Ready {
-    std::uint32_t is = 0;
+    Turn<> is;                                 // 1
     alignas(8) std::uint64_t fingerprint = 0;  // of its catalog
     std::uint32_t count = 0;
     std::array<Name, behaviors_max> names{};  // whose status it tells
   };
   struct Request {
-    std::uint32_t number = 0;         // from 1
+    Turn<> number;                    // from 1
     std::uint32_t last_sequence = 0;  // transactions of the answer are numbered from the next
     std::uint32_t room = 0;           // for commands, headers included
     std::uint32_t order_size = 0;
@@ -62,7 +63,7 @@ struct BehaviorLink {
     Snapshot snapshot;
   };
   struct Answer {
-    std::uint32_t number = 0;
+    Turn<> number;                                // the request's
     Numbers play{};                               // PlayStatus, in its order
     std::array<Numbers, behaviors_max> status{};  // BehaviorStatus, likewise
     std::uint32_t kept_changed = 0;
