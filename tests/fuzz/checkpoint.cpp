@@ -3,12 +3,13 @@
 //
 // An input is a file, or, if it does not begin as one, files to make a checkpoint of, a line each: "PATH<tab>TEXT", or
 // "!PATH" for a plug-in that is known as the one that lies here.
+#include "../../src/app/checkpoint.h"
+
 #include <map>
 
-#include "../../src/app/checkpoint.h"
+#include "../../src/app/input_files.h"
 #include "fuzz_folder.h"
 #include "fuzz_input.h"
-#include "../../src/app/input_files.h"
 #include "kadans/telemetry/mcap_format.h"
 
 namespace {
@@ -56,7 +57,8 @@ struct World {
   bool untouched(const fs::path& own) const {
     Contents now = contents(folder.path());
     const std::string name = own.lexically_relative(folder.path()).string();
-    if (!own.empty()) std::erase_if(now, [&](const auto& entry) { return (entry.first + "/").starts_with(name + "/"); });
+    if (!own.empty())
+      std::erase_if(now, [&](const auto& entry) { return (entry.first + "/").starts_with(name + "/"); });
     return now == before;
   }
 };
@@ -88,7 +90,8 @@ std::string made_of(fuzz::FuzzInput input) {
     }
   }
   const fuzz::MemoryFile file;
-  write_checkpoint({.inputs = inputs, .at = {.ticks = 7, .time_ns = 7'000'000, .state_hash = 9}, .trail = {}}, file.path());
+  write_checkpoint({.inputs = inputs, .at = {.ticks = 7, .time_ns = 7'000'000, .state_hash = 9}, .trail = {}},
+                   file.path());
   return read_input_file(file.path());
 }
 

@@ -1,10 +1,11 @@
 // JSON of files and of clients: our reader agrees with nlohmann-json on what is JSON and what it says, and what a
 // client says is said back as the same text.
+#include "kadans/config/foreign_json.h"
+
 #include <nlohmann/json.hpp>
 
 #include "config/json_agreement.h"
 #include "fuzz_input.h"
-#include "kadans/config/foreign_json.h"
 
 namespace {
 
@@ -28,7 +29,8 @@ void read_as_foreign(const std::string& text) {
     const nlohmann::ordered_json json = parse_foreign_json(text, "t");
     require(read && *read == json, "both ways to read it agree");
     const std::string said = json_text(json);
-    require(parse_foreign_json(said) == json && json_text(parse_foreign_json(said)) == said, "it is said back as it is");
+    require(parse_foreign_json(said) == json && json_text(parse_foreign_json(said)) == said,
+            "it is said back as it is");
   } catch (const InputError& error) {
     require(!read, "both ways to read it refuse it");
     const bool number = std::string_view(error.what()).find("beyond what a double") != std::string_view::npos;

@@ -32,7 +32,8 @@ inline void require_told(const InputError& error, std::string_view file, Placed 
   require(!error.problems().empty(), "an error tells of a problem");
   for (const InputProblem& problem : error.problems()) {
     require(!problem.message.empty(), "a problem says what is wrong");
-    const bool has_place = (placed < Placed::line || problem.line > 0) && (placed < Placed::column || problem.column > 0);
+    const bool has_place =
+        (placed < Placed::line || problem.line > 0) && (placed < Placed::column || problem.column > 0);
     if (problem.file != file || !has_place) require(false, "a problem has a place: " + problem.text());
   }
 }

@@ -45,7 +45,8 @@ std::string text_of(const StickRecording& recording) {
   }
   for (const StickEvent& event : recording.events) {
     char line[96];
-    std::snprintf(line, sizeof line, "E: %lld.%06lld %04x %04x %d\n", static_cast<long long>(event.time_ns / 1'000'000'000),
+    std::snprintf(line, sizeof line, "E: %lld.%06lld %04x %04x %d\n",
+                  static_cast<long long>(event.time_ns / 1'000'000'000),
                   static_cast<long long>(event.time_ns / 1000 % 1'000'000), static_cast<unsigned>(event.type),
                   static_cast<unsigned>(event.code), event.value);
     text += line;

@@ -3,11 +3,12 @@
 // the token changes nothing.
 //
 // An input is whether it has the token, then messages: how, length (low byte first), bytes.
+#include "kadans/remote/live_client.h"
+
 #include <nlohmann/json.hpp>
 
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
-#include "kadans/remote/live_client.h"
 
 namespace {
 
@@ -22,7 +23,10 @@ struct Bench {
 
 class Viewer {
  public:
-  Viewer(Bench& bench, bool writes) : bench_(bench), client_(bench.hub, 1, writes, "the input") { hear(); }
+  Viewer(Bench& bench, bool writes) : bench_(bench), client_(bench.hub, 1, writes, "the input") {
+    for (LiveClient::Outgoing out; client_.next(out);) {  // the same to all, and long
+    }
+  }
 
   void say(bool binary, std::string_view message) {
     if (binary) {

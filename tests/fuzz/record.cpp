@@ -21,14 +21,16 @@ std::uint64_t read_messages(const std::string& path) {
     (void)event_in(rows.topic(), rows.text(), rows.time_ns());
     if (const auto fault = fault_in(rows.topic(), rows.text(), rows.time_ns())) (void)fault_text(*fault);
   }
-  require(rows.reader().complete() == rows.reader().problem().empty(), "a record is whole, or it is said what is wrong");
+  require(rows.reader().complete() == rows.reader().problem().empty(),
+          "a record is whole, or it is said what is wrong");
   return count;
 }
 
 void read_lines(const std::string& path, std::uint64_t messages) {
   JsonLines lines(path, {}, {});
   std::string line;
-  while (lines.next(line)) require(nlohmann::json::accept(line) && line.find('\n') == std::string::npos, "a line is JSON");
+  while (lines.next(line))
+    require(nlohmann::json::accept(line) && line.find('\n') == std::string::npos, "a line is JSON");
   require(lines.lines() == messages, "each message has a line");
 }
 
@@ -46,7 +48,8 @@ void draw_signals(const RecordOutline& outline, const std::string& path) {
 
 void cut(const RecordOutline& outline) {
   const fuzz::MemoryFile file;
-  const CutRecord cut = cut_record(outline, {.span = {.from_ns = outline.first_ns, .to_ns = outline.last_ns}}, file.path());
+  const CutRecord cut =
+      cut_record(outline, {.span = {.from_ns = outline.first_ns, .to_ns = outline.last_ns}}, file.path());
   const RecordOutline again = outline_of(file.path());
   require(again.complete, "what is cut is whole");
   require(again.file_bytes == cut.file_bytes, "what is cut is told");

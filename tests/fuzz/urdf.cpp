@@ -1,8 +1,9 @@
 // Descriptions of robots: a URDF is a tree of links with numbers in it, or is refused with the places of all mistakes.
+#include "kadans/model/urdf.h"
+
 #include <cmath>
 
 #include "fuzz_input.h"
-#include "kadans/model/urdf.h"
 
 namespace {
 
@@ -33,7 +34,8 @@ void require_right(const RobotModel& model) {
     for (const double value : joint.axis) length += value * value;
     require(std::abs(length - 1) < 1e-6, "an axis has length 1");
     require(model.find_joint(joint.name) == i, "a name is one joint's");
-    if (joint.mimic) require(joint.mimic->joint < model.joints.size() && joint.mimic->joint != i, "a mimic follows another");
+    if (joint.mimic)
+      require(joint.mimic->joint < model.joints.size() && joint.mimic->joint != i, "a mimic follows another");
   }
   for (const Link& link : model.links) {
     const Inertia& of = link.inertia;

@@ -45,7 +45,8 @@ class Words {
     const std::string_view word = next();
     double value_s = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value_s);
-    if (error != std::errc() || end != word.data() + word.size() || !(value_s >= 0 && value_s < static_cast<double>(time_max_s)))
+    if (error != std::errc() || end != word.data() + word.size() ||
+        !(value_s >= 0 && value_s < static_cast<double>(time_max_s)))
       return std::nullopt;
     return std::llround(value_s * 1e6) * 1000;  // the kernel counts microseconds
   }

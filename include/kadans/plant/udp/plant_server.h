@@ -34,9 +34,7 @@ class PlantServer {
     double answer_sum_ns = 0;
     std::uint64_t answers = 0;
     bool left = false;  // the peer said goodbye; else it fell silent
-    double answer_mean_ns() const noexcept {
-      return answers == 0 ? 0 : answer_sum_ns / static_cast<double>(answers);
-    }
+    double answer_mean_ns() const noexcept { return answers == 0 ? 0 : answer_sum_ns / static_cast<double>(answers); }
   };
   // `periods` passed since the last beat. False: the session is over. Throws what the model's step throws.
   bool beat(ModelPlant& model, std::uint32_t periods);
