@@ -226,17 +226,22 @@ UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& rec
     if (scenario == recorded.files.end() || !scenario->text || fs::path(name).is_absolute())
       throw InputError({.file = record, .message = "does not hold its scenario"});
     scenario_ = folder_ / name;
+  } catch (const fs::filesystem_error& error) {  // a name too long, a file in place of a folder
+    remove();
+    throw InputError({.file = record, .message = std::string("its files cannot be unpacked: ") + error.what()});
   } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
+    remove();
     throw;
   }
 }
 
-UnpackedInputs::~UnpackedInputs() {
-  if (getpid() != owner_) return;
+void UnpackedInputs::remove() const noexcept {
   std::error_code ignored;
   fs::remove_all(folder_, ignored);
+}
+
+UnpackedInputs::~UnpackedInputs() {
+  if (getpid() == owner_) remove();
 }
 
 void UnpackedInputs::add_behaviors(RunInputs& inputs) const {

@@ -58,6 +58,7 @@ class UnpackedInputs {
   const PluginGate& plugins() const noexcept { return plugins_; }
 
  private:
+  void remove() const noexcept;
   void unpack(const InputFile& file) const;
   void link_plugin(const InputFile& file, const std::string& record, bool any_plugins);
 

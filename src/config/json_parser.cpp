@@ -65,7 +65,7 @@ class JsonParser {
   void skip_comment() {
     const TextPlace start = at_.place();
     if (at_.peek(1) == '/') {
-      while (!at_.at_end() && at_.peek() != '\n') at_.next();
+      while (!at_.at_end() && at_.peek() != '\n' && at_.peek() != '\r') at_.next();
     } else if (at_.peek(1) == '*') {
       at_.next();
       at_.next();

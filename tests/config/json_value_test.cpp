@@ -57,6 +57,7 @@ TEST_CASE("Numbers are read to the last bit, whatever the locale") {
 TEST_CASE("A byte order mark, comments and any white space are no mistakes") {
   CHECK(refusal_of("\xEF\xBB\xBF{}").empty());
   CHECK(refusal_of("\t/* a\n * b */ {\r\n} // end").empty());
+  CHECK(refusal_of("// a line that ends as on old machines\r{}").empty());
   CHECK(refusal_of("\"\\u0000\"").empty());
 }
 

@@ -1,9 +1,9 @@
 // Mutated texts: each is read or refused with InputError, and the JSON reader agrees with nlohmann-json, a parser that
 // none of us wrote, on what is JSON and what it says.
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 
 #include "broken.h"
+#include "json_agreement.h"
 #include "kadans/config/robot_config.h"
 #include "kadans/config/scenario_config.h"
 #include "kadans/signal/random.h"
@@ -39,47 +39,6 @@ std::string mutated(std::string text, RandomStream& random) {
     }
   }
   return text;
-}
-
-// Whether both trees say the same.
-bool same(const JsonValue& ours, const nlohmann::json& theirs) {
-  using Kind = JsonValue::Kind;
-  switch (ours.kind) {
-    case Kind::null:
-      return theirs.is_null();
-    case Kind::boolean:
-      return theirs.is_boolean() && theirs.get<bool>() == ours.boolean;
-    case Kind::number:
-      return theirs.is_number() && theirs.get<double>() == ours.number;
-    case Kind::string:
-      return theirs.is_string() && theirs.get<std::string>() == ours.text;
-    case Kind::array:
-      break;
-    case Kind::object:
-      if (!theirs.is_object() || theirs.size() != ours.members.size()) return false;
-      for (const JsonMember& member : ours.members) {
-        if (!theirs.contains(member.name) || !same(member.value, theirs[member.name])) return false;
-      }
-      return true;
-  }
-  if (!theirs.is_array() || theirs.size() != ours.items.size()) return false;
-  for (std::size_t i = 0; i < ours.items.size(); ++i) {
-    if (!same(ours.items[i], theirs[i])) return false;
-  }
-  return true;
-}
-
-// "" when both agree about the text.
-std::string disagreement(const std::string& text) {
-  const nlohmann::json theirs = nlohmann::json::parse(text, nullptr, false, true);
-  const std::string refused = refusal("t", "", [&] {
-    const JsonValue ours = parse_json(text, "t");
-    if (theirs.is_discarded() || !same(ours, theirs)) throw std::runtime_error("accepted: " + text);
-  });
-  // What is refused and is JSON for others must be what we are stricter about.
-  const bool stricter =
-      refused.find("stands twice") != std::string::npos || refused.find("beyond what a double") != std::string::npos;
-  return refused.empty() || theirs.is_discarded() || stricter ? "" : refused + " in " + text;
 }
 
 }  // namespace

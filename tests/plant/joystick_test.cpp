@@ -144,6 +144,13 @@ TEST_CASE("A wrong recording is refused with its line") {
   CHECK(refusal(cut).find("are not a multiple of the") != std::string::npos);
 }
 
+TEST_CASE("A recording whose times cannot be counted in nanoseconds is refused") {
+  CHECK(refusal("E: 9500000000 0003 0000 1\n").find("it:1:1: must be") == 0);
+  CHECK(refusal(bytes_of({raw(EV_SYN, SYN_REPORT, 0), raw(EV_SYN, SYN_REPORT, 0, INT64_MAX)})) ==
+        "it: event 2 has a time that none can have");
+  CHECK(refusal(bytes_of({raw(EV_SYN, SYN_REPORT, 0, INT64_MIN)})) == "it: event 1 has a time that none can have");
+}
+
 TEST_CASE("A recording is played from its time on, and is unplugged when the scenario says so") {
   const fs::path file = fs::temp_directory_path() / ("stick-" + std::to_string(getpid()) + ".evemu");
   std::ofstream(file) << "A: 00 -10 10\nA: 01 -10 10\nE: 5.0 0000 0000 0\nE: 5.5 0003 0000 10\nE: 5.5 0000 0000 0\n";

@@ -247,6 +247,25 @@ TEST_CASE("Garbage and strangers change nothing and are counted") {
   CHECK_THROWS_WITH_AS(stranger.connect(), "the plant at the test is driven by somebody else", InputError);
 }
 
+TEST_CASE("An actuation that answers a time which the plant never had is applied, and counts for no age") {
+  PlantServer server({}, layout(), DatagramSocket(named("server", nullptr)));
+  IdealPlant model(two_joints(), {.position_rad = {0, 0}});
+  const DatagramSocket peer(named("peer", "server"));
+  const PlantWire wire(layout());
+  Datagram out{};
+  (void)peer.send(wire.greet({.kind = WireKind::hello, .session = 1}, out));
+  REQUIRE(server.await(0));
+  std::uint64_t sequence = 0;
+  for (const std::int64_t time_ns : {std::int64_t{0}, INT64_MIN, INT64_MIN, INT64_MAX}) {
+    const WireHead head{.kind = WireKind::actuation, .session = 1, .sequence = ++sequence, .time_ns = time_ns};
+    (void)peer.send(wire.actuation(head, effort(1), out));
+    CHECK(server.beat(model, 1));
+  }
+  CHECK(server.session().answers == 1);
+  CHECK(server.session().answer_mean_ns() == 0);
+  CHECK(model.truth().velocity_rad_s[0] == doctest::Approx(0.004));
+}
+
 TEST_CASE("Nobody there is told so") {
   LossyWire wire(1);
   UdpPlant plant({.peer = "10.9.8.7:6", .connect_timeout_s = 0.02}, layout(), wire.control_end(), 1);

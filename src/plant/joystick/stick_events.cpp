@@ -14,7 +14,13 @@
 namespace kadans {
 namespace {
 
-constexpr double time_max_s = 1e10;
+constexpr std::int64_t time_max_s = 9'000'000'000;  // of which the nanoseconds can be counted
+
+// -1: no time that a device says.
+std::int64_t time_of(const input_event& event) noexcept {
+  const std::int64_t s = event.input_event_sec, us = event.input_event_usec;
+  return s >= 0 && s < time_max_s && us >= 0 && us < 1'000'000 ? s * 1'000'000'000 + us * 1000 : -1;
+}
 
 // The words of one line.
 class Words {
@@ -39,7 +45,8 @@ class Words {
     const std::string_view word = next();
     double value_s = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value_s);
-    if (error != std::errc() || end != word.data() + word.size() || !(value_s >= 0 && value_s <= time_max_s))
+    if (error != std::errc() || end != word.data() + word.size() ||
+        !(value_s >= 0 && value_s < static_cast<double>(time_max_s)))
       return std::nullopt;
     return std::llround(value_s * 1e6) * 1000;  // the kernel counts microseconds
   }
@@ -111,9 +118,13 @@ StickRecording read_bytes(const std::string& content, const std::string& file) {
                                  " that an event has on this machine"});
   recording.events.resize(whole);
   decode_stick_events(std::as_bytes(std::span(content)), recording.events);
-  for (std::size_t i = 1; i < whole; ++i) {
-    if (recording.events[i].time_ns >= recording.events[i - 1].time_ns) continue;
-    throw InputError({.file = file, .message = "goes back in time at event " + std::to_string(i + 1)});
+  std::int64_t before_ns = 0;
+  for (std::size_t i = 0; i < whole; ++i) {
+    const std::int64_t time_ns = recording.events[i].time_ns;
+    const std::string event = "event " + std::to_string(i + 1);
+    if (time_ns < 0) throw InputError({.file = file, .message = event + " has a time that none can have"});
+    if (time_ns < before_ns) throw InputError({.file = file, .message = "goes back in time at " + event});
+    before_ns = time_ns;
   }
   return recording;
 }
@@ -125,8 +136,7 @@ std::size_t decode_stick_events(std::span<const std::byte> bytes, std::span<Stic
   for (std::size_t i = 0; i < count; ++i) {
     input_event event;
     std::memcpy(&event, bytes.data() + i * sizeof event, sizeof event);
-    events[i] = {std::int64_t{event.input_event_sec} * 1'000'000'000 + std::int64_t{event.input_event_usec} * 1000,
-                 event.type, event.code, event.value};
+    events[i] = {time_of(event), event.type, event.code, event.value};
   }
   return count;
 }

@@ -73,10 +73,10 @@ void PlantServer::take_actuation(const WireHead& head, Bytes datagram) noexcept 
   newest_actuation_ = head.sequence;
   silent_ns_ = 0;
   driven_ = true;
+  if (head.time_ns < 0 || head.time_ns > sensors_.time_ns) return;  // of before the first sample, or of none of ours
   const std::int64_t age_ns = sensors_.time_ns - head.time_ns;
-  if (age_ns < 0) return;  // of before the first sample
   session_.answer_max_ns = std::max(session_.answer_max_ns, age_ns);
-  session_.answer_sum_ns += age_ns;
+  session_.answer_sum_ns += static_cast<double>(age_ns);
   ++session_.answers;
 }
 

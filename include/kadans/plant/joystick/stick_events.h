@@ -39,7 +39,7 @@ struct StickRecording {
 StickRecording read_stick_recording(const std::filesystem::path& file);
 StickRecording read_stick_recording(const std::string& content, const std::string& file);
 
-// What a read of a device brought, as many as are whole; times are the kernel's.
+// What a read of a device brought, as many as are whole; times are the kernel's, -1 where it can be none.
 std::size_t decode_stick_events(std::span<const std::byte> bytes, std::span<StickEvent> events) noexcept;
 
 }  // namespace kadans

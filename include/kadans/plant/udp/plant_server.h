@@ -31,12 +31,10 @@ class PlantServer {
     UdpStatistics link;
     std::uint32_t releases = 0;      // times that the watchdog took the joints
     std::int64_t answer_max_ns = 0;  // oldest sample that an actuation was told to answer, by the plant's clock
-    std::int64_t answer_sum_ns = 0;
+    double answer_sum_ns = 0;
     std::uint64_t answers = 0;
     bool left = false;  // the peer said goodbye; else it fell silent
-    double answer_mean_ns() const noexcept {
-      return answers == 0 ? 0 : static_cast<double>(answer_sum_ns) / static_cast<double>(answers);
-    }
+    double answer_mean_ns() const noexcept { return answers == 0 ? 0 : answer_sum_ns / static_cast<double>(answers); }
   };
   // `periods` passed since the last beat. False: the session is over. Throws what the model's step throws.
   bool beat(ModelPlant& model, std::uint32_t periods);

@@ -1,0 +1,90 @@
+#include "fuzz_instance.h"
+
+#include <fstream>
+
+namespace kadans::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr ScriptLimits limits{.tick_instructions = 20'000,
+                              .load_instructions = 50'000,
+                              .tick_wall_ns = 100'000'000,
+                              .load_wall_ns = 100'000'000,
+                              .memory_bytes = std::size_t{1} << 20};
+
+constexpr const char* configuration = R"({
+  // Found on the bench.
+  "name": "bench",
+  "control": { "objects": [
+    { "name": "posture", "type": "joint_pid", "parameters": { "*.kp_Nm_per_rad": 40 } },
+    { "name": "spare", "type": "joint_pid" } ] }
+}
+)";
+constexpr const char* nod = R"(local k = require 'kadans'
+local P = k.params { hold_s = { 0.5, min = 0.1, max = 2, unit = 's', doc = 'how long' } }
+return k.behavior 'nod' { initial = 'a', k.state 'a' { { after = P.hold_s, to = 'b' } }, k.final 'b' {} }
+)";
+constexpr const char* wait = R"(local k = require 'kadans'
+return k.behavior 'wait' { initial = 'a', k.state 'a' { endless = true } }
+)";
+
+Catalog& with_parameters_by_object(Catalog& catalog) {
+  for (ParameterId id = 0; id < catalog.parameters.size(); ++id)
+    catalog.objects.at(catalog.parameters.owner(id)).parameters.push_back(id);
+  return catalog;
+}
+
+Instance::Facts facts_of(const fs::path& root) {
+  return {.name = "bench",
+          .mode = "fuzzed",
+          .version = "0",
+          .configuration = root / "config/bench/robot.json",
+          .root = root,
+          .folders = {root / "config/bench/robot.json", "bench"},
+          .records = root / "records"};
+}
+
+}  // namespace
+
+FuzzProject::FuzzProject() {
+  folder_.write("behaviors/bench/nod.lua", nod);
+  folder_.write("behaviors/bench/wait.lua", wait);
+}
+
+const FuzzProject& FuzzProject::fresh() {
+  static const FuzzProject project;
+  fs::remove_all(project.root() / "records");
+  fs::create_directories(project.root() / "records");
+  project.folder_.write("config/bench/robot.json", configuration);
+  return project;
+}
+
+FuzzInstance::FuzzInstance()
+    : host({.root = root_, .limits = limits}, with_parameters_by_object(robot.catalog), echo),
+      instance(facts_of(root_), robot.catalog, robot.safety.emergency_stop()) {
+  robot.control.record_to(&control_side);
+}
+
+LiveHub::Parts FuzzInstance::hub_parts(LivePace* pace) {
+  return {.instance = instance,
+          .port = instance.open_port(),
+          .texts = {.name = "bench", .urdf = "<robot name=\"bench\"/>", .description = "{}"},
+          .urdf_file = root_ / "bench.urdf",
+          .timing = {},
+          .pace = pace};
+}
+
+void FuzzInstance::step() {
+  lockstep.step();
+  behavior_side.beside_tick(lockstep.time_ns());
+  {
+    const auto snapshot = robot.exchange->snapshot.read(0);
+    host.tick(*snapshot, robot.behaviors.sender());
+  }
+  for (Fault fault; robot.safety.log().try_pop(fault);) instance.tell(fault);
+  (void)record_side.beat({.due_ns = lockstep.time_ns()});
+  instance.publish(status_of(robot.exchange->snapshot.newest(1), record_side.status()));
+}
+
+}  // namespace kadans::fuzz
