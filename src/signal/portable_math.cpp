@@ -1,34 +1,33 @@
-// The same bits on every amd64. sin, cos, exp, log, pow and their like have no exact result; each library rounds them
-// in its own way, and the C library rounds in several: at start-up it chooses by the processor between code with and
-// without fused multiply-add, whose last digits differ. A robot that falls over multiplies a last digit by a million in
-// a second, so that the same seed gave other runs on an older processor.
+// The same bits on every amd64. Results of sin, exp, pow and their like have to be rounded, and the C library does it
+// in several ways: when a program starts it chooses by the processor between code with and without fused multiply-add,
+// whose last digits differ. Contacts make much of a last digit, so that a seed gave another run on an older processor.
 //
 // Therefore the program brings these functions itself. They are defined here under the names that <cmath> declares, and
 // stand in the program's table of dynamic symbols, so that the loader binds to them whatever calls them: we, Bullet,
-// KDL, LuaJIT (`^` and math.*), plug-ins. tests/project/math_bindings.sh reads the bindings of all that is loaded, and
-// fails on a function that is taken from the C library and is not exact by its definition, as sqrt, fmod and floor are.
+// KDL, LuaJIT (`^` and math.*), plug-ins. tests/project/math_bindings.sh reads the bindings of all that is loaded. It
+// fails on a function of the C library that is not exact by its definition, as sqrt, fmod and floor are.
 //
-// - What is called often, sine and cosine, is ours: kadans/signal/sine_cosine.h. So are the normal random numbers,
-// which
-//   hardly ever need a logarithm (kadans/signal/random.h).
-// - All else is SLEEF's (N. Shibata and F. Petrogalli, SLEEF: A Portable Vectorized Library of C Standard Mathematical
-//   Functions, 2020), by names that begin with Sleef_cinz_ and end with purec: plain C, no fused multiply-add, no
-//   choice by the processor, at most one unit in the last place wrong. Names without a prefix choose, Sleef_finz_
-//   fuses.
-// - Single precision is double precision, rounded.
+// Sine, cosine and the angle of a point, which are called most, are ours (kadans/signal/sine_cosine.h, arc_tangent.h).
+// Normal random numbers hardly ever need a logarithm (kadans/signal/random.h). All else is SLEEF's (N. Shibata and
+// F. Petrogalli, SLEEF: A Portable Vectorized Library of C Standard Mathematical Functions, 2020), by the names that
+// begin with Sleef_cinz_ and end with purec: plain C without fused multiply-add, wrong by at most one unit in the last
+// place. The names without cinz_ and purec choose by the processor, those with finz_ fuse. Single precision is double
+// precision, rounded.
 //
-// What else could tell processors apart, and does not here: the compiler must not know these functions, since it would
-// put in place of a call with a constant argument what its own library says (KADANS_PORTABLE_MATH in
-// cmake/KadansToolchain.cmake has the names, -fno-builtin-NAME is in force everywhere); it must not contract a * b + c
-// (-ffp-contract=off); Eigen must not ask the processor for its caches, whose sizes cut large products into sums
-// (EIGEN_NO_CPUID).
+// What else would make results differ, and is kept out:
+// - A compiler that knows these functions puts its own result in place of a call with a constant argument. It is told
+//   not to know them (KADANS_PORTABLE_MATH in cmake/KadansToolchain.cmake).
+// - A compiler may contract a * b + c into one operation: -ffp-contract=off.
+// - Eigen cuts large products by the sizes of the processor's caches, unless it may not ask for them: EIGEN_NO_CPUID.
 //
-// Unlike the C library's they do not set errno, and lgamma not signgam.
+// Unlike the C library's these functions do not set errno, nor lgamma signgam. Those of complex numbers and of long
+// double are left to the C library: nothing that decides a run calls them.
 #include <cmath>
 #include <numbers>
 
 #include <sleef.h>
 
+#include "arc_tangent.h"
 #include "kadans/signal/sine_cosine.h"
 
 namespace kadans {
@@ -38,6 +37,12 @@ SineCosine sine_cosine_anywhere(double angle_rad) noexcept {
   return {both.x, both.y};
 }
 
+namespace {
+
+// Neither zero nor so great or small that its square would be off the scale.
+bool is_ordinary(double x) noexcept { return std::fabs(x) > 0x1p-300 && std::fabs(x) < 0x1p300; }
+
+}  // namespace
 }  // namespace kadans
 
 // NAME(x) by SLEEF with at most `ulp10` tenths of a unit in the last place, and NAMEf(x) by that.
@@ -71,7 +76,6 @@ KADANS_OF_ONE(tan, u10)
 KADANS_OF_ONE(asin, u10)
 KADANS_OF_ONE(acos, u10)
 KADANS_OF_ONE(atan, u10)
-KADANS_OF_TWO(atan2, u10)
 KADANS_OF_ONE(sinh, u10)
 KADANS_OF_ONE(cosh, u10)
 KADANS_OF_ONE(tanh, u10)
@@ -88,6 +92,14 @@ KADANS_OF_ONE(erf, u10)
 KADANS_OF_ONE(erfc, u15)
 KADANS_OF_ONE(tgamma, u10)
 KADANS_OF_ONE(lgamma, u10)
+
+double atan2(double y, double x) noexcept {
+  const bool ordinary = kadans::is_ordinary(y) && kadans::is_ordinary(x);
+  return ordinary ? kadans::arc_tangent(y, x) : Sleef_cinz_atan2d1_u10purec(y, x);
+}
+float atan2f(float y, float x) noexcept {
+  return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x)));
+}
 
 // SLEEF's exp and pow overflow a billionth before the largest number, the next three where a square or a sum does.
 double pow(double x, double y) noexcept { return y == 1 ? x : Sleef_cinz_powd1_u10purec(x, y); }

@@ -1,16 +1,15 @@
-// Sine and cosine of one angle by plain arithmetic: the same bits with every compiler and on every processor, in half
-// the time of the C library's. The sin, cos and sincos that the program defines (src/signal/portable_math.cpp) are this
-// function; what turns a dozen joints a tick includes it.
+// Sine and cosine of one angle by plain arithmetic, the same bits with every compiler and on every processor. The sin,
+// cos and sincos that the program defines (src/signal/portable_math.cpp) are this function; what turns a dozen joints a
+// tick includes it.
 //
-// 1. The angle is taken modulo a quarter turn, which leaves at most 45 degrees. A quarter turn is three numbers, of
-// which
-//    the first two have 33 bits: their multiples are exact, and so is what is left of the angle, in two numbers (W.
-//    Cody and W. Waite, Software Manual for the Elementary Functions, 1980).
-// 2. The Taylor series to the 17th power is exact to double precision there. Its terms are summed in pairs, which makes
-//    the chains of dependence short; the small second number of the rest comes in by the first derivative.
+// The angle is taken modulo a quarter turn, which leaves at most 45 degrees. A quarter turn is three numbers, of which
+// the first two have at most 33 bits: their multiples are exact, and what is left of the angle is known in two numbers
+// (W. Cody and W. Waite, Software Manual for the Elementary Functions, 1980). There the Taylor series to the 17th power
+// is exact to double precision. Its terms are summed in pairs, which makes the chains of dependence short; the second
+// number comes in by the first derivative.
 //
-// Error below 0.8 units in the last place. Angles of more than ten thousand radians, those that are within a thousandth
-// of a multiple of a quarter turn other than 0, and what is not finite go to a slower function.
+// Error below 0.8 units in the last place. A slower function answers for angles of more than ten thousand radians, for
+// those within a thousandth of a radian of a multiple of a quarter turn that is not 0, and for what is not finite.
 #pragma once
 
 #include <cmath>
