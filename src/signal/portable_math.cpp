@@ -94,8 +94,8 @@ KADANS_OF_ONE(tgamma, u10)
 KADANS_OF_ONE(lgamma, u10)
 
 double atan2(double y, double x) noexcept {
-  const bool ordinary = kadans::is_ordinary(y) && kadans::is_ordinary(x);
-  return ordinary ? kadans::arc_tangent(y, x) : Sleef_cinz_atan2d1_u10purec(y, x);
+  if (kadans::is_ordinary(y) && kadans::is_ordinary(x)) return kadans::arc_tangent(y, x);
+  return y == 0 && x > 0 ? y : Sleef_cinz_atan2d1_u10purec(y, x);
 }
 float atan2f(float y, float x) noexcept {
   return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x)));
