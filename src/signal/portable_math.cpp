@@ -75,7 +75,6 @@ void sincosf(float x, float* sine, float* cosine) noexcept {
 KADANS_OF_ONE(tan, u10)
 KADANS_OF_ONE(asin, u10)
 KADANS_OF_ONE(acos, u10)
-KADANS_OF_ONE(atan, u10)
 KADANS_OF_ONE(sinh, u10)
 KADANS_OF_ONE(cosh, u10)
 KADANS_OF_ONE(tanh, u10)
@@ -93,16 +92,23 @@ KADANS_OF_ONE(erfc, u15)
 KADANS_OF_ONE(tgamma, u10)
 KADANS_OF_ONE(lgamma, u10)
 
+double atan(double x) noexcept {
+  return kadans::is_ordinary(x) ? kadans::arc_tangent(x, 1) : Sleef_cinz_atand1_u10purec(x);
+}
 double atan2(double y, double x) noexcept {
   if (kadans::is_ordinary(y) && kadans::is_ordinary(x)) return kadans::arc_tangent(y, x);
   return y == 0 && x > 0 ? y : Sleef_cinz_atan2d1_u10purec(y, x);
 }
+float atanf(float x) noexcept { return static_cast<float>(atan(static_cast<double>(x))); }
 float atan2f(float y, float x) noexcept {
   return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x)));
 }
 
 // SLEEF's exp and pow overflow a billionth before the largest number, the next three where a square or a sum does.
-double pow(double x, double y) noexcept { return y == 1 ? x : Sleef_cinz_powd1_u10purec(x, y); }
+double pow(double x, double y) noexcept {
+  if (y == 2) return x * x;  // what scripts mostly ask for
+  return y == 1 ? x : Sleef_cinz_powd1_u10purec(x, y);
+}
 double asinh(double x) noexcept {
   if (std::fabs(x) < 1e150) return Sleef_cinz_asinhd1_u10purec(x);
   return std::copysign(log(std::fabs(x)) + std::numbers::ln2, x);
