@@ -4,12 +4,13 @@
 //
 // The angle is taken modulo a quarter turn, which leaves at most 45 degrees. A quarter turn is three numbers, of which
 // the first two have at most 33 bits: their multiples are exact, and what is left of the angle is known in two numbers
-// (W. Cody and W. Waite, Software Manual for the Elementary Functions, 1980). There the Taylor series to the 17th power
-// is exact to double precision. Its terms are summed in pairs, which makes the chains of dependence short; the second
-// number comes in by the first derivative.
+// (W. Cody and W. Waite, Software Manual for the Elementary Functions, 1980), also of that which comes nearest to a
+// multiple, 29 quarter turns to 6e-19 rad. There the Taylor series to the 17th power is exact to double precision. Its
+// terms are summed in pairs, which makes the chains of dependence short; the second number comes in by the first
+// derivative.
 //
-// Error below 0.8 units in the last place. A slower function answers for angles of more than ten thousand radians, for
-// those within a thousandth of a radian of a multiple of a quarter turn that is not 0, and for what is not finite.
+// Error below 0.8 units in the last place. A slower function answers for angles of more than ten thousand radians and
+// for what is not finite.
 #pragma once
 
 #include <cmath>
@@ -51,7 +52,6 @@ namespace sine_cosine_series {
   constexpr double quarter_rad = 0x1.921fb544p+0, rest_rad = 0x1.0b4611a6p-34, rest_of_rest_rad = 0x1.3198a2e037073p-69;
   const double first = angle_rad - quarters * quarter_rad, second = quarters * rest_rad;  // both exact
   const double high = first - second;
-  if (std::fabs(high) < 1e-3) return sine_cosine_anywhere(angle_rad);  // the bits cancel
   const double low = ((first - high) - second) - quarters * rest_of_rest_rad;
   const auto [s, c] = sine_cosine_series::near_zero(high, low);
   switch (quarters & 3) {
