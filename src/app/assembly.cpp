@@ -39,6 +39,15 @@ SafePosture::Settings safe_posture_of(const SafeConfig& safe) {
   return {.pose = safe.pose, .after_s = safe.after_s, .time_s = safe.time_s};
 }
 
+// To load or reload a file may take as long as some ticks: meanwhile behaviors stand still, and the heartbeat.
+ScriptLimits limits_on_wall_clock(const EngineSettings& engine) {
+  constexpr std::int64_t ticks_to_load = 20;
+  ScriptLimits limits;
+  limits.tick_wall_ns = engine.behavior_time_max_ns();
+  limits.load_wall_ns = ticks_to_load * limits.tick_wall_ns;
+  return limits;
+}
+
 // When a joystick's state is recorded: the robot has one, or this run.
 bool has_joystick(const ScenarioConfig& scenario, const RobotConfig& robot) {
   return robot.engine.joystick || !scenario.joystick.recording.empty() || !scenario.joystick_device.empty();
@@ -56,7 +65,7 @@ void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
 
 }  // namespace
 
-std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const SafeConfig& safe,
+std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept) {
   ScriptHost::Settings settings;
@@ -66,7 +75,8 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
   for (const ScenarioEvent& event : scenario.events) {
     settings.events.push_back({std::llround(event.at_s * 1e9), event.order});
   }
-  settings.safe = safe_posture_of(safe);
+  settings.safe = safe_posture_of(robot.safe);
+  if (scenario.on_wall_clock) settings.limits = limits_on_wall_clock(robot.engine);
   settings.kept = kept;
   auto host = std::make_unique<ScriptHost>(settings, catalog, log);
   verify_events(scenario, *host);
@@ -75,7 +85,11 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
 
 Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
                    ProcessHost* outside)
-    : scenario_(scenario), log_(log), link_(link), outside_(outside), robot_(read_robot(scenario.robot)) {
+    : scenario_(scenario),
+      log_(log),
+      link_(link),
+      outside_(outside),
+      robot_(read_robot(scenario.robot, scenario.plugins)) {
   control_system_ = make_control_system(robot_);
   Catalog& catalog = control_system_->catalog;
   robot_.config.engine.joystick = has_joystick(scenario, robot_.config);
@@ -99,7 +113,7 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   } else {
     udp_plant_->declare_signals(catalog.signals);
   }
-  if (outside == nullptr) host_ = make_script_host(scenario, robot_.config.safe, catalog, seed, log);
+  if (outside == nullptr) host_ = make_script_host(scenario, robot_.config, catalog, seed, log);
   upkeep_first_ = catalog.signals.size();
   if (outside != nullptr) outside->attach(catalog, safe_posture_of(robot_.config.safe));
   if (host_) host_->declare_signals(catalog.signals);

@@ -14,10 +14,14 @@ struct BehaviorOptions {
   std::vector<std::string> files;
   std::string robot;               // configuration; "" = by the behavior's folder
   std::string format = "mermaid";  // of the graph: mermaid, dot or svg
+  std::string only;                // of the tests: part of their names
+  std::string junit;
+  bool json = false;
 };
 
 void add_behavior(CLI::App& app, BehaviorOptions& options);
 // After parsing. Returns the program's exit code.
 int run_behavior(const CLI::App& app, const BehaviorOptions& options);
+int run_behavior_test(const BehaviorOptions& options);
 
 }  // namespace kadans

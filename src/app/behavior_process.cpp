@@ -21,9 +21,10 @@ BehaviorLink::Setup setup_of(const RunOptions& options) {
   BehaviorLink::Setup setup;
   setup.memory_bytes = static_cast<std::uint64_t>(std::llround(1e6 * options.behaviors_memory_MB));
   if (options.virtual_time) return setup;
-  setup.priority = read_rights("/").priority(control_priority) ? behavior_priority : 0;
+  setup.priority = read_rights("/").priority(control_priority) ? behavior_process_priority : 0;
   setup.cpu_to_leave = options.cpu >= 0 ? options.cpu : real_time_cpu("/");
   setup.locks_memory = 1;
+  setup.on_wall_clock = 1;
   return setup;
 }
 
@@ -45,6 +46,7 @@ ScenarioConfig live_scenario(const RunOptions& options) {
                                               : PlantKind::bullet;
   scenario.peer = options.peer;
   scenario.joystick_device = options.joystick;
+  scenario.on_wall_clock = !options.virtual_time;
   scenario.seed = options.seed.value_or(1);
   if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
   return scenario;
@@ -76,13 +78,14 @@ int run_behavior_process(const RunOptions& options) {
   if (link.setup.cpu_to_leave >= 0) (void)leave_cpu(link.setup.cpu_to_leave);
   const KeptState& kept = link.setup.kept;
   const std::span bytes = std::span(kept.bytes).first(std::min<std::size_t>(kept.size, kept.bytes.size()));
-  const ScenarioConfig scenario = live_scenario(options);
-  const Robot robot = read_robot(scenario.robot);
+  ScenarioConfig scenario = live_scenario(options);
+  scenario.on_wall_clock = link.setup.on_wall_clock != 0;
+  const Robot robot = read_robot(scenario.robot, scenario.plugins);
   const std::unique_ptr<ControlSystem> system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));  // declares parameters too
   SpokenLines lines(link);
   const std::unique_ptr<ScriptHost> host =
-      make_script_host(scenario, robot.config.safe, system->catalog, scenario.seed, lines, bytes);
+      make_script_host(scenario, robot.config, system->catalog, scenario.seed, lines, bytes);
   settle(link.setup);
   return BehaviorServer(link, bell, *host, lines, system->catalog).serve();
 }

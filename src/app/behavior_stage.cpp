@@ -1,5 +1,6 @@
 #include "behavior_stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -154,21 +155,37 @@ class IdealStage final : public TestStage {
   double due_s_ = 0;
 };
 
+std::vector<fs::path> robots_in(const fs::path& configs) {
+  std::vector<fs::path> robots;
+  if (!fs::is_directory(configs)) return robots;
+  for (const fs::directory_entry& entry : fs::directory_iterator(configs)) {
+    if (fs::exists(entry.path() / "robot.json")) robots.push_back(entry.path() / "robot.json");
+  }
+  std::ranges::sort(robots);
+  return robots;
+}
+
 }  // namespace
 
 fs::path robot_of_behavior(const fs::path& behavior) {
   const fs::path configs = project_root(behavior) / "config";
   fs::path own = configs / fs::absolute(behavior).parent_path().filename() / "robot.json";
   if (fs::exists(own)) return own;
-  std::vector<fs::path> robots;
-  if (fs::is_directory(configs)) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(configs)) {
-      if (fs::exists(entry.path() / "robot.json")) robots.push_back(entry.path() / "robot.json");
-    }
-  }
+  const std::vector<fs::path> robots = robots_in(configs);
   if (robots.size() == 1) return robots.front();
   throw InputError({.file = behavior.string(),
-                    .message = "no robot to go with it: there is no " + own.string() + "; name one with --robot FILE"});
+                    .message = "no robot goes with it: there is no " + own.string() + "; name one with --robot FILE"});
+}
+
+fs::path only_robot(const fs::path& folder) {
+  const fs::path configs = project_root(folder / "x") / "config";
+  const std::vector<fs::path> robots = robots_in(configs);
+  if (robots.size() == 1) return robots.front();
+  std::string names;
+  for (const fs::path& robot : robots) names += (names.empty() ? ": " : ", ") + fs::proximate(robot).string();
+  throw InputError({.file = configs.string(),
+                    .message = robots.empty() ? "there is no robot.json in its folders; name one with --robot FILE"
+                                              : "there are several robots, name one with --robot" + names});
 }
 
 std::unique_ptr<TestStage> IdealStages::make(const fs::path& behavior, const std::string& robot) {

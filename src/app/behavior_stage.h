@@ -10,6 +10,8 @@ namespace kadans {
 // The configuration of the robot that a behavior is for: config/<name of its folder>/robot.json, or else the only robot
 // of the project. Throws InputError when there is none, or more than one.
 std::filesystem::path robot_of_behavior(const std::filesystem::path& behavior);
+// The only robot of the project around this folder. Throws InputError that names those there are.
+std::filesystem::path only_robot(const std::filesystem::path& folder);
 
 class IdealStages final : public TestStages {
  public:

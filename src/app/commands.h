@@ -30,6 +30,7 @@ struct SimOptions : RunRequest {
   RecordOptions recording;
   std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
   std::string from;                      // a checkpoint; then what is set and played counts from there
+  bool allow_plugins = false;            // with from: the project's own, be they others than the checkpoint's
   std::vector<std::string> push;         // with it
   std::vector<std::string> branches;     // "hard: push torso=0,3,0"
   std::optional<double> hash_every_s;
@@ -57,12 +58,14 @@ struct TestOptions {
   std::string junit;
   ReportPlace report;
 };
+void add_test(CLI::App& app, TestOptions& options);
 int run_test(const TestOptions& options);
 
 struct CheckOptions {
   std::vector<std::string> files;
   std::string robot;  // configuration that behaviors are checked against; "" = that of the folder they are in
 };
+void add_check(CLI::App& app, CheckOptions& options);
 int run_check(const CheckOptions& options);
 
 struct RunOptions {
@@ -91,8 +94,10 @@ struct RunOptions {
   LivePlace live;
   Ros2Place ros2;
 };
+void add_run(CLI::App& app, RunOptions& options);
 int run_live(const RunOptions& options);
 // What run_live starts for behaviors in a process of their own: robot, play and seed count.
+void add_behavior_process(CLI::App& app, RunOptions& options);
 int run_behavior_process(const RunOptions& options);
 
 struct PlantOptions {
@@ -119,12 +124,14 @@ struct JitterOptions {
   double spin_us = 0;  // 0: as `kadans run`
   std::string svg;     // "" = none
 };
+void add_jitter(CLI::App& app, JitterOptions& options);
 int run_jitter(const JitterOptions& options);
 
 struct DoctorOptions {
   std::string root = "/";  // of the machine that is examined
   bool json = false;
 };
+void add_doctor(CLI::App& app, DoctorOptions& options);
 int run_doctor(const DoctorOptions& options);
 
 struct NewControlObjectOptions {
@@ -132,6 +139,7 @@ struct NewControlObjectOptions {
   std::string folder = ".";  // in which its own folder is made
   bool plugin = false;
 };
+void add_new(CLI::App& app, NewControlObjectOptions& options);
 int run_new_control_object(const NewControlObjectOptions& options);
 
 }  // namespace kadans

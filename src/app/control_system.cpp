@@ -79,11 +79,13 @@ std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
 
 }  // namespace
 
-Robot read_robot(const std::filesystem::path& file) {
+Robot read_robot(const std::filesystem::path& file, const PluginGate& gate) {
   Robot robot;
   add_shipped_types(robot.types);
   robot.types.add_registered();
   for (const PluginFile& plugin : read_plugin_files(file)) {
+    if (!gate.lets_in(plugin.file))
+      refuse(file.string(), plugin.place, "plug-in " + plugin.file.string() + " is not loaded: " + gate.remedy);
     try {
       load_plugin(plugin.file, robot.types);
     } catch (const std::invalid_argument& error) {

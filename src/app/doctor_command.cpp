@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cstdio>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/realtime/machine.h"
 #include "terminal.h"
 
@@ -27,10 +29,16 @@ void print_json(const std::vector<MachineFinding>& findings, bool good) {
   for (const MachineFinding& f : findings) {
     all.push_back({{"topic", f.topic}, {"good", f.good}, {"is", f.is}, {"should", f.should}, {"how", f.how}});
   }
-  std::puts(nlohmann::ordered_json{{"good", good}, {"findings", all}}.dump().c_str());
+  std::puts(json_text(nlohmann::ordered_json{{"good", good}, {"findings", all}}).c_str());
 }
 
 }  // namespace
+
+void add_doctor(CLI::App& app, DoctorOptions& options) {
+  CLI::App* doctor = app.add_subcommand("doctor", "Say what of this machine is in the way of real time");
+  doctor->add_option("--root", options.root, "Folder that stands for / (default: /)")->type_name("FOLDER");
+  doctor->add_flag("--json", options.json, "Print one JSON object instead of text");
+}
 
 int run_doctor(const DoctorOptions& options) {
   const std::vector<MachineFinding> findings = examine_machine(options.root, ".");

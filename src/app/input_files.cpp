@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <system_error>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
+#include "kadans/signal/input_error.h"
+#include "kadans/signal/input_file.h"
 #include "program_parts.h"
 #include "version.h"
 
@@ -20,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* beside = "beside";
+constexpr std::size_t input_max_bytes = std::size_t{256} << 20U;  // a plug-in, by its hash
 
 // The two folders from which paths in a record count.
 struct Folders {
@@ -46,9 +49,19 @@ struct Folders {
 };
 
 std::optional<std::string> read_all(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || fs::is_directory(file)) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  try {
+    return read_input_file(file, input_max_bytes);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+// The project around the working directory.
+fs::path project_here() { return project_root(fs::current_path() / "x"); }
+
+bool is_own(const fs::path& file) {
+  struct stat found {};
+  return stat(file.c_str(), &found) == 0 && (found.st_uid == getuid() || found.st_uid == 0);
 }
 
 std::vector<fs::path> meshes(const RobotModel& model) {
@@ -171,7 +184,7 @@ fs::path find_scenario(const RunInputs& recorded, const fs::path& record) {
   const std::string name = recorded.fact("scenario_input");
   std::vector<fs::path> places{written};
   if (!name.starts_with(std::string(beside) + "/")) {
-    places.push_back(project_root(fs::current_path() / "x") / name);
+    places.push_back(project_here() / name);
     places.push_back(project_root(record) / name);
   }
   for (const fs::path& place : places) {
@@ -183,18 +196,36 @@ fs::path find_scenario(const RunInputs& recorded, const fs::path& record) {
        .message = "its scenario " + written.string() + " is not here; run this in its project, or with --from-record"});
 }
 
-UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& record) : owner_(getpid()) {
+PluginGate plugins_beside(const fs::path& scenario, bool any_plugins) {
+  if (any_plugins || project_root(scenario) == project_here()) return {};
+  return {.closed = true,
+          .let_in = {},
+          .remedy = "its project is not the one around the working directory; --allow-plugins loads what lies there"};
+}
+
+UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins)
+    : owner_(getpid()) {
   std::string pattern = (fs::temp_directory_path() / "kadans-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr)
     throw InputError({.file = pattern, .message = "no temporary folder can be made there"});
-  folder_ = pattern;
+  folder_ = fs::absolute(pattern).lexically_normal();
+  plugins_ = {.closed = true,
+              .let_in = {},
+              .remedy =
+                  "native code does not come out of a record. Put it into the project around the working directory, "
+                  "in the place that the record knows"};
   try {
     for (const char* name : {"config", "models", "behaviors", beside}) fs::create_directories(folder_ / name);
-    for (const InputFile& file : recorded.files) unpack(file, record);
+    for (const InputFile& file : recorded.files) {
+      const bool plugin = !file.text && !file.hash.empty();
+      if (plugin) link_plugin(file, record, any_plugins);
+      if (!plugin && !fs::path(file.path).is_absolute()) unpack(file);
+    }
     const std::string name = recorded.fact("scenario_input");
-    scenario_ = folder_ / name;
-    if (name.empty() || !fs::is_regular_file(scenario_))
+    const auto scenario = std::ranges::find(recorded.files, name, &InputFile::path);
+    if (scenario == recorded.files.end() || !scenario->text || fs::path(name).is_absolute())
       throw InputError({.file = record, .message = "does not hold its scenario"});
+    scenario_ = folder_ / name;
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
@@ -209,7 +240,7 @@ UnpackedInputs::~UnpackedInputs() {
 }
 
 void UnpackedInputs::add_behaviors(RunInputs& inputs) const {
-  const fs::path root = project_root(fs::current_path() / "x");
+  const fs::path root = project_here();
   if (!fs::is_directory(root / "behaviors")) return;
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "behaviors")) {
@@ -222,28 +253,36 @@ void UnpackedInputs::add_behaviors(RunInputs& inputs) const {
     std::string text = read_all(root / file).value_or("");
     std::string hash = content_hash(text);
     inputs.files.push_back({file.generic_string(), std::move(hash), std::move(text)});
-    unpack(inputs.files.back(), "");
+    unpack(inputs.files.back());
   }
   std::ranges::sort(inputs.files, {}, &InputFile::path);
 }
 
-// What the record knows by name alone is taken from where it lies, if it still does.
-void UnpackedInputs::unpack(const InputFile& file, const std::string& record) const {
-  const fs::path path(file.path);
-  if (path.is_absolute()) return;
-  fs::create_directories((folder_ / path).parent_path());
-  if (!file.text && !file.hash.empty()) {
-    const fs::path here = project_root(fs::current_path() / "x") / path;
-    if (!fs::is_regular_file(here))
-      throw InputError(
-          {.file = record, .message = "needs the plug-in " + file.path + ", which is not in this project"});
-    fs::create_symlink(here, folder_ / path);
-    return;
-  }
-  std::ofstream stream(folder_ / path, std::ios::binary);
+void UnpackedInputs::link_plugin(const InputFile& file, const std::string& record, bool any_plugins) {
+  const fs::path here = project_here() / file.path;  // an absolute path stays what it is
+  const auto refuse = [&](const std::string& why) {
+    throw InputError({.file = record, .message = "needs the plug-in " + file.path + ", " + why});
+  };
+  const std::optional<std::string> now = read_all(here);
+  if (!now) refuse("which is not " + std::string(here == file.path ? "there" : "in this project"));
+  if (!any_plugins && content_hash(*now) != file.hash)
+    refuse("and the one here is another: build it as it was, or take this one with --allow-plugins");
+  if (!any_plugins && !is_own(here))
+    refuse("which belongs to another user: give it to yourself, or take it with --allow-plugins");
+  if (here == file.path) return plugins_.let_in.push_back(here);
+  fs::create_directories((folder_ / file.path).parent_path());
+  fs::create_symlink(here, folder_ / file.path);  // refuses what exists
+  plugins_.let_in.push_back(folder_ / file.path);
+}
+
+void UnpackedInputs::unpack(const InputFile& file) const {
+  const fs::path place = folder_ / file.path;
+  fs::create_directories(place.parent_path());
+  if (fs::exists(fs::symlink_status(place))) throw InputError({.file = place.string(), .message = "is there already"});
+  std::ofstream stream(place, std::ios::binary);
   stream << file.text.value_or("");  // of a mesh nobody reads more than its name
   stream.close();
-  if (!stream) throw InputError({.file = (folder_ / path).string(), .message = "cannot be written"});
+  if (!stream) throw InputError({.file = place.string(), .message = "cannot be written"});
 }
 
 }  // namespace kadans

@@ -30,15 +30,22 @@ std::vector<InputChange> changed_program(const RunInputs& recorded);
 // "behaviors/tulip/squat.lua changed, libm.so.6 changed"
 std::string change_text(const std::vector<InputChange>& changes);
 
+// For a record whose scenario lies here: its project's plug-ins are loaded when that is the project around the working
+// directory, or `any_plugins`.
+PluginGate plugins_beside(const std::filesystem::path& scenario, bool any_plugins);
+
 // Where the scenario of a record is now: as it was written, in the project around the working directory or the record.
 // Throws InputError when it is nowhere.
 std::filesystem::path find_scenario(const RunInputs& recorded, const std::filesystem::path& record);
 
-// The files of a record in a temporary folder, gone with this object.
+// The files of a record in a temporary folder of this user's alone, gone with this object. Each is made anew there, so
+// nothing that exists is written to, and no link is followed. Native code never comes out of a record: a plug-in that
+// it knows is the one of that path in the project around the working directory, and only if it is the same by its hash,
+// or `any_plugins`.
 class UnpackedInputs {
  public:
-  // Throws InputError when a text is missing in the record or cannot be written.
-  explicit UnpackedInputs(const RunInputs& recorded, const std::string& record);
+  // Throws InputError when a text is missing in the record, cannot be written, or a plug-in is not here as it was.
+  UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins);
   ~UnpackedInputs();
   UnpackedInputs(const UnpackedInputs&) = delete;
   UnpackedInputs& operator=(const UnpackedInputs&) = delete;
@@ -48,11 +55,14 @@ class UnpackedInputs {
   void add_behaviors(RunInputs& inputs) const;
 
   const std::filesystem::path& scenario() const noexcept { return scenario_; }
+  const PluginGate& plugins() const noexcept { return plugins_; }
 
  private:
-  void unpack(const InputFile& file, const std::string& record) const;
+  void unpack(const InputFile& file) const;
+  void link_plugin(const InputFile& file, const std::string& record, bool any_plugins);
 
   std::filesystem::path folder_, scenario_;
+  PluginGate plugins_;
   int owner_;  // a process split off later leaves the folder alone
 };
 

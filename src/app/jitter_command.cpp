@@ -1,22 +1,22 @@
 // `kadans jitter`: stretches of our own waiting and of cyclictest's take turns, so that what the machine does meanwhile
 // hits both alike.
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <memory>
+
+#include <CLI/CLI.hpp>
 
 #include "commands.h"
 #include "jitter_report.h"
+#include "kadans/campaign/durable_file.h"
 #include "kadans/realtime/keep_awake.h"
 #include "kadans/realtime/machine.h"
 #include "kadans/realtime/machine_load.h"
 #include "kadans/realtime/memory_lock.h"
 #include "kadans/realtime/posix_wait.h"
 #include "kadans/realtime/rights.h"
-#include "kadans/signal/input_error.h"
+#include "option_checks.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -47,13 +47,29 @@ void measure(JitterRun& run) {
   if (run.yardstick.size() < run.own.size()) run.yardstick.clear();
 }
 
-void write_svg(const std::string& file, const JitterRun& run) {
-  std::ofstream stream(file);
-  stream << jitter_svg(run) << std::flush;
-  if (!stream) throw InputError({.file = file, .message = std::string("cannot be written: ") + std::strerror(errno)});
-}
-
 }  // namespace
+
+void add_jitter(CLI::App& app, JitterOptions& options) {
+  CLI::App* jitter = app.add_subcommand("jitter", "Measure how punctual this machine is, beside cyclictest");
+  jitter->add_option("--seconds", options.seconds, "Seconds of samples at 1 kHz (default: 60)")
+      ->type_name("S")
+      ->check(number_within(0.1, 1000.0));
+  jitter->add_flag("--load", options.load, "While other processes compute, fill memory, write, switch, set timers");
+  CLI::Option* sleep = jitter->add_flag("--sleep-only", options.sleep_only, "Sleep to the end, without spinning");
+  jitter->add_option("--spin-us", options.spin_us, "How long to spin after sleeping")
+      ->type_name("US")
+      ->check(number_within(1.0, 900.0))
+      ->excludes(sleep);
+  jitter->add_flag("!--no-keep-awake", options.keep_awake, "Let the CPU idle between the beats");
+  jitter->add_option("--cpu", options.cpu, "CPU to measure on (default: an isolated one, else the last)")
+      ->type_name("N")
+      ->check(whole_within(0, 1023));
+  jitter->add_option("--priority", options.priority, "Of SCHED_FIFO (default: 90)")
+      ->type_name("N")
+      ->check(whole_within(1, 99));
+  jitter->add_option("--svg", options.svg, "Draw the histogram into a file")->type_name("FILE");
+  jitter->add_flag("--json", options.json, "Print one JSON object instead of text");
+}
 
 int run_jitter(const JitterOptions& options) {
   JitterRun run{.settings = settings_of(options), .load = options.load, .keep_awake = options.keep_awake};
@@ -73,9 +89,8 @@ int run_jitter(const JitterOptions& options) {
   }
   if (run.own.empty()) return exit_interrupted;
   if (run.own.front().refused_priority != 0) run.settings.priority = 0;
-  std::fputs(jitter_text(run).c_str(), stdout);
-  if (!options.svg.empty()) write_svg(options.svg, run);
-  if (options.json) std::puts(jitter_json(run).c_str());
+  if (!options.svg.empty()) write_durably(options.svg, jitter_svg(run));
+  std::fputs(options.json ? (jitter_json(run) + "\n").c_str() : jitter_text(run).c_str(), stdout);
   return interrupted() ? exit_interrupted : exit_passed;
 }
 

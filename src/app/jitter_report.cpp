@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/number_text.h"
 #include "tick_report.h"
 
@@ -191,7 +192,7 @@ std::string jitter_json(const JitterRun& run) {
     json["pairs"] = run.own.size();
     for (const TickQuantile& quantile : compared) json["ratio"][quantile.name] = ratio(run, quantile);
   }
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace kadans

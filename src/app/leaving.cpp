@@ -17,7 +17,8 @@ void Leaving::beside_tick(std::int64_t time_ns) {
   if (step_ == Step::leave) posture_.failed(time_ns, ~ObjectMask{0});
   step_ = Step::move;
   if (posture_.due(time_ns)) {
-    posture_.move(exchange_.snapshot.read(0), behaviors_.sender(), 0);
+    const auto snapshot = exchange_.snapshot.read(0);
+    posture_.move(*snapshot, behaviors_.sender(), 0);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "kadans/config/foreign_json.h"
 #include "tick_report.h"
 #include "udp_report.h"
 
@@ -153,7 +154,7 @@ std::string live_json(const LiveResult& result) {
                       {"lost", result.recorder->lost()},
                       {"error", result.recorder->error()}};
   }
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace kadans

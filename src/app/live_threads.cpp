@@ -1,5 +1,8 @@
 #include "live_threads.h"
 
+#include <chrono>
+#include <thread>
+
 #include "kadans/realtime/placement.h"
 
 namespace kadans {
@@ -10,12 +13,13 @@ constexpr std::int64_t record_period_ns = 20'000'000, joystick_period_ns = 10'00
 
 }  // namespace
 
-LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks)
+LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks, bool (*give_up)() noexcept)
     : timing_(timing),
+      give_up_(give_up),
       line_(2 + std::size_t{tasks.plant != nullptr} + std::size_t{tasks.record != nullptr} +
                 std::size_t{tasks.joystick != nullptr},
             start_ns),
-      supervisor_wait_(timing.virtual_time ? virtual_time_.make_wait() : nullptr) {
+      supervisor_wait_(timing.virtual_time ? virtual_time_.make_wait(give_up) : nullptr) {
   const auto priority = [&](int wanted) { return timing.real_time && !timing.virtual_time ? wanted : 0; };
   const std::int64_t period_ns = timing.control_period_ns;
   // On the wall clock the model is half a period behind, so that what it is told and what it says is always as old; and
@@ -64,7 +68,7 @@ void LiveThreads::add(const TaskSettings& settings, Task& task, std::int64_t spi
   threads_.push_back(std::make_unique<TaskThread>(settings, task, *waits_.back()));
 }
 
-void LiveThreads::start() {
+bool LiveThreads::start(void (*tell)(const std::string& message)) {
   if (!timing_.virtual_time) {
     if (timing_.keep_awake) awake_.emplace(timing_.cpu);
     (void)leave_cpu(timing_.cpu);  // and so do the threads that are started here
@@ -72,17 +76,62 @@ void LiveThreads::start() {
   try {
     for (const auto& thread : threads_) thread->start();
   } catch (...) {
-    for (const auto& thread : threads_) thread->stop();
-    line_.open();
+    cancel();
     throw;
   }
-  if (!timing_.virtual_time) supervisor_wait_ = std::make_unique<PosixWait>(0, line_.origin_ns());
+  if (timing_.virtual_time) return true;
+  const bool all = wait_for_all(tell);
+  supervisor_wait_ = std::make_unique<PosixWait>(0, line_.origin_ns());
+  return all;
 }
 
-void LiveThreads::stop() noexcept {
+bool LiveThreads::wait_for_all(void (*tell)(const std::string& message)) {
+  constexpr std::chrono::milliseconds look_again{10};
+  constexpr std::int64_t patience_ns = 1'000'000'000, say_again_ns = 10'000'000'000;
+  std::int64_t say_ns = WallClock().now_ns() + patience_ns;
+  while (!line_.is_open()) {
+    if (give_up_()) {
+      cancel();
+      return false;
+    }
+    if (WallClock().now_ns() >= say_ns) {
+      say_ns += say_again_ns;
+      tell("waiting for a CPU: " + not_begun() + " cannot begin; another program in real time keeps it");
+    }
+    std::this_thread::sleep_for(look_again);
+  }
+  return true;
+}
+
+std::string LiveThreads::not_begun() const {
+  std::string names;
+  for (const auto& thread : threads_) {
+    if (!thread->begun()) names += (names.empty() ? "" : ", ") + thread->settings().name;
+  }
+  return names.empty() ? "a thread" : names;
+}
+
+// Who is stopped before the line opens does not beat once.
+void LiveThreads::cancel() noexcept {
   for (const auto& thread : threads_) thread->stop();
-  supervisor_wait_->end();
-  for (const auto& thread : threads_) thread->join();
+  line_.open();
+}
+
+std::vector<std::string> LiveThreads::stop(std::int64_t patience_ns) noexcept {
+  for (const auto& thread : threads_) thread->stop();
+  if (supervisor_wait_) supervisor_wait_->end();
+  // Where one hangs, virtual time stands, and all others wait for it.
+  if (timing_.virtual_time && !join_all(patience_ns).empty()) virtual_time_.release();
+  return join_all(patience_ns);
+}
+
+std::vector<std::string> LiveThreads::join_all(std::int64_t patience_ns) noexcept {
+  const std::int64_t end_ns = WallClock().now_ns() + patience_ns;
+  std::vector<std::string> hanging;
+  for (const auto& thread : threads_) {
+    if (!thread->join_until(end_ns)) hanging.push_back(thread->settings().name);
+  }
+  return hanging;
 }
 
 }  // namespace kadans

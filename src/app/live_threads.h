@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "kadans/realtime/engine_tasks.h"
@@ -20,6 +21,9 @@ namespace kadans {
 // too, or time would pass for control alone and every sensor would fall silent.
 inline constexpr int control_priority = 90, plant_priority = 92, behavior_priority = 40, joystick_priority = 30,
                      record_priority = 20;
+// Whoever must end what hangs may not wait for a CPU that it keeps: the supervisor is above all that plays behaviors,
+// the last resort above everything, a process of behaviors below the thread that kills it.
+inline constexpr int last_resort_priority = 95, supervisor_priority = 45, behavior_process_priority = 39;
 
 struct LiveTasks {
   ControlTask& control;
@@ -40,12 +44,16 @@ struct LiveTiming {
 
 class LiveThreads {
  public:
-  // The tasks must outlive it. Time 0 is a little later than when all threads are up.
-  LiveThreads(const LiveTiming& timing, const LiveTasks& tasks);
+  // The tasks must outlive it. Time 0 is a little later than when all threads are up. While the supervisor waits for
+  // them, or on virtual time that stands, it looks whether to `give_up`.
+  LiveThreads(const LiveTiming& timing, const LiveTasks& tasks, bool (*give_up)() noexcept);
 
-  void start();  // throws std::system_error
-  // Once the supervisor does not wait any more.
-  void stop() noexcept;
+  // Waits until all threads have a CPU; after a second, and from then on each ten, `tell` says which do not. False: it
+  // was given up and nothing has begun. Throws std::system_error.
+  [[nodiscard]] bool start(void (*tell)(const std::string& message));
+  // Once the supervisor does not wait any more. The threads that go on after `patience_ns`, by name: whoever is told of
+  // one may not destroy anything that it works on.
+  [[nodiscard]] std::vector<std::string> stop(std::int64_t patience_ns) noexcept;
 
   Wait& supervisor() noexcept { return *supervisor_wait_; }
   const TaskThread& control() const noexcept { return *threads_[0]; }
@@ -58,8 +66,13 @@ class LiveThreads {
  private:
   void add(const TaskSettings& settings, Task& task, std::int64_t spin_ns);
   std::unique_ptr<Wait> make_wait(std::int64_t spin_ns);
+  std::vector<std::string> join_all(std::int64_t patience_ns) noexcept;
+  std::string not_begun() const;
+  bool wait_for_all(void (*tell)(const std::string& message));
+  void cancel() noexcept;
 
   LiveTiming timing_;
+  bool (*give_up_)() noexcept;
   StartLine line_;
   VirtualTime virtual_time_;
   std::unique_ptr<Wait> supervisor_wait_;

@@ -1,25 +1,29 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
+
+#include <CLI/CLI.hpp>
 
 #include "commands.h"
 #include "kadans/app/control_object_project.h"
+#include "kadans/campaign/durable_file.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "terminal.h"
 
 namespace kadans {
-namespace {
 
 namespace fs = std::filesystem;
 
-void write_file(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw InputError({.file = file.string(), .message = "cannot be written"});
+void add_new(CLI::App& app, NewControlObjectOptions& options) {
+  CLI::App* made = app.add_subcommand("new", "Write a first version of something of your own");
+  made->require_subcommand(1);
+  CLI::App* object = made->add_subcommand("control-object", "A control object: source, test and what builds them");
+  object->add_option("name", options.name, "Its type's name, for example knee_damper")->required()->type_name("NAME");
+  object->add_option("--in", options.folder, "Folder in which its own folder is made (default: here)")
+      ->type_name("FOLDER");
+  object->add_flag("--plugin", options.plugin, "As a plug-in instead of a program of its own");
 }
-
-}  // namespace
 
 int run_new_control_object(const NewControlObjectOptions& options) {
   ControlObjectNames names;
@@ -36,11 +40,11 @@ int run_new_control_object(const NewControlObjectOptions& options) {
   fs::create_directories(folder, error);
   if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
   for (const ProjectFile& file : control_object_project(names, options.plugin)) {
-    write_file(folder / file.name, file.text);
+    write_durably(folder / file.name, file.text);
     std::printf("%s\n", (folder / file.name).c_str());
   }
   std::fprintf(stderr, "Build and test it:  cd %s && cmake -B build && cmake --build build && build/%s_test\n",
-               folder.c_str(), names.type.c_str());
+               shell_word(folder.string()).c_str(), names.type.c_str());
   return exit_passed;
 }
 

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include "commands.h"
+#include "json_kind.h"
 #include "kadans/app/assembly.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/plant/udp/plant_server.h"
 #include "kadans/realtime/keep_awake.h"
 #include "kadans/realtime/machine.h"
@@ -15,6 +17,7 @@
 #include "kadans/realtime/rights.h"
 #include "kadans/realtime/task_thread.h"
 #include "live_threads.h"
+#include "option_checks.h"
 #include "real_time_start.h"
 #include "terminal.h"
 #include "udp_report.h"
@@ -108,19 +111,18 @@ class PlantService {
     const char* ended = thread.failure()[0] != 0 ? thread.failure() : s.left ? "the peer left" : "the peer fell silent";
     if (interrupted()) ended = "told to stop";
     if (options_.json) {
-      std::puts(nlohmann::ordered_json{{"ended", ended},
-                                       {"beats", timing.lateness.count()},
-                                       {"missed", timing.missed.get()},
-                                       {"lost_periods", task.lost_periods()},
-                                       {"lateness_us_p99", 1e-3 * timing.lateness.percentile_ns(0.99)},
-                                       {"execution_us_p50", 1e-3 * timing.execution.percentile_ns(0.5)},
-                                       {"execution_us_p99", 1e-3 * timing.execution.percentile_ns(0.99)},
-                                       {"releases", s.releases},
-                                       {"answer_ms_mean", 1e-6 * s.answer_mean_ns()},
-                                       {"answer_ms_max", 1e-6 * static_cast<double>(s.answer_max_ns)},
-                                       {"link", udp_json(s.link)}}
-                    .dump()
-                    .c_str());
+      const nlohmann::ordered_json json{{"ended", ended},
+                                        {"beats", timing.lateness.count()},
+                                        {"missed", timing.missed.get()},
+                                        {"lost_periods", task.lost_periods()},
+                                        {"lateness_us_p99", 1e-3 * timing.lateness.percentile_ns(0.99)},
+                                        {"execution_us_p50", 1e-3 * timing.execution.percentile_ns(0.5)},
+                                        {"execution_us_p99", 1e-3 * timing.execution.percentile_ns(0.99)},
+                                        {"releases", s.releases},
+                                        {"answer_ms_mean", 1e-6 * s.answer_mean_ns()},
+                                        {"answer_ms_max", 1e-6 * static_cast<double>(s.answer_max_ns)},
+                                        {"link", udp_json(s.link)}};
+      std::puts(json_text(json).c_str());
     } else {
       std::printf("%s after %llu beats, %llu missed; late p99 %.1f us, work p50 %.1f p99 %.1f us\n", ended,
                   static_cast<unsigned long long>(timing.lateness.count()),
@@ -148,16 +150,19 @@ void add_plant(CLI::App& app, PlantOptions& options) {
       ->type_name("HOST:PORT");
   plant->add_option("--plant", options.plant, "What is served: bullet (default) or ideal")
       ->check(CLI::IsMember({"bullet", "ideal"}));
-  plant->add_option("--seed", options.seed, "Seed of the model's noise (default: 1)")->type_name("N");
+  plant->add_option("--seed", options.seed, "Seed of the model's noise (default: 1)")
+      ->type_name("N")
+      ->check(any_seed());
   plant->add_flag("--once", options.once, "End with the first session");
   plant->add_flag("--soft", options.soft, "Go on without the rights that real time needs");
   plant->add_option("--cpu", options.cpu, "CPU of the model's thread (default: an isolated one, else the last)")
       ->type_name("N")
-      ->check(CLI::Range(0, 1023));
+      ->check(whole_within(0, 1023));
   plant->add_flag("--json", options.json, "Tell of each session as one JSON object on a line of its own");
 }
 
 int run_plant(const PlantOptions& options) {
+  require_kind(options.robot, JsonKind::robot);
   if (!rights_suffice(plant_priority, options.soft)) return exit_usage;
   PlantService service(options);
   catch_interrupts();

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "live/live_service.h"
+#include "option_checks.h"
 
 namespace kadans {
 
@@ -16,7 +17,7 @@ void add_record_options(CLI::App& command, RecordOptions& options) {
                   "Seconds that are always in memory, written when a fault latches; 0: none (default: the robot's 30 "
                   "in a run on the wall clock, else 0)")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 600.0));
+      ->check(number_within(0.0, 600.0));
 }
 
 RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, bool flies) {

@@ -14,6 +14,7 @@
 #include "kadans/config/project_root.h"
 #include "kadans/script/console.h"
 #include "line_editor.h"
+#include "option_checks.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -167,13 +168,13 @@ void add_repl(CLI::App& app, ReplOptions& options) {
       ->type_name("FILE");
   repl->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
       ->type_name("LIST");
-  repl->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")->type_name("N");
+  repl->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")
+      ->type_name("N")
+      ->check(any_seed());
   repl->add_option("--speed", options.speed, "Simulated seconds a second on a terminal; 0: only by :run (default: 1)")
       ->type_name("X")
-      ->check(CLI::Range(0.0, 1000.0));
-  repl->footer(
-      "Type :help. From a pipe time passes by :run only, and a wrong line makes the exit code 1:\n"
-      "  printf 'signals.plant.base.height_m\\n:run 3\\nbehaviors.squat.state\\n' | kadans repl FILE");
+      ->check(number_within(0.0, 1000.0));
+  repl->footer("Type :help. From a pipe time passes by :run only, and a wrong line makes the exit code 1.");
 }
 
 int run_repl(const ReplOptions& options) {

@@ -9,6 +9,7 @@
 
 #include "input_files.h"
 #include "kadans/app/assembly.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/number_text.h"
 #include "kadans/telemetry/record_comparison.h"
 #include "observers.h"
@@ -160,7 +161,7 @@ void print_json(const Findings& findings) {
   json["files"] = change_json(findings.files);
   json["program"] = change_json(findings.program);
   json["notes"] = findings.notes;
-  std::puts(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+  std::puts(json_text(json).c_str());
 }
 
 void print_differences(const RecordComparison& comparison) {
@@ -220,15 +221,18 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   CLI::App* replay = app.add_subcommand("replay", "Run a record again, and say where and why it is not the same");
   replay->add_option("record", options.record, "What kadans sim left (MCAP)")->required()->type_name("FILE");
   replay->add_flag("--from-record", options.from_record, "With the files inside the record, not those on the disk");
+  replay->add_flag("--allow-plugins", options.allow_plugins,
+                   "Load the project's plug-ins, be they others than the record's or of another project");
   replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
 int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
   std::unique_ptr<UnpackedInputs> unpacked;
-  if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record);
+  if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record, options.allow_plugins);
   RunRequest request = request_of(inputs.run, options.record);
   request.scenario = unpacked ? unpacked->scenario().string() : find_scenario(inputs, options.record).string();
+  request.plugins = unpacked ? unpacked->plugins() : plugins_beside(request.scenario, options.allow_plugins);
   const std::vector<InputChange> program = changed_program(inputs);
   try {
     Replay replay(options.record, inputs, request);

@@ -14,6 +14,7 @@ namespace kadans {
 struct ReplayOptions {
   std::string record;
   bool from_record = false;  // its files in place of those on the disk
+  bool allow_plugins = false;
   bool json = false;
 };
 

@@ -1,4 +1,5 @@
 // `kadans run`: the engines on real threads, and the supervisor that starts, watches and ends them.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,20 +13,24 @@
 
 #include "behavior_process.h"
 #include "commands.h"
+#include "json_kind.h"
 #include "kadans/app/assembly.h"
 #include "kadans/config/project_root.h"
 #include "kadans/realtime/machine.h"
+#include "kadans/realtime/placement.h"
 #include "kadans/realtime/rights.h"
 #include "kadans/realtime/service_notifier.h"
 #include "kadans/remote/behavior_side.h"
 #include "kadans/remote/control_side.h"
 #include "kadans/remote/record_side.h"
 #include "kadans/remote/truth_task.h"
+#include "last_resort.h"
 #include "leaving.h"
 #include "live_joystick.h"
 #include "live_log.h"
 #include "live_report.h"
 #include "live_threads.h"
+#include "played_behaviors.h"
 #include "real_time_start.h"
 #include "terminal.h"
 #include "version.h"
@@ -35,6 +40,9 @@ namespace {
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
+// Of the end: threads that are told to, each other part, a record on a slow disk; virtual time that stands.
+constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, record_ns = 10'000'000'000,
+                       standing_ns = 2'000'000'000;
 
 Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const RobotConfig& robot) {
   namespace fs = std::filesystem;
@@ -111,6 +119,7 @@ class LiveRun {
                  assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
   int run() {
+    refuse_faulty_behaviors(scenario_, assembly_.catalog());
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
     RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
@@ -123,31 +132,25 @@ class LiveRun {
                             options_.ros2.commands;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
+    ctl_.start();  // who is there before the first tick may look, and stop the robot
     if (assembly_.udp_plant() != nullptr && !assembly_.udp_plant()->connect(interrupted)) return exit_interrupted;
+    LastResort last_resort(timing.real_time && !timing.virtual_time ? last_resort_priority : 0, exit_failed);
     LiveThreads threads(timing,
-                        {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()});
-    threads.start();
+                        {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()},
+                        interrupted);
+    if (!threads.start(print_error)) return end_before_start(threads, last_resort);
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
-    ctl_.start();
     live_.start({{"Control tick: late", &threads.control().statistics().lateness},
                  {"Control tick: takes", &control_.tick_cost()},
                  {"Behavior tick: takes", &threads.behaviors().statistics().execution}});
     ros2_.start();
     notifier_.ready("drives " + assembly_.robot().name);
+    if (timing.real_time && !timing.virtual_time) (void)take_priority(supervisor_priority);
     const std::string ended = watch(threads);
     notifier_.stopping();
     leave(threads);
-    ros2_.stop();
-    live_.stop();
-    ctl_.stop();
-    threads.stop();
-    ActuationFrame off;
-    off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
-    assembly_.plant().write(off);
-    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->leave();
-    tell(threads.supervisor().now_ns());
-    if (!record_side_.end()) print_error("the record is not complete: " + record_side_.recorder()->error());
-    tell_flights(record_side_.status());
+    const std::vector<std::string> hanging = switch_off(threads, last_resort);
+    end_services(last_resort);
     LiveResult result{threads,
                       control_,
                       parts_.behaviors,
@@ -160,9 +163,9 @@ class LiveRun {
                       start_ms,
                       ended,
                       failed_};
-    result.failed = result.failed || log_.has_errors();
-    std::fputs(live_text(result).c_str(), stdout);
-    if (options_.json) std::puts(live_json(result).c_str());
+    result.failed = result.failed || log_.has_errors() || !hanging.empty();
+    std::fputs((options_.json ? live_json(result) + "\n" : live_text(result)).c_str(), stdout);
+    if (!hanging.empty()) leave_behind(hanging);
     return result.failed ? exit_failed : exit_passed;
   }
 
@@ -171,6 +174,54 @@ class LiveRun {
     const JoystickSettings& settings = assembly_.robot().joystick;
     if (options_.joystick.empty() && settings.device.empty()) return nullptr;
     return std::make_unique<LiveJoystick>(settings, options_.joystick, parts_.control.exchange().joystick);
+  }
+
+  // Drives off and the record closed, whichever thread hangs; says which do.
+  std::vector<std::string> switch_off(LiveThreads& threads, LastResort& last_resort) {
+    const auto hangs = [](const std::vector<std::string>& hanging, const char* name) {
+      return std::ranges::find(hanging, name) != hanging.end();
+    };
+    last_resort.expect("switching the drives off", 2 * joining_ns + stage_ns);
+    std::vector<std::string> hanging = threads.stop(joining_ns);
+    ActuationFrame off;
+    off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
+    if (!hangs(hanging, "control")) assembly_.plant().write(off);  // else the plant's own watchdog has to
+    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->leave();
+    tell(threads.supervisor().now_ns());
+    last_resort.expect("closing the record", record_ns);
+    if (hangs(hanging, "record")) {
+      print_error("the record is not complete: its thread hangs");
+    } else if (!record_side_.end()) {
+      failed_ = true;
+      print_error("the record is not complete: " + record_side_.recorder()->error());
+    }
+    tell_flights(record_side_.status());
+    return hanging;
+  }
+
+  void end_services(LastResort& last_resort) {
+    last_resort.expect("the service of ROS 2", stage_ns);
+    ros2_.stop();
+    last_resort.expect("the live server", stage_ns);
+    live_.stop();
+    last_resort.expect("the server of kadans ctl", stage_ns);
+    ctl_.stop();
+    last_resort.expect("the end of the run", record_ns);
+  }
+
+  int end_before_start(LiveThreads& threads, LastResort& last_resort) {
+    print_error("told to stop before all threads had a CPU; nothing has begun");
+    const std::vector<std::string> hanging = switch_off(threads, last_resort);
+    end_services(last_resort);
+    if (!hanging.empty()) leave_behind(hanging);
+    return exit_interrupted;
+  }
+
+  // A thread that hangs works on what a return would destroy.
+  [[noreturn]] static void leave_behind(const std::vector<std::string>& hanging) {
+    for (const std::string& name : hanging) print_error("the thread '" + name + "' hangs; the run ended without it");
+    std::fflush(nullptr);
+    _exit(exit_failed);
   }
 
   // Until somebody or something ends the run; says what.
@@ -196,24 +247,31 @@ class LiveRun {
   // Posture, damp, off. A robot whose threads failed, or that is held already, does not get the posture.
   void leave(LiveThreads& threads) {
     const SafetySettings& safety = parts_.control.safety().settings();
-    const bool held = parts_.control.exchange().snapshot.read(1).status.safety.level >= SafetyLevel::hold;
+    const bool held = level() >= SafetyLevel::hold;
     failed_ = failed_ || held;
     record_side_.expect_end();
     if (!failed_) {
       leaving_.ask();
       pass(threads, assembly_.robot().safe.time_s + 0.2);
     }
-    control_.degrade(SafetyLevel::damp);
-    pass(threads, safety.damp_s);
-    control_.degrade(SafetyLevel::off);
-    pass(threads, 0.05);
+    parts_.control.safety().emergency_stop().leave();
+    pass(threads, safety.damp_s + 0.05);
   }
 
+  SafetyLevel level() {
+    const auto snapshot = parts_.control.exchange().snapshot.read(1);
+    return snapshot->status.safety.level;
+  }
+
+  // Virtual time that stands is not waited for: a thread hangs.
   void pass(LiveThreads& threads, double seconds) {
     Wait& wait = threads.supervisor();
     const std::int64_t end_ns = wait.now_ns() + std::llround(seconds * 1e9);
-    while (wait.now_ns() < end_ns) {
-      wait.until(std::min(end_ns, wait.now_ns() + supervisor_period_ns));
+    std::int64_t moved_ns = WallClock().now_ns();
+    while (wait.now_ns() < end_ns && WallClock().now_ns() < moved_ns + standing_ns) {
+      const std::int64_t before_ns = wait.now_ns();
+      wait.until(std::min(end_ns, before_ns + supervisor_period_ns));
+      if (wait.now_ns() > before_ns) moved_ns = WallClock().now_ns();
       notifier_.alive(control_.ticks());
       tell(wait.now_ns());
     }
@@ -233,7 +291,8 @@ class LiveRun {
     Event event;
     while (live_log_.told().pop(time_ns, event)) tell(event);
     if (joystick_ != nullptr) {
-      const std::optional<Event> news = joystick_->news(parts_.control.exchange().snapshot.read(1));
+      const auto snapshot = parts_.control.exchange().snapshot.read(1);
+      const std::optional<Event> news = joystick_->news(*snapshot);
       if (news) tell(*news);
     }
     Fault fault;
@@ -246,7 +305,8 @@ class LiveRun {
     }
     const RecordStatus record = record_side_.status();
     tell_flights(record);
-    instance_.publish(status_of(parts_.control.exchange().snapshot.read(1), record));
+    const auto snapshot = parts_.control.exchange().snapshot.read(1);
+    instance_.publish(status_of(*snapshot, record));
   }
 
   void tell_flights(const RecordStatus& status) {
@@ -273,8 +333,9 @@ class LiveRun {
   std::unique_ptr<PlantTask> plant_;  // likewise
   std::unique_ptr<LiveJoystick> joystick_;
   Leaving leaving_;
-  Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog()};
-  ControlSide control_side_{instance_, parts_.control.safety()};
+  Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog(),
+                     parts_.control.safety().emergency_stop()};
+  ControlSide control_side_{instance_};
   RecordSide record_side_{instance_,
                           control_side_,
                           record_log_,
@@ -296,6 +357,7 @@ class LiveRun {
 }  // namespace
 
 int run_live(const RunOptions& options) {
+  require_kind(options.robot, JsonKind::robot);
   if (options.virtual_time && options.plant == "udp") {
     print_error("--threads-on-virtual-time: a plant on another machine has its own time");
     return exit_usage;

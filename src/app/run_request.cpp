@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "kadans/signal/number_text.h"
+#include "kadans/signal/shell_word.h"
 
 namespace kadans {
 namespace {
@@ -63,15 +64,16 @@ ScenarioPush parse_push(const std::string& text, double at_s) {
 
 ScenarioConfig read_scenario(const RunRequest& request) {
   ScenarioConfig scenario = read_scenario_config(request.scenario);
+  scenario.plugins = request.plugins;
   if (!request.play.empty()) scenario.behaviors = read_play_items(request.play, "--play", folders_of(scenario));
   for (const std::string& setting : request.set) scenario.set_last.push_back(parse_setting(setting));
   return scenario;
 }
 
 std::string repeat_command(const RunRequest& request, std::uint64_t seed) {
-  std::string command = "kadans sim " + request.scenario + " --seed " + std::to_string(seed);
-  if (!request.play.empty()) command += " --play '" + request.play + "'";
-  for (const std::string& setting : request.set) command += " --set '" + setting + "'";
+  std::string command = "kadans sim " + shell_word(request.scenario) + " --seed " + std::to_string(seed);
+  if (!request.play.empty()) command += " --play " + shell_quoted(request.play);
+  for (const std::string& setting : request.set) command += " --set " + shell_quoted(setting);
   if (request.duration_s) command += " --duration " + number_text(*request.duration_s);
   return command;
 }

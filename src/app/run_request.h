@@ -27,6 +27,7 @@ struct RunRequest {
   std::optional<double> duration_s;
   std::string play;              // a list in place of the scenario's; "" = the scenario's
   std::vector<std::string> set;  // "ground.friction=0.3"
+  PluginGate plugins;            // not in a record
 };
 
 // With so many digits that reading it gives the same number.

@@ -4,6 +4,8 @@
 
 #include "commands.h"
 #include "input_files.h"
+#include "json_kind.h"
+#include "option_checks.h"
 #include "sim_run.h"
 #include "terminal.h"
 
@@ -21,11 +23,12 @@ std::vector<RunBranch> branches_of(const SimOptions& options) {
 int go_on(const SimOptions& options) {
   SimContinuation continuation{.from = read_checkpoint(options.from), .branches = branches_of(options)};
   RunInputs& inputs = continuation.from.inputs;
-  const UnpackedInputs unpacked(inputs, options.from);
+  const UnpackedInputs unpacked(inputs, options.from, options.allow_plugins);
   if (std::ranges::any_of(continuation.branches, [](const RunBranch& branch) { return !branch.play.empty(); }))
     unpacked.add_behaviors(inputs);
   RunRequest request = request_of(inputs.run, options.from);
   request.scenario = unpacked.scenario().string();
+  request.plugins = unpacked.plugins();
   if (options.duration_s) request.duration_s = options.duration_s;
   const double at_s = static_cast<double>(continuation.from.at.time_ns) / 1e9;
   if (!(*request.duration_s > at_s))
@@ -47,6 +50,8 @@ void refuse_wrong_mixtures(const SimOptions& options) {
   if (options.from.empty()) {
     if (!options.branches.empty()) refuse_option("--branch", "parts from a checkpoint: it goes with --from");
     if (!options.push.empty()) refuse_option("--push", "parts from a checkpoint: it goes with --from");
+    if (options.allow_plugins)
+      refuse_option("--allow-plugins", "is for the plug-ins of a checkpoint: it goes with --from");
     return;
   }
   if (options.seed) refuse_option("--seed", "a checkpoint goes on with the seed that it began with");
@@ -63,10 +68,12 @@ void refuse_wrong_mixtures(const SimOptions& options) {
 void add_sim(CLI::App& app, SimOptions& options) {
   CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
   sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->type_name("FILE");
-  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")->type_name("N");
+  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")
+      ->type_name("N")
+      ->check(any_seed());
   sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
       ->type_name("S")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(number_within(0.001, 1e6));
   sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
       ->type_name("LIST");
   sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
@@ -85,6 +92,8 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->allow_extra_args(false);
   sim->add_option("--from", options.from, "Go on from a checkpoint; --set, --play and --push count from there")
       ->type_name("FILE");
+  sim->add_flag("--allow-plugins", options.allow_plugins,
+                "With --from: load the project's plug-ins, be they others than the checkpoint's");
   sim->add_option("--push", options.push, "With --from: an impulse in Ns on a link, such as torso=0,2,0")
       ->type_name("LINK=X,Y,Z")
       ->allow_extra_args(false);
@@ -94,14 +103,14 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->allow_extra_args(false);
   sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
       ->type_name("S")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(number_within(0.001, 1e6));
   add_report_place(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
   add_ctl_place(*sim, options.ctl);
   add_live_place(*sim, options.live);
   add_ros2_place(*sim, options.ros2);
   sim->add_option("--speed", options.speed, "With --live or --ros2: as a multiple of the wall clock's pace")
       ->type_name("X")
-      ->check(CLI::Range(0.01, 100.0));
+      ->check(number_within(0.01, 100.0));
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");
   sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
 }
@@ -109,6 +118,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
 int run_sim(const SimOptions& options) {
   refuse_wrong_mixtures(options);
   if (!options.from.empty()) return go_on(options);
+  require_kind(options.scenario, JsonKind::scenario);
   SimRun sim(options, options);
   catch_interrupts();
   return sim.run();

@@ -7,8 +7,10 @@
 
 #include "input_files.h"
 #include "kadans/config/experiment_config.h"
+#include "kadans/signal/shell_word.h"
 #include "live/live_pace.h"
 #include "live/live_service.h"
+#include "played_behaviors.h"
 #include "report/run_page.h"
 #include "terminal.h"
 
@@ -70,6 +72,7 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
       height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
       record_plan_(record_plan(assembly_, options.recording, false)),
       continuation_(std::move(continuation)) {
+  if (!continuation_) refuse_faulty_behaviors(scenario_, assembly_.catalog());
   if (continuation_) {
     inputs_ = continuation_->from.inputs;
     const double at_s = 1e-9 * static_cast<double>(continuation_->from.at.time_ns);
@@ -128,16 +131,17 @@ int SimRun::report(RunResult& result) {
   result.scenario = scenario_.name;
   result.seed = seed_;
   finish_record(result);
-  for (std::size_t i = 0; i < checks_.size(); ++i) wanted_.push_back(checks_.config(i));
+  if (const std::string why = remote_ ? remote_->end_record() : ""; !why.empty())
+    tell_lost("the record is not complete: " + why);
   traces_ = {height_.trace()};
   if (options_.report.wanted()) write_page(result);
-  print(result);
   if (checkpoints_) {
     for (const CheckpointOrder& order : checkpoints_->missed())
-      print_error("the run was over before the checkpoint at " + number_text(order.at_s) + " s");
+      tell_lost("the run was over before the checkpoint at " + number_text(order.at_s) + " s");
   }
+  print(result);
   if (result.interrupted) return exit_interrupted;
-  return result.passed ? exit_passed : exit_failed;
+  return result.passed && lost_.empty() ? exit_passed : exit_failed;
 }
 
 void SimRun::tick(double, std::span<const double>) {
@@ -240,7 +244,7 @@ void SimRun::start_record() {
 void SimRun::fly() {
   FlightRecorder& flight = *recorder_->flight();
   const std::string file = std::filesystem::path(record_name()).replace_extension(".flight.mcap").string();
-  if (!flight.begin(file)) return print_error(flight.error());
+  if (!flight.begin(file)) return tell_lost(flight.error());
   describe(flight.dump());
 }
 
@@ -250,7 +254,7 @@ void SimRun::finish_record(const RunResult& result) {
   if (FlightRecorder* flight = recorder_->flight(); flight != nullptr) {
     if (flight->due(true)) fly();
     flight->finish();
-    if (!flight->error().empty()) print_error("the flight record is not complete: " + flight->error());
+    if (!flight->error().empty()) tell_lost("the flight record is not complete: " + flight->error());
     if (flight->dumps() > 0) std::fprintf(stderr, "flight record: %s\n", flight->file().c_str());
   }
   if (recorder_->is_open()) {
@@ -261,18 +265,23 @@ void SimRun::finish_record(const RunResult& result) {
                                          {"checks", std::to_string(result.checks.size())},
                                          {"checks_failed", std::to_string(failed)}});
   }
-  if (!recorder_->close()) print_error("the record is not complete: " + recorder_->error());
-  if (recorder_->dropped() > 0) print_error(std::to_string(recorder_->dropped()) + " rows are missing in the record");
+  if (!recorder_->close()) tell_lost("the record is not complete: " + recorder_->error());
+  if (recorder_->dropped() > 0) tell_lost(std::to_string(recorder_->dropped()) + " rows are missing in the record");
+}
+
+void SimRun::tell_lost(const std::string& what) {
+  print_error(what);
+  lost_.push_back(what);
 }
 
 std::string SimRun::repeat() const {
   if (!continuation_) return repeat_command(request_, seed_);
-  std::string command = "kadans sim --from " + options_.from;
+  std::string command = "kadans sim --from " + shell_word(options_.from);
   if (options_.duration_s) command += " --duration " + number_text(*options_.duration_s);
-  if (!branch_.name.empty()) return command + " --branch '" + branch_text(branch_) + "'";
-  if (!branch_.play.empty()) command += " --play '" + branch_.play + "'";
-  for (const std::string& setting : branch_.set) command += " --set '" + setting + "'";
-  for (const std::string& push : branch_.push) command += " --push " + push;
+  if (!branch_.name.empty()) return command + " --branch " + shell_quoted(branch_text(branch_));
+  if (!branch_.play.empty()) command += " --play " + shell_quoted(branch_.play);
+  for (const std::string& setting : branch_.set) command += " --set " + shell_quoted(setting);
+  for (const std::string& push : branch_.push) command += " --push " + shell_word(push);
   return command;
 }
 
@@ -281,7 +290,6 @@ ReportSubject SimRun::subject(const RunResult& result) const {
   return {.result = result,
           .log = log_,
           .model = assembly_.robot().model,
-          .checks = wanted_,
           .traces = traces_,
           .title = name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
           .record = record_,
@@ -320,7 +328,8 @@ void SimRun::print(const RunResult& result) const {
                           .evidence = evidence_.around(result.checks),
                           .record = record_,
                           .hashes = {},
-                          .branch = branch_.name};
+                          .branch = branch_.name,
+                          .lost = lost_};
     if (trail_) {
       for (const HashMark& mark : trail_->marks()) context.hashes.push_back(mark.hash);
     }

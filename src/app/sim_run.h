@@ -62,6 +62,8 @@ class SimRun final : public RunObserver {
   bool open_record();
   void fly();
   void finish_record(const RunResult& result);
+  // Something that was to be left behind is not there, or not whole: then the run does not end with 0.
+  void tell_lost(const std::string& what);
   std::string record_name() const;
   int report(RunResult& result);
   void print(const RunResult& result) const;
@@ -92,8 +94,8 @@ class SimRun final : public RunObserver {
   RecordPlan record_plan_;
   std::unique_ptr<Recorder> recorder_;
   std::string record_;
-  std::vector<ScenarioCheck> wanted_;  // for the report
-  std::vector<ReportTrace> traces_;    // likewise
+  std::vector<std::string> lost_;
+  std::vector<ReportTrace> traces_;  // for the report
 
   std::optional<SimContinuation> continuation_;
   std::vector<BranchActions> actions_;  // of the branches

@@ -3,13 +3,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "behavior_stage.h"
 #include "kadans/app/assembly.h"
+#include "kadans/campaign/durable_file.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/project_root.h"
 #include "kadans/script/api.h"
 #include "terminal.h"
@@ -25,13 +26,6 @@ constexpr const char* luarc = R"({
   "diagnostics.globals": ["describe", "it", "before_each", "expect"]
 }
 )";
-
-void write_file(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw InputError({.file = file.string(), .message = "cannot be written"});
-}
 
 struct Row {
   std::string name, unit, doc;
@@ -51,6 +45,7 @@ std::vector<Row> rows_of_robot(const std::string& file) {
 }
 
 std::vector<Row> rows_of_behavior(const ParamsOptions& options) {
+  (void)read_input_file(options.file);  // tells what is not there
   const Robot robot = read_robot(options.robot.empty() ? robot_of_behavior(options.file) : fs::path(options.robot));
   const auto system = make_control_system(robot);
   RunLog log;
@@ -77,7 +72,7 @@ void print_json(const std::vector<Row>& rows) {
                    {"max", number(row.max)},
                    {"doc", row.doc}});
   }
-  std::puts(all.dump().c_str());
+  std::puts(json_text(all).c_str());
 }
 
 }  // namespace
@@ -95,12 +90,11 @@ int run_stubs(const StubsOptions& options) {
     std::fputs(api_reference().c_str(), stdout);
     return exit_passed;
   }
-  const Robot robot =
-      read_robot(options.robot.empty() ? robot_of_behavior("behaviors/lib/x.lua") : fs::path(options.robot));
+  const Robot robot = read_robot(options.robot.empty() ? only_robot(fs::current_path()) : fs::path(options.robot));
   const auto system = make_control_system(robot);
   fs::create_directories(options.output);
-  write_file(fs::path(options.output) / "kadans.lua", lua_stubs(system->catalog));
-  write_file(fs::path(options.output) / ".luarc.json", luarc);
+  write_durably(fs::path(options.output) / "kadans.lua", lua_stubs(system->catalog));
+  write_durably(fs::path(options.output) / ".luarc.json", luarc);
   std::printf("wrote %s and .luarc.json\n", (fs::path(options.output) / "kadans.lua").c_str());
   return exit_passed;
 }

@@ -6,9 +6,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "json_kind.h"
 #include "kadans/campaign/shard.h"
 #include "kadans/campaign/sweep_results.h"
 #include "kadans/campaign/sweep_summary.h"
+#include "kadans/signal/shell_word.h"
+#include "option_checks.h"
 #include "sweep_run.h"
 #include "sweep_subjects.h"
 #include "terminal.h"
@@ -40,13 +43,14 @@ void tell(const MergedSweep& part, const SweepResults& results, const Shard& sha
   }
   std::fputs(sweep_summary(part).c_str(), stdout);
   if (!shard.whole()) std::printf("  this is part %zu/%zu alone\n", shard.index, shard.count);
-  std::printf("  results: %s; as one table: kadans merge %s --csv FILE\n", results.folder().c_str(),
-              results.folder().c_str());
+  const std::string folder = results.folder().string();
+  std::printf("  results: %s; as one table: kadans merge %s --csv FILE\n", folder.c_str(), shell_word(folder).c_str());
 }
 
 }  // namespace
 
 int run_sweep(const SweepOptions& options) {
+  require_kind(options.plan, JsonKind::sweep);
   const SweepPlan plan = read_plan(options);
   const std::vector<SweepSubject> subjects = read_sweep_subjects(plan);
   const std::string build = build_version();
@@ -78,10 +82,13 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
   sweep->add_option("plan", options.plan, "What is run, and what varies (JSON)")->required()->type_name("PLAN");
   sweep->add_option("--cases", options.cases, "How many runs (default: the plan's)")
       ->type_name("N")
-      ->check(CLI::Range(1U, sweep_cases_max));
-  sweep->add_option("--seed", options.seed, "Seed of the sample (default: the plan's)")->type_name("N");
+      ->check(whole_within(1, sweep_cases_max));
+  sweep->add_option("--seed", options.seed, "Seed of the sample (default: the plan's)")
+      ->type_name("N")
+      ->check(any_seed());
   sweep->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->check(CLI::Range(1, 1024));
+      ->type_name("N")
+      ->check(whole_within(1, 1024));
   sweep
       ->add_option("--shard", options.shard, "Only this part of the cases, 0/4 to 3/4 (default: that of a Slurm array)")
       ->type_name("PART/PARTS");

@@ -7,6 +7,7 @@
 #include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
 #include "kadans/scenario/metrics.h"
+#include "played_behaviors.h"
 #include "version.h"
 
 namespace kadans {
@@ -48,11 +49,13 @@ void verify_ranges(const ExperimentConfig& plan, const Robot& robot, Problems& p
 
 SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig& plan, Problems& problems) {
   const ScenarioConfig scenario = read_scenario_config(named.file);
-  const Robot robot = read_robot(scenario.robot);
+  const Robot robot = read_robot(scenario.robot, scenario.plugins);
   verify_ranges(plan, robot, problems);
   RunLog log;
   const Assembly assembly(scenario, plan.seed, log);
   const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
+  for (const InputProblem& problem : problems_of_played(scenario, assembly.catalog()))
+    problems.add(InputError(problem));
   const Metrics metrics(assembly.catalog().signals, plan.metrics, plan.file);
   const auto system = make_control_system(robot);
   PlantVariant variant{.model = robot.config.model, .plant = robot.config.plant};

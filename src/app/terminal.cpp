@@ -1,21 +1,41 @@
 #include "terminal.h"
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <system_error>
 
 #include <unistd.h>
+
+#include "kadans/script/budget.h"
 
 namespace kadans {
 namespace {
 
 volatile std::sig_atomic_t interrupt_flag = 0;
 
-void note_interrupt(int) { interrupt_flag = 1; }
+void note_interrupt(int) {
+  interrupt_flag = 1;
+  interrupt_scripts();
+}
 
 bool color_wanted() {
   const char* no_color = std::getenv("NO_COLOR");  // NOLINT(concurrency-mt-unsafe): before any thread is started
   return no_color == nullptr || *no_color == '\0';
+}
+
+// The code, or another when stdout did not take all.
+int delivered(int code) {
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0;
+  if (flushed && std::ferror(stdout) == 0) return code;
+  if (errno == EPIPE) return code;  // a reader that has had enough
+  const std::string why = errno == 0 ? std::string() : ": " + std::generic_category().message(errno);
+  print_error("stdout: not all of the results could be written" + why);
+  return code == exit_passed ? exit_usage : code;
 }
 
 }  // namespace
@@ -30,6 +50,22 @@ void print_error(const std::string& message) {
 
 void print_problems(const InputError& error) {
   for (const InputProblem& problem : error.problems()) print_error(problem.text());
+}
+
+int ended_well(const std::function<int()>& run) {
+  int code = exit_internal;
+  try {
+    code = run();
+  } catch (const InputError& error) {
+    print_problems(error);
+    code = exit_usage;
+  } catch (const std::filesystem::filesystem_error& error) {  // a place that somebody named
+    print_error(error.path1().string() + ": " + error.code().message());
+    code = exit_usage;
+  } catch (const std::exception& error) {
+    print_error(std::string("internal: ") + error.what());
+  }
+  return delivered(code);
 }
 
 void catch_interrupts() {

@@ -1,6 +1,7 @@
 // What the program may do on the streams it was given, and what it says there.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "kadans/signal/input_error.h"
@@ -16,7 +17,11 @@ bool stderr_is_terminal();
 void print_problems(const InputError& error);
 void print_error(const std::string& message);
 
-// From now on SIGINT and SIGTERM set a flag instead of ending the program.
+// All that a program does, and what it ends with: the code that `run` gives, or that of what it throws, which is told
+// on stderr. Never 0 when stdout did not take all that was printed on it, a full disk. Throws nothing.
+int ended_well(const std::function<int()>& run);
+
+// From now on SIGINT and SIGTERM set a flag instead of ending the program, and end scripts that go on nevertheless.
 void catch_interrupts();
 bool interrupted() noexcept;
 

@@ -1,61 +1,29 @@
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <memory>
+
+#include <CLI/CLI.hpp>
 
 #include "commands.h"
 #include "job_progress.h"
 #include "kadans/campaign/durable_file.h"
 #include "kadans/campaign/golden.h"
-#include "kadans/campaign/scenario_search.h"
 #include "kadans/campaign/suite_page.h"
 #include "kadans/campaign/suite_report.h"
 #include "kadans/config/project_root.h"
-#include "line_editor.h"
+#include "kadans/signal/shell_word.h"
+#include "option_checks.h"
 #include "terminal.h"
+#include "test_plan.h"
 
 namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
 
-// One run that is wanted.
-struct PlannedRun {
-  FoundScenario scenario;
-  std::uint64_t seed = 1;
-};
-
 std::string repeat_command(const PlannedRun& run) {
-  return "kadans sim " + run.scenario.file.string() + " --seed " + std::to_string(run.seed);
+  return "kadans sim " + shell_word(run.scenario.file.string()) + " --seed " + std::to_string(run.seed);
 }
-
-// What failed the last time, a "seed file" a line; one list for each project.
-class FailedRuns {
- public:
-  explicit FailedRuns(const fs::path& root)
-      : file_(state_file("failed-" + std::to_string(std::hash<std::string>()(fs::absolute(root).string())))) {}
-
-  bool contains(const PlannedRun& run) const { return std::ranges::find(lines_, line(run)) != lines_.end(); }
-  void read() {
-    std::ifstream stream(file_);
-    for (std::string text; std::getline(stream, text);) lines_.push_back(text);
-  }
-  bool empty() const noexcept { return lines_.empty(); }
-  // A list that cannot be written is a comfort that is missing, no more.
-  void write(const std::vector<PlannedRun>& failed) const {
-    if (file_.empty()) return;
-    std::ofstream stream(file_);
-    for (const PlannedRun& run : failed) stream << line(run) << '\n';
-  }
-
- private:
-  static std::string line(const PlannedRun& run) {
-    return std::to_string(run.seed) + " " + fs::absolute(run.scenario.file).lexically_normal().string();
-  }
-  fs::path file_;
-  std::vector<std::string> lines_;
-};
 
 class Suite final : public JobWatcher {
  public:
@@ -154,11 +122,7 @@ class Suite final : public JobWatcher {
       write_durably(page, suite_page(outcomes, progress_.elapsed_s(), page.parent_path()));
       std::fprintf(options_.json ? stderr : stdout, "report: %s\n", page.c_str());
     }
-    if (options_.junit.empty()) return;
-    std::ofstream file(options_.junit);
-    file << junit_xml(outcomes, progress_.elapsed_s());
-    file.close();
-    if (!file) throw InputError({.file = options_.junit, .message = "cannot be written"});
+    if (!options_.junit.empty()) write_durably(options_.junit, junit_xml(outcomes, progress_.elapsed_s()));
   }
 
   const TestOptions& options_;
@@ -170,44 +134,45 @@ class Suite final : public JobWatcher {
   std::vector<std::pair<std::size_t, RunOutcome>> ended_;
 };
 
-std::vector<PlannedRun> plan(const TestOptions& options, const std::vector<FoundScenario>& scenarios) {
-  std::vector<PlannedRun> runs;
-  for (const FoundScenario& scenario : scenarios) {
-    const std::uint64_t first = options.seed.value_or(scenario.seed);
-    for (std::uint32_t i = 0; i < options.repeat.value_or(scenario.repeat); ++i) runs.push_back({scenario, first + i});
-  }
-  return runs;
-}
-
-void print_list(const std::vector<FoundScenario>& scenarios) {
-  for (const FoundScenario& scenario : scenarios) {
-    std::string tags;
-    for (const std::string& tag : scenario.tags) tags += " #" + tag;
-    std::printf("%s%s\n    %s\n", scenario.name.c_str(), tags.c_str(), scenario.doc.c_str());
-  }
-}
-
 }  // namespace
+
+void add_test(CLI::App& app, TestOptions& options) {
+  CLI::App* test = app.add_subcommand("test", "Run scenarios side by side and say which failed, and how");
+  test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
+      ->type_name("PATH|TAG|NAME...");
+  test->add_option("--in", options.folder, "Folder of scenarios (default: config/scenarios)")->type_name("FOLDER");
+  test->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
+      ->type_name("N")
+      ->check(whole_within(1, 1024));
+  test->add_option("--repeat", options.repeat, "Runs of each scenario, each with the next seed")
+      ->type_name("N")
+      ->check(whole_within(1, 1'000'000));
+  test->add_option("--seed", options.seed, "First seed (default: each scenario's)")->type_name("N")->check(any_seed());
+  test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
+  test->add_flag("--rerun-failed", options.rerun_failed, "Only what failed the last time");
+  test->add_flag("--list", options.list, "Say what would run");
+  CLI::Option* golden =
+      test->add_flag("--golden", options.golden, "Fail what ends in another state than FOLDER.golden.json says");
+  CLI::Option* renew = test->add_flag("--renew-golden", options.renew_golden,
+                                      "Write the states into that file, and say what that changes");
+  renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
+  test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
+  add_report_place(*test, options.report, "Leave a page about each run in a folder, and index.html about all",
+                   "failed");
+  test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
+}
 
 int run_test(const TestOptions& options) {
   const fs::path root = project_root(fs::current_path() / "kadans");
   const fs::path folder = options.folder.empty() ? root / "config" / "scenarios" : fs::path(options.folder);
   const std::vector<FoundScenario> scenarios = find_scenarios(folder, options.selectors);
   if (scenarios.empty()) throw InputError({.file = folder.string(), .message = "there is no scenario here"});
-  if (options.list) {
-    print_list(scenarios);
-    return exit_passed;
-  }
-  std::vector<PlannedRun> runs = plan(options, scenarios);
   FailedRuns failed_runs(root);
-  if (options.rerun_failed) {
-    failed_runs.read();
-    std::erase_if(runs, [&](const PlannedRun& run) { return !failed_runs.contains(run); });
-    if (runs.empty()) {
-      std::puts("nothing failed the last time");
-      return exit_passed;
-    }
-  }
+  std::vector<PlannedRun> runs = plan_runs(options, scenarios, failed_runs);
+  if (runs.empty()) std::fputs("nothing failed the last time\n", options.json ? stderr : stdout);
+  if (options.list) print_plan(runs, options.json);
+  if (runs.empty() || options.list) return exit_passed;
+  refuse_faulty_runs(runs);
   std::unique_ptr<GoldenHashes> golden;
   if (options.golden || options.renew_golden) golden = std::make_unique<GoldenHashes>(golden_file(folder));
   catch_interrupts();

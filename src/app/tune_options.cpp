@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "kadans/config/name_pattern.h"
+#include "option_checks.h"
 #include "sweep_subjects.h"
 #include "tune_command.h"
 
@@ -33,17 +34,23 @@ void add_tune(CLI::App& app, TuneOptions& options) {
   tune->add_option("plan", options.plan, "What is sought, and what is to become small (JSON)")
       ->required()
       ->type_name("PLAN");
-  tune->add_option("--seed", options.seed, "Seed of the search and of its runs (default: the plan's)")->type_name("N");
+  tune->add_option("--seed", options.seed, "Seed of the search and of its runs (default: the plan's)")
+      ->type_name("N")
+      ->check(any_seed());
   tune->add_option("--generations", options.generations, "How many (default: the plan's)")
-      ->check(CLI::Range(1, 10'000));
+      ->type_name("N")
+      ->check(whole_within(1, 10'000));
   tune->add_option("--runs", options.runs, "Runs of each candidate (default: the plan's)")
-      ->check(CLI::Range(1, 10'000));
+      ->type_name("N")
+      ->check(whole_within(1, 10'000));
   tune->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->check(CLI::Range(1, 1024));
+      ->type_name("N")
+      ->check(whole_within(1, 1024));
   tune->add_option("--shard", options.shard, "Only this part of each generation, the folder shared with the others")
       ->type_name("PART/PARTS");
   tune->add_option("--wait", options.wait_s, "Seconds to wait for the other parts of a generation (default: 600)")
-      ->check(CLI::Range(0.0, 1e9));
+      ->type_name("S")
+      ->check(number_within(0.0, 1e9));
   tune->add_option("--out", options.out, "Folder of the results; what is there is not run again (default: in tunings/)")
       ->type_name("FOLDER");
   tune->add_option("--write", options.write, "Where the tuned configuration goes (default: robot.json in that folder)")

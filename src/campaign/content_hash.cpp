@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/input_file.h"
 #include "kadans/signal/number_text.h"
 
 namespace kadans {
 namespace {
+
+constexpr std::size_t file_max_bytes = std::size_t{1} << 30U;  // programs and their libraries, too
 
 namespace fs = std::filesystem;
 
@@ -33,10 +34,7 @@ void ContentHash::add_file(const fs::path& file) {
     add("no such file");
     return;
   }
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw InputError({.file = file.string(), .message = "cannot be read"});
-  add(bytes);
+  add(read_input_file(file, file_max_bytes));
 }
 
 void ContentHash::add_folder(const fs::path& folder, std::string_view ending) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -48,6 +49,9 @@ class Descriptor {
   void sync() const {
     if (fsync(file_) != 0) fail("cannot be forced to the disk");
   }
+  void finish() {
+    if (close(std::exchange(file_, -1)) != 0) fail("cannot be written");
+  }
 
  private:
   [[noreturn]] void fail(const char* what) const {
@@ -57,9 +61,7 @@ class Descriptor {
   int file_;
 };
 
-}  // namespace
-
-void write_durably(const fs::path& file, std::string_view bytes) {
+void replace(const fs::path& file, std::string_view bytes) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const fs::path temporary = folder / ("." + file.filename().string() + "." + std::to_string(getpid()) + ".part");
   try {
@@ -76,6 +78,34 @@ void write_durably(const fs::path& file, std::string_view bytes) {
     throw;
   }
   Descriptor(folder, O_RDONLY | O_DIRECTORY, folder).sync();
+}
+
+}  // namespace
+
+bool is_device_or_pipe(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  return fs::is_character_file(status) || fs::is_fifo(status);
+}
+
+fs::path end_of_link(const fs::path& file) {
+  constexpr int links_max = 40;              // as the system's own
+  if (is_device_or_pipe(file)) return file;  // a pipe behind /dev/stdout has no name
+  fs::path end = file;
+  std::error_code error;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(end, error)); ++i) {
+    const fs::path target = fs::read_symlink(end, error);
+    if (error || i == links_max) throw InputError({.file = file.string(), .message = "is a link that leads nowhere"});
+    end = end.parent_path() / target;  // or the target alone, when that is absolute
+  }
+  return end;
+}
+
+void write_durably(const fs::path& file, std::string_view bytes) {
+  if (!is_device_or_pipe(file)) return replace(end_of_link(file), bytes);
+  Descriptor descriptor(file, O_WRONLY, file);
+  descriptor.write_all(bytes);
+  descriptor.finish();
 }
 
 }  // namespace kadans

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kadans/campaign/durable_file.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/json_value.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/machine_name.h"
@@ -62,7 +63,7 @@ GoldenHashes::GoldenHashes(fs::path file) : file_(std::move(file)) {
   if (!fs::exists(file_)) return;
   std::string of;
   try {
-    const Json json = Json::parse(read_text_file(file_));
+    const Json json = parse_foreign_json(read_input_file(file_), file_.string());
     of = json.at("machine");
     for (const Json& run : json.at("runs")) runs_.push_back(golden_from(run));
   } catch (const Json::exception& error) {
@@ -82,6 +83,9 @@ const GoldenRun* GoldenHashes::find(const std::string& scenario, std::uint64_t s
 
 std::string GoldenHashes::difference(const RunOutcome& run) const {
   const GoldenRun* const known = find(run.scenario, run.seed);
+  const bool other_seed = std::ranges::find(runs_, run.scenario, &GoldenRun::scenario) != runs_.end();
+  if (known == nullptr && other_seed)
+    return "no golden hash is known of this seed, only of those that the scenario says: leave out --seed and --repeat";
   if (known == nullptr) return "no golden hash is known of this run: kadans test --renew-golden takes it";
   const std::string where = parting(*known, golden_of(run));
   if (where.empty()) return {};
@@ -123,7 +127,7 @@ void GoldenHashes::write() const {
     std::string each_s;
     for (const std::string& hash : run.each_s) each_s += (each_s.empty() ? "" : " ") + hash;
     const Json json{{"scenario", run.scenario}, {"seed", run.seed}, {"hash", run.hash}, {"each_s", each_s}};
-    text += "    " + json.dump() + (&run == &runs_.back() ? "\n" : ",\n");
+    text += "    " + json_text(json) + (&run == &runs_.back() ? "\n" : ",\n");
   }
   text += "  ]\n}\n";
   write_durably(file_, text);

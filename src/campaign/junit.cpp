@@ -1,69 +1,89 @@
+#include "kadans/campaign/junit.h"
+
+#include <algorithm>
+
 #include <tinyxml2.h>
 
 #include "kadans/campaign/suite_report.h"
+#include "kadans/signal/number_text.h"
+#include "kadans/signal/utf8.h"
 
 namespace kadans {
 namespace {
 
-// XML 1.0 has no control characters but tab and line ends.
-std::string clean(const std::string& text) {
-  std::string kept;
-  for (const char c : text) {
-    if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') kept += c;
-  }
-  return kept;
-}
+using Verdict = JunitCase::Verdict;
 
-void add_case(tinyxml2::XMLElement& suite, const RunOutcome& run) {
+void add_case(tinyxml2::XMLElement& suite, const JunitCase& one) {
   tinyxml2::XMLElement* const element = suite.InsertNewChildElement("testcase");
-  element->SetAttribute("classname", clean(run.file).c_str());
-  element->SetAttribute("name", (clean(run.scenario) + " seed " + std::to_string(run.seed)).c_str());
-  element->SetAttribute("time", run.wall_s);
-  if (run.status == RunStatus::passed) return;
-  if (run.status == RunStatus::cancelled) {
+  element->SetAttribute("classname", xml_characters(one.file).c_str());
+  element->SetAttribute("name", xml_characters(one.name).c_str());
+  element->SetAttribute("time", one.wall_s);
+  if (one.verdict == Verdict::passed) return;
+  if (one.verdict == Verdict::skipped) {
     element->InsertNewChildElement("skipped");
     return;
   }
-  const bool failure = run.status == RunStatus::failed;
-  tinyxml2::XMLElement* const why = element->InsertNewChildElement(failure ? "failure" : "error");
-  std::string message = name(run.status);
-  for (const CheckResult& check : run.checks) {
-    if (!check.passed) message += ": " + check.name;
+  tinyxml2::XMLElement* const why =
+      element->InsertNewChildElement(one.verdict == Verdict::failed ? "failure" : "error");
+  why->SetAttribute("type", xml_characters(one.type).c_str());
+  why->SetAttribute("message", xml_characters(one.message).c_str());
+  why->SetText(xml_characters(one.text).c_str());
+}
+
+Verdict verdict_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::passed:
+      return Verdict::passed;
+    case RunStatus::failed:
+      return Verdict::failed;
+    case RunStatus::cancelled:
+      return Verdict::skipped;
+    default:
+      return Verdict::error;
   }
-  why->SetAttribute("type", name(run.status));
-  why->SetAttribute("message", clean(message).c_str());
-  why->SetText(clean(failure_report(run, {.color = false, .unicode = false})).c_str());
 }
 
 }  // namespace
 
-std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s) {
-  int failures = 0, errors = 0, skipped = 0;
-  for (const RunOutcome& run : runs) {
-    if (run.status == RunStatus::cancelled)
-      ++skipped;
-    else if (run.status == RunStatus::failed)
-      ++failures;
-    else if (run.status != RunStatus::passed)
-      ++errors;
-  }
+std::string junit_document(const std::vector<JunitCase>& cases, double wall_s) {
   tinyxml2::XMLDocument document;
   document.InsertEndChild(document.NewDeclaration());
   tinyxml2::XMLElement* const root = document.NewElement("testsuites");
   document.InsertEndChild(root);
   tinyxml2::XMLElement* const suite = root->InsertNewChildElement("testsuite");
+  const auto count = [&](Verdict verdict) {
+    return static_cast<int>(std::ranges::count(cases, verdict, &JunitCase::verdict));
+  };
   for (tinyxml2::XMLElement* element : {root, suite}) {
     element->SetAttribute("name", "kadans");
-    element->SetAttribute("tests", static_cast<int>(runs.size()));
-    element->SetAttribute("failures", failures);
-    element->SetAttribute("errors", errors);
-    element->SetAttribute("skipped", skipped);
+    element->SetAttribute("tests", static_cast<int>(cases.size()));
+    element->SetAttribute("failures", count(Verdict::failed));
+    element->SetAttribute("errors", count(Verdict::error));
+    element->SetAttribute("skipped", count(Verdict::skipped));
     element->SetAttribute("time", wall_s);
   }
-  for (const RunOutcome& run : runs) add_case(*suite, run);
+  for (const JunitCase& one : cases) add_case(*suite, one);
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
   return printer.CStr();
+}
+
+std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s) {
+  std::vector<JunitCase> cases;
+  for (const RunOutcome& run : runs) {
+    JunitCase one{.file = run.file,
+                  .name = run.scenario + " seed " + std::to_string(run.seed),
+                  .wall_s = run.wall_s,
+                  .verdict = verdict_of(run.status),
+                  .type = name(run.status),
+                  .message = name(run.status),
+                  .text = failure_report(run, {.color = false, .unicode = false})};
+    for (const CheckResult& check : run.checks) {
+      if (!check.passed) one.message += ": " + check.name + printed(" is %g", check.value) + wanted_clause(check);
+    }
+    cases.push_back(std::move(one));
+  }
+  return junit_document(cases, wall_s);
 }
 
 }  // namespace kadans

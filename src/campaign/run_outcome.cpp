@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
+
 namespace kadans {
 namespace {
 
@@ -22,7 +24,8 @@ CheckResult check_of(const Json& json) {
           .passed = json.at("passed"),
           .value = number(json.at("value")),
           .at_s = number(json.at("at_s")),
-          .note = json.value("note", "")};
+          .note = json.value("note", ""),
+          .wanted = json.value("wanted", "")};
 }
 
 EvidenceTrace trace_of(const Json& json) {
@@ -85,8 +88,8 @@ RunOutcome read_run_outcome(const JobOutcome& outcome) {
   if (reported) {
     try {
       run.json = outcome.out.substr(begin, outcome.out.find_last_not_of(" \n") + 1 - begin);
-      read_report(Json::parse(run.json), run);
-    } catch (const Json::exception& error) {
+      read_report(parse_foreign_json(run.json), run);
+    } catch (const std::exception& error) {
       reported = false;
       run.errors.push_back(std::string("the run's report cannot be read: ") + error.what());
       run.json.clear();
@@ -104,11 +107,11 @@ std::string run_json(const RunOutcome& run) {
   nlohmann::ordered_json json{{"scenario", run.scenario}, {"seed", run.seed},     {"status", name(run.status)},
                               {"file", run.file},         {"wall_s", run.wall_s}, {"repeat", run.repeat}};
   if (!run.json.empty()) {
-    json.update(nlohmann::ordered_json::parse(run.json));
+    json.update(parse_foreign_json(run.json));
   } else {
     json["errors"] = run.errors;
   }
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace kadans

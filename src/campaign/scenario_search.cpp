@@ -26,7 +26,7 @@ FoundScenario read_scenario(const fs::path& file) {
 
 bool looks_like_scenario(const fs::path& file) {
   if (file.extension() != ".json") return false;
-  const std::string text = read_text_file(file);
+  const std::string text = read_input_file(file);
   return text.find("scenario.schema.json") != std::string::npos ||
          (text.find("\"duration_s\"") != std::string::npos && text.find("\"robot\"") != std::string::npos &&
           text.find("\"$schema\"") == std::string::npos);

@@ -16,7 +16,8 @@ std::string reasons(const RunOutcome& run) {
   std::string text;
   for (const CheckResult& check : run.checks) {
     if (!check.passed)
-      text += "<div>" + html_text(check.name) + printed(": %.5g at %.3f s", check.value, check.at_s) + "</div>";
+      text += "<div>" + html_text(check.name) + printed(": %.5g at %.3f s", check.value, check.at_s) +
+              html_text(wanted_clause(check)) + "</div>";
   }
   for (const std::string& error : run.errors) text += "<div>" + html_text(error.substr(0, 400)) + "</div>";
   return text;

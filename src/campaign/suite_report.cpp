@@ -45,8 +45,8 @@ std::string checks_of(const RunOutcome& run, const SuiteStyle& style) {
   std::string text;
   for (const CheckResult& check : run.checks) {
     if (check.passed) continue;
-    text += "    " + painted(style, "31", check.name) + printed(": %g at %.3f s", check.value, check.at_s);
-    text += (check.note.empty() ? "" : ", " + check.note) + '\n';
+    text += "    " + painted(style, "31", check.name) + printed(": %g at %.3f s", check.value, check.at_s) +
+            wanted_clause(check) + '\n';
     for (const EvidenceTrace& trace : run.traces) {
       if (trace.check == check.name && !trace.values.empty()) text += plotted(trace, style);
     }

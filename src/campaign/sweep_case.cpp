@@ -2,6 +2,7 @@
 
 #include "kadans/campaign/content_hash.h"
 #include "kadans/signal/random.h"
+#include "kadans/signal/shell_word.h"
 
 namespace kadans {
 namespace {
@@ -50,11 +51,6 @@ std::vector<Points> points_of(const SweepPlan& plan, const std::vector<SweepSubj
   return all;
 }
 
-// A pattern is for the program, not for the shell.
-std::string in_shell(const std::string& argument) {
-  return argument.find_first_of("* '\"$") == std::string::npos ? argument : "'" + argument + "'";
-}
-
 }  // namespace
 
 // Case i: scenarios go round fastest, then the points, then the rounds over all points.
@@ -91,7 +87,8 @@ std::vector<std::string> run_arguments(const SweepCase& one, const std::string& 
 
 std::string repeat_command(const SweepCase& one, const SweepSubject& subject) {
   std::string command = "kadans";
-  for (const std::string& argument : run_arguments(one, subject.scenario.written)) command += " " + in_shell(argument);
+  for (const std::string& argument : run_arguments(one, subject.scenario.written))
+    command += " " + shell_word(argument);
   return command;
 }
 

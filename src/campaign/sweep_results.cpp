@@ -7,6 +7,7 @@
 
 #include "kadans/campaign/content_hash.h"
 #include "kadans/campaign/durable_file.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/json_value.h"
 
 namespace kadans {
@@ -58,7 +59,7 @@ SweepManifest read_manifest(const fs::path& folder) {
   if (!fs::exists(file))
     throw InputError({.file = folder.string(), .message = "holds no results of a sweep: there is no sweep.json"});
   try {
-    return manifest_from(Json::parse(read_text_file(file)));
+    return manifest_from(parse_foreign_json(read_input_file(file), file.string()));
   } catch (const Json::exception& error) {
     throw InputError({.file = file.string(), .message = std::string("cannot be read: ") + error.what()});
   }
@@ -142,7 +143,7 @@ SweepResults::SweepResults(fs::path folder, const SweepManifest& manifest)
            .message = "holds the results of another sweep: " + other + "; name another folder with --out"});
     return;
   }
-  write_durably(folder_ / manifest_file, to_json(manifest_).dump(2) + "\n");
+  write_durably(folder_ / manifest_file, json_text(to_json(manifest_), 2) + "\n");
 }
 
 SweepResults::SweepResults(fs::path folder) : folder_(std::move(folder)), manifest_(read_manifest(folder_)) {}
@@ -157,21 +158,21 @@ fs::path SweepResults::file_of(const SweepCase& one) const {
 bool SweepResults::has(const SweepCase& one) const {
   const fs::path file = file_of(one);
   if (!fs::exists(file)) return false;
-  const Json json = Json::parse(read_text_file(file), nullptr, false);
-  return !json.is_object() || json.value("status", "") != name(RunStatus::timed_out);
+  const std::optional<Json> json = read_foreign_json(read_input_file(file));
+  return !json || !json->is_object() || json->value("status", "") != name(RunStatus::timed_out);
 }
 
 void SweepResults::store(const SweepCase& one, const std::string& json) const { write_durably(file_of(one), json); }
 
 std::string case_json(const SweepManifest& manifest, const SweepCase& one, const RunOutcome& run) {
   Json json{{"plan", manifest.plan}, {"case", one.index}, {"id", one.id}};
-  json.update(Json::parse(run_json(run)));
+  json.update(parse_foreign_json(run_json(run)));
   json.erase("evidence");
   if (!json.contains("quantities")) {  // the run left no report
     json["quantities"] = Json::object();
     for (const QuantityValue& setting : one.quantities) json["quantities"][setting.name] = setting.value;
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 std::vector<CaseRow> SweepResults::rows() const {
@@ -181,7 +182,7 @@ std::vector<CaseRow> SweepResults::rows() const {
     const fs::path& file = entry.path();
     if (file.filename().string().starts_with('.') || file.extension() != ".json") continue;
     try {
-      const Json json = Json::parse(read_text_file(file));
+      const Json json = parse_foreign_json(read_input_file(file), file.string());
       if (json.at("plan") != manifest_.plan)
         throw InputError({.file = file.string(), .message = "is a result of another sweep than sweep.json beside it"});
       rows.push_back(row_from(json));
@@ -200,7 +201,7 @@ std::string difference(const SweepManifest& a, const SweepManifest& b) {
   std::string text;
   for (const auto& [key, value] : one.items()) {
     if (key == "doc" || value == other.at(key)) continue;
-    text += (text.empty() ? "" : ", ") + key + " " + value.dump() + " and " + other.at(key).dump();
+    text += (text.empty() ? "" : ", ") + key + " " + json_text(value) + " and " + json_text(other.at(key));
   }
   return text;
 }

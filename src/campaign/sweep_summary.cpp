@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kadans/campaign/statistics.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/number_text.h"
 
 namespace kadans {
@@ -154,7 +155,7 @@ std::string sweep_json(const MergedSweep& sweep) {
   json["first_try"] = nullptr;
   if (!sweep.manifest.first_try.empty()) json["first_try"] = of.first_try;
   json["median_s"] = of.median_s;  // NaN becomes null
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace kadans

@@ -82,7 +82,7 @@ BasedJson parse(std::string_view text, const std::string& file, std::size_t dept
     problems.add(place, "based_on: more than " + std::to_string(depth) + " files, or one that is based on itself");
   const std::filesystem::path base = resolve_file(given->value.text, place, key, problems);
   problems.throw_if_any();
-  BasedJson whole = parse(read_text_file(base), base.string(), depth + 1);
+  BasedJson whole = parse(read_input_file(base), base.string(), depth + 1);
   stand_at(place, whole.value);
   merge(whole.value, json.value);
   whole.bases.insert(whole.bases.begin(), base);
@@ -96,7 +96,7 @@ BasedJson parse_based_json(std::string_view text, const std::string& file) { ret
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
   std::vector<std::filesystem::path> files{file};
   try {
-    for (const auto& base : parse_based_json(read_text_file(file), file.string()).bases) files.push_back(base);
+    for (const auto& base : parse_based_json(read_input_file(file), file.string()).bases) files.push_back(base);
   } catch (const InputError&) {
     return files;
   }

@@ -45,7 +45,7 @@ void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, P
 std::vector<MetricConfig> read_metrics(const std::string& file) {
   std::vector<MetricConfig> metrics;
   Problems problems(file);
-  const JsonValue json = parse_based_json(read_text_file(file), file).value;
+  const JsonValue json = parse_based_json(read_input_file(file), file).value;
   const JsonMember* const member = json.find("metrics");
   if (member == nullptr) problems.add(json.place, "there are no metrics in this file");
   JsonValue only{.kind = JsonValue::Kind::object, .place = json.place};

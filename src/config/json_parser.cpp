@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kadans/config/json_value.h"
+#include "kadans/signal/utf8.h"
 #include "text_cursor.h"
 
 namespace kadans {

@@ -18,6 +18,8 @@ void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
   f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
   f.number("behavior_period_s", engine.behavior_period_s, {1e-5, 10, "s"},
            "period of the behavior engine, a whole multiple of control_period_s");
+  f.number("behavior_time_max_s", engine.behavior_time_max_s, {0, 10, "s"},
+           "wall-clock time that one behavior may take in one tick of kadans run; 0: half of behavior_period_s");
   f.integer("commands_per_tick_max", engine.commands_per_tick_max, {max_transaction - 1, command_capacity},
             "commands applied in one control tick at most; the largest transaction must pass");
   f.number("command_age_max_s", engine.command_age_max_s, {1e-3, 60, "s"}, "older commands are refused");
@@ -32,7 +34,8 @@ void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
   f.string("pose", config.safe.pose, "the pose", Need::required);
   f.number("after_s", config.safe.after_s, {0, 60, "s"}, "how long the last set-points are held before");
   f.number("time_s", config.safe.time_s, {0.01, 60, "s"}, "time to go there");
-  if (!f.reading() || config.safe.pose.empty()) return;
+  if (!f.reading() || config.safe.pose.empty() || config.model.joints.empty())
+    return;  // without a model no pose is read
   const std::vector<std::string> names = names_of(config.poses);
   if (std::find(names.begin(), names.end(), config.safe.pose) != names.end()) return;
   problems.add_unknown(f.place("pose"), "pose", config.safe.pose, names);
@@ -112,11 +115,11 @@ RobotConfig read_robot_config_text(const std::string& text, const std::string& f
 }
 
 RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types) {
-  return read_robot_config_text(read_text_file(file), file.string(), object_types);
+  return read_robot_config_text(read_input_file(file), file.string(), object_types);
 }
 
 std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot) {
-  const JsonValue json = parse_based_json(read_text_file(robot), robot.string()).value;
+  const JsonValue json = parse_based_json(read_input_file(robot), robot.string()).value;
   const JsonMember* list = json.find("plugins");
   std::vector<PluginFile> files;
   if (list == nullptr) return files;

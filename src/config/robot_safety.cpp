@@ -18,7 +18,10 @@ std::vector<std::string> level_names() {
 
 std::vector<std::string> fault_names() {
   std::vector<std::string> names;
-  for (std::size_t code = 1; code < fault_codes; ++code) names.emplace_back(name(static_cast<FaultCode>(code)));
+  for (std::size_t code = 1; code < fault_codes; ++code) {
+    if (static_cast<FaultCode>(code) != FaultCode::emergency_stop)  // what follows from it is no matter of taste
+      names.emplace_back(name(static_cast<FaultCode>(code)));
+  }
   return names;
 }
 

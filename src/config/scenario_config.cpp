@@ -99,6 +99,10 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
 
 }  // namespace
 
+bool PluginGate::lets_in(const std::filesystem::path& file) const {
+  return !closed || std::ranges::find(let_in, std::filesystem::absolute(file).lexically_normal()) != let_in.end();
+}
+
 PlayFolders folders_of(const ScenarioConfig& scenario) {
   return {scenario.file, std::filesystem::path(scenario.robot).parent_path().filename().string()};
 }
@@ -115,7 +119,7 @@ ScenarioConfig read_scenario_config_text(const std::string& text, const std::str
 }
 
 ScenarioConfig read_scenario_config(const std::filesystem::path& file) {
-  return read_scenario_config_text(read_text_file(file), file.string());
+  return read_scenario_config_text(read_input_file(file), file.string());
 }
 
 FieldInfo describe_scenario_config() {

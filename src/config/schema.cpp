@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/robot_config.h"
 #include "kadans/config/scenario_config.h"
 #include "kadans/config/sweep_plan.h"
@@ -98,7 +99,7 @@ std::string json_schema(const FieldInfo& fields, const std::string& title) {
   schema["$schema"] = "http://json-schema.org/draft-07/schema#";
   schema["title"] = title;
   schema.update(schema_of(fields));
-  return schema.dump(2) + "\n";
+  return json_text(schema, 2) + "\n";
 }
 
 std::string robot_schema() { return json_schema(describe_robot_config(), "Configuration of a robot"); }

@@ -63,7 +63,7 @@ SweepPlan read_sweep_plan_text(const std::string& text, const std::string& file)
 }
 
 SweepPlan read_sweep_plan(const std::filesystem::path& file) {
-  return read_sweep_plan_text(read_text_file(file), file.string());
+  return read_sweep_plan_text(read_input_file(file), file.string());
 }
 
 FieldInfo describe_sweep_plan() {

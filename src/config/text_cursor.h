@@ -37,7 +37,4 @@ class TextCursor {
   TextPlace place_{1, 1};
 };
 
-// Where the text stops being UTF-8 (RFC 3629: shortest forms, no surrogates); npos when it is UTF-8 throughout.
-std::size_t find_invalid_utf8(std::string_view text) noexcept;
-
 }  // namespace kadans

@@ -63,7 +63,7 @@ TunePlan read_tune_plan_text(const std::string& text, const std::string& file) {
 }
 
 TunePlan read_tune_plan(const std::filesystem::path& file) {
-  return read_tune_plan_text(read_text_file(file), file.string());
+  return read_tune_plan_text(read_input_file(file), file.string());
 }
 
 FieldInfo describe_tune_plan() {

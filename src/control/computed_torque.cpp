@@ -121,7 +121,8 @@ double ComputedTorque::settle(Part& part, double law_Nm, bool known, double dt_s
 }
 
 void ComputedTorque::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
-  const ModelData& model = data_.read();
+  const auto newest = data_.read();
+  const ModelData& model = *newest;
   const bool known = model.time_ns >= started_ns_;
   model_age_s_ = 1e-9 * static_cast<double>(input.time_ns - (known ? model.time_ns : started_ns_));
   std::array<double, max_joints> acceleration_rad_s2{};

@@ -184,7 +184,8 @@ void Gaze::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   if (!located_) look_ahead(input.joints);
   move_target(dt_s);
   if (located_) aim_.publish(aimed_);
-  const Rates& rates = rates_.read();
+  const auto newest = rates_.read();
+  const Rates& rates = *newest;
   const double age_s = 1e-9 * static_cast<double>(input.time_ns - rates.time_ns);
   const bool led = rates.activation == aimed_.activation && age_s <= rates_hold_s;
   left_rad_ = rates.solution.left_rad;
@@ -240,7 +241,8 @@ void Gaze::integrate(Part& part, double velocity_rad_s, double position_rad, dou
 
 void Gaze::update(const Snapshot& snapshot) {
   for (std::size_t i = 0; i < seen_rad_.size(); ++i) seen_rad_[i] = snapshot.joints.joints[i].position_rad;
-  const Aim& aim = aim_.read();
+  const auto newest = aim_.read();
+  const Aim& aim = *newest;
   solver_.settings() = aim.settings;
   for (std::size_t i = 0; i < solver_.size(); ++i) solver_.law(i) = aim.laws[i];
   if (aim.activation == 0 || !solver_.solve(seen_rad_, aim.target, draft_.solution)) return;

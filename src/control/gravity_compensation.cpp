@@ -62,7 +62,8 @@ void GravityCompensation::start(const ControlInput& input) noexcept {
 }
 
 void GravityCompensation::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
-  const GravityData& data = data_.read();
+  const auto newest = data_.read();
+  const GravityData& data = *newest;
   const bool known = data.time_ns >= started_ns_;
   model_age_s_ = 1e-9 * static_cast<double>(input.time_ns - (known ? data.time_ns : started_ns_));
   const double most = gain_rate_per_s * input.dt_s;

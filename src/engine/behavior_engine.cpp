@@ -3,13 +3,15 @@
 namespace kadans {
 
 void BehaviorEngine::prepare() noexcept {
-  if (host_ != nullptr) host_->prepare(exchange_.snapshot.read(0));
+  if (host_ == nullptr) return;
+  const auto snapshot = exchange_.snapshot.read(0);
+  host_->prepare(*snapshot);
 }
 
 void BehaviorEngine::tick(std::int64_t time_ns) {
-  const Snapshot& snapshot = exchange_.snapshot.read(0);
-  sets_.update(tick_, snapshot);
-  if (host_ != nullptr) host_->tick(snapshot, commands_);
+  const auto snapshot = exchange_.snapshot.read(0);
+  sets_.update(tick_, *snapshot);
+  if (host_ != nullptr) host_->tick(*snapshot, commands_);
   exchange_.heartbeat.publish(time_ns);
   ++tick_;
 }

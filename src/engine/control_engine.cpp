@@ -24,7 +24,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
   safety_.check({.tick = tick_,
                  .dt_s = dt_s,
                  .missed_ticks = missed,
-                 .heartbeat_age_s = 1e-9 * static_cast<double>(time_ns - exchange_.heartbeat.read()),
+                 .heartbeat_age_s = 1e-9 * static_cast<double>(time_ns - exchange_.heartbeat.newest()),
                  .sensors = sensors_,
                  .joints = snapshot_.joints,
                  .base = snapshot_.status.base,
@@ -93,7 +93,7 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   inbox_.fill(snapshot_);
   sets_.fill(snapshot_);
   inbox_.motions().fill(snapshot_);
-  snapshot_.joystick = exchange_.joystick.read();
+  snapshot_.joystick = exchange_.joystick.newest();
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);
   if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);

@@ -4,29 +4,12 @@
 #include <array>
 #include <cstdio>
 
+#include "kadans/signal/utf8.h"
+
 namespace kadans {
 namespace {
 
 bool continues(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
-
-// Bytes of the UTF-8 character that starts the text, 0 when it is not one (RFC 3629: no overlong forms, no surrogates).
-std::size_t character_size(std::string_view text) noexcept {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  if (first < 0x80U) return 1;
-  const std::size_t size = first >= 0xC2U && first < 0xE0U   ? 2
-                           : (first >> 4U) == 0xEU           ? 3
-                           : first >= 0xF0U && first < 0xF5U ? 4
-                                                             : 0;
-  if (size == 0 || size > text.size()) return 0;
-  for (std::size_t i = 1; i < size; ++i) {
-    if (!continues(text[i])) return 0;
-  }
-  const unsigned second = byte(1);
-  if ((first == 0xE0U && second < 0xA0U) || (first == 0xEDU && second >= 0xA0U)) return 0;
-  if ((first == 0xF0U && second < 0x90U) || (first == 0xF4U && second >= 0x90U)) return 0;
-  return size;
-}
 
 bool control(char c) noexcept {
   const auto byte = static_cast<unsigned char>(c);
@@ -60,7 +43,7 @@ std::optional<TextProblem> find_non_text(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     if (text[at] == '\0') return TextProblem{at, "a NUL byte: this is not a text file"};
     if (control(text[at])) return TextProblem{at, "control character " + hex(text[at]) + " in the text"};
-    const std::size_t size = character_size(text.substr(at));
+    const std::size_t size = utf8_length(text, at);
     if (size == 0) return TextProblem{at, "byte " + hex(text[at]) + " is not UTF-8: save the file as UTF-8 text"};
     at += size;
   }

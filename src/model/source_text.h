@@ -7,11 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace kadans {
+#include "kadans/signal/text_place.h"
 
-struct TextPlace {
-  int line = 0, column = 0;  // 1-based; a column is a character, not a byte
-};
+namespace kadans {
 
 struct TextProblem {
   std::size_t at = 0;  // byte

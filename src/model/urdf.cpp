@@ -2,10 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/input_file.h"
 #include "urdf_checks.h"
 #include "urdf_dom.h"
 #include "urdf_grammar.h"
@@ -25,20 +24,6 @@ void check_size(const std::string& file, std::uintmax_t size) {
   if (size > max_size) fail(file, "the file has " + std::to_string(size) + " bytes, a URDF may have 16 MiB");
 }
 
-std::string read_file(const std::string& file) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (status.type() == std::filesystem::file_type::not_found) fail(file, "there is no such file");
-  if (std::filesystem::is_directory(status)) fail(file, "this is a folder, a URDF file was expected");
-  if (!std::filesystem::is_regular_file(status)) fail(file, "this is not a file that can be read");
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!error) check_size(file, size);
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.good() && !in.eof()) fail(file, "the file cannot be read");
-  return text;
-}
-
 // Our own pass finds what is wrong and where; urdfdom then reads what is known to be right, and may still object.
 urdf::ModelInterfaceSharedPtr checked_dom(UrdfDocument& document) {
   const UrdfDom dom = parse_with_urdfdom(document.reprinted());
@@ -50,7 +35,7 @@ urdf::ModelInterfaceSharedPtr checked_dom(UrdfDocument& document) {
 }  // namespace
 
 RobotModel read_urdf(const std::string& file, const UrdfOptions& options) {
-  return read_urdf_text(read_file(file), file, options);
+  return read_urdf_text(read_input_file(file, max_size), file, options);
 }
 
 RobotModel read_urdf_text(const std::string& text, const std::string& file, const UrdfOptions& options) {

@@ -2,11 +2,7 @@
 
 namespace kadans {
 
-static_assert(std::atomic<SafetyLevel>::is_always_lock_free);
-
 bool ControlTask::beat(const Beat& beat) {
-  const SafetyLevel wanted = wanted_.load(std::memory_order_relaxed);
-  if (wanted > SafetyLevel::normal) engine_.safety().latch(wanted);
   const std::int64_t began_ns = wall_.now_ns();
   engine_.tick(beat.woke_ns, beat.dt_s, beat.missed);
   cost_.add(wall_.now_ns() - began_ns);

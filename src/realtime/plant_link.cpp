@@ -12,7 +12,8 @@ LinkedPlant::LinkedPlant(PlantExchange& exchange, ModelPlant& model) : exchange_
 }
 
 bool PlantTask::beat(const Beat& beat) {
-  model_.write(exchange_.actuation.read());
+  const auto actuation = exchange_.actuation.read();
+  model_.write(*actuation);
   const std::uint32_t steps = std::min(1 + beat.missed, catch_up_max);
   lost_periods_.add(1 + std::uint64_t{beat.missed} - steps);
   for (std::uint32_t i = 0; i < steps; ++i) {  // a control tick may come between any two

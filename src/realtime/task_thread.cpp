@@ -97,6 +97,17 @@ void TaskThread::join() noexcept {
   pthread_join(thread_, nullptr);
 }
 
+bool TaskThread::join_until(std::int64_t monotonic_ns) noexcept {
+  if (!joinable_) return true;
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  timespec end{};
+  end.tv_sec = static_cast<std::time_t>(monotonic_ns / second_ns);
+  end.tv_nsec = static_cast<long>(monotonic_ns % second_ns);
+  if (pthread_clockjoin_np(thread_, nullptr, CLOCK_MONOTONIC, &end) != 0) return false;
+  joinable_ = false;
+  return true;
+}
+
 void* TaskThread::enter(void* self) {
   static_cast<TaskThread*>(self)->run();
   return nullptr;
@@ -113,6 +124,7 @@ void TaskThread::move_to_cpu() noexcept {
 void TaskThread::run() noexcept {
   move_to_cpu();
   touch_stack();
+  begun_.store(true, std::memory_order_relaxed);
   wait_.begin();
   try {
     loop();

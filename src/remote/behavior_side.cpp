@@ -39,7 +39,7 @@ void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from,
       order->answer.done = true;
       return from.answer(std::move(order));
     }
-    Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns};
+    Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns, .asked_tick = p_.engine.ticks()};
     try {
       begin(pending);
     } catch (...) {
@@ -64,14 +64,12 @@ bool BehaviorSide::carry_out_now(const Order& order, Answer& answer) {
       return true;
     case Order::Kind::changes:
       answer.changes = tuning_.unsaved();
+      answer.set = tuning_.set();
       return true;
     case Order::Kind::saved:
       tuning_.saved(order.changes);
       for (const ParameterChange& change : order.changes)
         say(time_ns_, order.who, "saved " + change.name + " = " + number_text(change.now));
-      return true;
-    case Order::Kind::note:
-      say(time_ns_, order.who, order.text);
       return true;
     case Order::Kind::complete: {
       Console::Completion found = console_of(order).complete(order.text);
@@ -104,7 +102,7 @@ void BehaviorSide::begin(Pending& pending) {
     case Order::Kind::undo: {
       const ParameterChange* last = tuning_.newest();
       if (last == nullptr) throw InputError({.message = "there is nothing to undo"});
-      return begin_change(pending, {last->name, last->now, last->before});
+      return begin_change(pending, {last->name, last->now, last->before, last->chunk});
     }
     case Order::Kind::line:
       p_.instance.want_console_row(true);
@@ -115,12 +113,18 @@ void BehaviorSide::begin(Pending& pending) {
   }
 }
 
+bool BehaviorSide::waits_for_tick(const Pending& pending) const noexcept {
+  return pending.sequence == 0 && pending.order->order.kind != Order::Kind::line &&
+         p_.engine.ticks() == pending.asked_tick;
+}
+
 void BehaviorSide::settle(std::int64_t time_ns) {
   if (pending_.empty()) return;
-  const Snapshot& snapshot = p_.exchange.snapshot.read(0);
-  lines_ = p_.echo.take();
+  const auto snapshot = p_.exchange.snapshot.read(0);
+  const bool ticked = std::ranges::none_of(pending_, [this](const Pending& one) { return waits_for_tick(one); });
+  if (ticked) lines_ = p_.echo.take();
   std::erase_if(pending_, [&](Pending& pending) {
-    if (!settled(pending, snapshot, time_ns)) return false;
+    if (!settled(pending, *snapshot, time_ns)) return false;
     pending.from->answer(std::move(pending.order));
     return true;
   });
@@ -131,9 +135,14 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
   Answer& answer = pending.order->answer;
   const bool late = time_ns - pending.asked_ns > control_answers_in_ns;
   if (order.kind == Order::Kind::line) {
-    if (p_.instance.console_row().values.empty() && !late) return false;
+    const auto row = p_.instance.console_row();
+    if (row->values.empty() && !late) return false;
     evaluate(order, answer);
     return true;
+  }
+  if (waits_for_tick(pending)) {
+    if (late) answer.text = "the behaviors did not tick within a second";
+    return late;
   }
   if (pending.sequence == 0) {
     answer.done = true;

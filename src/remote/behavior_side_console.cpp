@@ -8,6 +8,7 @@ namespace {
 constexpr ScriptLimits console_limits{.tick_instructions = 200'000,
                                       .load_instructions = 5'000'000,
                                       .tick_wall_ns = 20'000'000,
+                                      .load_wall_ns = 100'000'000,
                                       .memory_bytes = std::size_t{4} << 20};
 
 }  // namespace
@@ -31,9 +32,9 @@ void BehaviorSide::evaluate(const Order& order, Answer& answer) {
   parameters_.resize(table.size());
   for (ParameterId id = 0; id < table.size(); ++id) parameters_[id] = table.newest(id);
   Console& console = console_of(order);
-  const Snapshot& snapshot = p_.exchange.snapshot.read(0);
-  const Console::Reply reply =
-      console.evaluate(order.text, {snapshot, p_.instance.console_row().values, parameters_, p_.engine.sender()});
+  const auto snapshot = p_.exchange.snapshot.read(0);
+  const auto row = p_.instance.console_row();
+  const Console::Reply reply = console.evaluate(order.text, {*snapshot, row->values, parameters_, p_.engine.sender()});
   answer.done = !reply.error && reply.run_s == 0;
   answer.text = reply.run_s > 0 ? ":run is for a simulation that waits; time goes on by itself here" : reply.text;
   answer.incomplete = reply.incomplete;

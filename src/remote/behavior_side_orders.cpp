@@ -82,6 +82,11 @@ void BehaviorSide::report_process(Answer& answer) const {
   }
 }
 
+bool BehaviorSide::stopped() const {
+  const auto snapshot = p_.exchange.snapshot.read(0);
+  return snapshot->status.safety.stopped;
+}
+
 // To the behaviors; the next tick carries it out.
 void BehaviorSide::give(const Order& order) {
   const PlayOrder::Kind kind = kind_of(order.kind);
@@ -93,9 +98,12 @@ void BehaviorSide::give(const Order& order) {
     if (p_.host != nullptr) return;
     throw InputError({.message = "behaviors play in a process of their own: name the one to be read again"});
   }
+  const bool plays = kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace;
+  if (plays && stopped())
+    throw InputError(
+        {.message = "the emergency stop keeps the robot down: clear the faults first (kadans ctl fault clear)"});
   PlayOrder given{.kind = kind, .behavior = {kind == PlayOrder::Kind::reload ? order.text : "", {}}};
-  if (kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace)
-    given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
+  if (plays) given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
   orders().order(given);
   p_.echo.listen();
 }
@@ -157,7 +165,7 @@ ParameterChange BehaviorSide::change_of(const Order& order) const {
     for (const Pending& other : pending_) {
       if (other.change.name == order.text) before = other.change.now;
     }
-    return {order.text, before, order.value};
+    return {order.text, before, order.value, {}};
   }
   std::vector<std::string> names = table.names();
   for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
@@ -166,7 +174,7 @@ ParameterChange BehaviorSide::change_of(const Order& order) const {
       names.push_back(behavior.name() + "." + own.name);
       if (names.back() != order.text) continue;
       check_range(order.text, own.unit, order.value, own.min, own.max);
-      return {order.text, own.value, order.value};
+      return {order.text, own.value, order.value, own.chunk};
     }
   }
   if (p_.process != nullptr) check_is_no_behavior(p_.process->names(), order.text);
@@ -182,7 +190,9 @@ void BehaviorSide::begin_change(Pending& pending, const ParameterChange& change)
   for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
     Behavior& behavior = p_.host->behavior(i);
     const std::string own = behavior.name() + ".";
-    if (change.name.starts_with(own) && behavior.set_parameter(change.name.substr(own.size()), change.now)) return;
+    if (!change.name.starts_with(own) || !behavior.set_parameter(change.name.substr(own.size()), change.now)) continue;
+    pending.lasting = true;
+    return;
   }
   throw InputError({.message = change.name + " is not there any more"});
 }

@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<mode_t, 3> modes{0666, 0660, 0600};
+constexpr mode_t lock_mode = 0600;
 constexpr int backlog = 64;
 
 fs::path of_session() {
@@ -29,7 +30,19 @@ fs::path of_session() {
 }
 
 fs::path of_system() { return "/run/kadans"; }
-fs::path of_user() { return "/tmp/kadans-" + std::to_string(getuid()); }
+
+bool is_of_others(const fs::path& folder) {
+  struct stat found {};
+  return lstat(folder.c_str(), &found) == 0 && (!S_ISDIR(found.st_mode) || found.st_uid != getuid());
+}
+
+// In /tmp anybody can take our name before us; then a folder at home serves.
+fs::path of_user() {
+  const fs::path usual = "/tmp/kadans-" + std::to_string(getuid());
+  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): before any thread is started
+  if (!is_of_others(usual) || home == nullptr || *home == '\0') return usual;
+  return fs::path(home) / ".cache/kadans";
+}
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw InputError({.file = path.string(), .message = what});
@@ -93,8 +106,10 @@ CtlSockets::~CtlSockets() { close_all(); }
 
 void CtlSockets::lock() {
   const fs::path file = folder_ / "lock";
-  lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  // Who may read it may lock it.
+  lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, lock_mode);
   if (lock_ < 0) fail_as_system(file, "cannot be opened");
+  if (fchmod(lock_, lock_mode) != 0) fail_as_system(file, "cannot be given its mode");
   if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
   const int why = errno;
   close(lock_);

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/problems.h"
 #include "kadans/control/set_partition.h"
 
@@ -89,9 +90,7 @@ Json record_json(const RecordStatus& record) {
 
 }  // namespace
 
-std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-std::string refusal(const std::string& why) { return line_of({{"ok", false}, {"error", why}}); }
+std::string refusal(const std::string& why) { return json_text({{"ok", false}, {"error", why}}); }
 
 Json behaviors_json(const Answer& report) {
   Json all = Json::array();
@@ -109,6 +108,7 @@ Json fault_json(const Fault& fault, const RobotModel& model) {
   Json json{{"code", name(fault.code)}, {"tick", fault.tick}, {"text", fault_text(fault, model)}};
   put_finite(json, "value", fault.value);
   put_finite(json, "limit", fault.limit);
+  if (fault.words[0] != '\0') json["words"] = fault.words.data();
   if (fault.joint < model.joints.size()) json["joint"] = model.joints[fault.joint].name;
   return json;
 }
@@ -120,7 +120,8 @@ Json status_json(const Instance& instance, const InstanceStatus& status) {
   for (std::uint32_t set = 0; set < catalog.sets.size(); ++set) {
     if ((status.control_sets & set_bit(set)) != 0) sets.push_back(catalog.sets[set].name);
   }
-  Json safety{{"level", name(status.safety.level)}, {"faults", status.safety.fault_count}};
+  Json safety{
+      {"level", name(status.safety.level)}, {"faults", status.safety.fault_count}, {"stopped", status.safety.stopped}};
   if (status.safety.fault_count > 0) safety["first"] = fault_json(status.safety.first_fault, *catalog.model);
   return {{"ok", true},
           {"name", facts.name},

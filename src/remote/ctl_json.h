@@ -5,13 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/remote/instance.h"
 
 namespace kadans {
 
 using Json = nlohmann::ordered_json;
 
-std::string line_of(const Json& json);  // without a newline, whatever bytes the texts hold
 std::string refusal(const std::string& why);
 
 Json behaviors_json(const Answer& report);

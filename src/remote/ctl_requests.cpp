@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ctl_json.h"
 #include "ctl_verbs.h"
@@ -29,6 +30,8 @@ CtlRequests::~CtlRequests() = default;
 std::string CtlRequests::take(CtlSession& session, const std::string& line) {
   try {
     const CtlRequest request = read_request(line, session.role());
+    if (session.leaves && std::string_view(request.verb->name) != "estop")
+      return refusal("orders expire with their client");
     if (known_here(request)) return told(session, request, {});
     return request.verb->order ? send(session, request) : at_once(session, request);
   } catch (const std::exception& error) {
@@ -55,10 +58,9 @@ std::string CtlRequests::at_once(CtlSession& session, const CtlRequest& request)
   if (verb == "unwatch") {
     session.watched.clear();
   } else {  // estop
-    instance_.stop_now();
-    (void)port_.send({.kind = Order::Kind::note, .text = "asked for the emergency stop", .who = session.who()});
+    instance_.stop_now(session.who());
   }
-  return line_of({{"ok", true}});
+  return json_text({{"ok", true}});
 }
 
 std::string CtlRequests::send(CtlSession& session, const CtlRequest& request) {
@@ -77,8 +79,9 @@ std::string CtlRequests::send(CtlSession& session, const CtlRequest& request) {
 
 std::string CtlRequests::answered(CtlSession& session, const Answer* answer) {
   const CtlRequest request = asked_.at(session.number());
-  session.order = 0;
+  const std::uint64_t order = std::exchange(session.order, 0);
   try {
+    if (answer == nullptr) port_.withdraw(order);
     if (answer == nullptr && !reports(session))
       return refusal("the behavior thread does not answer; estop works without it");
     if (answer == nullptr) {
@@ -103,7 +106,7 @@ std::string CtlRequests::told(const CtlSession& session, const CtlRequest& reque
   } else if (verb == "get") {
     return get(request.text("name"), answer);
   } else if (verb == "save") {
-    return save(session, answer);
+    return save(session, request.text("preset"), answer);
   } else if (verb == "set" || verb == "undo") {
     json.update(change_json(answer.changes.at(0)));
   } else if (verb == "complete") {
@@ -117,7 +120,7 @@ std::string CtlRequests::told(const CtlSession& session, const CtlRequest& reque
   } else if (!answer.text.empty()) {
     json["text"] = answer.text;
   }
-  return line_of(json);
+  return json_text(json);
 }
 
 std::string CtlRequests::status(const Answer* report) {
@@ -130,39 +133,44 @@ std::string CtlRequests::status(const Answer* report) {
     json["paused"] = report->paused;
     json["behaviors"] = behaviors_json(*report);
   }
-  return line_of(json);
+  return json_text(json);
 }
 
 std::string CtlRequests::get(const std::string& name, const Answer& report) {
   const Catalog& catalog = instance_.catalog();
   if (const auto id = catalog.signals.find(name)) {
-    const LatestRow::View row = port_.signals();
-    if (row.values.empty()) throw InputError({.message = "no tick was seen yet"});
-    const double value = row.values[*id];
+    const auto row = port_.signals();
+    if (row->values.empty()) throw InputError({.message = "no tick was seen yet"});
+    const double value = row->values[*id];
     const Signal& info = catalog.signals.info(*id);
     Json json{{"ok", true},        {"kind", "signal"}, {"name", name},
-              {"unit", info.unit}, {"doc", info.doc},  {"time_s", 1e-9 * static_cast<double>(row.time_ns)}};
+              {"unit", info.unit}, {"doc", info.doc},  {"time_s", 1e-9 * static_cast<double>(row->time_ns)}};
     json["value"] = std::isfinite(value) ? Json(value) : Json(nullptr);
-    return line_of(json);
+    return json_text(json);
   }
   std::vector<std::string> names = catalog.signals.names();
   for (Json& one : list_json("parameters", instance_, port_.status(), report)) {
     names.push_back(one["name"].get<std::string>());
     if (names.back() != name) continue;
     one.update({{"ok", true}, {"kind", "parameter"}});
-    return line_of(one);
+    return json_text(one);
   }
   throw InputError({.message = unknown_name("parameter or signal", name, names)});
 }
 
 // The file is written here, not on the behavior thread, which is told then.
-std::string CtlRequests::save(const CtlSession& session, const Answer& answer) {
+std::string CtlRequests::save(const CtlSession& session, const std::string& preset, const Answer& answer) {
   Json json{{"ok", true}, {"file", instance_.configuration().file().string()}, {"saved", Json::array()}};
-  if (answer.changes.empty()) return line_of(json);
-  instance_.configuration().save(answer.changes, instance_.catalog());
+  if (answer.changes.empty() && preset.empty()) return json_text(json);
+  const std::vector<PresetOverride> overridden =
+      instance_.configuration().save(answer.changes, instance_.catalog(), {.preset = preset, .values = answer.set});
   for (const ParameterChange& change : answer.changes) json["saved"].push_back(change_json(change));
+  if (!preset.empty()) json["preset"] = preset;
+  json["overridden"] = Json::array();
+  for (const PresetOverride& one : overridden)
+    json["overridden"].push_back({{"name", one.name}, {"preset", one.preset}, {"value", one.value}});
   (void)port_.send({.kind = Order::Kind::saved, .who = session.who(), .changes = answer.changes});
-  return line_of(json);
+  return json_text(json);
 }
 
 std::string CtlRequests::watch(CtlSession& session, const CtlRequest& request) {
@@ -183,17 +191,17 @@ std::string CtlRequests::watch(CtlSession& session, const CtlRequest& request) {
   session.every_ticks = static_cast<std::uint32_t>(std::max(1.0, std::round(std::min(every, 1e9))));
   session.next_tick = 0;
   if (session.every_ticks < row_every_ticks) port_.want_signals(1);
-  return line_of({{"ok", true}, {"signals", std::move(signals)}});
+  return json_text({{"ok", true}, {"signals", std::move(signals)}});
 }
 
 std::string CtlRequests::sample(CtlSession& session) {
-  const LatestRow::View row = port_.signals();
-  if (row.values.empty() || row.tick < session.next_tick) return {};
-  session.next_tick = row.tick + session.every_ticks;
+  const auto row = port_.signals();
+  if (row->values.empty() || row->tick < session.next_tick) return {};
+  session.next_tick = row->tick + session.every_ticks;
   Json values = Json::array();
   for (const SignalId id : session.watched)
-    values.push_back(std::isfinite(row.values[id]) ? Json(row.values[id]) : Json(nullptr));
-  return line_of({{"tick", row.tick}, {"time_s", 1e-9 * static_cast<double>(row.time_ns)}, {"values", values}});
+    values.push_back(std::isfinite(row->values[id]) ? Json(row->values[id]) : Json(nullptr));
+  return json_text({{"tick", row->tick}, {"time_s", 1e-9 * static_cast<double>(row->time_ns)}, {"values", values}});
 }
 
 std::string CtlRequests::faults() {
@@ -208,10 +216,11 @@ std::string CtlRequests::faults() {
   }
   Json json{{"ok", true}, {"level", name(safety.level)}, {"since_clearing", safety.fault_count}, {"faults", all}};
   if (safety.fault_count > 0) json["first"] = fault_json(safety.first_fault, model);
-  return line_of(json);
+  return json_text(json);
 }
 
 void CtlRequests::forget(const CtlSession& session) {
+  if (session.order != 0) port_.withdraw(session.order);
   asked_.erase(session.number());
   if (session.has_console) leaving_.push_back(session.number());
 }

@@ -21,6 +21,12 @@ constexpr int busy_ms = 2;                     // between looks for an answer or
 constexpr std::int64_t deaf_ns = 100'000'000;  // after the process ran out of descriptors
 constexpr std::array roles{Role::read, Role::operate, Role::develop};
 
+// Gave up before it was heard: what it asked for is not wanted any more.
+bool has_left(int socket) noexcept {
+  pollfd watched{.fd = socket, .events = 0, .revents = 0};
+  return poll(&watched, 1, 0) > 0 && (watched.revents & (POLLHUP | POLLERR)) != 0;
+}
+
 }  // namespace
 
 CtlServer::CtlServer(Instance& instance, const CtlSockets& sockets, const Settings& settings)
@@ -37,6 +43,7 @@ CtlServer::~CtlServer() {
 
 // All signals stay with the thread that catches them.
 void CtlServer::start() {
+  if (running_) return;
   if (wake_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
   sigset_t all, before;
   sigfillset(&all);
@@ -116,6 +123,10 @@ void CtlServer::accept_all(Role role) {
     const int socket = accept4(sockets_.listener(role), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (socket < 0 && (errno == EMFILE || errno == ENFILE)) deaf_until_ns_ = now_ns_ + deaf_ns;
     if (socket < 0) return;
+    if (has_left(socket)) {
+      close(socket);
+      continue;
+    }
     if (has_room(role)) {
       guests_.push_back({std::make_unique<CtlSession>(socket, role, next_number_++)});
       counts_.served.fetch_add(1, std::memory_order_relaxed);
@@ -131,6 +142,7 @@ void CtlServer::accept_all(Role role) {
 // A client that has said its last word still gets the answers to what it asked.
 void CtlServer::serve(Guest& guest, short events) {
   CtlSession& session = *guest.session;
+  session.leaves = session.leaves || (events & (POLLHUP | POLLERR)) != 0;
   if ((events & POLLIN) != 0 && !session.receive(now_ns_)) {
     if (session.too_long()) return drop(guest, "a line has at most 64 kB");
     guest.gone = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/problems.h"
 
 namespace kadans {
@@ -30,7 +31,7 @@ const CtlVerb verbs[] = {
     {"record_dump", Role::operate, Is::record_dump, {{{"file", text}}}},
     {"set", Role::develop, Is::set_parameter, {{{"name", text, true}, {"value", number, true}}}},
     {"undo", Role::develop, Is::undo},
-    {"save", Role::develop, Is::changes},
+    {"save", Role::develop, Is::changes, {{{"preset", text}}}},
     {"reload", Role::develop, Is::reload, {{{"name", text}}}},
     {"line", Role::develop, Is::line, {{{"text", text, true}}}},
     {"complete", Role::develop, Is::complete, {{{"text", text, true}}}},
@@ -95,8 +96,9 @@ void check_fields(const CtlVerb& verb, const Json& json) {
 
 CtlRequest read_request(const std::string& line, Role role) {
   CtlRequest request;
-  request.json = Json::parse(line, nullptr, false);
-  if (!request.json.is_object()) fail("this is no JSON object on one line");
+  std::optional<Json> json = read_foreign_json(line);
+  if (!json || !json->is_object()) fail("this is no JSON object on one line");
+  request.json = std::move(*json);
   const auto verb = request.json.find("verb");
   if (verb == request.json.end() || !verb->is_string()) fail("a request needs \"verb\", a string");
   request.verb = &verb_named(verb->get<std::string>());

@@ -1,7 +1,6 @@
 #include "kadans/remote/instance.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -17,22 +16,33 @@ OrderQueue::~OrderQueue() {
 }
 
 bool OrderQueue::ask(std::unique_ptr<OrderCase> order) {
-  if (on_their_way_ == orders_waiting_max || !asked_.try_push(order.get())) return false;
-  (void)order.release();  // now the ring's
-  ++on_their_way_;
-  return true;
+  if (on_their_way_.size() == orders_waiting_max) return false;
+  on_their_way_.push_back(order.get());
+  if (asked_.try_push(order.get())) return order.release() != nullptr;  // now the ring's
+  on_their_way_.pop_back();
+  return false;
+}
+
+void OrderQueue::withdraw(std::uint64_t number) noexcept {
+  for (OrderCase* order : on_their_way_) {
+    if (order->answer.number == number) (void)order->withdraw();
+  }
 }
 
 std::unique_ptr<OrderCase> OrderQueue::answered() noexcept {
   OrderCase* order = nullptr;
-  if (answered_.try_pop(order)) --on_their_way_;
+  if (answered_.try_pop(order)) std::erase(on_their_way_, order);
   return std::unique_ptr<OrderCase>(order);
 }
 
 std::unique_ptr<OrderCase> OrderQueue::take() noexcept {
-  OrderCase* order = nullptr;
-  (void)asked_.try_pop(order);
-  return std::unique_ptr<OrderCase>(order);
+  for (OrderCase* order = nullptr; asked_.try_pop(order);) {
+    std::unique_ptr<OrderCase> taken(order);
+    if (taken->take_up()) return taken;
+    taken->answer.text = "withdrawn: its client is gone, or waits no more";
+    answer(std::move(taken));
+  }
+  return nullptr;
 }
 
 void OrderQueue::answer(std::unique_ptr<OrderCase> order) noexcept {
@@ -99,9 +109,8 @@ void Instance::tell(const Fault& fault) noexcept {
 
 std::string fault_text(const Fault& fault, const RobotModel& model) {
   const bool of_joint = fault.joint < model.joints.size();
-  char numbers[64];
-  std::snprintf(numbers, sizeof numbers, ": %g, limit %g", fault.value, fault.limit);
-  return name(fault.code) + (of_joint ? " at " + model.joints[fault.joint].name : std::string()) + numbers;
+  return name(fault.code) + (of_joint ? " at " + model.joints[fault.joint].name : std::string()) + ": " +
+         fault_detail(fault);
 }
 
 }  // namespace kadans

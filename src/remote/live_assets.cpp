@@ -1,14 +1,26 @@
 #include "kadans/remote/live_assets.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+
+#include "kadans/config/json_value.h"
 
 namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view package = "package://";
+constexpr std::size_t file_max_bytes = std::size_t{16} << 20U;
+
+// A robot may come from anybody: of what its URDF names only meshes and their pictures are handed out.
+bool is_mesh(const fs::path& file) {
+  constexpr std::array<std::string_view, 9> kinds{".stl",  ".dae", ".obj", ".ply", ".glb",
+                                                  ".gltf", ".mtl", ".png", ".jpg"};
+  std::string kind = file.extension().string();
+  for (char& c : kind) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return std::ranges::find(kinds, kind) != kinds.end();
+}
 
 // As the reader of the URDF finds it: from the file's folder, a package's folder from there up.
 std::string place_of(const std::string& name, const fs::path& folder) {
@@ -41,9 +53,12 @@ std::optional<std::string> LiveAssets::read(std::string_view uri) const {
   auto found = files_.find(uri);
   if (found == files_.end()) found = files_.find(std::string(package) + std::string(uri));
   if (found == files_.end()) return std::nullopt;
-  std::ifstream file(found->second, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), {});
+  if (!is_mesh(found->second)) return std::nullopt;
+  try {
+    return read_input_file(found->second, file_max_bytes);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace kadans

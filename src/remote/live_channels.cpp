@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/byte_order.h"
 #include "kadans/telemetry/recorder.h"
 
@@ -108,7 +109,7 @@ void LiveChannels::take(const Fault& fault, std::int64_t time_ns) {
 void LiveChannels::take_behaviors(const std::string& json) {
   Json description = Json::parse(description_);
   description["behaviors"] = Json::parse(json);
-  description_ = description.dump(-1, ' ', false, Json::error_handler_t::replace);
+  description_ = json_text(description);
   put_json(described_, 0, description_);
 }
 

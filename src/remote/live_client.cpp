@@ -6,12 +6,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
+#include "kadans/signal/input_error.h"
 #include "live_protocol.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::size_t overhead_bytes = 64;  // of a reply in the queue
+constexpr std::size_t name_max_bytes = 256, id_max_bytes = 256;
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -19,35 +22,62 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
+// Numbers of subscriptions and requests. Throws InputError.
+std::uint32_t whole_number(const Json& json) {
+  if (json.is_number_unsigned() && json.get<std::uint64_t>() <= UINT32_MAX) return json.get<std::uint32_t>();
+  throw InputError({.message = "an id is a whole number from 0 to 4294967295"});
+}
+
+// What the client knows the answer by; "": it gave none. Throws InputError.
+std::string request_id(const Json& json) {
+  const auto id = json.find("id");
+  if (id == json.end()) return "";
+  if (id->is_string() && id->get_ref<const std::string&>().size() <= id_max_bytes) return *id;
+  throw InputError({.message = "the id of a request is a string of at most 256 bytes"});
+}
+
 }  // namespace
 
 LiveClient::LiveClient(LiveHub& hub, std::uint64_t id, bool writes, std::string who)
     : hub_(hub), id_(id), writes_(writes), who_(std::move(who)) {
-  hub_.enter(id_, *this);
   introduce();
   advertise();
+  hub_.enter(id_, *this);  // last: nothing throws any more
 }
 
 LiveClient::~LiveClient() { hub_.leave(id_); }
 
-void LiveClient::say(const std::string& json) {
-  Outgoing out;
-  const std::span<const std::byte> bytes = bytes_of(json);
-  out.bytes.assign(bytes.begin(), bytes.end());
+template <typename Act>
+void LiveClient::guarded(Act act) noexcept {
+  try {
+    act();
+  } catch (...) {
+    give_up();
+  }
+}
+
+void LiveClient::give_up() noexcept {
+  hopeless_ = true;
+  replies_.clear();
+  reply_bytes_ = 0;
+}
+
+void LiveClient::put(Outgoing out) {
+  if (hopeless_) return;
   reply_bytes_ += out.bytes.size() + overhead_bytes;
   replies_.push_back(std::move(out));
-  hopeless_ = hopeless_ || reply_bytes_ > replies_max_bytes;
+  if (reply_bytes_ > replies_max_bytes) give_up();
+  hub_.bound_replies();
 }
 
-void LiveClient::say_binary(std::vector<std::byte> bytes) {
-  reply_bytes_ += bytes.size() + overhead_bytes;
-  replies_.push_back({true, std::move(bytes)});
-  hopeless_ = hopeless_ || reply_bytes_ > replies_max_bytes;
+template <typename J>
+void LiveClient::say(const J& json) {
+  const std::string text = json_text(json);
+  const std::span<const std::byte> bytes = bytes_of(text);
+  put({false, {bytes.begin(), bytes.end()}});
 }
 
-void LiveClient::complain(const std::string& what) {
-  say(Json{{"op", "status"}, {"level", 2}, {"message", what}}.dump());
-}
+void LiveClient::complain(const std::string& what) { say(Json{{"op", "status"}, {"level", 2}, {"message", what}}); }
 
 void LiveClient::introduce() {
   Json metadata(hub_.channels().signals());
@@ -61,8 +91,7 @@ void LiveClient::introduce() {
            {"capabilities", {"parameters", "parametersSubscribe", "services", "assets"}},
            {"supportedEncodings", Json::array({"json"})},
            {"metadata", metadata},
-           {"sessionId", session_id()}}
-          .dump());
+           {"sessionId", session_id()}});
 }
 
 void LiveClient::advertise() {
@@ -76,77 +105,93 @@ void LiveClient::advertise() {
                         {"schema", channel.schema},
                         {"schemaEncoding", channel.schema_encoding}});
   }
-  say(Json{{"op", "advertise"}, {"channels", channels}}.dump());
+  say(Json{{"op", "advertise"}, {"channels", channels}});
   say(service_advertisement());
 }
 
-void LiveClient::text(std::string_view json) {
-  try {
-    obey(json);
-  } catch (const nlohmann::json::exception& error) {
-    complain(std::string("not understood: ") + error.what());
-  }
+void LiveClient::text(std::string_view json) noexcept {
+  guarded([&] {
+    try {
+      obey(parse_foreign_json(json));
+    } catch (const InputError& error) {
+      complain(std::string("not understood: ") + error.what());
+    } catch (const nlohmann::json::exception& error) {  // a field is missing or of another type
+      complain(std::string("not understood: ") + error.what());
+    }
+  });
 }
 
-void LiveClient::obey(std::string_view text) {
-  const Json json = Json::parse(text);
+template <typename J>
+void LiveClient::obey(const J& json) {
   const std::string op = json.at("op");
   if (op == "subscribe") return subscribe(json);
   if (op == "unsubscribe") {
-    for (const Json& id : json.at("subscriptionIds")) subscriptions_.erase(id.get<std::uint32_t>());
+    for (const J& id : json.at("subscriptionIds")) subscriptions_.erase(whole_number(id));
   } else if (op == "getParameters") {
     get_parameters(json);
   } else if (op == "setParameters") {
     set_parameters(json);
   } else if (op == "subscribeParameterUpdates") {
-    const Json& names = json.at("parameterNames");
-    watches_all_ = watches_all_ || names.empty();
-    for (const Json& name : names) watched_.insert(name.get<std::string>());
+    watch(json.at("parameterNames"));
   } else if (op == "unsubscribeParameterUpdates") {
-    const Json& names = json.at("parameterNames");
+    const J& names = json.at("parameterNames");
     if (names.empty()) watches_all_ = false;
-    for (const Json& name : names) watched_.erase(name.get<std::string>());
+    for (const J& name : names) watched_.erase(name.template get<std::string>());
   } else if (op == "fetchAsset") {
     fetch_asset(json);
   } else {
-    complain("'" + op + "' is not offered by this server");
+    complain("this server offers no such operation");
   }
 }
 
 template <typename J>
 void LiveClient::subscribe(const J& json) {
   for (const J& entry : json.at("subscriptions")) {
-    const std::uint32_t id = entry.at("id"), channel = entry.at("channelId");
-    if (channel == 0 || channel > hub_.channels().all().size()) {
-      complain("there is no channel " + std::to_string(channel));
-      continue;
-    }
+    const std::uint32_t id = whole_number(entry.at("id")), channel = whole_number(entry.at("channelId"));
+    if (channel == 0 || channel > hub_.channels().all().size())
+      return complain("there is no channel " + std::to_string(channel));
+    if (subscriptions_.size() >= subscriptions_max && !subscriptions_.contains(id))
+      return complain("a client has at most " + std::to_string(subscriptions_max) + " subscriptions");
     subscriptions_[id] = {channel - 1, 0};
   }
 }
 
 template <typename J>
+void LiveClient::watch(const J& names) {
+  watches_all_ = watches_all_ || names.empty();
+  for (const J& name : names) {
+    const std::string text = name;
+    if (text.size() > name_max_bytes || (watched_.size() >= watched_max && !watched_.contains(text)))
+      return complain("a client watches at most " + std::to_string(watched_max) + " parameters, whose names have " +
+                      std::to_string(name_max_bytes) + " bytes");
+    watched_.insert(text);
+  }
+}
+
+template <typename J>
 void LiveClient::get_parameters(const J& json) {
-  const J& names = json.at("parameterNames");
+  std::set<std::string, std::less<>> names;
+  for (const J& name : json.at("parameterNames")) names.insert(name.template get<std::string>());
   Json found = Json::array();
   for (const LiveParameter& p : hub_.parameters()) {
-    const auto is_it = [&](const J& name) { return name.template get<std::string>() == p.name; };
-    if (names.empty() || std::any_of(names.begin(), names.end(), is_it)) found.push_back(parameter_json(p));
+    if (names.empty() || names.contains(p.name)) found.push_back(parameter_json(p));
   }
   Json answer{{"op", "parameterValues"}, {"parameters", found}};
-  if (json.contains("id")) answer["id"] = json.at("id");
-  say(answer.dump());
+  if (const std::string id = request_id(json); !id.empty()) answer["id"] = id;
+  say(answer);
 }
 
 template <typename J>
 void LiveClient::set_parameters(const J& json) {
   if (!writes_) return complain("parameters are changed with the token that the server printed when it began");
+  const std::string id = request_id(json);
   for (const J& p : json.at("parameters")) {
     const std::string name = p.at("name");
     if (!p.at("value").is_number()) {
       complain(name + ": a number is needed");
       continue;
     }
+    if (calls_.size() >= calls_max) return complain("too many orders wait");
     const std::uint32_t call = ++next_call_;
     const bool sent = hub_.send(
         {.kind = Order::Kind::set_parameter, .text = name, .value = p.at("value").template get<double>(), .who = who_},
@@ -155,54 +200,51 @@ void LiveClient::set_parameters(const J& json) {
       complain(name + ": too many orders wait");
       continue;
     }
-    calls_[call] = {.parameter = name,
-                    .parameter_request = json.contains("id") ? json.at("id").dump() : "",
-                    .value = p.at("value")};
+    calls_[call] = {.parameter = name, .parameter_request = id, .value = p.at("value")};
   }
 }
 
 template <typename J>
 void LiveClient::fetch_asset(const J& json) {
   const std::string uri = json.at("uri");
-  say_binary(asset_response(json.at("requestId"), uri, hub_.assets().read(uri)));
+  put({true, asset_response(whole_number(json.at("requestId")), uri, hub_.assets().read(uri))});
 }
 
-void LiveClient::binary(std::span<const std::byte> bytes) {
-  if (!bytes.empty() && bytes[0] == std::byte{2}) return call_service(bytes);
-  complain("this server takes service calls and no other binary message");
+void LiveClient::binary(std::span<const std::byte> bytes) noexcept {
+  guarded([&] {
+    if (!bytes.empty() && bytes[0] == std::byte{2}) return call_service(bytes);
+    complain("this server takes service calls and no other binary message");
+  });
 }
 
 void LiveClient::call_service(std::span<const std::byte> bytes) {
   const std::optional<ServiceCall> call = read_service_call(bytes);
   if (!call || call->service != command_service) return complain("a service call that this server does not know");
+  if (!writes_) return say(service_failure(call->call, "orders need the token that the server printed"));
   try {
-    const Json json = Json::parse(call->request);
+    const Json json = parse_foreign_json(call->request);
     command(call->call, json.at("verb"), json.value("text", ""), json.value("value", 0.0));
+  } catch (const InputError& error) {
+    say(service_failure(call->call, std::string("not understood: ") + error.what()));
   } catch (const nlohmann::json::exception& error) {
     say(service_failure(call->call, std::string("not understood: ") + error.what()));
   }
 }
 
 void LiveClient::command(std::uint32_t service_call, const std::string& verb, const std::string& text, double value) {
-  if (!writes_) return say(service_failure(service_call, "orders need the token that the server printed"));
   const std::optional<Order::Kind> kind = order_of(verb);
   if (!kind) {
-    if (hub_.act(verb, text, value)) {
-      if (verb == "estop")
-        (void)hub_.send({.kind = Order::Kind::note, .text = "asked for the emergency stop", .who = who_}, id_,
-                        ++next_call_);
-      return answer_service(service_call, true, "");
-    }
+    if (hub_.act(verb, text, value, who_)) return answer_service(service_call, true, "");
     return say(service_failure(service_call, "'" + verb + "' is no order; there are " + verbs_text(hub_.can_pace())));
   }
   const std::uint32_t call = ++next_call_;
-  if (!hub_.send({.kind = *kind, .text = text, .value = value, .who = who_}, id_, call))
+  if (calls_.size() >= calls_max || !hub_.send({.kind = *kind, .text = text, .value = value, .who = who_}, id_, call))
     return say(service_failure(service_call, "too many orders wait"));
   calls_[call] = {.service = true, .save = *kind == Order::Kind::changes, .service_call = service_call};
 }
 
 void LiveClient::answer_service(std::uint32_t service_call, bool done, const std::string& text) {
-  say_binary(service_response(service_call, Json{{"done", done}, {"text", text}}.dump()));
+  put({true, service_response(service_call, json_text(Json{{"done", done}, {"text", text}}))});
 }
 
 void LiveClient::save(std::uint32_t service_call, const Answer& answer) {
@@ -213,11 +255,17 @@ void LiveClient::save(std::uint32_t service_call, const Answer& answer) {
   }
 }
 
-void LiveClient::take(std::uint32_t number, const Answer& answer) {
+void LiveClient::take(std::uint32_t number, const Answer& answer) noexcept {
   const auto found = calls_.find(number);
   if (found == calls_.end()) return;
-  const Call call = found->second;
-  calls_.erase(found);
+  guarded([&] {
+    const Call call = std::move(found->second);
+    calls_.erase(found);
+    answer_call(call, answer);
+  });
+}
+
+void LiveClient::answer_call(const Call& call, const Answer& answer) {
   if (call.save) return save(call.service_call, answer);
   if (call.service) return answer_service(call.service_call, answer.done, answer.text);
   if (!answer.done) complain(answer.text);
@@ -226,19 +274,21 @@ void LiveClient::take(std::uint32_t number, const Answer& answer) {
   const auto now = std::ranges::find(hub_.parameters(), call.parameter, &LiveParameter::name);
   if (now == hub_.parameters().end() || (call.parameter_request.empty() && answer.done)) return;
   Json values{{"op", "parameterValues"}, {"parameters", Json::array({parameter_json(*now)})}};
-  if (!call.parameter_request.empty()) values["id"] = Json::parse(call.parameter_request);
-  say(values.dump());
+  if (!call.parameter_request.empty()) values["id"] = call.parameter_request;
+  say(values);
 }
 
-void LiveClient::tell_changes() {
-  Json changed = Json::array();
-  for (const LiveParameter& p : hub_.changed()) {
-    if (watches_all_ || watched_.contains(p.name)) changed.push_back(parameter_json(p));
-  }
-  if (!changed.empty()) say(Json{{"op", "parameterValues"}, {"parameters", changed}}.dump());
-  if (state_told_ == hub_.state_count() || !writes_) return;
-  state_told_ = hub_.state_count();
-  say(Json{{"op", "status"}, {"level", 0}, {"message", hub_.state()}, {"id", "kadans.state"}}.dump());
+void LiveClient::tell_changes() noexcept {
+  guarded([this] {
+    Json changed = Json::array();
+    for (const LiveParameter& p : hub_.changed()) {
+      if (watches_all_ || watched_.contains(p.name)) changed.push_back(parameter_json(p));
+    }
+    if (!changed.empty()) say(Json{{"op", "parameterValues"}, {"parameters", changed}});
+    if (state_told_ == hub_.state_count() || !writes_) return;
+    state_told_ = hub_.state_count();
+    say(Json{{"op", "status"}, {"level", 0}, {"message", hub_.state()}, {"id", "kadans.state"}});
+  });
 }
 
 bool LiveClient::next(Outgoing& out) {

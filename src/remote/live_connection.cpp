@@ -15,6 +15,7 @@
 
 #include "kadans/remote/live_client.h"
 #include "kadans/remote/page_files.h"
+#include "live_crowd.h"
 
 namespace kadans {
 namespace {
@@ -27,10 +28,12 @@ using Request = http::request<http::string_body>;
 using Error = beast::error_code;
 
 constexpr std::array subprotocols{std::string_view("foxglove.sdk.v1"), std::string_view("foxglove.websocket.v1")};
-constexpr std::size_t request_max_bytes = std::size_t{64} << 20U;  // a frame that was drawn
-constexpr std::size_t message_max_bytes = std::size_t{1} << 20U;
+// These bounds stand in docs/security.md, too.
+constexpr std::uint32_t head_max_bytes = 8 * 1024;
+constexpr std::size_t frame_max_bytes = std::size_t{64} << 20U;  // a picture, from who has the token
+constexpr std::size_t message_max_bytes = 64 * 1024, message_with_token_max_bytes = std::size_t{1} << 20U;
 constexpr int send_buffer_bytes = 256 * 1024;  // of the system, for a client that does not read
-constexpr std::chrono::seconds request_time{30};
+constexpr std::chrono::seconds request_time{30}, stall_time{30}, farewell_time{2};
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -46,14 +49,6 @@ std::string_view query(std::string_view target, std::string_view key) {
     at = end;
   }
   return {};
-}
-
-// All characters are looked at, so that the time tells nothing.
-bool same(std::string_view a, std::string_view b) noexcept {
-  unsigned difference = a.size() == b.size() ? 0U : 1U;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    difference |= static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]));
-  return difference == 0 && !b.empty();
 }
 
 std::string_view media_type(std::string_view path) {
@@ -73,40 +68,61 @@ std::string_view chosen_subprotocol(std::string_view offered) {
   return {};
 }
 
-// A browser says from which site its page came: ours, or one that must know the token.
-bool from_elsewhere(const Request& request) {
-  const std::string_view origin = view(request[http::field::origin]);
-  if (origin.empty()) return false;
-  const std::size_t slashes = origin.find("//");
-  return slashes == std::string_view::npos || origin.substr(slashes + 2) != view(request[http::field::host]);
-}
-
 class Connection final : public LiveConnection {
  public:
   Connection(asio::ip::tcp::socket socket, const LiveSite& site, std::uint64_t id)
-      : stream_(std::move(socket)), site_(site), id_(id) {}
+      : stream_(std::move(socket)), site_(site), id_(id) {
+    Error ignored;
+    reached_at_ = tcp().socket().local_endpoint(ignored).address().to_string();
+    const asio::ip::address peer = tcp().socket().remote_endpoint(ignored).address();
+    local_ = peer.is_loopback();
+    who_ = "the page at " + peer.to_string();
+    turn_ = site_.crowd->next_turn();
+  }
 
   void start() override {
     Error ignored;
-    beast::get_lowest_layer(stream_).socket().set_option(asio::socket_base::send_buffer_size(send_buffer_bytes),
-                                                         ignored);
-    beast::get_lowest_layer(stream_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
+    tcp().socket().set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
+    tcp().socket().set_option(asio::ip::tcp::no_delay(true), ignored);
     read_request();
   }
-  void beat() override {
-    if (!client_) return;
-    client_->tell_changes();
-    pump();
+  void beat() noexcept override {
+    if (client_ == nullptr || closed_) return;
+    guarded([this] {
+      client_->tell_changes();
+      pump();
+    });
   }
-  void close() override {
+  void close() noexcept override {
     if (closed_) return;
     closed_ = true;
-    beast::get_lowest_layer(stream_).close();
+    Error ignored;
+    tcp().socket().close(ignored);
+    tcp().cancel();
   }
+  Standing standing() const noexcept override {
+    if (client_ == nullptr) return Standing::request;
+    return trusted_ ? Standing::writer : Standing::reader;
+  }
+  bool closed() const noexcept override { return closed_; }
   bool over() const noexcept override { return closed_ && under_way_ == 0; }
-  bool is_client() const noexcept override { return client_ != nullptr && !closed_; }
+  bool local() const noexcept override { return local_; }
+  bool trusted() const noexcept override { return trusted_; }
+  std::uint64_t turn() const noexcept override { return turn_; }
 
  private:
+  beast::tcp_stream& tcp() noexcept { return beast::get_lowest_layer(stream_); }
+
+  // Whatever goes wrong ends this connection and nothing else.
+  template <typename Act>
+  void guarded(Act act) noexcept {
+    try {
+      act();
+    } catch (...) {
+      close();
+    }
+  }
+
   // Counts the operation until its handler is through.
   template <typename Handler>
   auto counted(Handler handler) {
@@ -114,31 +130,49 @@ class Connection final : public LiveConnection {
     return [this, handler](const Error& error, std::size_t = 0) {
       --under_way_;
       if (error) return close();
-      if (!closed_) handler();
+      if (!closed_) guarded(handler);
     };
   }
 
   void read_request() {
     parser_.emplace();
-    parser_->body_limit(request_max_bytes);
-    beast::get_lowest_layer(stream_).expires_after(request_time);
-    http::async_read(stream_.next_layer(), buffer_, *parser_, counted([this] { take_request(parser_->get()); }));
+    parser_->header_limit(head_max_bytes);
+    parser_->body_limit(frame_max_bytes);
+    tcp().expires_after(request_time);
+    http::async_read_header(stream_.next_layer(), buffer_, *parser_, counted([this] { take_head(parser_->get()); }));
   }
 
-  void take_request(const Request& request) {
-    const std::string_view target = view(request.target()), path = path_of(target);
-    const bool writes = same(query(target, "token"), site_.token);
-    if (websocket::is_upgrade(request)) return upgrade(request, writes);
-    if (from_elsewhere(request) && !writes) return refuse(http::status::forbidden, "another site needs the token\n");
-    if (request.method() == http::verb::post && path.starts_with("/frames/")) {
-      if (!writes || !site_.record.take_frame) return refuse(http::status::forbidden, "the token is needed\n");
-      site_.record.take_frame(std::string(path.substr(8)), request.body());
-      return reply(http::status::ok, "text/plain", "");
-    }
+  Access access_of(const Request& request) const {
+    const std::string_view target = view(request.target());
+    return site_.access.of({.host = view(request[http::field::host]),
+                            .origin = view(request[http::field::origin]),
+                            .token = query(target, "token"),
+                            .reached_at = reached_at_});
+  }
+
+  void take_head(const Request& request) {
+    turn_ = site_.crowd->next_turn();
+    const Access access = access_of(request);
+    trusted_ = access == Access::writes;
+    if (access == Access::wrong_host || access == Access::other_site)
+      return refuse(http::status::forbidden, LiveAccess::why(access));
+    if (websocket::is_upgrade(request)) return upgrade(request);
+    const std::string_view path = path_of(view(request.target()));
+    if (request.method() == http::verb::post && path.starts_with("/frames/")) return read_frame();
     if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, "only GET\n");
+    if (!parser_->is_done()) return refuse(http::status::payload_too_large, "a GET has no body\n");
     if (path == "/record.mcap" && !site_.record.file.empty()) return send_record();
     if (site_.hub != nullptr && path.starts_with("/asset/")) return send_asset(path.substr(7));
     send_page(path == "/" ? "/index.html" : path);
+  }
+
+  void read_frame() {
+    if (!trusted_ || !site_.record.take_frame) return refuse(http::status::forbidden, "the token is needed\n");
+    http::async_read(stream_.next_layer(), buffer_, *parser_, counted([this] {
+                       const std::string_view path = path_of(view(parser_->get().target()));
+                       site_.record.take_frame(std::string(path.substr(8)), parser_->get().body());
+                       reply(http::status::ok, "text/plain", "");
+                     }));
   }
 
   void send_page(std::string_view path) {
@@ -163,11 +197,26 @@ class Connection final : public LiveConnection {
     file_.emplace(std::piecewise_construct, std::make_tuple(std::move(body)), std::make_tuple(http::status::ok, 11));
     file_->set(http::field::content_type, "application/octet-stream");
     file_->prepare_payload();
-    beast::get_lowest_layer(stream_).expires_never();
-    http::async_write(stream_.next_layer(), *file_, counted([this] { file_.reset(), read_request(); }));
+    sender_.emplace(*file_);
+    send_piece();
   }
 
-  void refuse(http::status status, const std::string& why) { reply(status, "text/plain; charset=utf-8", why); }
+  // However long the file is, each piece must be taken in its time.
+  void send_piece() {
+    tcp().expires_after(stall_time);
+    http::async_write_some(stream_.next_layer(), *sender_, counted([this] {
+                             if (!sender_->is_done()) return send_piece();
+                             sender_.reset();
+                             file_.reset();
+                             read_request();
+                           }));
+  }
+
+  // What may still come of the request is not waited for.
+  void refuse(http::status status, const std::string& why) {
+    leaves_ = !parser_->is_done();
+    reply(status, "text/plain; charset=utf-8", why);
+  }
 
   void reply(http::status status, std::string_view type, const std::string& body, bool gzip = false) {
     response_ = {};
@@ -178,30 +227,47 @@ class Connection final : public LiveConnection {
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Referrer-Policy", "no-referrer");
     if (gzip) response_.set(http::field::content_encoding, "gzip");
+    response_.keep_alive(!leaves_);
     response_.body() = body;
     response_.prepare_payload();
-    http::async_write(stream_.next_layer(), response_, counted([this] { read_request(); }));
+    tcp().expires_after(stall_time);
+    http::async_write(stream_.next_layer(), response_, counted([this] {
+                        response_ = {};
+                        leaves_ ? say_farewell() : read_request();
+                      }));
   }
 
-  void upgrade(const Request& request, bool writes) {
+  // Closed at once, the connection could take the answer with it: what comes is thrown away for a moment.
+  void say_farewell() {
+    Error ignored;
+    tcp().socket().shutdown(asio::socket_base::shutdown_send, ignored);
+    tcp().expires_after(farewell_time);
+    throw_away();
+  }
+  void throw_away() {
+    buffer_.consume(buffer_.size());
+    tcp().async_read_some(buffer_.prepare(head_max_bytes), counted([this] { throw_away(); }));
+  }
+
+  void upgrade(const Request& request) {
     const std::string_view subprotocol = chosen_subprotocol(view(request[http::field::sec_websocket_protocol]));
     if (site_.hub == nullptr) return refuse(http::status::not_found, "nothing runs here\n");
     if (subprotocol.empty()) return refuse(http::status::bad_request, "foxglove.sdk.v1 or foxglove.websocket.v1\n");
-    if (from_elsewhere(request) && !writes) return refuse(http::status::forbidden, "another site needs the token\n");
-    beast::get_lowest_layer(stream_).expires_never();
+    if (!site_.crowd->make_room(trusted_, local_))
+      return refuse(http::status::service_unavailable, "too many clients are connected\n");
+    tcp().expires_never();
     stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
     stream_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
       response.set(http::field::sec_websocket_protocol, beast::string_view(subprotocol.data(), subprotocol.size()));
     }));
-    stream_.read_message_max(message_max_bytes);
+    stream_.read_message_max(trusted_ ? message_with_token_max_bytes : message_max_bytes);
     stream_.auto_fragment(false);  // a message is one write of the system
-    stream_.async_accept(request, counted([this, writes] { become_client(writes); }));
+    stream_.async_accept(request, counted([this] { become_client(); }));
   }
 
-  void become_client(bool writes) {
-    Error ignored;
-    const auto peer = beast::get_lowest_layer(stream_).socket().remote_endpoint(ignored);
-    client_ = std::make_unique<LiveClient>(*site_.hub, id_, writes, "the page at " + peer.address().to_string());
+  void become_client() {
+    parser_.reset();
+    client_ = std::make_unique<LiveClient>(*site_.hub, id_, trusted_, who_);
     buffer_.consume(buffer_.size());
     read_message();
     pump();
@@ -245,8 +311,7 @@ class Connection final : public LiveConnection {
     if (gathers_ == on) return;
     gathers_ = on;
     const int cork = on ? 1 : 0;
-    (void)setsockopt(beast::get_lowest_layer(stream_).socket().native_handle(), IPPROTO_TCP, TCP_CORK, &cork,
-                     sizeof cork);
+    (void)setsockopt(tcp().socket().native_handle(), IPPROTO_TCP, TCP_CORK, &cork, sizeof cork);
   }
 
   websocket::stream<beast::tcp_stream> stream_;
@@ -256,9 +321,13 @@ class Connection final : public LiveConnection {
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> response_;
   std::optional<http::response<http::file_body>> file_;
+  std::optional<http::response_serializer<http::file_body>> sender_;
   std::unique_ptr<LiveClient> client_;
   LiveClient::Outgoing outgoing_;
-  bool writing_ = false, closed_ = false, gathers_ = false;
+  std::string reached_at_, who_;
+  std::uint64_t turn_ = 0;
+  bool local_ = false, trusted_ = false;
+  bool writing_ = false, closed_ = false, gathers_ = false, leaves_ = false;
   int under_way_ = 0;
 };
 

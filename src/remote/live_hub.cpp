@@ -68,10 +68,10 @@ void LiveHub::beat() {
   changed_.clear();
   take_answers();
   if (!wanted_) return;
-  const LatestRow::View row = p_.port.signals();
-  if (!row.values.empty() && row.tick != last_tick_) {
-    last_tick_ = row.tick;
-    channels_.take(row);
+  const auto row = p_.port.signals();
+  if (!row->values.empty() && row->tick != last_tick_) {
+    last_tick_ = row->tick;
+    channels_.take(*row);
   }
   if (beats_ % parameters_every == 0) take_parameters();
   if (beats_ % timing_every == 0 && !p_.timing.empty()) channels_.take_timing(timing_json(p_.timing), time_ns);
@@ -85,6 +85,23 @@ bool LiveHub::send(Order order, std::uint64_t client, std::uint32_t call) {
   if (number == 0) return false;
   waiting_[number] = {client, call};
   return true;
+}
+
+void LiveHub::leave(std::uint64_t id) {
+  clients_.erase(id);
+  for (const auto& [order, caller] : waiting_) {
+    if (caller.client == id) p_.port.withdraw(order);
+  }
+}
+
+void LiveHub::bound_replies() noexcept {
+  std::size_t sum = 0;
+  LiveClient* largest = nullptr;
+  for (const auto& [id, client] : clients_) {
+    sum += client->reply_bytes();
+    if (largest == nullptr || client->reply_bytes() > largest->reply_bytes()) largest = client;
+  }
+  if (sum > replies_max_bytes && largest != nullptr) largest->give_up();
 }
 
 void LiveHub::take_answers() {
@@ -153,14 +170,14 @@ void LiveHub::take_parameters() {
 
 std::string LiveHub::save(const std::vector<ParameterChange>& changes) {
   ConfigurationText& configuration = p_.instance.configuration();
-  configuration.save(changes, p_.instance.catalog());
+  const auto overridden = configuration.save(changes, p_.instance.catalog());
   (void)send({.kind = Order::Kind::saved, .changes = changes}, own, saved_call);
-  return std::to_string(changes.size()) + " parameters stand in " + configuration.file().filename().string();
+  return configuration.told(changes.size(), overridden);
 }
 
-bool LiveHub::act(const std::string& verb, const std::string& text, double value) {
+bool LiveHub::act(const std::string& verb, const std::string& text, double value, const std::string& who) {
   if (verb == "estop") {
-    p_.instance.stop_now();
+    p_.instance.stop_now(who);
     return true;
   }
   if (p_.pace == nullptr || !p_.pace->obey(verb, text, value)) return false;

@@ -47,7 +47,7 @@ std::optional<Order::Kind> order_of(std::string_view verb) {
   return found->second;
 }
 
-std::string service_advertisement() {
+Json service_advertisement() {
   const Json request{
       {"title", "kadans.Command"},
       {"type", "object"},
@@ -71,11 +71,11 @@ std::string service_advertisement() {
                        {"schemaName", "kadans.Answer"},
                        {"schemaEncoding", "jsonschema"},
                        {"schema", response.dump()}}}};
-  return Json{{"op", "advertiseServices"}, {"services", Json::array({service})}}.dump();
+  return {{"op", "advertiseServices"}, {"services", Json::array({service})}};
 }
 
-std::string service_failure(std::uint32_t call, const std::string& why) {
-  return Json{{"op", "serviceCallFailure"}, {"serviceId", command_service}, {"callId", call}, {"message", why}}.dump();
+Json service_failure(std::uint32_t call, const std::string& why) {
+  return {{"op", "serviceCallFailure"}, {"serviceId", command_service}, {"callId", call}, {"message", why}};
 }
 
 Json parameter_json(const LiveParameter& parameter) {

@@ -31,8 +31,8 @@ std::string verbs_text(bool paced);
 // The order that a verb means: "play", "stop", "clear_faults" ...
 std::optional<Order::Kind> order_of(std::string_view verb);
 
-std::string service_advertisement();
-std::string service_failure(std::uint32_t call, const std::string& why);
+Json service_advertisement();
+Json service_failure(std::uint32_t call, const std::string& why);
 Json parameter_json(const LiveParameter& parameter);
 
 std::vector<std::byte> message_data(std::uint32_t subscription, std::uint64_t time_ns,

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <list>
 #include <system_error>
 #include <thread>
 
@@ -18,6 +17,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "live_connection.h"
+#include "live_crowd.h"
 
 namespace kadans {
 
@@ -38,12 +38,12 @@ std::string new_token() {
 }
 
 struct LiveServer::Parts {
-  static constexpr std::size_t connections_max = 300;
   static constexpr int niceness = 5;
-  static constexpr double record_hz = 20;  // nothing moves there
+  static constexpr std::chrono::milliseconds breath{50};  // when the system has no more to give
+  static constexpr double record_hz = 20;                 // nothing moves there
 
   Parts(LiveSettings wanted, LiveHub* hub, RecordSite record)
-      : settings(std::move(wanted)), site{hub, std::move(record), settings.token} {
+      : settings(std::move(wanted)), site{hub, std::move(record), LiveAccess(settings.token, settings.hosts), &crowd} {
     listen();
   }
 
@@ -65,12 +65,20 @@ struct LiveServer::Parts {
   void accept() {
     acceptor.async_accept([this](const Error& error, Tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error && connections.size() < connections_max) {
-        connections.push_back(make_live_connection(std::move(socket), site, ++last_id));
-        connections.back()->start();
-      }
-      accept();
+      if (!error) take(std::move(socket));
+      if (!error || error == asio::error::connection_aborted) return accept();
+      // No descriptors or no memory are left: one of ours goes, and who knocks waits for a moment.
+      (void)crowd.close_one();
+      pause.expires_after(breath);
+      pause.async_wait([this](const Error& ended) { ended ? void() : accept(); });
     });
+  }
+
+  void take(Tcp::socket socket) {
+    try {
+      crowd.take(make_live_connection(std::move(socket), site, ++last_id));
+    } catch (const std::exception&) {  // it is gone already, or there is no memory for it
+    }
   }
 
   // On a grid; after a while in which the machine was busy no beats are caught up.
@@ -80,20 +88,18 @@ struct LiveServer::Parts {
     timer.expires_at(due);
     timer.async_wait([this](const Error& error) {
       if (error) return;
-      beat();
+      try {
+        beat();
+      } catch (const std::exception&) {  // memory was short: what is new is told in the next
+      }
       plan_beat();
     });
   }
 
   void beat() {
     if (site.hub != nullptr) site.hub->beat();
-    std::uint32_t count = 0;
-    for (const auto& connection : connections) {
-      connection->beat();
-      count += connection->is_client() ? 1U : 0U;
-    }
-    clients.store(count, std::memory_order_relaxed);
-    connections.remove_if([](const auto& connection) { return connection->over(); });
+    crowd.beat();
+    clients.store(crowd.clients(), std::memory_order_relaxed);
   }
 
   void run() {
@@ -101,7 +107,12 @@ struct LiveServer::Parts {
     (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);  // of this thread alone
     accept();
     plan_beat();
-    context.run();
+    for (;;) {
+      try {
+        return static_cast<void>(context.run());
+      } catch (const std::exception&) {  // of the system's own handlers; the next one is served
+      }
+    }
   }
 
   LiveSettings settings;
@@ -109,9 +120,9 @@ struct LiveServer::Parts {
   std::uint16_t port = 0;
   asio::io_context context{1};
   Tcp::acceptor acceptor{context};
-  asio::steady_timer timer{context};
+  asio::steady_timer timer{context}, pause{context};
   std::chrono::steady_clock::time_point due;
-  std::list<std::unique_ptr<LiveConnection>> connections;
+  LiveCrowd crowd;  // their sockets end before the context does
   std::uint64_t last_id = 0;
   std::atomic<std::uint32_t> clients{0};
   std::thread thread;
@@ -140,7 +151,7 @@ void LiveServer::stop() noexcept {
 }
 
 std::uint16_t LiveServer::port() const noexcept { return parts_->port; }
-const std::string& LiveServer::token() const noexcept { return parts_->site.token; }
+const std::string& LiveServer::token() const noexcept { return parts_->site.access.token(); }
 std::uint32_t LiveServer::clients() const noexcept { return parts_->clients.load(std::memory_order_relaxed); }
 
 std::string LiveServer::url() const {

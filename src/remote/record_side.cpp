@@ -80,7 +80,13 @@ bool RecordSide::end() {
   hand_over(true);
   recorder_->flight()->finish();
   publish();
-  return whole;
+  return whole && recorder_->flight()->error().empty();
+}
+
+std::string RecordSide::error() const {
+  if (!recorder_) return "";
+  const bool of_flight = recorder_->error().empty() && recorder_->flight() != nullptr;
+  return of_flight ? recorder_->flight()->error() : recorder_->error();
 }
 
 bool RecordSide::beat(const Beat& beat) {

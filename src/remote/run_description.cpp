@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/control/set_partition.h"
 #include "kadans/script/chart_graph.h"
 
@@ -135,7 +136,7 @@ Json parameters_of(const Catalog& catalog) {
   return parameters;
 }
 
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string text_of(const Json& json) { return json_text(json); }
 
 }  // namespace
 

@@ -17,13 +17,15 @@ void TuningHistory::drop() {
   const bool lasting = lasting_.back();
   steps_.pop_back();
   lasting_.pop_back();
-  if (lasting) move_on({step.name, step.now, step.before});
+  if (lasting) move_on({step.name, step.now, step.before, step.chunk});
 }
 
 void TuningHistory::move_on(const ParameterChange& change) {
-  ParameterChange& all = unsaved_.try_emplace(change.name, change).first->second;
-  all.now = change.now;
-  if (all.now == all.before) unsaved_.erase(change.name);
+  for (auto* const known : {&unsaved_, &set_}) {
+    ParameterChange& all = known->try_emplace(change.name, change).first->second;
+    all.now = change.now;
+    if (all.now == all.before) known->erase(change.name);
+  }
 }
 
 void TuningHistory::saved(const std::vector<ParameterChange>& changes) {
@@ -38,6 +40,12 @@ void TuningHistory::saved(const std::vector<ParameterChange>& changes) {
 std::vector<ParameterChange> TuningHistory::unsaved() const {
   std::vector<ParameterChange> all;
   for (const auto& [name, change] : unsaved_) all.push_back(change);
+  return all;
+}
+
+std::vector<ParameterChange> TuningHistory::set() const {
+  std::vector<ParameterChange> all;
+  for (const auto& [name, change] : set_) all.push_back(change);
   return all;
 }
 

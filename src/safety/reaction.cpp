@@ -27,6 +27,7 @@ Reactions default_reactions() noexcept {
   set(joints_lost, {.robot = damp, .latch = true});
   set(tilt, {.robot = limited});
   set(fall, {.robot = limited});
+  set(emergency_stop, {.robot = damp, .latch = true});  // and off after damp_s; no configuration changes it
   return reactions;
 }
 

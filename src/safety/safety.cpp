@@ -28,6 +28,7 @@ void Safety::clear() noexcept {
   engine_.clear();
   pending_ = cut_ = 0;
   lasting_s_ = 0;
+  stopped_ = false;
   fault_count_ = 0;
   first_fault_ = {};
 }
@@ -43,6 +44,7 @@ void Safety::imitate(const Safety& other) noexcept {
   pending_ = other.pending_;
   cut_ = other.cut_;
   lasting_s_ = other.lasting_s_;
+  stopped_ = other.stopped_;
   last_dt_s_ = other.last_dt_s_;
 }
 
@@ -110,13 +112,24 @@ void Safety::judge_robot(const SafetyInput& in, FaultMask body, FaultMask others
       fault.value = lost_;
       fault.limit = settings_.joints_lost_max;
     }
+    if (fault.code == FaultCode::emergency_stop) fault.words = stopped_by_;
     raise(fault);
   }
-  escalate(faults, dt_s);
 }
 
-void Safety::escalate(FaultMask faults, double dt_s) noexcept {
-  if ((faults & escalating_) != 0) {
+FaultMask Safety::take_stop() noexcept {
+  if (!stop_.take(stopped_by_)) return 0;
+  stopped_ = true;
+  return bit(FaultCode::emergency_stop);
+}
+
+// From hold to damp after hold_s, from damp to off after damp_s: because a fault lasts, or somebody wants it. Who wants
+// it does not wait in hold.
+void Safety::go_down(FaultMask faults, double dt_s) noexcept {
+  const bool wanted = stopped_ || stop_.leaving();
+  if (wanted) lasting_s_ = std::max(lasting_s_, settings_.hold_s);
+  if (wanted) robot_.latch(SafetyLevel::damp);
+  if (wanted || (faults & escalating_) != 0) {
     lasting_s_ += dt_s;
     if (lasting_s_ > settings_.hold_s) robot_.latch(SafetyLevel::damp);
     if (lasting_s_ > settings_.hold_s + settings_.damp_s) robot_.latch(SafetyLevel::off);
@@ -200,8 +213,11 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   came_back_ = false;
   const FaultMask joints = watch_joints(in, actuation, dt_s);
   const FaultMask feet = watch_feet(in, dt_s);
-  const FaultMask body = watch_body(in, dt_s) | bit_if(lost_ > settings_.joints_lost_max, FaultCode::joints_lost);
-  judge_robot(in, body, raised | joints | feet, dt_s);
+  const FaultMask body =
+      watch_body(in, dt_s) | bit_if(lost_ > settings_.joints_lost_max, FaultCode::joints_lost) | take_stop();
+  const FaultMask others = raised | joints | feet;
+  judge_robot(in, body, others, dt_s);
+  go_down(body | others, dt_s);
   pending_ = 0;  // what was raised here has been judged here
   SafetyLevel worst = robot_.level();
   for (std::size_t i = 0; i < joint_count_; ++i) {
@@ -213,6 +229,7 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   status.level = worst;
   status.fault_count = fault_count_;
   status.first_fault = first_fault_;
+  status.stopped = stopped_;
   level_number_ = static_cast<std::uint32_t>(worst);
   robot_level_number_ = static_cast<std::uint32_t>(robot_.level());
 }

@@ -2,7 +2,38 @@
 
 #include <cmath>
 
+#include "kadans/signal/number_text.h"
+
 namespace kadans {
+namespace {
+
+std::string bounds_text(const ScenarioCheck& check) {
+  if (!check.that.empty()) return check.that;
+  if (std::isfinite(check.min) && std::isfinite(check.max)) return printed("%g .. %g", check.min, check.max);
+  return std::isfinite(check.min) ? printed(">= %g", check.min) : printed("<= %g", check.max);
+}
+
+std::string wanted_text(const ScenarioCheck& check) {
+  const std::string bounds = bounds_text(check);
+  switch (check.kind) {
+    case CheckKind::always:
+      return bounds;
+    case CheckKind::never:
+      return "never " + bounds;
+    case CheckKind::eventually:
+      return "at least once " + bounds;
+    case CheckKind::at_end:
+      return "at the end " + bounds;
+    case CheckKind::within:
+      return bounds + printed(" within %g s of ", check.within_s) + check.when;
+    case CheckKind::settles:
+      return bounds + printed(" for good within %g s", check.within_s) +
+             (check.when.empty() ? "" : " of " + check.when);
+  }
+  return bounds;
+}
+
+}  // namespace
 
 void Check::update(double time_s, const Observation& seen) noexcept {
   if (!(time_s >= check_.from_s && time_s <= check_.until_s)) return;
@@ -56,7 +87,11 @@ void Check::update_settling(double time_s, const Observation& seen) noexcept {
 }
 
 CheckResult Check::settled() const {
-  CheckResult result{.name = check_.name, .value = std::max(0.0, outside_s_ - began_s_), .at_s = at_s_};
+  CheckResult result{.name = check_.name,
+                     .value = std::max(0.0, outside_s_ - began_s_),
+                     .at_s = at_s_,
+                     .note = {},
+                     .wanted = wanted_text(check_)};
   if (last_s_ - began_s_ < check_.within_s) {
     result.note = "the run ended before within_s had passed";
   } else {
@@ -66,7 +101,7 @@ CheckResult Check::settled() const {
 }
 
 CheckResult Check::result() const {
-  CheckResult result{.name = check_.name, .value = value_, .at_s = at_s_};
+  CheckResult result{.name = check_.name, .value = value_, .at_s = at_s_, .note = {}, .wanted = wanted_text(check_)};
   if (check_.kind == CheckKind::within || check_.kind == CheckKind::settles) {
     if (!started_) {
       result.note = "its `when` never became true";

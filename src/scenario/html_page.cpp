@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "kadans/signal/utf8.h"
+
 namespace kadans {
 namespace {
 
@@ -40,7 +42,7 @@ a { color: inherit; }
 
 std::string html_text(std::string_view text) {
   std::string safe;
-  for (const char c : text) {
+  for (const char c : xml_characters(text)) {
     switch (c) {
       case '&':
         safe += "&amp;";

@@ -19,31 +19,6 @@ std::string cell(const std::string& text, const char* type = "") {
 }
 constexpr const char* number = " class=\"number\"";
 
-// With what kind of demand it is.
-std::string demand(const ScenarioCheck& check, const std::string& note) {
-  std::string text = wanted_text(check);
-  switch (check.kind) {
-    case CheckKind::always:
-      break;
-    case CheckKind::never:
-      text = "never " + text;
-      break;
-    case CheckKind::eventually:
-      text = "at least once " + text;
-      break;
-    case CheckKind::at_end:
-      text = "at the end " + text;
-      break;
-    case CheckKind::within:
-      text += printed(" within %g s of ", check.within_s) + check.when;
-      break;
-    case CheckKind::settles:
-      text += printed(" for good within %g s", check.within_s) + (check.when.empty() ? "" : " of " + check.when);
-      break;
-  }
-  return text + (note.empty() ? "" : "; " + note);
-}
-
 // A small line on its own scale, for what a failed check saw.
 std::string spark_line(const EvidenceTrace& trace) {
   constexpr double width = 520, height = 90;
@@ -161,12 +136,10 @@ class HtmlRun {
   void failures() {
     if (failed() == 0) return;
     title("What failed");
-    for (std::size_t i = 0; i < run_.checks.size(); ++i) {
-      const CheckResult& check = run_.checks[i];
+    for (const CheckResult& check : run_.checks) {
       if (check.passed) continue;
       add("<div class=\"failed\"><strong>" + html_text(check.name) +
-          "</strong>: " + printed("%.5g at %.3f s", check.value, check.at_s) + ", wanted " +
-          html_text(demand(report_.subject.checks.at(i), check.note)));
+          "</strong>: " + printed("%.5g at %.3f s", check.value, check.at_s) + html_text(wanted_clause(check)));
       for (const EvidenceTrace& trace : report_.evidence) {
         if (trace.check == check.name) add("<figure>" + spark_line(trace) + "</figure>");
       }
@@ -204,11 +177,10 @@ class HtmlRun {
     title("Checks");
     if (run_.checks.empty()) return add("<p class=\"dim\">The scenario has none.</p>\n");
     table({"", "check", "value", "when", "wanted"}, 0);
-    for (std::size_t i = 0; i < run_.checks.size(); ++i) {
-      const CheckResult& check = run_.checks[i];
+    for (const CheckResult& check : run_.checks) {
       add("<tr>" + std::string(check.passed ? "<td class=\"mark good\">✓</td>" : "<td class=\"mark bad\">✗</td>") +
           cell(check.name) + cell(printed("%.5g", check.value), number) + cell(printed("%.3f s", check.at_s), number) +
-          cell(demand(report_.subject.checks.at(i), check.note)) + "</tr>\n");
+          cell(demand(check)) + "</tr>\n");
     }
     add("</table></div>\n");
   }
@@ -230,7 +202,8 @@ class HtmlRun {
     table({"time", "fault", "joint", "value", "limit", "set by"}, 1);
     for (const Fault& fault : run_.faults)
       add("<tr>" + cell(printed("%.3f s", fault_s(fault)), number) + cell(name(fault.code)) + cell(joint_of(fault)) +
-          cell(printed("%.5g", fault.value), number) + cell(printed("%.5g", fault.limit), number) +
+          cell(fault.words[0] != '\0' ? fault.words.data() : printed("%.5g", fault.value), number) +
+          cell(fault.words[0] != '\0' ? "" : printed("%.5g", fault.limit), number) +
           cell(configuration_key(fault.code)) + "</tr>\n");
     add("</table></div>\n");
   }
@@ -277,12 +250,6 @@ std::string report_file(const std::string& name, std::uint64_t seed) {
   std::ranges::replace_if(
       safe, [&](char c) { return !plain(c); }, '_');
   return safe + "-" + std::to_string(seed) + ".html";
-}
-
-std::string wanted_text(const ScenarioCheck& check) {
-  if (!check.that.empty()) return check.that;
-  if (std::isfinite(check.min) && std::isfinite(check.max)) return printed("%g .. %g", check.min, check.max);
-  return std::isfinite(check.min) ? printed(">= %g", check.min) : printed("<= %g", check.max);
 }
 
 }  // namespace kadans

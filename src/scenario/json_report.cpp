@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/scenario/report.h"
 #include "kadans/signal/number_text.h"
 
@@ -16,6 +17,7 @@ Json fault_json(const Fault& fault, const RobotModel& model) {
   if (fault.joint != no_joint) json["joint"] = model.joints.at(fault.joint).name;
   json["value"] = fault.value;
   json["limit"] = fault.limit;
+  if (fault.words[0] != '\0') json["words"] = fault.words.data();
   json["key"] = configuration_key(fault.code);
   return json;
 }
@@ -47,8 +49,11 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   Json json{{"scenario", result.scenario}, {"seed", result.seed}, {"passed", result.passed}};
   json["checks"] = Json::array();
   for (const CheckResult& check : result.checks) {
-    json["checks"].push_back(
-        {{"name", check.name}, {"passed", check.passed}, {"value", check.value}, {"at_s", check.at_s}});
+    json["checks"].push_back({{"name", check.name},
+                              {"passed", check.passed},
+                              {"value", check.value},
+                              {"at_s", check.at_s},
+                              {"wanted", check.wanted}});
     if (!check.note.empty()) json["checks"].back()["note"] = check.note;
   }
   json["duration_s"] = result.duration_s;
@@ -65,6 +70,7 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   for (const LogLine& line : context.log.lines()) {
     if (line.severity == BehaviorLog::Severity::error) json["errors"].push_back(line.text);
   }
+  for (const std::string& what : context.lost) json["errors"].push_back(what);
   json["record"] = context.record;
   json["quantities"] = Json::object();
   for (const QuantityValue& quantity : context.quantities) json["quantities"][quantity.name] = quantity.value;
@@ -80,7 +86,7 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
     for (auto it = from; it != all.end(); ++it) json["transitions"].push_back(transition_line(*it));
     json["evidence"] = evidence_json(context.evidence);
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace kadans

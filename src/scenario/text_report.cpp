@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "kadans/scenario/html_report.h"
 #include "kadans/scenario/report.h"
 #include "kadans/signal/number_text.h"
 #include "kadans/telemetry/text_plot.h"
@@ -34,21 +33,23 @@ class TextReport {
   std::string red(const std::string& text) const { return painted("31;1", text); }
   std::string dim(const std::string& text) const { return painted("2", text); }
 
+  // By time; what a behavior says when it enters a state stands behind the transition to it.
   void timeline() {
     const char* arrow = style_.unicode ? "→" : "->";
+    std::vector<std::pair<std::int64_t, std::string>> said;
     for (const Transition& t : subject_.log.transitions()) {
-      text_ += dim(printed("  %7.2f s  ", 1e-9 * static_cast<double>(t.time_ns)));
-      text_ += t.behavior + ": " + (t.from.empty() ? "" : t.from + " ") + arrow + " " + t.to;
-      if (!t.why.empty()) text_ += dim("  (" + t.why + ")");
-      text_ += '\n';
+      said.emplace_back(t.time_ns, t.behavior + ": " + (t.from.empty() ? "" : t.from + " ") + arrow + " " + t.to +
+                                       (t.why.empty() ? "" : dim("  (" + t.why + ")")));
     }
     for (const LogLine& line : subject_.log.lines()) {
       if (line.severity == BehaviorLog::Severity::error || !style_.verbose) continue;
       const char* mark = line.severity == BehaviorLog::Severity::warning ? "warning: " : "";
-      text_ += dim(printed("  %7.2f s  ", 1e-9 * static_cast<double>(line.time_ns))) + line.behavior + ": " + mark +
-               line.text + '\n';
+      said.emplace_back(line.time_ns, line.behavior + ": " + mark + line.text);
     }
-    if (!text_.empty()) text_ += '\n';
+    std::ranges::stable_sort(said, {}, &std::pair<std::int64_t, std::string>::first);
+    for (const auto& [time_ns, text] : said)
+      text_ += dim(printed("  %7.2f s  ", 1e-9 * static_cast<double>(time_ns))) + text + '\n';
+    if (!said.empty()) text_ += '\n';
   }
 
   void plot(const ReportTrace& trace) {
@@ -68,14 +69,17 @@ class TextReport {
   void checks() {
     std::size_t widest = 0;
     for (const CheckResult& check : subject_.result.checks) widest = std::max(widest, check.name.size());
-    for (std::size_t i = 0; i < subject_.result.checks.size(); ++i) {
-      const CheckResult& check = subject_.result.checks[i];
+    for (const CheckResult& check : subject_.result.checks) {
       const std::string mark = check.passed ? green(style_.unicode ? "✓" : "ok") : red(style_.unicode ? "✗" : "FAILED");
       text_ += "  " + mark + " " + check.name + std::string(widest - check.name.size(), ' ');
-      text_ +=
-          printed("  %11.5g at %6.2f s", check.value, check.at_s) +
-          dim("   wanted " + wanted_text(subject_.checks[i]) + (check.note.empty() ? "" : "; " + check.note) + '\n');
+      text_ += printed("  %11.5g at %6.2f s", check.value, check.at_s) + dim("   wanted " + demand(check) + '\n');
     }
+  }
+
+  // Where its limit is set.
+  static std::string key(const Fault& fault) {
+    const std::string key = configuration_key(fault.code);
+    return key.empty() ? "" : " (" + key + ")";
   }
 
   void troubles() {
@@ -89,8 +93,8 @@ class TextReport {
       const Fault& fault = result.faults[i];
       const std::string joint = fault.joint == no_joint ? "" : " of " + subject_.model.joints.at(fault.joint).name;
       text_ += red("  fault: ") + name(fault.code) + joint +
-               printed(" in tick %llu: %g, limit %g (%s)\n", static_cast<unsigned long long>(fault.tick), fault.value,
-                       fault.limit, configuration_key(fault.code));
+               printed(" in tick %llu: ", static_cast<unsigned long long>(fault.tick)) + fault_detail(fault) +
+               key(fault) + "\n";
     }
     if (result.faults.size() > shown) text_ += printed("  ... and %zu more faults\n", result.faults.size() - shown);
   }

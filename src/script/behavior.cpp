@@ -172,10 +172,14 @@ KADANS_TICK_CODE void Behavior::publish_status() noexcept {
 void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept {
   Parts& parts = *parts_;
   if (!parts.runner->started() || parts.error.breach != ScriptBreach::none) return;
-  // An exit that raises ends its transaction; the states around it are left in the next one.
+  // An exit that raises ends its transaction; the states around it are left in the next one, in what is left of the
+  // tick.
+  const bool wall = parts.settings.limits.tick_wall_ns > 0;
+  const std::int64_t end_ns = wall ? WallClock{}.now_ns() + parts.settings.limits.tick_wall_ns : 0;
   for (std::uint64_t left = parts.settings.limits.tick_instructions; left > 0;) {
+    const std::int64_t left_ns = wall ? std::max<std::int64_t>(end_ns - WallClock{}.now_ns(), 1) : 0;
     parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-    if (parts.lua->call(stop_chart, &parts, left, parts.settings.limits.tick_wall_ns)) {
+    if (parts.lua->call(stop_chart, &parts, left, left_ns)) {
       (void)parts.bindings.commit();
       return;
     }

@@ -123,7 +123,8 @@ bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vec
   Adoption adoption{fresh, old, map};
   fresh.bindings.begin(commands, snapshot, snapshot.time_ns);
   const int top = lua_gettop(old.lua->get());
-  const bool adopted = fresh.lua->call(adopt, &adoption, fresh.settings.limits.reload_instructions, 0);
+  const ScriptLimits& limits = fresh.settings.limits;
+  const bool adopted = fresh.lua->call(adopt, &adoption, limits.reload_instructions, limits.load_wall_ns);
   lua_settop(old.lua->get(), top);
   commands.discard();  // a guard that commands
   if (adopted) fresh.want_sets(snapshot);

@@ -148,13 +148,13 @@ void give_arguments(Behavior::Parts& parts, std::uint64_t instructions) {
   if (settings.arguments.empty()) return;
   Giving giving{parts};
   std::vector<InputProblem> problems;
-  bool done = parts.lua->call(read_declared, &giving, instructions, 0);
+  bool done = parts.lua->call(read_declared, &giving, instructions, settings.limits.load_wall_ns);
   for (const PlayArgument& argument : settings.arguments) {
     const std::string wrong = give(giving, argument);
     if (!wrong.empty()) problems.push_back({settings.source, argument.place.line, argument.place.column, wrong});
   }
   if (!problems.empty()) throw InputError(problems);
-  done = done && parts.lua->call(keep_given, &giving, instructions, 0);
+  done = done && parts.lua->call(keep_given, &giving, instructions, settings.limits.load_wall_ns);
   if (!done) throw InputError({.file = settings.source, .message = parts.lua->error().text()});
 }
 

@@ -138,7 +138,8 @@ bool Behavior::go_on(ByteReader& bytes, const Snapshot& snapshot, CommandSender&
   }
   GoingOn going_on{parts, bytes};
   parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const bool taken = parts.lua->call(take_machines, &going_on, parts.settings.limits.load_instructions, 0);
+  const ScriptLimits& limits = parts.settings.limits;
+  const bool taken = parts.lua->call(take_machines, &going_on, limits.load_instructions, limits.load_wall_ns);
   commands.discard();
   core.random = random;
   if (taken && parts.runner->started()) parts.want_sets(snapshot);

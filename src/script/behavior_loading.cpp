@@ -58,7 +58,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
                                                             .voice = &parts});
   parts.bindings.catalog = &parts.catalog;
   parts.lua->core().bindings = &parts.bindings;
-  if (!parts.lua->call(read_file, &parts, instructions, 0)) {
+  if (!parts.lua->call(read_file, &parts, instructions, settings.limits.load_wall_ns)) {
     throw InputError(problem_of(parts.lua->error()));
   }
   find_transition_lines(parts.lua->sources(), parts.chart);
@@ -67,7 +67,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   if (!parts.problems.empty()) throw InputError(parts.problems);
   give_robot_values(parts);
   give_arguments(parts, instructions);
-  if (!parts.lua->call(open_bindings, &parts, instructions, 0)) {
+  if (!parts.lua->call(open_bindings, &parts, instructions, settings.limits.load_wall_ns)) {
     throw InputError(problem_of(parts.lua->error()));
   }
   parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);

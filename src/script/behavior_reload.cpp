@@ -1,10 +1,9 @@
 #include <exception>
-#include <fstream>
-#include <iterator>
 
 #include "behavior_parts.h"
 #include "chart_map.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/input_file.h"
 #include "machine_sets.h"
 #include "tick_code.h"
 
@@ -13,15 +12,14 @@ namespace {
 
 constexpr std::int64_t probation_ns = 1'000'000'000;
 
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // Whether the files hold these texts; the first is looked for at `first`.
 bool holds(const std::filesystem::path& first, const std::vector<LuaState::Source>& sources) {
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    if (read_text(i == 0 ? first : sources[i].path) != sources[i].text) return false;
+  try {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      if (read_input_file(i == 0 ? first : sources[i].path) != sources[i].text) return false;
+    }
+  } catch (const InputError&) {
+    return false;
   }
   return !sources.empty() && first.parent_path() == sources.front().path.parent_path();
 }

@@ -1,6 +1,7 @@
 #include "kadans/script/behavior_test.h"
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 
@@ -9,14 +10,19 @@
 #include "lua_core.h"
 #include "sandbox.h"
 #include "snapshot_tables.h"
+#include "test_globals.h"
 #include "test_prelude.h"
 
 namespace kadans {
 namespace {
 
-constexpr std::uint64_t instructions_max = 200'000'000;  // of a file
+constexpr std::uint64_t load_instructions_max = 200'000'000;  // of a file
+constexpr std::uint64_t test_instructions_max = 100'000'000;  // of each of its tests
+constexpr double advance_instructions = 1000;                 // what a call of it is charged ...
+constexpr double second_instructions = 20'000;                // ... and each virtual second: 5000 s in one test
 constexpr std::size_t memory_max_bytes = std::size_t{64} << 20;
 constexpr std::size_t stages_max = 8;  // of one test
+constexpr std::size_t tests_max = 100'000;
 
 struct Played {
   std::unique_ptr<TestStage> stage;
@@ -29,7 +35,12 @@ struct Testing {
   TestStages& stages;
   std::filesystem::path root, file;
   std::vector<Played> played;
-  std::vector<TestOutcome> outcomes;
+  struct Test {
+    std::string name;
+    int function = LUA_NOREF;
+  };
+  std::vector<Test> tests;
+  int running = LUA_NOREF;           // the function of the test that runs
   std::array<char, 1024> message{};  // of what went wrong where nothing may raise
   std::string text;                  // given to Lua; a member, since Lua may raise
 };
@@ -92,7 +103,9 @@ bool go_on(Testing& testing, Played& played, double seconds) noexcept {
 int advance(lua_State* state) {
   Played* played = find(state);
   if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
-  if (!go_on(testing_of(state), *played, lua_tonumber(state, 2))) return raise(state, testing_of(state));
+  const double seconds = lua_tonumber(state, 2);
+  core_of(state).budget.charge(state, advance_instructions + second_instructions * seconds);
+  if (!go_on(testing_of(state), *played, seconds)) return raise(state, testing_of(state));
   return 0;
 }
 
@@ -141,18 +154,39 @@ int change(lua_State* state) {
   return 1;
 }
 
-// report(name, problem).
-int report(lua_State* state) {
-  testing_of(state).outcomes.push_back({luaL_checkstring(state, 1), luaL_checkstring(state, 2)});
+// add_test(name, function).
+int add_test(lua_State* state) {
+  Testing& testing = testing_of(state);
+  const char* name = luaL_checkstring(state, 1);
+  if (testing.tests.size() >= tests_max)
+    return luaL_error(state, "a file has %d tests at most", static_cast<int>(tests_max));
+  lua_settop(state, 2);
+  const int function = luaL_ref(state, LUA_REGISTRYINDEX);
+  testing.tests.push_back({name, function});
   return 0;
 }
 
-// new_test(): what the last one played is gone.
-int new_test(lua_State* state) {
-  testing_of(state).played.clear();
+// What the last one played is gone.
+int run_test(lua_State* state) {
+  auto& testing = *static_cast<Testing*>(lua_touserdata(state, 1));
   lua_gc(state, LUA_GCCOLLECT, 0);
   lua_gc(state, LUA_GCSTOP, 0);
+  core_of(state).heap.forgive();
+  lua_rawgeti(state, LUA_REGISTRYINDEX, testing.running);
+  lua_call(state, 0, 0);
   return 0;
+}
+
+// What went wrong in it, "" when nothing did.
+std::string problem_of(Testing& testing, const Testing::Test& test) {
+  testing.played.clear();
+  testing.running = test.function;
+  if (testing.lua.call(run_test, &testing, test_instructions_max, 0)) return "";
+  const ScriptError& error = testing.lua.error();
+  if (error.breach != ScriptBreach::instructions) return error.text();
+  ScriptError stopped = error;
+  stopped.message = {"stopped, for it did not come to an end: a loop without one?"};
+  return stopped.text();
 }
 
 // [-1 +0] Into the names that scripts see.
@@ -178,13 +212,12 @@ int run_file(lua_State* state) {
   if (luaL_loadbuffer(state, test_prelude, sizeof test_prelude - 1, "=kadans test") != 0) return lua_error(state);
   push_environment(state);
   lua_setfenv(state, -2);
-  for (const lua_CFunction function : {play, advance, read, change, report, new_test}) {
+  for (const lua_CFunction function : {play, advance, read, change, add_test}) {
     lua_pushlightuserdata(state, &testing);
     lua_pushcclosure(state, function, 1);
   }
-  lua_call(state, 6, 5);
-  set_in_module(state, "play");
-  for (const char* name : {"expect", "before_each", "it", "describe"}) set_global(state, name);
+  lua_call(state, 5, 5);
+  open_test_names(state);
   if (!testing.lua.load_file(state, testing.file)) return lua_error(state);
   lua_call(state, 0, 0);
   return 0;
@@ -192,17 +225,30 @@ int run_file(lua_State* state) {
 
 }  // namespace
 
+void open_test_names(lua_State* state) {
+  set_in_module(state, "play");
+  for (const char* name : {"expect", "before_each", "it", "describe"}) set_global(state, name);
+}
+
 std::vector<TestOutcome> run_behavior_tests(const std::filesystem::path& root, const std::filesystem::path& file,
-                                            TestStages& stages) {
+                                            TestStages& stages, const std::string& only) {
   const ScriptLimits limits{.memory_bytes = memory_max_bytes};
   LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string(), .limits = limits});
-  Testing testing{lua, stages, root, file, {}, {}, {}, {}};
+  Testing testing{lua, stages, root, file, {}, {}, LUA_NOREF, {}, {}};
   testing.played.reserve(stages_max);
-  if (!lua.call(run_file, &testing, instructions_max, 0)) {
+  if (!lua.call(run_file, &testing, load_instructions_max, 0)) {
     const ScriptError& error = lua.error();
     throw InputError({error.file.data(), error.line, 0, error.message.data()});
   }
-  return std::move(testing.outcomes);
+  std::vector<TestOutcome> outcomes;
+  for (const Testing::Test& test : testing.tests) {
+    if (test.name.find(only) == std::string::npos) continue;
+    const auto began = std::chrono::steady_clock::now();
+    std::string problem = problem_of(testing, test);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+    outcomes.push_back({.name = test.name, .problem = std::move(problem), .wall_s = took.count()});
+  }
+  return outcomes;
 }
 
 }  // namespace kadans

@@ -7,6 +7,8 @@
 namespace kadans {
 namespace {
 
+constexpr std::size_t problems_max = 20;
+
 std::string last_part(const std::string& path, const std::string& above) {
   return above.empty() ? path : path.substr(above.size() + 1);
 }
@@ -170,15 +172,17 @@ EventId Chart::intern(std::string_view event) {
 
 void Chart::resolve(std::vector<InputProblem>& problems) {
   Resolver resolver{*this, problems};
-  for (StateIndex i = 0; i < size(); ++i) {
+  // Each mistake goes through all names; who reads them mends the first ones first.
+  const auto enough = [&] { return problems.size() >= problems_max; };
+  for (StateIndex i = 0; i < size() && !enough(); ++i) {
     resolver.siblings(i);
     resolver.kinds(i);
     if (states[i].kind != Kind::history) resolver.initial(i);
   }
-  for (StateIndex i = 0; i < size(); ++i) {
+  for (StateIndex i = 0; i < size() && !enough(); ++i) {
     if (states[i].kind == Kind::history) resolver.history(i);
   }
-  for (Transition& transition : transitions) resolver.transition(transition);
+  for (std::size_t i = 0; i < transitions.size() && !enough(); ++i) resolver.transition(transitions[i]);
 }
 
 }  // namespace kadans

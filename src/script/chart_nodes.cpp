@@ -4,11 +4,16 @@
 #include <cstring>
 #include <initializer_list>
 
+#include "library_function.h"
+#include "lua_core.h"
+
 namespace kadans {
 namespace {
 
 const char node_key = 0;
 constexpr std::size_t name_max = 64, text_max = 256;  // characters: charts keep them outside the script's memory
+
+constexpr double node_instructions = 300, transition_instructions = 110;  // to check one
 
 constexpr const char* behavior_keys[] = {"version", "controls", "vars",   "args", "migrate", "initial", "always",
                                          "enter",   "exit",     "during", "run",  "endless", nullptr};
@@ -74,6 +79,7 @@ void check_after(lua_State* state, int table, const Place& place) {
 }
 
 void check_transition(lua_State* state, int table, const Place& place) {
+  core_of(state).budget.charge(state, transition_instructions);
   lua_getfield(state, table, "to");
   const char* to = lua_tostring(state, -1);
   Place nearer = place;
@@ -137,6 +143,7 @@ int finish_node(lua_State* state) {
     return raise_at(state, place, nullptr, "%s \"%s\" needs a table { ... }", node_word(kind), name);
   }
   lua_settop(state, 1);
+  core_of(state).budget.charge(state, node_instructions);
   check_keys(state, 1, place, node_word(kind), keys_of(kind));
   check_types(state, 1, place, keys_of(kind));
   check_transitions(state, 1, place, true);
@@ -179,6 +186,7 @@ int make_call(lua_State* state) {
   const Place place = calling_place(state);
   if (lua_type(state, 1) != LUA_TSTRING) return raise_at(state, place, nullptr, "k.call needs the name of a behavior");
   lua_settop(state, 1);
+  charge_text(state, static_cast<double>(lua_objlen(state, 1)));
   lua_newtable(state);
   make_node(state, NodeKind::call, lua_tostring(state, 1), place);
   return 1;

@@ -15,6 +15,7 @@ namespace {
 
 const char handle_key = 0;
 constexpr std::size_t parameters_max = 1000, parameter_text_max = 512;  // they are kept outside the script's memory
+constexpr double parameter_instructions = 200;
 constexpr const char* spec_keys[] = {"min", "max", "unit", "doc", nullptr};
 
 double number_field(lua_State* state, int table, const char* name, double fallback, const Place& place) {
@@ -113,6 +114,7 @@ int params(lua_State* state) {
     if (lua_isnil(state, 4)) break;
     if (lua_type(state, 4) != LUA_TSTRING)
       return raise_at(state, place, nullptr, "k.params: every parameter needs a name");
+    core_of(state).budget.charge(state, parameter_instructions);
     add_parameter(state, read_spec(state, lua_tostring(state, 4), place), place);
     auto* handle = static_cast<std::size_t*>(lua_newuserdata(state, sizeof(std::size_t)));
     *handle = core_of(state).parameters.size() - 1;

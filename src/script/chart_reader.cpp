@@ -30,18 +30,28 @@ struct Reader {
     return value != nullptr ? value : "";
   }
 
+  // Both look through what is there already.
+  int find_line(const Place& place, const char* text) const {
+    const LuaState& owner = *core_of(state).owner;
+    core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
+    return owner.line_of(place.chunk, place.line, text);
+  }
+  EventId intern(const char* event) const {
+    core_of(state).budget.charge(state, static_cast<double>(chart.events.size()));
+    return chart.intern(event);
+  }
+
   void read_transition(int table, StateIndex source, const Place& place) {
     if (chart.transitions.size() >= transitions_max)
       raise_at(state, place, nullptr, "more than %d transitions", static_cast<int>(transitions_max));
     Chart::Transition& made = chart.transitions.emplace_back();
     made.source = source;
     made.target_name = text(table, "to");
-    const LuaState& owner = *core_of(state).owner;
-    made.line = owner.line_of(place.chunk, place.line, made.target_name);
+    made.line = find_line(place, made.target_name.c_str());
     made.when = reference(table, "when");
     made.action = reference(table, "action");
     const char* on = text(table, "on");
-    if (*on != '\0') made.on = chart.intern(on);
+    if (*on != '\0') made.on = intern(on);
     lua_getfield(state, table, "after");
     std::size_t number = 0;
     made.timed = !lua_isnil(state, -1);
@@ -99,7 +109,7 @@ struct Reader {
       if (made.kind == Chart::Kind::final_state) {
         made.outcome_given = !made.outcome_name.empty();
         if (made.outcome_name.empty()) made.outcome_name = "done";
-        made.outcome = chart.intern(made.outcome_name);
+        made.outcome = intern(made.outcome_name.c_str());
       }
       lua_getfield(state, body, "deep");
       made.deep = lua_toboolean(state, -1) != 0;
@@ -212,12 +222,25 @@ struct Reader {
   }
 };
 
+// Every transition looks for its state, every state for its lines; both by going through all.
+void charge_resolving(lua_State* state, const Chart& chart) {
+  constexpr double looks_per_instruction = 16, bytes_per_instruction = 64;
+  double source_bytes = 0;
+  for (const LuaState::Source& source : core_of(state).owner->sources())
+    source_bytes += static_cast<double>(source.text.size());
+  const auto states = static_cast<double>(chart.states.size()),
+             transitions = static_cast<double>(chart.transitions.size());
+  core_of(state).budget.charge(state, states * (states + transitions) / looks_per_instruction);
+  core_of(state).budget.charge(state, states * source_bytes / bytes_per_instruction);
+}
+
 }  // namespace
 
 void read_chart(lua_State* state, int index, Chart& chart) {
   Reader reader{state, chart};
   chart.name = node_name(state, index);
   reader.read_machine(index, no_state, Chart::no_function, 0);
+  charge_resolving(state, chart);
 }
 
 }  // namespace kadans

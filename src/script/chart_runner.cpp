@@ -5,10 +5,16 @@
 #include <lua.hpp>
 
 #include "bindings.h"
+#include "step_meter.h"
 #include "tick_code.h"
 #include "warm_up.h"
 
 namespace kadans {
+namespace {
+
+constexpr std::size_t state_steps = 2;  // to look at a state for one transition
+
+}  // namespace
 
 ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, TransitionSink& sink)
     : chart_(chart),
@@ -92,6 +98,9 @@ void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
 
 KADANS_TICK_CODE void ChartRunner::take_step(lua_State* state) {
   if (selected_.empty() && !entering_) return;
+  StepMeter meter(state);
+  meter.spend(state_steps * selected_.size() * (active_.size() + chart_.size()));
+  meter.settle();
   for (const std::uint16_t number : selected_) report(number);
   for (const StateIndex index : active_) {
     for (const std::uint16_t number : selected_) {

@@ -5,12 +5,14 @@
 #include "bindings.h"
 #include "kadans/script/chart_runner.h"
 #include "lua_core.h"
+#include "step_meter.h"
 #include "tick_code.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::uint16_t none = 0xffff;
+constexpr std::size_t transition_steps = 6, selected_steps = 6;  // to look at one
 
 }  // namespace
 
@@ -53,14 +55,16 @@ KADANS_TICK_CODE bool ChartRunner::enabled(lua_State* state, std::uint16_t numbe
   return guard(state, number);
 }
 
-KADANS_TICK_CODE std::uint16_t ChartRunner::select_always(lua_State* state, StateIndex leaf, EventId event,
-                                                          bool events_only) {
+KADANS_TICK_CODE std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, StateIndex leaf,
+                                                          EventId event, bool events_only) {
   for (const StateIndex around : active_) {  // from the outside in
     if (around > leaf) break;
+    meter.spend();
     const Chart::State& outer = chart_.states[around];
     if (outer.always_count == 0 || !chart_.inside(leaf, around)) continue;
     for (std::uint16_t i = 0; i < outer.always_count; ++i) {
       const auto number = static_cast<std::uint16_t>(outer.first_always + i);
+      meter.spend(transition_steps);
       if (run_[chart_.transitions[number].target].active) continue;  // it is there already
       if (enabled(state, number, event, events_only)) return number;
     }
@@ -68,11 +72,12 @@ KADANS_TICK_CODE std::uint16_t ChartRunner::select_always(lua_State* state, Stat
   return none;
 }
 
-KADANS_TICK_CODE std::uint16_t ChartRunner::select_ordinary(lua_State* state, StateIndex leaf, EventId event,
-                                                            bool events_only) {
+KADANS_TICK_CODE std::uint16_t ChartRunner::select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf,
+                                                            EventId event, bool events_only) {
   for (StateIndex inner = leaf; inner != no_state; inner = chart_.states[inner].parent) {
     const Chart::State& at = chart_.states[inner];
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
+      meter.spend(transition_steps);
       const auto number = static_cast<std::uint16_t>(at.first_transition + i);
       if (enabled(state, number, event, events_only)) return number;
     }
@@ -103,18 +108,24 @@ KADANS_TICK_CODE bool ChartRunner::is_leaf(std::size_t position) const noexcept 
 }
 
 KADANS_TICK_CODE void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
+  StepMeter meter(state);
   selected_.clear();
   for (std::size_t i = 0; i < active_.size(); ++i) {
     if (!is_leaf(i)) continue;
-    const std::uint16_t found = select_always(state, active_[i], event, events_only);
+    const std::uint16_t found = select_always(state, meter, active_[i], event, events_only);
     run_[active_[i]].decided = found != none;
-    if (found != none) add_selected(found);
+    if (found == none) continue;
+    meter.spend(selected_steps * selected_.size());
+    add_selected(found);
   }
   for (std::size_t i = 0; i < active_.size(); ++i) {
     if (!is_leaf(i) || run_[active_[i]].decided) continue;
-    const std::uint16_t found = select_ordinary(state, active_[i], event, events_only);
-    if (found != none) add_selected(found);
+    const std::uint16_t found = select_ordinary(state, meter, active_[i], event, events_only);
+    if (found == none) continue;
+    meter.spend(selected_steps * selected_.size());
+    add_selected(found);
   }
+  meter.settle();
 }
 
 KADANS_TICK_CODE bool ChartRunner::took(EventId event) const noexcept {

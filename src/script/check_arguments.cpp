@@ -105,7 +105,7 @@ const ObjectInfo* ArgumentCheck::object(const std::string& name) const noexcept 
 }
 
 Mistakes ArgumentCheck::pose_name(const Tokens& tokens, std::size_t at) const {
-  if (!whole_text(tokens, at)) return {};
+  if (catalog_.model == nullptr || !whole_text(tokens, at)) return {};  // of no robot
   std::vector<std::string> names;
   for (const PoseInfo& pose : catalog_.poses) {
     if (pose.name == tokens[at].text) return {};

@@ -6,6 +6,7 @@
 #include "behavior_parts.h"
 #include "check_chart.h"
 #include "check_source.h"
+#include "check_vars.h"
 #include "known_names.h"
 #include "silent_log.h"
 
@@ -20,7 +21,9 @@ std::vector<InputProblem> check_behavior(const std::filesystem::path& root, cons
   try {
     load_behavior(parts, settings.limits.load_instructions);
     check_chart(parts.chart, problems);
-    check_sources(parts, read_known_names(parts), problems);
+    check_vars(parts, problems);
+    KnownNames known = read_known_names(parts);
+    check_sources(parts, known, problems);
   } catch (const InputError& error) {
     return error.problems();
   }

@@ -4,6 +4,8 @@
 #include <array>
 
 #include "check_arguments.h"
+#include "check_events.h"
+#include "check_modules.h"
 #include "hint.h"
 #include "source_scopes.h"
 
@@ -35,8 +37,7 @@ class SourceCheck final : public SourceListener {
     if (has_behavior_) vars_ = vars->second;
   }
 
-  void run() {
-    SourceScopes scopes(lex_source(source_.text));
+  void run(SourceScopes& scopes) {
     Writes writes;
     scopes.tell(writes);
     vars_.insert(vars_.end(), writes.vars.begin(), writes.vars.end());
@@ -47,6 +48,10 @@ class SourceCheck final : public SourceListener {
   void used(const SourceUse& use, const std::vector<SourceToken>& tokens) override {
     if (!use.known) return unknown(use);
     if (use.guard) guard(use);
+    if (!use.at_once.empty() && waits(use, tokens)) {
+      problem(use.line,
+              "a wait where '" + use.at_once + "' runs: only `run` can wait, the others are over in their tick");
+    }
     switch (use.meaning.role) {
       case SourceRole::machine:
         return machine(use, tokens);
@@ -61,6 +66,8 @@ class SourceCheck final : public SourceListener {
         return;
       case SourceRole::parameters:
         return parameter(use);
+      case SourceRole::own_module:
+        return own_module(use);
       default:
         return;
     }
@@ -79,6 +86,30 @@ class SourceCheck final : public SourceListener {
       return problem(use.line, "'" + use.name + "' would be a global: write local " + use.name);
     }
     problem(use.line, "unknown name '" + use.name + "'" + hint_text(use.name, known_.globals.names()));
+  }
+
+  // m:wait(1), motion:wait(), m.posture:move(...):wait()
+  bool waits(const SourceUse& use, const std::vector<SourceToken>& tokens) const {
+    if (use.arguments == 0) return false;
+    const auto& path = use.meaning.path;
+    const bool machine = use.meaning.role == SourceRole::machine;
+    if ((machine || use.meaning.role == SourceRole::motion) && path.empty()) return use.method == "wait";
+    if (!machine || path.size() != 1 || arguments_.object(path.front()) == nullptr) return false;
+    const std::size_t after = end_of_call(tokens, use.arguments);
+    return tokens[after].is(":") && tokens[after + 1].text == "wait";
+  }
+
+  // legs.bend(...), legs:bend(...)
+  void own_module(const SourceUse& use) {
+    const auto& path = use.meaning.path;
+    const auto module = known_.modules.find(path.front());
+    if (module == known_.modules.end() || module->second.open) return;
+    const bool field = path.size() > 1;
+    if (field && (use.assigned || use.written + 1 < path.size())) return;
+    const std::string& name = field ? path[1] : use.method;
+    if (name.empty() || name == "*" || module->second.fields.contains(name)) return;
+    problem(field ? use.lines[1] : use.line,
+            "module '" + path.front() + "' has no '" + name + "'" + hint_text(name, module->second.names()));
   }
 
   void guard(const SourceUse& use) {
@@ -114,6 +145,7 @@ class SourceCheck final : public SourceListener {
 
   void machine(const SourceUse& use, const std::vector<SourceToken>& tokens) {
     const auto& path = use.meaning.path;
+    if (machine_.open) return;
     if (path.empty()) {
       if (!use.method.empty() && !machine_.fields.contains(use.method)) {
         problem(use.line, "m has no '" + use.method + "'" + hint_text(use.method, machine_.names()));
@@ -122,7 +154,7 @@ class SourceCheck final : public SourceListener {
       return;
     }
     const ObjectInfo* object = arguments_.object(path.front());
-    if (object == nullptr || !machine_.fields.contains(path.front())) return machine_field(use, object);
+    if (object == nullptr || !machine_.fields.contains(path.front())) return machine_field(use, object, tokens);
     if (use.assigned) return problem(use.line, "m is read-only: '" + path.front() + "' cannot be set");
     const std::string method = path.size() > 1 ? path[1] : use.method;
     if (method.empty() || method == "*") return;
@@ -147,12 +179,19 @@ class SourceCheck final : public SourceListener {
     return "";
   }
 
-  void machine_field(const SourceUse& use, const ObjectInfo* object) {
+  // The token behind '=' of an assignment.
+  static bool gives_function(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+    return use.next + 1 < tokens.size() && tokens[use.next + 1].is("function");
+  }
+
+  void machine_field(const SourceUse& use, const ObjectInfo* object, const std::vector<SourceToken>& tokens) {
     const auto& path = use.meaning.path;
     if (object != nullptr) {
       return problem(place(use), "control object '" + path.front() + "' is not in this behavior's control set, '" +
                                      set_name() + "'");
     }
+    if (use.assigned && path.front() == "vars" && path.size() > 1 && gives_function(use, tokens))
+      problem(place(use), "m.vars." + path[1] + " is given a function: vars hold plain data, which a reload keeps");
     const bool free = std::find(always_there.begin(), always_there.end(), path.front()) != always_there.end();
     if (use.assigned && (!free || path.size() == 1)) {
       return problem(place(use), "m is read-only: '" + path.front() + "' cannot be set; keep it in m.vars");
@@ -165,6 +204,7 @@ class SourceCheck final : public SourceListener {
 
   void event(const std::vector<SourceToken>& tokens, std::size_t at) {
     if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
+    if (tokens[at - 1].is("(") && !tokens[at + 1].is(")")) return;  // a part of it
     const EventId id = parts_.chart.find_event(tokens[at].text);
     if (id != no_event && id != run_done_event) return;
     problem(tokens[at].line, "nothing in this behavior waits for the event '" + tokens[at].text + "'" +
@@ -195,8 +235,17 @@ class SourceCheck final : public SourceListener {
 
 }  // namespace
 
-void check_sources(const Behavior::Parts& parts, const KnownNames& known, std::vector<InputProblem>& problems) {
-  for (const LuaState::Source& source : parts.lua->sources()) SourceCheck(parts, known, source, problems).run();
+void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<InputProblem>& problems) {
+  std::vector<ReadSource> read;
+  for (const LuaState::Source& source : parts.lua->sources()) {
+    read.push_back({&source, SourceScopes(lex_source(source.text))});
+    if (!parts.chart.machines.empty()) read.back().scopes.know_functions(known.functions[source.chunk]);
+  }
+  widen_modules(read, *parts.lua, known);
+  for (ReadSource& one : read) SourceCheck(parts, known, *one.source, problems).run(one.scopes);
+  check_module_values(read, *parts.lua, problems);
+  check_guard_values(read, known, problems);
+  check_events(parts.chart, read, problems);
 }
 
 }  // namespace kadans

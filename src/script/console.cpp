@@ -103,7 +103,7 @@ Console::Parts::Parts(const Settings& wanted, const Catalog& offered, ScriptHost
 
 Console::Console(const Settings& settings, const Catalog& catalog, ScriptHost& host)
     : parts_(std::make_unique<Parts>(settings, catalog, host)) {
-  if (!parts_->lua.call(open_console, parts_.get(), settings.limits.load_instructions, 0))
+  if (!parts_->lua.call(open_console, parts_.get(), settings.limits.load_instructions, settings.limits.load_wall_ns))
     throw InputError({.message = "the console: " + parts_->lua.error().text()});
 }
 

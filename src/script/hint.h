@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kadans/signal/nearest_name.h"
+#include "lua_core.h"
 
 namespace kadans {
 
@@ -26,14 +27,23 @@ inline std::string hint_text(const std::string& wrong, const std::vector<std::st
   return all;
 }
 
-// `fill` adds the known names to the vector it is given.
+// `fill` adds the known names to the vector it is given; it does not raise. The time goes with the product of the
+// lengths: charged behind it, when nothing is left that needs a destructor.
 template <typename Fill>
-Hint make_hint(const char* wrong, Fill fill) {
-  std::vector<std::string> names;
-  fill(names);
-  std::sort(names.begin(), names.end());
+Hint make_hint(lua_State* state, const char* wrong, Fill fill) {
+  constexpr double instructions_per_letter = 2;
   Hint hint{};
-  std::snprintf(hint.data(), hint.size(), "%s", hint_text(wrong, names).c_str());
+  double letters = 100;
+  {
+    std::vector<std::string> names;
+    fill(names);
+    std::sort(names.begin(), names.end());
+    const std::string text = wrong;
+    for (const std::string& name : names)
+      letters += static_cast<double>((name.size() + 8) * (std::min(text.size(), nearest_name_longest) + 8));
+    std::snprintf(hint.data(), hint.size(), "%s", hint_text(text, names).c_str());
+  }
+  core_of(state).budget.charge(state, instructions_per_letter * letters);
   return hint;
 }
 

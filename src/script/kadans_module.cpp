@@ -7,6 +7,8 @@
 namespace kadans {
 namespace {
 
+constexpr double joint_instructions = 20;
+
 // budget() -> { instructions =, memory_bytes = }: what is left.
 int budget(lua_State* state) {
   const LuaCore& core = core_of(state);
@@ -26,6 +28,7 @@ int pose(lua_State* state) {
   const Catalog& catalog = *bindings_of(state).catalog;
   for (const PoseInfo& known : catalog.poses) {
     if (known.name != name) continue;
+    core_of(state).budget.charge(state, joint_instructions * static_cast<double>(known.position_rad.size()));
     lua_newtable(state);
     for (const auto& [joint, position_rad] : known.position_rad) {
       lua_pushnumber(state, position_rad);
@@ -33,7 +36,7 @@ int pose(lua_State* state) {
     }
     return 1;
   }
-  const Hint hint = make_hint(name, [&](auto& names) { names = names_of(catalog.poses); });
+  const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(catalog.poses); });
   return luaL_error(state, "unknown pose '%s'%s", name, hint.data());
 }
 

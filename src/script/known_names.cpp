@@ -1,5 +1,7 @@
 #include "known_names.h"
 
+#include <string_view>
+
 #include "kadans/signal/input_error.h"
 #include "lua_core.h"
 #include "sandbox.h"
@@ -7,7 +9,7 @@
 namespace kadans {
 namespace {
 
-constexpr int depth_max = 6;
+constexpr int shape_depth_max = 6;
 
 struct Reading {
   Behavior::Parts* parts;
@@ -17,7 +19,7 @@ struct Reading {
 // [-0 +0] The table or read-only table at `index`. Nothing here raises but for want of memory.
 void read_shape(lua_State* state, int index, KnownNames::Shape& shape, int depth) {
   luaL_checkstack(state, 8, "shape");
-  if (depth > depth_max || !lua_istable(state, index)) return;
+  if (depth > shape_depth_max || !lua_istable(state, index)) return;
   const int top = lua_gettop(state);
   if (!push_content(state, index)) lua_pushvalue(state, index);
   const int content = lua_gettop(state);
@@ -35,7 +37,7 @@ void read_keys(lua_State* state, int reference, std::vector<std::string>& names)
   if (reference == Chart::no_function) return;
   lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
   KnownNames::Shape shape;
-  read_shape(state, lua_gettop(state), shape, depth_max);
+  read_shape(state, lua_gettop(state), shape, shape_depth_max);
   lua_pop(state, 1);
   for (const auto& [name, ignored] : shape.fields) names.push_back(name);
 }
@@ -45,9 +47,49 @@ void read_methods(lua_State* state, std::vector<std::string>& names) {
   lua_getmetatable(state, -1);
   lua_getfield(state, -1, "__index");
   KnownNames::Shape shape;
-  read_shape(state, lua_gettop(state), shape, depth_max);
+  read_shape(state, lua_gettop(state), shape, shape_depth_max);
   names = shape.names();
   lua_pop(state, 3);
+}
+
+// The fields of a module of the author's own. Its tables are not looked into: they are often data that grows.
+void read_module(lua_State* state, int index, KnownNames::Shape& module) {
+  module.open = !lua_istable(state, index);
+  if (module.open) return;
+  if (lua_getmetatable(state, index) != 0) {
+    module.open = true;
+    return lua_pop(state, 1);
+  }
+  read_shape(state, index, module, shape_depth_max);
+}
+
+void read_modules(lua_State* state, KnownNames& known) {
+  lua_getfield(state, LUA_REGISTRYINDEX, "kadans.modules");
+  const int modules = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, modules) != 0; lua_pop(state, 1)) {
+    if (lua_type(state, -2) != LUA_TSTRING || std::string_view(lua_tostring(state, -2)) == "kadans") continue;
+    read_module(state, lua_gettop(state), known.modules[lua_tostring(state, -2)]);
+  }
+  lua_pop(state, 1);
+}
+
+void read_place(lua_State* state, int reference, std::map<std::string, std::set<int>>& places) {
+  if (reference == Chart::no_function) return;
+  lua_Debug function;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
+  if (lua_getinfo(state, ">S", &function) == 0 || function.source[0] != '@') return;
+  places[function.source + 1].insert(function.linedefined);
+}
+
+void read_functions(lua_State* state, const Chart& chart, KnownNames& known) {
+  for (const Chart::State& one : chart.states) {
+    for (const int function : {one.enter, one.exit, one.during, one.run}) read_place(state, function, known.functions);
+  }
+  for (const Chart::Transition& transition : chart.transitions) {
+    read_place(state, transition.when, known.guards);
+    read_place(state, transition.when, known.functions);
+    read_place(state, transition.action, known.functions);
+  }
 }
 
 int read(lua_State* state) {
@@ -63,14 +105,20 @@ int read(lua_State* state) {
       machine->fields["vars"].open = machine->fields["args"].open = true;
     }
   }
-  lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.snapshot);
-  read_shape(state, lua_gettop(state), known.snapshot, 0);
+  const bool played = !parts.chart.machines.empty();
+  known.machine.open = known.snapshot.open = !played;
+  if (played) {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.snapshot);
+    read_shape(state, lua_gettop(state), known.snapshot, 0);
+    read_methods(state, known.object_methods);
+  }
+  read_modules(state, known);
+  read_functions(state, parts.chart, known);
   lua_getfield(state, LUA_REGISTRYINDEX, "kadans.modules");
   lua_getfield(state, -1, "kadans");
   read_shape(state, lua_gettop(state), known.module, 0);
   push_environment(state);
   read_shape(state, lua_gettop(state), known.globals, 0);
-  read_methods(state, known.object_methods);
   for (const Chart::Machine& machine : parts.chart.machines) {
     read_keys(state, machine.vars, known.vars[parts.chart.states[machine.root].chunk]);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,12 @@ struct KnownNames {
   std::vector<std::string> object_methods, motion_fields;
   std::map<std::string, std::vector<std::string>> parameters;  // by the file that declares them
   std::map<std::string, std::vector<std::string>> vars;        // by the file of the behavior
+  std::map<std::string, Shape> modules;  // the author's own, by the names in `require`; what is no table is open
+  // Where the guards of transitions begin, and all functions of the chart, by their file.
+  std::map<std::string, std::set<int>> guards, functions;
 };
 
-// Of a behavior that is loaded.
+// Of a behavior that is loaded, or of a module: then `m` and `s` are open, for nobody knows who will play it.
 KnownNames read_known_names(Behavior::Parts& parts);
 
 }  // namespace kadans

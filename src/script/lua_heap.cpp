@@ -93,13 +93,14 @@ void* LuaHeap::reallocate(void* block, std::size_t old_bytes, std::size_t new_by
   if (new_bytes > old_bytes) {
     const std::size_t after = used_ - old_bytes + new_bytes;
     const bool large = new_bytes > block_ || long_text(old_bytes, new_bytes);
-    if (after > limit_ || large) exceeded_ = true;
+    if (after > limit_ || large || allocated_ + (new_bytes - old_bytes) > renewal_end_) exceeded_ = true;
     if (after > limit_ + limit_ / 8 || large) return nullptr;
   }
   void* moved = block == nullptr ? take(new_bytes) : move(block, old_bytes, new_bytes);
   if (moved == nullptr) return nullptr;
   used_ += new_bytes - old_bytes;
   if (new_bytes > old_bytes) allocated_ += new_bytes - old_bytes;
+  largest_ = std::max(largest_, new_bytes);
   return moved;
 }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
+#include <climits>
 #include <new>
 
+#include "kadans/signal/input_error.h"
+#include "kadans/signal/input_file.h"
+#include "library_function.h"
 #include "lua_core.h"
 #include "sandbox.h"
 #include "tick_code.h"
@@ -25,6 +27,22 @@ void* allocate(void* user, void* block, std::size_t old_bytes, std::size_t new_b
     core.budget.memory_ran_out(core.running != nullptr ? core.running : core.main, moved != nullptr);
   }
   return moved;
+}
+
+// Gives a source to the compiler a piece at a time, each charged, so that one which takes long to compile can be
+// stopped.
+struct Pieces {
+  static constexpr std::size_t bytes_max = 256;
+  std::string_view left;
+};
+
+const char* next_piece(lua_State* state, void* user, std::size_t* size) {
+  auto& pieces = *static_cast<Pieces*>(user);
+  const std::string_view piece = pieces.left.substr(0, Pieces::bytes_max);
+  pieces.left.remove_prefix(piece.size());
+  *size = piece.size();
+  core_of(state).budget.charge(state, compiling_instructions(static_cast<double>(piece.size())));
+  return piece.data();
 }
 
 // The handler of uncaught errors: keeps the message and the stack while it still stands.
@@ -85,7 +103,7 @@ KADANS_TICK_CODE std::size_t LuaState::used_bytes() const noexcept { return core
 
 KADANS_TICK_CODE bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
                                      std::int64_t wall_ns) noexcept {
-  core_->depth = 0;
+  core_->depth = core_->coroutines = 0;
   core_->running = nullptr;
   core_->budget.begin(lua_, instructions, wall_ns);
   core_->entry = function;
@@ -107,15 +125,11 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   source.path = path;
   source.chunk = path.lexically_relative(settings_.root).generic_string();
   if (source.chunk.empty() || source.chunk.starts_with("..")) source.chunk = path.generic_string();
-  std::ifstream file(path, std::ios::binary);
-  source.text.assign(std::istreambuf_iterator<char>(file), {});
   const std::string chunk = "@" + source.chunk;
-  if (!file.good() && source.text.empty()) {
-    lua_pushfstring(state, "%s:1: cannot be read, or is empty", source.chunk.c_str());
-    return false;
-  }
-  if (source.text.size() > source_bytes_max) {
-    lua_pushfstring(state, "%s:1: is larger than 1 MB", source.chunk.c_str());
+  try {
+    source.text = read_input_file(path, source_bytes_max);
+  } catch (const InputError& error) {
+    lua_pushfstring(state, "%s:1: %s", source.chunk.c_str(), error.problems().front().message.c_str());
     return false;
   }
   if (source.text.starts_with('\x1b')) {
@@ -123,8 +137,8 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
     return false;
   }
   sources_.push_back(std::move(source));
-  const std::string& text = sources_.back().text;
-  if (luaL_loadbufferx(state, text.data(), text.size(), chunk.c_str(), "t") != 0) return false;
+  Pieces pieces{sources_.back().text};
+  if (lua_loadx(state, next_piece, &pieces, chunk.c_str(), "t") != 0) return false;
   push_environment(lua_);
   lua_setfenv(state, -2);
   return true;
@@ -168,16 +182,38 @@ int LuaState::line_of(std::string_view chunk, int from, std::string_view text) c
   return from;
 }
 
+double LuaState::search_instructions(std::string_view chunk) const noexcept {
+  constexpr double bytes_per_instruction = 32;
+  for (const Source& source : sources_) {
+    if (source.chunk == chunk) return static_cast<double>(source.text.size()) / bytes_per_instruction;
+  }
+  return 0;
+}
+
 KADANS_TICK_CODE void LuaState::collect() noexcept {
   const std::uint64_t fresh = core_->heap.allocated_bytes() - collected_at_;
   if (fresh < collect_bytes_min) return;  // it adds up over the ticks
   collected_at_ = core_->heap.allocated_bytes();
-  if (core_->heap.used_bytes() > settings_.limits.memory_bytes / 4 * 3) {
+  const bool all = core_->heap.used_bytes() > settings_.limits.memory_bytes / 4 * 3;
+  if (settings_.limits.tick_wall_ns > 0) {
+    collect_in_time(all ? INT_MAX : static_cast<int>(std::min<std::uint64_t>(fresh / 256, INT_MAX)));
+  } else if (all) {
     lua_gc(lua_, LUA_GCCOLLECT, 0);
   } else {
     lua_gc(lua_, LUA_GCSTEP, static_cast<int>(fresh / 256));
   }
   lua_gc(lua_, LUA_GCSTOP, 0);  // a step starts the collector again
+}
+
+// In pieces of some 0.1 ms: a whole collection of 4 MB takes 10 ms. By the thread's own time, as a tick's budget.
+KADANS_TICK_CODE void LuaState::collect_in_time(int kB) noexcept {
+  constexpr int piece_kB = 32;
+  for (std::int64_t end_ns = 0; kB > 0; kB -= piece_kB) {
+    if (lua_gc(lua_, LUA_GCSTEP, std::min(kB, piece_kB)) != 0 || kB <= piece_kB) return;
+    const std::int64_t now_ns = thread_now_ns();
+    if (end_ns == 0) end_ns = now_ns + settings_.limits.tick_wall_ns;
+    if (now_ns >= end_ns) return;
+  }
 }
 
 void LuaState::add_to(WarmUp& list) const noexcept {

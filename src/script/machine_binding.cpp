@@ -8,6 +8,7 @@ namespace kadans {
 namespace {
 
 constexpr int copy_depth_max = 16;
+constexpr double copied_field_instructions = 20;
 
 // m:wait(seconds): inside `run` only.
 int wait(lua_State* state) {
@@ -50,9 +51,12 @@ void push_copy(lua_State* state, int index, int depth) {
   if (type != LUA_TTABLE) return lua_pushvalue(state, index);
   if (depth > copy_depth_max) luaL_error(state, "vars and args are nested too deeply");
   luaL_checkstack(state, 6, "vars and args are nested too deeply");
+  Budget& budget = core_of(state).budget;
+  charge_table(state, index);
   lua_newtable(state);
   const int copy = lua_gettop(state);
   for (lua_pushnil(state); lua_next(state, index) != 0;) {
+    budget.charge(state, copied_field_instructions);
     lua_pushvalue(state, -2);
     push_copy(state, lua_gettop(state) - 1, depth + 1);
     lua_rawset(state, copy);

@@ -5,6 +5,7 @@
 
 #include "bindings.h"
 #include "kadans/engine/setpoint_motions.h"
+#include "library_function.h"
 #include "motion_options.h"
 #include "motion_targets.h"
 #include "object_binding.h"
@@ -75,6 +76,13 @@ int send_motion(lua_State* state, std::uint32_t object, const MotionOptions& opt
   return motion != nullptr ? finish_motion(state, motion) : queue_full(state);
 }
 
+// What it takes to read a pose, to check it and to send it: each joint looks for its set-point.
+void charge_pose(lua_State* state, const ObjectInfo& object) {
+  constexpr double pose_instructions = 400, joint_instructions = 4;
+  const auto looks = static_cast<double>(object.joints.size() * object.setpoints.size());
+  core_of(state).budget.charge(state, pose_instructions + joint_instructions * looks);
+}
+
 // object:move(pose, { time_s = }) -> motion | nil, "queue_full". The pose is a name, or a table joint = rad.
 int move(lua_State* state) {
   std::uint32_t number = 0;
@@ -83,6 +91,7 @@ int move(lua_State* state) {
   if (options.relative && lua_type(state, 2) == LUA_TSTRING)
     return luaL_error(state, "move: relative = true needs a table joint = offset, not the pose '%s'",
                       lua_tostring(state, 2));
+  charge_pose(state, object);
   MotionTargets targets;
   read_pose(state, 2, object, "move", targets);
   place_targets(state, options, options.trapezoid, targets);
@@ -109,6 +118,7 @@ int follow(lua_State* state) {
   std::uint32_t number = 0;
   const ObjectInfo& object = check_object(state, number);
   const MotionOptions options = read_motion_options(state, 3, MotionOption::follow, "follow", "rad");
+  charge_pose(state, object);
   MotionTargets targets;
   read_pose(state, 2, object, "follow", targets);
   place_targets(state, options, true, targets);
@@ -167,6 +177,7 @@ double read_points(lua_State* state, const ObjectInfo& object, const MotionOptio
   MotionTargets targets;
   for (int i = 1; i <= count; ++i) {
     lua_rawgeti(state, 2, i);
+    charge_pose(state, object);
     time_s += read_point(state, i, object, options, targets);
     lua_pop(state, 1);
     for (const MotionTarget& target : targets) {
@@ -220,10 +231,20 @@ int move_through(lua_State* state) {
   return motion != nullptr ? finish_motion(state, motion) : queue_full(state);
 }
 
+// A table that is given may compute its fields, and so call the method again.
+template <lua_CFunction method>
+int nested(lua_State* state) {
+  begin_callback(state, "a motion");
+  const int results = method(state);
+  end_callback(state);
+  return results;
+}
+
 }  // namespace
 
 void open_motion_methods(lua_State* state) {
-  const luaL_Reg methods[] = {{"move", move}, {"move_through", move_through}, {"set", set}, {"follow", follow}};
+  const luaL_Reg methods[] = {
+      {"move", nested<move>}, {"move_through", nested<move_through>}, {"set", nested<set>}, {"follow", nested<follow>}};
   for (const luaL_Reg& method : methods) {
     lua_pushcfunction(state, method.func);
     lua_setfield(state, -2, method.name);

@@ -65,7 +65,7 @@ bool read_profile(lua_State* state, const char* called) {
   for (const char* known : motion_profiles) {
     if (std::strcmp(given, known) == 0) return known != motion_profiles[0];
   }
-  const Hint hint = make_hint(given, [](auto& names) {
+  const Hint hint = make_hint(state, given, [](auto& names) {
     for (const char* known : motion_profiles) names.emplace_back(known);
   });
   luaL_error(state, "%s: unknown profile '%s'%s", called, given, hint.data());

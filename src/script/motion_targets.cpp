@@ -35,7 +35,7 @@ void named_pose(lua_State* state, const ObjectInfo& object, const char* name, Mo
     if (candidate.name == name) pose = &candidate;
   }
   if (pose == nullptr) {
-    const Hint hint = make_hint(name, [&](auto& names) { names = names_of(catalog.poses); });
+    const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(catalog.poses); });
     luaL_error(state, "unknown pose '%s'%s", name, hint.data());
   }
   for (const auto& [joint, position_rad] : pose->position_rad) {
@@ -81,7 +81,8 @@ void pose_table(lua_State* state, int index, const ObjectInfo& object, MotionTar
     lua_pop(state, 1);
   }
   std::uint32_t wanted = 0;
-  for (lua_pushnil(state); lua_next(state, index) != 0; lua_pop(state, 1)) ++wanted;
+  charge_table(state, index);
+  for (lua_pushnil(state); wanted <= targets.count && lua_next(state, index) != 0; lua_pop(state, 1)) ++wanted;
   if (wanted != targets.count) raise_wrong_joint(state, index, object);
 }
 
@@ -101,7 +102,7 @@ SetpointId read_setpoint(lua_State* state, int index, const ObjectInfo& object) 
   for (const SetpointId id : object.setpoints) {
     if (std::strcmp(short_name(object, catalog.setpoints[id].name), name) == 0) return id;
   }
-  const Hint hint = make_hint(name, [&](auto& names) {
+  const Hint hint = make_hint(state, name, [&](auto& names) {
     for (const SetpointId id : object.setpoints) names.emplace_back(short_name(object, catalog.setpoints[id].name));
   });
   luaL_error(state, "'%s' has no set-point '%s'%s", object.name.c_str(), name, hint.data());

@@ -27,7 +27,7 @@ ParameterId read_parameter(lua_State* state, int index, const ObjectInfo& object
   for (const ParameterId id : object.parameters) {
     if (std::strcmp(short_name(object, catalog.parameters.info(id).name), name) == 0) return id;
   }
-  const Hint hint = make_hint(name, [&](auto& names) {
+  const Hint hint = make_hint(state, name, [&](auto& names) {
     for (const ParameterId id : object.parameters)
       names.emplace_back(short_name(object, catalog.parameters.info(id).name));
   });
@@ -69,7 +69,7 @@ int set_gains(lua_State* state) {
     }
     return lua_pushboolean(state, 1), 1;
   }
-  const Hint hint = make_hint(name, [&](auto& names) { names = names_of(object.presets); });
+  const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(object.presets); });
   return luaL_error(state, "'%s' has no gains '%s'%s", object.name.c_str(), name, hint.data());
 }
 

@@ -5,7 +5,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::int64_t patience_ns = 1'000'000'000;  // for a transaction that the control engine never takes
+constexpr std::int64_t wait_for_engine_ns = 1'000'000'000;  // for a transaction that the control engine never takes
 
 }  // namespace
 
@@ -64,7 +64,7 @@ bool Pause::holds(const Snapshot& snapshot, CommandSender& commands) noexcept {
     phase_ = Phase::sent;
   } else if (phase_ == Phase::sent) {
     const bool taken = snapshot.transactions_applied >= sequence_;
-    if (taken || snapshot.time_ns - sent_ns_ > patience_ns) run_on();
+    if (taken || snapshot.time_ns - sent_ns_ > wait_for_engine_ns) run_on();
   }
   return phase_ != Phase::none;
 }

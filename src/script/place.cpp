@@ -6,9 +6,12 @@
 #include "hint.h"
 #include "kadans/script/lua_state.h"
 #include "lua_core.h"
+#include "step_meter.h"
 
 namespace kadans {
 namespace {
+
+constexpr std::size_t steps_per_key = 64, steps_per_name = 8;
 
 bool is_among(const char* key, const char* const* names) noexcept {
   for (; *names != nullptr; ++names) {
@@ -28,7 +31,11 @@ Place calling_place(lua_State* state, int level) {
 
 int raise_at(lua_State* state, const Place& place, const char* needle, const char* format, ...) {
   int line = place.line;
-  if (needle != nullptr) line = core_of(state).owner->line_of(place.chunk, line, needle);
+  if (needle != nullptr) {
+    const LuaCore& core = core_of(state);
+    core_of(state).budget.charge(state, core.owner->search_instructions(place.chunk));
+    line = core.owner->line_of(place.chunk, line, needle);
+  }
   va_list arguments;
   va_start(arguments, format);
   lua_pushfstring(state, "%s:%d: ", place.chunk, line);
@@ -40,13 +47,19 @@ int raise_at(lua_State* state, const Place& place, const char* needle, const cha
 
 void check_keys(lua_State* state, int table, const Place& place, const char* what, const char* const* names) {
   const char* wrong = nullptr;
+  std::size_t name_count = 0;
+  while (names[name_count] != nullptr) ++name_count;
+  StepMeter meter(state);
+  meter.spend(core_of(state).slots.steps(state, table));
   for (lua_pushnil(state); lua_next(state, table) != 0; lua_pop(state, 1)) {
+    meter.spend(steps_per_key + steps_per_name * name_count);
     if (lua_type(state, -2) != LUA_TSTRING) continue;
     const char* key = lua_tostring(state, -2);
     if (!is_among(key, names) && (wrong == nullptr || std::strcmp(key, wrong) < 0)) wrong = key;
   }
+  meter.settle();
   if (wrong == nullptr) return;
-  const Hint hint = make_hint(wrong, [&](auto& known) {
+  const Hint hint = make_hint(state, wrong, [&](auto& known) {
     for (const char* const* name = names; *name != nullptr; ++name) known.emplace_back(*name);
   });
   raise_at(state, place, wrong, "%s has no key '%s'%s", what, wrong, hint.data());

@@ -1,9 +1,6 @@
 #include "sandbox.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <string>
-#include <vector>
 
 #include "hint.h"
 #include "kadans/script/lua_state.h"
@@ -17,18 +14,6 @@ const char environment_key = 0;
 const char content_key = 0;
 const char filler_key = 0;
 
-// The message is made here, so that nothing that needs a destructor is alive when Lua raises.
-void describe_unknown(lua_State* state, const char* name, int content, const char* key, char* text,
-                      std::size_t size) noexcept {
-  std::vector<std::string> names;
-  for (lua_pushnil(state); lua_next(state, content) != 0; lua_pop(state, 1)) {
-    if (lua_type(state, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -2));
-  }
-  std::sort(names.begin(), names.end());
-  const std::string hint = hint_text(key, names);
-  std::snprintf(text, size, *name == '\0' ? "%sunknown name '%s'%s" : "%s has no '%s'%s", name, key, hint.c_str());
-}
-
 int refuse_write(lua_State* state) {  // (proxy, key, value); upvalue: name
   const char* name = lua_tostring(state, lua_upvalueindex(1));
   const char* key = lua_type(state, 2) == LUA_TSTRING ? lua_tostring(state, 2) : "?";
@@ -40,142 +25,11 @@ int refuse_read(lua_State* state) {  // (content, key); upvalues: name, content
   return raise_unknown_field(state, lua_tostring(state, lua_upvalueindex(1)), lua_upvalueindex(2), 2);
 }
 
-// settle(depth, ok, ...): what pcall and coroutine.resume return, unless the budget is gone. An error may have passed
-// through library functions that count their depth.
-int settle(lua_State* state) {
-  LuaCore& core = core_of(state);
-  core.budget.raise_again(state);
-  core.depth = static_cast<int>(lua_tointeger(state, 1));
-  return lua_gettop(state) - 1;
-}
-int depth(lua_State* state) { return lua_pushinteger(state, core_of(state).depth), 1; }
-
-// print(...): one line to the log.
-int print(lua_State* state) {
-  const int count = lua_gettop(state);
-  begin_callback(state, "print");
-  luaL_Buffer buffer;
-  luaL_buffinit(state, &buffer);
-  for (int i = 1; i <= count; ++i) {
-    if (i > 1) luaL_addlstring(&buffer, " ", 1);
-    if (luaL_callmeta(state, i, "__tostring") == 0) {
-      if (lua_isstring(state, i) != 0) {
-        lua_pushvalue(state, i);
-      } else if (lua_isnil(state, i) || lua_isboolean(state, i)) {
-        lua_pushstring(state, lua_isnil(state, i) ? "nil" : lua_toboolean(state, i) != 0 ? "true" : "false");
-      } else {
-        lua_pushstring(state, luaL_typename(state, i));  // no addresses: they differ from run to run
-      }
-    }
-    luaL_addvalue(&buffer);
-  }
-  luaL_pushresult(&buffer);
-  end_callback(state);
-  LuaCore& core = core_of(state);
-  core.budget.charge(state, 1000.0);
-  ScriptVoice* voice = core.owner->settings().voice;
-  if (voice != nullptr) voice->say(lua_tostring(state, -1));
-  return 0;
-}
-
-// tostring(value): without addresses, which differ from run to run.
-int to_string(lua_State* state) {
-  luaL_checkany(state, 1);
-  begin_callback(state, "tostring");
-  const bool own = luaL_callmeta(state, 1, "__tostring") != 0;
-  end_callback(state);
-  if (own) return 1;
-  switch (lua_type(state, 1)) {
-    case LUA_TNUMBER:
-    case LUA_TSTRING:
-      lua_pushvalue(state, 1);
-      lua_tostring(state, -1);
-      return 1;
-    case LUA_TBOOLEAN:
-      lua_pushstring(state, lua_toboolean(state, 1) != 0 ? "true" : "false");
-      return 1;
-    default:
-      lua_pushstring(state, luaL_typename(state, 1));
-      return 1;
-  }
-}
-
-// load(text [, name]) -> function | nil, message. Text only, in the sandbox.
-int load(lua_State* state) {
-  std::size_t length = 0;
-  const char* text = luaL_checklstring(state, 1, &length);
-  const char* name = luaL_optstring(state, 2, "load");
-  core_of(state).budget.charge(state, static_cast<double>(length));
-  lua_pushfstring(state, "=%s", name);
-  if (luaL_loadbufferx(state, text, length, lua_tostring(state, -1), "t") != 0) {
-    lua_pushnil(state);
-    lua_insert(state, -2);
-    return 2;
-  }
-  push_environment(state);
-  lua_setfenv(state, -2);
-  return 1;
-}
-
-// tonumber(value [, base]): as in Lua.
-int to_number(lua_State* state) {
-  if (lua_type(state, 1) == LUA_TSTRING) charge_text(state, static_cast<double>(lua_objlen(state, 1)));
-  return forward(state);
-}
-
-// unpack(table [, i [, j]]): as in Lua.
-int unpack(lua_State* state) {
-  const int results = forward(state);
-  core_of(state).budget.charge(state, results / 8.0);
-  return results;
-}
-
-// rawset(table, key, value): not on what is read-only.
-int raw_set(lua_State* state) {
-  luaL_checktype(state, 1, LUA_TTABLE);
-  luaL_checkany(state, 3);
-  if (push_content(state, 1)) return luaL_error(state, "this table is read-only");
-  lua_settop(state, 3);
-  lua_rawset(state, 1);
-  return 1;
-}
-
-// random() in [0, 1), random(m) in 1..m, random(m, n) in m..n; from the run's seed.
-int random(lua_State* state) {
-  RandomStream& stream = core_of(state).random;
-  if (lua_gettop(state) == 0) return lua_pushnumber(state, stream.uniform()), 1;
-  const lua_Number first = lua_gettop(state) > 1 ? luaL_checknumber(state, 1) : 1;
-  const lua_Number last = luaL_checknumber(state, lua_gettop(state) > 1 ? 2 : 1);
-  if (!(first <= last && last - first < 9007199254740992.0)) return luaL_argerror(state, 1, "the interval is empty");
-  const auto span = static_cast<std::uint64_t>(last - first) + 1;
-  lua_pushnumber(state, first + static_cast<lua_Number>(stream.next() % span));
-  return 1;
-}
-
-// In Lua, so that coroutines may yield through pcall. A handler of xpcall runs after the stack has unwound: inside the
-// raising it could not be stopped.
-const char prelude[] = R"(
-local settle, depth, raw_pcall, raw_resume = ...
-local function pcall(f, ...) return settle(depth(), raw_pcall(f, ...)) end
-local function handled(handler, ok, ...)
-  if ok then return ok, ... end
-  return false, handler(...)
-end
-local function xpcall(f, handler, ...) return handled(handler, pcall(f, ...)) end
-local function resume(thread, ...) return settle(depth(), raw_resume(thread, ...)) end
-return pcall, xpcall, resume
-)";
-
 void take(lua_State* state, int to, int from, std::initializer_list<const char*> names) {
   for (const char* name : names) {
     lua_getfield(state, from, name);
     lua_setfield(state, to, name);
   }
-}
-
-void set_function(lua_State* state, int table, const char* name, lua_CFunction function) {
-  lua_pushcfunction(state, function);
-  lua_setfield(state, table, name);
 }
 
 // [-0 +1] A read-only library of these functions; `extend` may change the copy.
@@ -189,8 +43,6 @@ void push_library(lua_State* state, const char* name, std::initializer_list<cons
   if (extend != nullptr) extend(state);
 }
 
-void extend_math(lua_State* state) { set_function(state, lua_gettop(state), "random", random); }
-
 void open_libraries(lua_State* state) {
   const luaL_Reg libraries[] = {{"", luaopen_base},
                                 {LUA_STRLIBNAME, luaopen_string},
@@ -202,20 +54,6 @@ void open_libraries(lua_State* state) {
     lua_pushstring(state, library.name);
     lua_call(state, 1, 0);
   }
-}
-
-// pcall, xpcall into the globals at `globals`, resume into the coroutine library at the top.
-void add_protected_calls(lua_State* state, int globals) {
-  const int coroutines = lua_gettop(state);
-  if (luaL_loadbuffer(state, prelude, sizeof prelude - 1, "=kadans") != 0) lua_error(state);
-  lua_pushcfunction(state, settle);
-  lua_pushcfunction(state, depth);
-  lua_getglobal(state, "pcall");
-  lua_getfield(state, coroutines, "resume");
-  lua_call(state, 4, 3);
-  lua_setfield(state, coroutines, "resume");
-  lua_setfield(state, globals, "xpcall");
-  lua_setfield(state, globals, "pcall");
 }
 
 void guard_string_metatable(lua_State* state, int strings) {
@@ -244,13 +82,19 @@ void fill(lua_State* state) {
 }  // namespace
 
 int raise_unknown_field(lua_State* state, const char* name, int content, int key) {
-  char text[256];
   lua_pushvalue(state, content);
   const int copy = lua_gettop(state);
   lua_pushvalue(state, key);
-  const char* shown = lua_tostring(state, -1);
-  describe_unknown(state, name, copy, shown != nullptr ? shown : luaL_typename(state, key), text, sizeof text);
-  return luaL_error(state, "%s", text);
+  char shown[160];
+  const char* text = lua_tostring(state, -1);
+  std::snprintf(shown, sizeof shown, "%s", text != nullptr ? text : luaL_typename(state, key));
+  const Hint hint = make_hint(state, shown, [&](auto& names) {
+    for (lua_pushnil(state); lua_next(state, copy) != 0; lua_pop(state, 1)) {
+      if (lua_type(state, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -2));
+    }
+  });
+  if (*name == '\0') return luaL_error(state, "unknown name '%s'%s", shown, hint.data());
+  return luaL_error(state, "%s has no '%s'%s", name, shown, hint.data());
 }
 
 void make_read_only(lua_State* state, const char* name, bool strict) {
@@ -298,25 +142,21 @@ void set_filler(lua_State* state) {
 }
 
 void open_sandbox(lua_State* state) {
+  core_of(state).slots.find_place(state);
   open_libraries(state);
   lua_newtable(state);
   const int globals = lua_gettop(state);
   lua_pushvalue(state, LUA_GLOBALSINDEX);
   take(state, globals, globals + 1,
-       {"assert", "error", "getmetatable", "ipairs", "rawequal", "rawget", "rawlen", "select", "setmetatable",
-        "tonumber", "type", "unpack"});
+       {"assert", "getmetatable", "ipairs", "rawequal", "rawget", "rawlen", "select", "setmetatable", "tonumber",
+        "type", "unpack"});
   lua_pop(state, 1);
-  wrap(state, "tonumber", to_number);
-  wrap(state, "unpack", unpack);
-  set_function(state, globals, "print", print);
-  set_function(state, globals, "tostring", to_string);
-  set_function(state, globals, "load", load);
-  set_function(state, globals, "rawset", raw_set);
+  open_base(state, globals);
   set_function(state, globals, "pairs", sandbox_pairs);
   set_function(state, globals, "require", sandbox_require);
 
   push_library(state, "coroutine", {"create", "resume", "running", "status", "wrap", "yield"}, nullptr);
-  add_protected_calls(state, globals);
+  open_protected_calls(state, globals);
   make_read_only(state, "coroutine");
   lua_setfield(state, globals, "coroutine");
   push_library(
@@ -329,10 +169,10 @@ void open_sandbox(lua_State* state) {
   push_library(state, "table", {"concat", "insert", "maxn", "remove", "sort"}, open_tables);
   make_read_only(state, "table");
   lua_setfield(state, globals, "table");
-  push_library(state, "math", {"abs",   "acos", "asin",  "atan", "atan2", "ceil", "cos",   "cosh", "deg", "exp",
-                               "floor", "fmod", "frexp", "huge", "ldexp", "log",  "log10", "max",  "min", "modf",
-                               "pi",    "pow",  "rad",   "sin",  "sinh",  "sqrt", "tan",   "tanh"},
-               extend_math);
+  push_library(state, "math", {"abs",  "acos",  "asin",  "atan", "atan2", "ceil", "cos",   "cosh", "deg",
+                               "exp",  "floor", "frexp", "huge", "ldexp", "log",  "log10", "max",  "min",
+                               "modf", "pi",    "pow",   "rad",  "sin",   "sinh", "sqrt",  "tan",  "tanh"},
+               open_math);
   make_read_only(state, "math");
   lua_setfield(state, globals, "math");
   push_library(state, "bit",

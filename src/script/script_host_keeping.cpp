@@ -8,12 +8,12 @@
 namespace kadans {
 namespace {
 
-constexpr std::uint32_t format = 1;
+constexpr std::uint32_t kept_format = 1;
 
 }  // namespace
 
 std::string ScriptHost::keep(ByteWriter& bytes, std::int64_t time_ns) {
-  bytes.put(format);
+  bytes.put(kept_format);
   bytes.put(static_cast<std::uint32_t>(list_.entries().size()));
   for (const PlayList::Entry& entry : list_.entries()) {
     const Behavior::Settings& settings = entry.behavior->settings();
@@ -39,7 +39,7 @@ std::vector<PlayList::Entry> ScriptHost::load_kept(std::vector<InputProblem>& pr
   ByteReader bytes(settings_.kept);
   std::vector<PlayItem> items;
   std::vector<bool> lasting;
-  const bool known = bytes.take<std::uint32_t>() == format;
+  const bool known = bytes.take<std::uint32_t>() == kept_format;
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && known && bytes.ok(); --left) {
     items.push_back(take_item(bytes));
     lasting.push_back(bytes.take<std::uint8_t>() != 0);

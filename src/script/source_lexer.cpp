@@ -132,6 +132,18 @@ int opens(const SourceToken& token) {
 
 std::vector<SourceToken> lex_source(std::string_view text) { return Lexer(text).run(); }
 
+std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at) {
+  if (tokens[at].kind == SourceToken::Kind::text && (at == 0 || !tokens[at - 1].is("("))) return at + 1;
+  const bool bracket = at > 0 && tokens[at - 1].is("(");
+  int depth = bracket ? 1 : 0;
+  for (; tokens[at].kind != SourceToken::Kind::end; ++at) {
+    for (const char* opening : {"(", "{", "["}) depth += tokens[at].is(opening) ? 1 : 0;
+    for (const char* closing : {")", "}", "]"}) depth -= tokens[at].is(closing) ? 1 : 0;
+    if (depth == 0) return at + 1;
+  }
+  return at;
+}
+
 std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::size_t at) {
   std::vector<std::size_t> parts;
   int depth = 0;

@@ -26,6 +26,9 @@ struct SourceToken {
 // Comments are left out; the last token is of kind `end`. The text has been compiled before, so it is well formed.
 std::vector<SourceToken> lex_source(std::string_view text);
 
+// The token behind the arguments of a call; `at` is the first token in its bracket, or the text or table without one.
+std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at);
+
 // The first tokens of what stands in a bracket, commas or semicolons between; `at` is the first one of all.
 std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::size_t at);
 

@@ -9,6 +9,18 @@ using Kind = SourceToken::Kind;
 
 bool same(const SourceMeaning& a, const SourceMeaning& b) { return a.role == b.role && a.path == b.path; }
 
+// Keys of functions that are over within their tick.
+bool is_at_once(const std::string& key) {
+  return key == "enter" || key == "exit" || key == "during" || key == "action";
+}
+
+// Whether a value stands behind `return`.
+bool begins_value(const SourceToken& token) {
+  if (token.kind == Kind::end || token.is(";")) return false;
+  return token.kind != Kind::keyword || token.is("function") || token.is("nil") || token.is("not") ||
+         token.is("true") || token.is("false");
+}
+
 }  // namespace
 
 SourceScopes::SourceScopes(std::vector<SourceToken> tokens) : tokens_(std::move(tokens)) {
@@ -28,11 +40,19 @@ void SourceScopes::walk(SourceListener* listener) {
   listener_ = listener;
   blocks_.assign(1, {});
   next_locals_.clear();
+  functions_[0].returns = 0;  // the file's own
   for (std::size_t at = 0; tokens_[at].kind != Kind::end;) at = step(at);
 }
 
-void SourceScopes::open(std::size_t function) {
-  blocks_.push_back({std::move(next_locals_), function});
+std::vector<SourceFunction> SourceScopes::functions() const {
+  std::vector<SourceFunction> all;
+  for (const auto& [at, function] : functions_)
+    all.push_back({tokens_[at].line, function.under_when, function.returns_value});
+  return all;
+}
+
+void SourceScopes::open(std::size_t function, bool body) {
+  blocks_.push_back({std::move(next_locals_), function, body});
   next_locals_.clear();
 }
 
@@ -53,6 +73,10 @@ std::size_t SourceScopes::step(std::size_t at) {
   if (token.text == "local") return local_at(at);
   if (token.text == "for") return for_at(at);
   const std::size_t function = blocks_.back().function;
+  if (token.text == "return") {
+    ++functions_[function].returns;
+    functions_[function].returns_value = functions_[function].returns_value || begins_value(tokens_[at + 1]);
+  }
   if (token.text == "do" || token.text == "then" || token.text == "repeat") open(function);
   if (token.text == "until") next_locals_ = blocks_.back().locals;
   if (token.text == "else" || token.text == "elseif" || token.text == "end" || token.text == "until") close();
@@ -72,8 +96,12 @@ std::size_t SourceScopes::function_at(std::size_t at) {
     method = method || tokens_[at].is(":");
     ++at;
   }
-  if (start >= 2 && tokens_[start - 1].is("=") && is_key(start - 2)) give_key(tokens_[start - 2].text, start);
   Function& function = functions_[start];
+  function.returns = 0;
+  if (start >= 2 && tokens_[start - 1].is("=") && is_key(start - 2)) {
+    function.literal = is_at_once(tokens_[start - 2].text);
+    give_key(tokens_[start - 2].text, start);
+  }
   std::size_t number = 0;
   if (method) next_locals_["self"] = {};
   for (++at; !tokens_[at].is(")") && tokens_[at].kind != Kind::end; ++at) {
@@ -81,7 +109,7 @@ std::size_t SourceScopes::function_at(std::size_t at) {
     const auto given = function.given.find(number++);
     next_locals_[tokens_[at].text] = given == function.given.end() ? SourceMeaning{} : given->second;
   }
-  open(start);
+  open(start, true);
   return at + 1;
 }
 
@@ -187,13 +215,34 @@ std::size_t SourceScopes::name_at(std::size_t at) {
   if (use.known) use.meaning = *meaning;
   use.lines.assign(use.meaning.path.size(), use.line);
   for (const Block& block : blocks_) use.guard = use.guard || functions_[block.function].guard;
+  use.at_once = at_once(at);
   const std::size_t next = fields_at(at + 1, use);
+  use.next = next;
   use.assigned = use.arguments == 0 && tokens_[next].is("=");
-  if (use.arguments != 0 && use.meaning.role == SourceRole::function && use.written == 0) {
-    hand_on(use.arguments, use.meaning, use.guard);
-  }
+  if (use.arguments != 0 && use.meaning.role == SourceRole::function && use.written == 0) hand_on(use);
   if (listener_ != nullptr) listener_->used(use, tokens_);
   return next;
+}
+
+// The key of the function around the token that is over within its tick, when what stands here runs whenever that
+// function does: a literal's mistakes count on every way through it, those of what it calls only on the straight one.
+std::string SourceScopes::at_once(std::size_t at) const {
+  const Block& block = blocks_.back();
+  const auto found = functions_.find(block.function);
+  if (found == functions_.end() || found->second.at_once.empty()) return "";
+  const Function& function = found->second;
+  const bool chosen = at > 0 && (tokens_[at - 1].is("and") || tokens_[at - 1].is("or"));
+  const int own = at > 0 && tokens_[at - 1].is("return") ? 1 : 0;
+  const bool straight = block.body && function.returns == own && !chosen;
+  return function.literal || straight ? function.at_once : "";
+}
+
+// Whether a call gives the handle of a motion and nothing is asked of that at once.
+bool SourceScopes::is_motion(const SourceUse& call) const {
+  if (call.meaning.role != SourceRole::machine || call.meaning.path.size() != 1 || call.arguments == 0) return false;
+  if (call.method != "move" && call.method != "move_through" && call.method != "set") return false;
+  const SourceToken& after = tokens_[end_of_call(tokens_, call.arguments)];
+  return !after.is(".") && !after.is(":") && !after.is("[") && !after.is("and") && !after.is("or");
 }
 
 // What the expression at the token stands for, as far as one name and its fields tell.
@@ -202,6 +251,13 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
   if (tokens_[at].kind != Kind::name) return {};
   if (tokens_[at].text == "require" && (tokens_[at + 1].text == "kadans" || tokens_[at + 2].text == "kadans")) {
     return {SourceRole::module, {}, 0};
+  }
+  if (tokens_[at].text == "require") {
+    const std::size_t name = tokens_[at + 1].is("(") ? at + 2 : at + 1;
+    const SourceToken& after = tokens_[name == at + 1 ? name + 1 : name + 2];
+    const bool whole = !after.is(".") && !after.is("(") && !after.is(":") && !after.is("[");
+    if (tokens_[name].kind == Kind::text && whole) return {SourceRole::own_module, {tokens_[name].text}, 0};
+    return {};
   }
   bool outer = false;
   const SourceMeaning* meaning = find(tokens_[at].text, outer);
@@ -212,6 +268,7 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
   if (use.meaning.role == SourceRole::module && use.meaning.path.size() == 1 && use.meaning.path[0] == "params") {
     return {SourceRole::parameters, {}, 0};
   }
+  if (is_motion(use)) return {SourceRole::motion, {}, 0};
   if (use.arguments != 0 || !use.method.empty() || use.written > 4) return {};
   const SourceToken& after = tokens_[next];
   const bool whole = after.kind == Kind::name || after.is(",") || after.is(")") || after.is("}") || after.is(";") ||
@@ -220,9 +277,16 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
   return whole && (use.meaning.path.empty() || use.meaning.path.back() != "*") ? use.meaning : SourceMeaning{};
 }
 
-void SourceScopes::hand_on(std::size_t at, const SourceMeaning& callee, bool guard) {
+// A function that is written here is called: it is given what stands in the brackets, and is where its caller is.
+void SourceScopes::hand_on(const SourceUse& call) {
+  const SourceMeaning& callee = call.meaning;
+  std::size_t at = call.arguments;
   Function& function = functions_[callee.function];
-  if (guard && !function.guard) function.guard = learnt_ = true;
+  if (call.guard && !function.guard) function.guard = learnt_ = true;
+  if (!call.at_once.empty() && function.at_once.empty()) {
+    function.at_once = call.at_once;
+    learnt_ = true;
+  }
   if (!tokens_[at - 1].is("(")) return;
   int depth = 0;
   std::size_t number = 0;
@@ -243,13 +307,19 @@ void SourceScopes::hand_on(std::size_t at, const SourceMeaning& callee, bool gua
 
 void SourceScopes::give_key(const std::string& key, std::size_t function) {
   const SourceMeaning machine{SourceRole::machine, {}, 0}, snapshot{SourceRole::snapshot, {}, 0};
+  Function& given = functions_[function];
+  const bool of_chart = !chart_lines_ || chart_lines_->contains(tokens_[function].line);
   if (key == "when") {
     give(function, 0, snapshot);
     give(function, 1, machine);
-    if (!functions_[function].guard) functions_[function].guard = learnt_ = true;
-  } else if (key == "enter" || key == "exit" || key == "during" || key == "run" || key == "action") {
+    given.under_when = of_chart;
+    if (!given.guard) given.guard = learnt_ = true;
+  } else if (key == "run" || is_at_once(key)) {
     give(function, 0, machine);
     give(function, 1, snapshot);
+    if (key == "run" || !of_chart || !given.at_once.empty()) return;
+    given.at_once = key;
+    learnt_ = true;
   }
 }
 

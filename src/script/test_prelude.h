@@ -3,9 +3,13 @@
 
 namespace kadans {
 
-// Given (play, advance, read, change, report, new_test); returns describe, it, before_each, expect, k.play.
+// What may follow `expect(x).` and `expect(x).never.`
+inline constexpr const char* test_matchers[] = {"to_equal",   "to_be_near",  "to_be_above", "to_be_below", "to_contain",
+                                                "to_be_true", "to_be_false", "to_be_nil",   "to_raise"};
+
+// Given (play, advance, read, change, add_test); returns k.play, expect, before_each, it, describe.
 inline constexpr char test_prelude[] = R"(
-local play, advance, read, change, report, new_test = ...
+local play, advance, read, change, add_test = ...
 local names, hooks, inside = {}, {}, false
 
 local function show(value, depth)
@@ -85,19 +89,20 @@ local function before_each(body)
   level[#level + 1] = body
 end
 
+-- Kept for when the file is loaded; what goes before it is what stands above it.
 local function it(name, body)
   if inside then error("it belongs into describe, not into another it", 2) end
-  inside = true
-  new_test()
-  local ok, message = pcall(function()
-    for _, level in ipairs(hooks) do
-      for _, hook in ipairs(level) do hook() end
-    end
+  if type(name) ~= "string" then error("it needs a name, then a function", 2) end
+  if type(body) ~= "function" then error("it(" .. show(name, 0) .. ") needs a function", 2) end
+  local before = {}
+  for _, level in ipairs(hooks) do
+    for _, hook in ipairs(level) do before[#before + 1] = hook end
+  end
+  add_test(table.concat(names, " ") .. (#names > 0 and " " or "") .. name, function()
+    inside = true
+    for _, hook in ipairs(before) do hook() end
     body()
   end)
-  inside = false
-  local full = table.concat(names, " ") .. (#names > 0 and " " or "") .. name
-  report(full, not ok and tostring(message) or "")
 end
 
 local methods = {}
@@ -148,6 +153,12 @@ function methods.set_sensor(run, name, value)
 end
 
 local function test_play(file, options)
+  if type(file) ~= "string" then error("k.play needs the file of a behavior", 2) end
+  if options ~= nil and type(options) ~= "table" then error("k.play: options are a table, { robot = FILE }", 2) end
+  for key, value in pairs(options or {}) do
+    if key ~= "robot" then error("k.play has no option '" .. tostring(key) .. "'; there is: robot", 2) end
+    if type(value) ~= "string" then error("k.play: robot must be a file, not a " .. type(value), 2) end
+  end
   local id = play(file, options and options.robot or "")
   return setmetatable({ id = id }, { __index = function(_, key) return methods[key] or read(id, key) end })
 end

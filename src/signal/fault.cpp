@@ -1,6 +1,8 @@
 #include "kadans/signal/fault.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdio>
 
 #include "kadans/signal/status.h"
 
@@ -47,6 +49,7 @@ constexpr std::array<CodeText, fault_codes> texts{{
     {command_old, "command_old", "engine.command_age_max_s"},
     {overruns, "overruns", "safety.overruns_in_a_row_max"},
     {joints_lost, "joints_lost", "safety.joints_lost_max"},
+    {emergency_stop, "emergency_stop", ""},
 }};
 
 constexpr bool in_order() {
@@ -67,6 +70,19 @@ const char* name(FaultCode code) noexcept {
 const char* configuration_key(FaultCode code) noexcept {
   const auto index = static_cast<std::size_t>(code);
   return index < texts.size() ? texts[index].key : "";
+}
+
+FaultWords fault_words(std::string_view text) noexcept {
+  FaultWords words{};
+  std::copy_n(text.begin(), std::min(text.size(), words.size() - 1), words.begin());
+  return words;
+}
+
+std::string fault_detail(const Fault& fault) {
+  if (fault.words[0] != '\0') return fault.words.data();
+  char numbers[64];
+  std::snprintf(numbers, sizeof numbers, "%g, limit %g", fault.value, fault.limit);
+  return numbers;
 }
 
 const char* name(SafetyLevel level) noexcept {

@@ -32,8 +32,7 @@ double distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(std::string_view wrong, std::span<const std::string> candidates) {
-  constexpr std::size_t longest = 200;  // nobody mistypes a name this long; hostile input may send one
-  if (wrong.size() > longest) return {};
+  if (wrong.size() > nearest_name_longest) return {};
   std::string best;
   double best_distance = std::max(1.0, static_cast<double>(wrong.size()) / 3.0) + 0.5;
   for (const std::string& candidate : candidates) {

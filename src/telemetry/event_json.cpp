@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/telemetry/event_log.h"
 
 namespace kadans {
@@ -37,16 +38,17 @@ std::string json_of(const Event& event) {
     json["line"] = 0;
   }
   // Scripts may say bytes that are no UTF-8.
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(json);
 }
 
 std::string json_of(const Fault& fault, const std::string& joint, std::int64_t time_ns) {
-  const nlohmann::ordered_json json{{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
-                                    {"name", name(fault.code)},
-                                    {"joint", joint},
-                                    {"value", fault.value},
-                                    {"limit", fault.limit}};
-  return json.dump();
+  nlohmann::ordered_json json{{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
+                              {"name", name(fault.code)},
+                              {"joint", joint},
+                              {"value", fault.value},
+                              {"limit", fault.limit}};
+  if (fault.words[0] != '\0') json["words"] = fault.words.data();
+  return json_text(json);
 }
 
 const char* const log_schema = R"({
@@ -108,6 +110,7 @@ const char* const fault_schema = R"({
   "properties": { "timestamp": { "type": "object", "title": "time",
       "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
     "name": { "type": "string" }, "joint": { "type": "string" },
+    "words": { "type": "string", "description": "In place of value and limit" },
     "value": { "type": "number" }, "limit": { "type": "number" } }
 })";
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kadans/signal/number_text.h"
+#include "kadans/signal/utf8.h"
 #include "kadans/telemetry/signal_plot.h"
 #include "plot_ink.h"
 
@@ -15,7 +16,7 @@ constexpr int line_height = 16, title_gap = 22, points_a_letter = 7;
 // In single quotes nothing means anything to gnuplot but the quote, doubled.
 std::string quoted(const std::string& text) {
   std::string safe = "'";
-  for (const char c : text) {
+  for (const char c : xml_characters(text)) {
     if (c == '\'') safe += '\'';
     safe += static_cast<unsigned char>(c) < 0x20U ? ' ' : c;
   }

@@ -7,6 +7,7 @@
 
 #include "kadans/signal/crc32.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -17,7 +18,9 @@ constexpr std::uint64_t footer_length = 20;
 
 }  // namespace
 
-McapReader::McapReader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
+McapReader::McapReader(const std::string& path) : path_(path) {
+  check_input_file(path);
+  file_.open(path, std::ios::binary);
   const auto refuse = [&path](const char* why) { throw InputError({.file = path, .message = why}); };
   file_.seekg(0, std::ios::end);
   const std::streamoff size = file_ ? static_cast<std::streamoff>(file_.tellg()) : -1;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/name_pattern.h"
 #include "kadans/telemetry/record_text.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string quoted(const std::string& text) { return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string quoted(const std::string& text) { return json_text(text); }
 
 void append_json_number(std::string& text, double value) {
   if (std::isfinite(value))
@@ -22,13 +23,13 @@ void append_json_number(std::string& text, double value) {
 
 // The fields of a message in JSON behind those of the line.
 void append_fields(std::string& line, std::string_view text) {
-  Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) {
+  std::optional<Json> json = read_foreign_json(text);
+  if (!json || !json->is_object()) {
     line += ",\"message\":" + quoted(std::string(text));
     return;
   }
-  json.erase("timestamp");
-  const std::string fields = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  json->erase("timestamp");
+  const std::string fields = json_text(*json);
   if (fields.size() > 2) line += "," + fields.substr(1, fields.size() - 2);
 }
 

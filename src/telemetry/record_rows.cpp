@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/number_text.h"
 
 namespace kadans {
@@ -22,8 +23,8 @@ Signal signal_in(const std::string& line) {
 
 // Nothing in a file is trusted: what is no object, or lacks a field, reads as empty.
 Json object_in(std::string_view text) {
-  Json json = Json::parse(text, nullptr, false);
-  return json.is_object() ? json : Json::object();
+  const std::optional<Json> json = read_foreign_json(text);
+  return json && json->is_object() ? *json : Json::object();
 }
 
 std::string text_in(const Json& json, const char* key) {
@@ -92,8 +93,12 @@ std::optional<Event> event_in(const RecordTopic& topic, std::string_view json, s
 std::optional<RecordedFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns) {
   if (!topic.is_json() || topic.schema != "kadans.Fault") return std::nullopt;
   const Json read = object_in(json);
-  return RecordedFault{time_ns, text_in(read, "name"), text_in(read, "joint"), number_in(read, "value"),
-                       number_in(read, "limit")};
+  return RecordedFault{time_ns,
+                       text_in(read, "name"),
+                       text_in(read, "joint"),
+                       number_in(read, "value"),
+                       number_in(read, "limit"),
+                       text_in(read, "words")};
 }
 
 std::string transition_text(const Transition& transition) {
@@ -103,7 +108,7 @@ std::string transition_text(const Transition& transition) {
 
 std::string fault_text(const RecordedFault& fault) {
   return fault.name + (fault.joint.empty() ? "" : " of " + fault.joint) +
-         printed(": %g, limit %g", fault.value, fault.limit);
+         (fault.words.empty() ? printed(": %g, limit %g", fault.value, fault.limit) : ": " + fault.words);
 }
 
 }  // namespace kadans

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/telemetry/timing_json.h"
 
 namespace kadans {
@@ -150,7 +151,7 @@ bool RecordWriter::put_parameters(std::int64_t time_ns) {
   if (changed.empty()) return true;
   const nlohmann::ordered_json json{{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
                                     {"parameters", changed}};
-  return file_.write(parameters_channel_, 0, time_ns, bytes_of(json.dump()));
+  return file_.write(parameters_channel_, 0, time_ns, bytes_of(json_text(json)));
 }
 
 bool RecordWriter::event(const Event& event) {

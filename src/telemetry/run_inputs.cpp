@@ -6,6 +6,7 @@
 
 #include <zstd.h>
 
+#include "kadans/config/problems.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/number_text.h"
 #include "kadans/signal/state_hash.h"
@@ -37,8 +38,12 @@ std::string unpacked(const McapAttachment& attachment, const std::string& record
   return text;
 }
 
-bool climbs(const std::filesystem::path& path) {
-  return std::ranges::any_of(path, [](const std::filesystem::path& part) { return part == ".."; });
+// As kadans writes them: one name for one file. Whoever unpacks them may compare names, and none leads out.
+bool right_path(const std::string& name) {
+  const std::filesystem::path path(name);
+  const bool climbs = std::ranges::any_of(path, [](const std::filesystem::path& part) { return part == ".."; });
+  return !name.empty() && name.find('\0') == std::string::npos && !climbs && path.has_filename() &&
+         path.lexically_normal().generic_string() == name && name != ".";
 }
 
 }  // namespace
@@ -76,7 +81,7 @@ RunInputs read_inputs(const McapReader& file, const std::string& path) {
   inputs.run = known("run");
   inputs.program = known("program");
   for (auto& [name, hash] : known("inputs")) {
-    if (climbs(name)) refuse(path, "its input '" + name + "' leads out of the project");
+    if (!right_path(name)) refuse(path, "its input " + in_quotes(name) + " is no path inside a project");
     inputs.files.push_back({name, hash, std::nullopt});
   }
   for (const McapAttachment& attachment : file.attachments()) {

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
+
 namespace kadans {
 namespace {
 
@@ -44,7 +46,7 @@ std::string timing_json(const std::vector<TimingSource>& sources) {
                          {"limits", limits},
                          {"within", within}};
   }
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace kadans

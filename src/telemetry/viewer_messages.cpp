@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/telemetry/signal_topics.h"
 
 namespace kadans {
@@ -172,7 +173,7 @@ void ViewerMessages::write_base(std::int64_t time_ns, std::span<const double> ro
                        {"child_frame_id", subjects_.base},
                        {"translation", translation},
                        {"rotation", rotation}};
-  to.put(bytes_of(Json{{"transforms", Json::array({transform})}}.dump()));
+  to.put(bytes_of(json_text(Json{{"transforms", Json::array({transform})}})));
 }
 
 // The force on the sole stands up in the foot's frame, at the centre of pressure.

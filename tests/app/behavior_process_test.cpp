@@ -14,7 +14,7 @@ namespace {
 
 const std::string on_virtual_time = " --threads-on-virtual-time --behaviors process ";
 
-Json result_of(const std::string& out) { return Json::parse(last_line(out)); }
+Json result_of(const std::string& out) { return Json::parse(out); }
 
 // The lines of the behaviors until the robot is left, without the times.
 std::string said(const std::string& err) {

@@ -57,3 +57,85 @@ TEST_CASE("check refuses what it does not know, and a behavior without a robot")
   CHECK(has(run("check behaviors/nobody/squat.lua", project).err, "--robot FILE"));
   CHECK(run("check behaviors/nobody/squat.lua --robot config/tulip/robot.json", project).exit_code == 0);
 }
+
+TEST_CASE("check takes folders and patterns, knows modules and tests, and passes over what is none of ours") {
+  const auto project = project_copy("check_folders");
+  write(project / "config/notes.json", "{\"hello\": 1}");
+  write(project / "behaviors/.hidden.lua", "not Lua");
+  const Outcome all = run("check .", project);
+  CHECK_MESSAGE(all.exit_code == 0, all.err);
+  CHECK(has(all.out, "behaviors/lib/legs.lua  a module"));
+  CHECK(has(all.out, "behaviors/tulip/squat_test.lua  tests"));
+  CHECK(has(all.out, "behaviors/tulip/squat.lua  behavior: fits tulip"));
+  CHECK(has(all.out, "behaviors/jiwiy/sine.lua  behavior: fits jiwiy"));
+  CHECK(has(all.out, "config/scenarios/squat.json  scenario:"));
+  CHECK(has(all.out, "config/sweeps/push_varied.json  sweep:"));
+  CHECK(has(all.out, "models/tulip/tulip.urdf  robot description:"));
+  CHECK_FALSE(has(all.out, "notes.json"));
+  CHECK_FALSE(has(all.out, "schema.json"));
+  CHECK(run("check config/notes.json", project).exit_code == 2);
+
+  const Outcome some = run("check 'behaviors/*/s*_test.lua' config/tulip behaviors/tulip/squat_test.lua", project);
+  CHECK(some.exit_code == 0);
+  CHECK(has(some.out, "behaviors/tulip/squat_test.lua  tests"));
+  CHECK(some.out.find("squat_test.lua") == some.out.rfind("squat_test.lua"));  // each once
+  CHECK(has(some.out, "config/tulip/soft.json"));
+  CHECK_FALSE(has(some.out, "behaviors/tulip/squat.lua"));
+  const Outcome none = run("check 'behaviors/*/nothing*'", project);
+  CHECK(none.exit_code == 2);
+  CHECK(has(none.err, "nothing has a name like that"));
+  CHECK(has(run("check nowhere", project).err, "nowhere"));
+
+  write(project / "behaviors/lib/broken.lua", "return {\n");
+  const Outcome broken = run("check behaviors", project);
+  CHECK(broken.exit_code == 2);
+  CHECK(has(broken.err, "behaviors/lib/broken.lua:2:"));
+  CHECK(has(broken.out, "behaviors/tulip/squat.lua"));  // the others are told
+  CHECK(run("behavior check behaviors", project).exit_code == 2);
+}
+
+TEST_CASE(
+    "what behavior check finds is found in a scenario, a sweep and its behaviors, and sim, run and test refuse it") {
+  const auto project = project_copy("check_played");
+  REQUIRE(
+      edit(project / "behaviors/tulip/squat.lua", "m.posture:set_gains(\"stiff\")", "m.posture:set_gains(\"stif\")"));
+  const std::string problem = "behaviors/tulip/squat.lua:33: 'posture' has no gains 'stif', did you mean 'stiff'?";
+  for (const char* command :
+       {"check config/scenarios/squat.json", "check config/scenarios/list_of_behaviors.json",
+        "sim config/scenarios/squat.json", "sim config/scenarios/gaze_saccade.json --play behaviors/tulip/squat.lua",
+        "run config/tulip/robot.json --play squat --plant ideal --threads-on-virtual-time --no-ctl --duration 1",
+        "run config/tulip/robot.json --play squat --plant ideal --threads-on-virtual-time --no-ctl --behaviors process",
+        "run config/tulip/robot.json --play show --plant ideal --threads-on-virtual-time --no-ctl", "test squat"}) {
+    CAPTURE(command);
+    const Outcome outcome = run(command, project);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.out.empty());
+    if (!has(command, "saccade")) CHECK_MESSAGE(has(outcome.err, problem), outcome.err);
+  }
+  CHECK_FALSE(std::filesystem::exists(project / "squat.mcap"));
+  CHECK(run("test stand_nothing_plays slope_up --list", project).exit_code == 2);
+  write(
+      project / "config/sweeps/plan.json",
+      R"({"name": "s", "scenarios": ["config/scenarios/squat.json"], "cases": 2, "vary": {"ground.friction": {"uniform": [0.9, 1]}}})");
+  for (const char* command : {"check config/sweeps/plan.json", "sweep config/sweeps/plan.json"}) {
+    const Outcome outcome = run(command, project);
+    CHECK(outcome.exit_code == 2);
+    CHECK_MESSAGE(has(outcome.err, problem), outcome.err);
+  }
+}
+
+TEST_CASE("the behaviors of a scenario's events are checked, too, and a record runs again whatever check finds today") {
+  const auto project = project_copy("check_events");
+  write(project / "config/scenarios/later.json",
+        R"({"name": "later", "robot": "config/tulip/robot.json", "plant": "ideal", "duration_s": 0.5,
+            "behaviors": ["stand"], "events": [{"at_s": 0.2, "do": "replace", "list": "wave"}]})");
+  REQUIRE(run("sim config/scenarios/later.json", project).exit_code == 0);
+  REQUIRE(edit(project / "behaviors/tulip/wave.lua", "{ after = 20, to = \"failed\", why = \"took too long\" },",
+               "{ after = 20, to = \"failed\", why = \"took too long\" }, { on = \"nobody\", to = \"failed\" },"));
+  const Outcome refused = run("sim config/scenarios/later.json", project);
+  CHECK(refused.exit_code == 2);
+  CHECK(has(refused.err, "nobody emits the event 'nobody'"));
+  CHECK(run("check config/scenarios/later.json", project).exit_code == 2);
+  CHECK(run("replay later.mcap --from-record", project).exit_code == 0);
+  CHECK(run("replay later.mcap", project).exit_code == 0);  // it runs, with the file as it is
+}

@@ -73,6 +73,52 @@ TEST_CASE("ctl looks into a run, commands it and tunes it, and the run ends as i
   CHECK(has(read(project / "err"), "ctl: uid "));  // every change is told
 }
 
+TEST_CASE("what ctl save wrote counts in the next run, and what a preset makes otherwise is said") {
+  const auto project = project_copy("ctl_save");
+  REQUIRE(beside(project, live,
+                 "ctl set posture.l_knee.kp_Nm_per_rad 250\n"
+                 "ctl set squat.depth_m 0.05\n"
+                 "ctl save\n"
+                 "ctl save --preset stif; echo $?\n"
+                 "ctl save --preset stiff --json >stiff.json\n"
+                 "ctl stop\n") == 0);
+  const std::string said = read(project / "said"), wrong = read(project / "wrong");
+  CAPTURE(said);
+  CAPTURE(wrong);
+  CHECK(has(said, "squat.depth_m: 0.1 -> 0.05"));
+  CHECK(has(said, "where a behavior chooses a preset, that counts, in the next run too:\n"));
+  CHECK(has(said, "posture.l_knee.kp_Nm_per_rad: stiff sets 300"));
+  CHECK(has(said, "'kadans ctl save --preset NAME' writes what was set into one of them, too"));
+  CHECK(has(wrong, "preset 'stif' sets none of what was changed"));
+  for (const auto& one : Json::parse(read(project / "stiff.json"))["overridden"]) CHECK(one["preset"] != "stiff");
+  const std::string saved = read(project / "config/tulip/robot.json");
+  CHECK(has(saved, "\"behaviors\": { \"squat\": { \"depth_m\": 0.05 } }"));
+  CHECK(run("check config/tulip/robot.json", project).exit_code == 0);
+  const auto json = Json::parse(run("sim config/scenarios/squat.json --duration 3.2 --json --no-record", project).out);
+  const auto deep = Json::parse(run("sim config/scenarios/squat.json --play 'squat{depth_m=0.1}' --duration 3.2 --json "
+                                    "--no-record",
+                                    project)
+                                    .out);
+  CHECK(json["checks"][0]["value"].get<double>() > deep["checks"][0]["value"].get<double>() + 0.04);
+  write(project / "look.txt", ":run 3\nparameters.posture.l_knee.kp_Nm_per_rad\n");
+  CHECK(has(run("repl config/scenarios/squat.json <look.txt", project).out, "250"));  // `squat` chooses stiff
+}
+
+TEST_CASE("ctl reload beside a simulation tells of every new version, whenever in the behaviors' period it comes") {
+  const auto project = project_copy("ctl_reload_sim");
+  std::string commands;
+  for (int i = 1; i <= 8; ++i)
+    commands += "sed -i 's/hold_s *= { *[0-9.]*/hold_s = { 0." + std::to_string(i) +
+                "/' behaviors/tulip/squat.lua; ctl reload; ctl get squat.hold_s\n";
+  REQUIRE(beside(project, "sim config/scenarios/squat.json --play 'squat{repeats=20}' --duration 1000 --no-record",
+                 commands + "ctl reload\n") == 0);
+  const std::string said = read(project / "said");
+  CAPTURE(read(project / "wrong"));
+  std::string wanted;
+  for (int i = 1; i <= 8; ++i) wanted += "squat: reloaded behaviors/tulip/squat.lua\n0." + std::to_string(i) + " s\n";
+  CHECK(said == wanted + "no new version: the files are as they were loaded\n");
+}
+
 TEST_CASE("ctl says what it could not do, with the reason, by its exit code") {
   const auto project = project_copy("ctl_refused");
   REQUIRE(beside(project, live,

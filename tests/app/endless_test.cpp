@@ -186,16 +186,34 @@ TEST_CASE("An endless loop in a file that is saved over the squat is refused wit
   }
 }
 
-TEST_CASE("An endless loop in a test of a behavior, wherever it stands, ends that test file with its line") {
+TEST_CASE("An endless loop outside the tests of a file ends that file with its line, the other files run") {
+  const auto folder = program::project_copy("endless_test_file");
+  program::write(folder / "behaviors/tulip/endless_test.lua", "describe('x', function()\n" + loop + " end)\n");
+  const program::Outcome outcome =
+      program::run("behavior test behaviors/tulip/endless_test.lua behaviors/lib/timing_test.lua", folder);
+  CHECK(outcome.exit_code == 2);
+  CHECK(program::has(outcome.err, "endless_test.lua:2: instruction budget exceeded"));
+  CHECK(program::has(outcome.out, "ok      timing"));
+}
+
+TEST_CASE("An endless loop in a test of a behavior fails that test, by its name and line, and the others run") {
   const auto folder = program::project_copy("endless_test");
   for (const std::string& text :
-       {"it('x', function()\n" + loop + " end)\n", "describe('x', function()\n" + loop + " end)\n",
-        "describe('x', function() before_each(function()\n" + loop + " end) it('y', function() end) end)\n"}) {
+       {"it('b', function()\n" + loop + " end)\n",
+        "describe('b', function() before_each(function()\n" + loop + " end) it('', function() end) end)\n",
+        std::string("it('b', function() local run = k.play 'squat.lua'\nwhile true do run:advance(1) end end)\n"),
+        std::string("it('b', function() local run = k.play 'squat.lua'\nwhile true do run:advance(0) end end)\n"),
+        "it('b', function() local ok\nrepeat ok = pcall(function() " + loop + " end) until false end)\n"}) {
     CAPTURE(text);
-    program::write(folder / "behaviors/tulip/endless_test.lua", text);
+    program::write(folder / "behaviors/tulip/endless_test.lua",
+                   "local k = require 'kadans' it('a', function() end) " + text + "it('c', function() end)\n");
     const program::Outcome outcome = program::run("behavior test behaviors/tulip/endless_test.lua", folder);
-    CAPTURE(outcome.err);
-    CHECK(outcome.exit_code == 2);
-    CHECK(program::has(outcome.err, "endless_test.lua:2: instruction budget exceeded"));
+    CAPTURE(outcome.out);
+    CHECK(outcome.exit_code == 1);
+    CHECK(program::has(outcome.out, "  ok      a\n"));
+    CHECK(program::has(outcome.out, "  FAILED  b"));
+    CHECK(program::has(outcome.out, "endless_test.lua:2: stopped, for it did not come to an end"));
+    CHECK(program::has(outcome.out, "  ok      c\n"));
+    CHECK(program::has(outcome.out, "2 passed, 1 failed"));
   }
 }

@@ -143,7 +143,7 @@ TEST_CASE("log refuses what is wrong with the place, what was meant, and nothing
     CHECK_MESSAGE(has(outcome.err, why), arguments << ": " << outcome.err);
   };
   refused("info text.mcap", "text.mcap: is not an MCAP file");
-  refused("info gone.mcap", "gone.mcap: cannot be read");
+  refused("info gone.mcap", "gone.mcap: there is no such file");
   refused("csv run.mcap base.tild_rad", "unknown signal 'base.tild_rad', did you mean 'base.tilt_rad'?");
   refused("cat run.mcap --topic jont", "unknown topic '/jont', did you mean '/joint'?");
   refused("cat run.mcap --from 7", "it goes from 0.000 s to 0.499 s");

@@ -123,7 +123,7 @@ TEST_CASE("What cannot be run again is refused with the reason, and what is miss
     return outcome.err;
   };
   CHECK(has(refused("config/tulip/robot.json"), "not an MCAP file"));
-  CHECK(has(refused("nowhere.mcap"), "cannot be read"));
+  CHECK(has(refused("nowhere.mcap"), "there is no such file"));
   const std::string whole = read(project / "run.mcap");
   write(project / "head.mcap", whole.substr(0, 30));
   CHECK(has(refused("head.mcap"), "ends before it begins"));

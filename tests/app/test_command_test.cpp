@@ -80,6 +80,37 @@ TEST_CASE("What failed the last time can be run alone, until it passes") {
   CHECK(has(run_test(folder, "--repeat 1 --rerun-failed").out, "nothing failed the last time"));
 }
 
+TEST_CASE("--list tells what would run, with --rerun-failed only that, with the seeds that failed") {
+  const auto folder = project();
+  CHECK(has(run_test(folder, "--rerun-failed --list").out, "nothing failed the last time"));
+  const Outcome all = run_test(folder, "--list");
+  CHECK(all.exit_code == 0);
+  CHECK(has(all.out, "bent (seed 1) #knee"));
+  CHECK(has(all.out, "bent (seed 2) #knee"));
+  CHECK(has(all.out, "straight (seed 1)"));
+  CHECK(run_test(folder, "--seed 7 --repeat 2").exit_code == 1);
+  const Outcome failed = run_test(folder, "--rerun-failed --list");
+  CHECK(has(failed.out, "straight (seed 7)"));
+  CHECK(has(failed.out, "straight (seed 8)"));
+  CHECK_FALSE(has(failed.out, "bent"));
+  CHECK_FALSE(has(run_test(folder, "--rerun-failed --list --seed 8 --repeat 1").out, "seed 7"));
+  CHECK(has(run_test(folder, "--rerun-failed").out, "2 runs, 2 failed"));  // with those seeds
+}
+
+TEST_CASE("A failure says what was wanted, and its command works in a shell, whatever the file is called") {
+  const auto folder = project();
+  std::filesystem::rename(folder / "config/scenarios/straight.json", folder / "config/scenarios/it's straight.json");
+  const Outcome failed = run_test(folder, "straight --repeat 1 --junit results.xml --report pages --film never");
+  CHECK(has(failed.out, ", wanted at the end joint.l_knee.position_rad < 0.1\n"));
+  CHECK(has(read(folder / "results.xml"), "wanted at the end joint.l_knee.position_rad &lt; 0.1"));
+  CHECK(has(read(folder / "pages/index.html"), "wanted at the end joint.l_knee.position_rad &lt; 0.1"));
+  CHECK(has(run_test(folder, "straight --repeat 1 --json").out, R"("wanted":"at the end joint.l_knee)"));
+  const std::size_t again = failed.out.find("again: kadans ");
+  REQUIRE(again != std::string::npos);
+  const std::string command = failed.out.substr(again + 14, failed.out.find('\n', again) - again - 14);
+  CHECK(run(command + " --no-record", folder).exit_code == 1);
+}
+
 TEST_CASE("Fail-fast stops at the first failure, a wrong scenario or selector is refused before anything runs") {
   const auto folder = project();
   const Outcome first = run_test(folder, "straight bent --fail-fast --jobs 1 --repeat 1");

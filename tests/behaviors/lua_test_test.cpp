@@ -77,3 +77,59 @@ TEST_CASE("a behavior that errors in a test is told by its outcome and error") {
   INFO(outcome.out);
   CHECK(outcome.exit_code == 0);
 }
+
+TEST_CASE("k.play refuses an option that it does not have, and what is no file") {
+  const Outcome outcome = tested("lua_test_options",
+                                 "local k = require 'kadans'\n"
+                                 "it('a', function() k.play('squat.lua', { robt = 'config/tulip/robot.json' }) end)\n"
+                                 "it('b', function() k.play('squat.lua', 'config/tulip/robot.json') end)\n"
+                                 "it('c', function() k.play('squat.lua', { robot = 1 }) end)\n"
+                                 "it('d', function() k.play() end)\n"
+                                 "it('e', function() k.play('squat.lua', { robot = 'config/tulip/soft.json' }) end)\n");
+  CHECK(outcome.exit_code == 1);
+  CHECK(has(outcome.out, "my_test.lua:2: k.play has no option 'robt'; there is: robot"));
+  CHECK(has(outcome.out, "my_test.lua:3: k.play: options are a table, { robot = FILE }"));
+  CHECK(has(outcome.out, "my_test.lua:4: k.play: robot must be a file, not a number"));
+  CHECK(has(outcome.out, "my_test.lua:5: k.play needs the file of a behavior"));
+  CHECK(has(outcome.out, "1 passed, 4 failed"));
+}
+
+TEST_CASE("behavior test runs what its filter names, and tells it as JSON lines and as JUnit XML") {
+  const auto project = project_copy("lua_test_filter");
+  write(project / "behaviors/tulip/my_test.lua",
+        "describe('arms', function() it('rise', function() end) it('sink', function() expect(1).to_equal(2) end) end)\n"
+        "it('legs rise', function() end)\n");
+  const std::string mine = "behavior test behaviors/tulip/my_test.lua ";
+  CHECK(has(run(mine + "--only rise", project).out, "2 passed, 0 failed"));
+  CHECK(has(run(mine + "--only 'arms '", project).out, "1 passed, 1 failed"));
+  const Outcome none = run(mine + "--only rsie", project);
+  CHECK(none.exit_code == 2);
+  CHECK(has(none.err, "no test has 'rsie' in its name"));
+  const Outcome json = run(mine + "--json --junit out.xml", project);
+  CHECK(json.exit_code == 1);
+  CHECK(has(json.out, R"("test":"arms rise","status":"passed")"));
+  CHECK(has(json.out, R"("test":"arms sink","status":"failed")"));
+  CHECK(has(json.out, "my_test.lua:1: expected 1 to equal 2"));
+  CHECK_FALSE(has(json.out, "passed, "));
+  const std::string xml = read(project / "out.xml");
+  CHECK(has(xml, "tests=\"3\" failures=\"1\" errors=\"0\""));
+  CHECK(has(xml, "name=\"arms sink\""));
+}
+
+TEST_CASE("a file of tests that does not load is told, the others run, and what stands above a test goes before it") {
+  const auto project = project_copy("lua_test_others");
+  write(project / "behaviors/tulip/a_test.lua", "it('never'\n");
+  write(project / "behaviors/tulip/b_test.lua",
+        "describe('b', function() local log = ''\n"
+        "it('has nothing before it', function() expect(log).to_equal '' end)\n"
+        "before_each(function() log = log .. 'x' end)\n"
+        "it('has one', function() expect(log).to_equal 'x' end)\n"
+        "describe('deeper', function() before_each(function() log = log .. 'y' end)\n"
+        "it('has both', function() expect(log).to_equal 'xxy' end) end) end)\n"
+        "it('is not inside another', function() it('x', function() end) end)\n");
+  const Outcome outcome = run("behavior test behaviors/tulip/a_test.lua behaviors/tulip/b_test.lua", project);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "behaviors/tulip/a_test.lua:2:"));
+  CHECK(has(outcome.out, "3 passed, 1 failed"));
+  CHECK(has(outcome.out, "it belongs into describe, not into another it"));
+}

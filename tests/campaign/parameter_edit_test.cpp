@@ -57,3 +57,44 @@ TEST_CASE("An object that is not there is refused") {
   CHECK_THROWS_WITH_AS(edited({"legs", "kp", {"kp"}, 1}), "r.json:1:1: there is no control object 'legs' in it",
                        InputError);
 }
+
+TEST_CASE("A number goes into a preset of an object, and one that is not there is refused") {
+  const std::string presets = with("\"type\": \"x\"", "\"presets\": { \"stiff\": { \"*.kp\": 9 }, \"soft\": {} }");
+  const auto put = [&](const ParameterEdit& edit) { return edit_parameters(presets, "r.json", {edit}); };
+  CHECK(put({"bare", "*.kp", {"l_knee.kp"}, 8, "stiff"}).find("\"*.kp\": 8 }") != std::string::npos);
+  CHECK(put({"bare", "l_knee.kp", {"l_knee.kp"}, 8, "stiff"}).find("\"*.kp\": 9, \"l_knee.kp\": 8 }") !=
+        std::string::npos);
+  CHECK(put({"bare", "kd", {"kd"}, 3, "soft"}).find("\"soft\": { \"kd\": 3 }") != std::string::npos);
+  CHECK_THROWS_WITH_AS(put({"bare", "kd", {"kd"}, 3, "stif"}),
+                       "r.json:13:5: control object 'bare' has no preset 'stif' in it", InputError);
+  CHECK_THROWS_AS(put({"arm", "kd", {"kd"}, 3, "stiff"}), InputError);
+}
+
+TEST_CASE("What a robot says of its behaviors is changed where it stands, or added as the keys around it stand") {
+  const auto put = [](const std::string& to, const BehaviorEdit& edit) { return edit_behaviors(to, "r.json", {edit}); };
+  const BehaviorEdit depth{"squat", "depth_m", 0.08};
+  const std::string added = "  \"behaviors\": { \"squat\": { \"depth_m\": 0.08 } },\n";
+  CHECK(put(text, depth) == with("  // Ünder", added + "  // Ünder"));  // above what is said of the key behind it
+  CHECK(put(R"({"name": "x", "control": {}})", depth) ==
+        R"({"name": "x", "behaviors": { "squat": { "depth_m": 0.08 } }, "control": {}})");
+  CHECK(put("{}", depth) == R"({ "behaviors": { "squat": { "depth_m": 0.08 } } })");
+
+  const std::string some = R"({
+  "behaviors": {
+    // by hand
+    "wave": { "beat_s": 1 },  // slow
+    "squat": {
+      "hold_s": 2
+    }
+  }
+})";
+  std::string wanted = some;
+  CHECK(put(some, depth) == wanted.replace(wanted.find("2\n"), 1, "2,\n      \"depth_m\": 0.08"));
+  wanted = some;
+  CHECK(put(some, {"squat", "hold_s", 2.5}) == wanted.replace(wanted.find("2\n"), 1, "2.5"));
+  wanted = some;
+  CHECK(put(some, {"stand", "x", 1}) ==
+        wanted.replace(wanted.find("    // by hand"), 0, "    \"stand\": { \"x\": 1 },\n"));
+  CHECK(put(R"({"behaviors": {}})", depth) == R"({"behaviors": { "squat": { "depth_m": 0.08 } }})");
+  CHECK(put(R"({"behaviors": {"squat": {}}})", depth) == R"({"behaviors": {"squat": { "depth_m": 0.08 }}})");
+}

@@ -80,8 +80,8 @@ TEST_CASE("What is too deep, too long or too large is refused") {
 }
 
 TEST_CASE("A file that is not there, or no file, is refused by name") {
-  CHECK(refusal("/none/x.json", "", [] { read_text_file("/none/x.json"); }) == " there is no such file");
-  CHECK(refusal("/", "", [] { read_text_file("/"); }) == " this is no file");
+  CHECK(refusal("/none/x.json", "", [] { read_input_file("/none/x.json"); }) == " there is no such file");
+  CHECK(refusal("/", "", [] { read_input_file("/"); }) == " this is a folder, not a file");
 }
 
 }  // namespace kadans

@@ -51,6 +51,13 @@ TEST_CASE("A key that is left out keeps its default, torque and speed the URDF's
   CHECK(config.engine.commands_per_tick_max == 300);
 }
 
+TEST_CASE("A behavior may take half of its period in a tick, or what the configuration says") {
+  CHECK(read(right_robot).engine.behavior_time_max_ns() == 5'000'000);
+  const RobotConfig config =
+      read_with("\"behavior_period_s\": 0.01", "\"behavior_period_s\": 0.01, \"behavior_time_max_s\": 0.002");
+  CHECK(config.engine.behavior_time_max_ns() == 2'000'000);
+}
+
 TEST_CASE("A joystick's axes are the usual ones, unless the configuration says so") {
   CHECK_FALSE(read(right_robot).engine.joystick);
   const RobotConfig config = read_with("\"name\": \"tulip\"",

@@ -22,7 +22,7 @@ const fs::path source = KADANS_SOURCE_DIR;
 void check_shipped(const std::string& schema, const char* name) {
   const fs::path shipped = source / "config" / "schema" / name;
   const fs::path renewed = fs::path(KADANS_BINARY_DIR) / name;
-  const bool same = fs::exists(shipped) && read_text_file(shipped) == schema;
+  const bool same = fs::exists(shipped) && read_input_file(shipped) == schema;
   if (!same) std::ofstream(renewed) << schema;
   CHECK_MESSAGE(same, "renew it: cp " << renewed.string() << " " << shipped.string());
 }
@@ -62,7 +62,7 @@ void check_value(const Json& schema, const Json& value, const std::string& path,
 }
 
 void check_file(const std::string& schema, const fs::path& file) {
-  const Json value = Json::parse(read_text_file(file));
+  const Json value = Json::parse(read_input_file(file));
   check_value(Json::parse(schema), value, file.filename().string(), !value.contains("based_on"));
 }
 

@@ -21,7 +21,7 @@ extern "C" {
 }
 [[gnu::noinline]] void kadans_newest_write_read(Newest& newest, Element& element) {
   newest.publish(element);
-  element = newest.read();
+  element = newest.newest();
 }
 }
 

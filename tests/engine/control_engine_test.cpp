@@ -80,9 +80,9 @@ TEST_CASE("A command takes effect in the tick after it was sent") {
   Engine bench;
   bench.tick();
   bench.command(bench.move_hip(0.5));
-  CHECK(bench.exchange->snapshot.read(1).transactions_applied == 0);
+  CHECK(bench.exchange->snapshot.newest(1).transactions_applied == 0);
   bench.tick();
-  CHECK(bench.exchange->snapshot.read(1).transactions_applied == 1);
+  CHECK(bench.exchange->snapshot.newest(1).transactions_applied == 1);
 }
 
 TEST_CASE("The snapshot carries tick, time, joints and the active set") {
@@ -90,7 +90,7 @@ TEST_CASE("The snapshot carries tick, time, joints and the active set") {
   bench.recorder.next.joints[1].position_rad = 0.7;
   bench.tick();
   bench.tick();
-  const Snapshot& snapshot = bench.exchange->snapshot.read(1);
+  const Snapshot snapshot = bench.exchange->snapshot.newest(1);
   CHECK(snapshot.tick == 1);
   CHECK(snapshot.time_ns == 1'000'000);
   CHECK(snapshot.joints.joints[1].position_rad == doctest::Approx(0.7));
@@ -117,6 +117,6 @@ TEST_CASE("Switching sets by command makes the other object compute") {
   bench.tick();
   bench.command({.kind = CommandKind::switch_set, .index = 1});
   bench.tick();
-  CHECK(bench.exchange->snapshot.read(1).control_sets == 0b10);
-  CHECK(bench.exchange->snapshot.read(1).objects[1].active);
+  CHECK(bench.exchange->snapshot.newest(1).control_sets == 0b10);
+  CHECK(bench.exchange->snapshot.newest(1).objects[1].active);
 }

@@ -59,12 +59,12 @@ std::vector<double> run(std::unique_ptr<ControlObject> at_drives, int rehearsals
     if (tick == 100) send(tick, {.kind = CommandKind::switch_set, .index = 1});
     if (tick == 300) send(tick, {.kind = CommandKind::switch_set, .index = 0});
     if (tick == 350) send(tick, {.kind = CommandKind::set_point, .index = hip, .value = -1.9});  // as hard as it can
-    if (tick == 450) robot.safety.latch(SafetyLevel::damp);
+    if (tick == 450) robot.safety.emergency_stop().leave();
     if (tick == 500) send(tick, {.kind = CommandKind::clear_faults});
     for (int i = 0; i < rehearsals_a_tick; ++i) robot.control.rehearse();
     robot.lockstep.step();
   }
-  rows.all.push_back(static_cast<double>(robot.exchange->snapshot.read(1).status.safety.fault_count));
+  rows.all.push_back(static_cast<double>(robot.exchange->snapshot.newest(1).status.safety.fault_count));
   Fault fault;
   while (robot.safety.log().try_pop(fault)) rows.all.push_back(static_cast<double>(fault.tick) + fault.value);
   return rows.all;
@@ -100,7 +100,7 @@ TEST_CASE("A rehearsal neither allocates, publishes, writes to the plant nor tak
   sender.begin(50'000'000);
   REQUIRE(sender.add({.kind = CommandKind::switch_set, .index = 1}));
   REQUIRE(sender.commit() > 0);
-  (void)robot.exchange->snapshot.read(1);
+  (void)robot.exchange->snapshot.newest(1);
   const std::vector<double> before(robot.control.row().begin(), robot.control.row().end());
   const testing::AllocationCount heap;
   for (int i = 0; i < 10; ++i) robot.control.rehearse();

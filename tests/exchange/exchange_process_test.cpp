@@ -52,7 +52,8 @@ int serve(Shared& shared) {
   const pid_t parent = getppid();
   for (;;) {
     if (shared.down.has_news()) {
-      const Payload& payload = shared.down.read();
+      const auto reading = shared.down.read();
+      const Payload& payload = *reading;
       if (!is_whole(payload)) return 1;
       shared.up.publish(make_payload(2 * payload.sequence));
     }
@@ -105,7 +106,7 @@ TEST_CASE("values and a queue pass between two processes in both directions thro
     std::uint64_t sum = 0;
     if (!shared.replies.try_pop(sum) || sum != 4 * i) ++wrong;
     while (!shared.up.has_news() && child.alive()) sched_yield();
-    const Payload& answer = shared.up.read();
+    const Payload answer = shared.up.newest();
     if (answer.sequence != 2 * i || !is_whole(answer)) ++wrong;
   }
   const bool ended = shared.commands.try_push(std::array<std::uint64_t, 2>{0, 0});
@@ -125,8 +126,8 @@ TEST_CASE("what a process left in shared memory can be copied out and read elsew
   }
   const auto copy = std::make_unique<Shared>();
   std::memcpy(static_cast<void*>(copy.get()), &*memory, sizeof(Shared));
-  CHECK(copy->up.read().sequence == 42);
-  CHECK(is_whole(copy->up.read()));
+  CHECK(copy->up.newest().sequence == 42);
+  CHECK(is_whole(copy->up.newest()));
   std::uint64_t sum = 0;
   CHECK(copy->replies.try_pop(sum));
   CHECK(sum == 11);

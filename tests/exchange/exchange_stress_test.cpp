@@ -37,7 +37,8 @@ void read_until(Latest<Payload, Readers>& latest, std::size_t reader, std::uint6
       std::this_thread::yield();
       continue;
     }
-    const Payload& payload = latest.read(reader);
+    const auto reading = latest.read(reader);
+    const Payload& payload = *reading;
     if (!is_whole(payload)) ++report.torn;
     if (payload.sequence < newest) ++report.backwards;
     if (payload.sequence == newest) ++report.stale;
@@ -75,7 +76,8 @@ TEST_CASE("Latest: a reader that holds a reference finds it whole while the writ
   std::uint64_t torn = 0;
   std::thread reader([&] {
     for (std::uint64_t i = 0; i < rounds; ++i) {
-      const Payload& held = latest->read();
+      const auto reading = latest->read();
+      const Payload& held = *reading;
       for (int look = 0; look < 10; ++look) {
         if (!is_whole(held)) ++torn;
       }

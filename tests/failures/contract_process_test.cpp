@@ -52,7 +52,7 @@ struct Hostage {
   void run(int ms) {
     for (int i = 0; i < ms; ++i) lockstep->step();
   }
-  SafetyLevel level() { return robot.exchange->snapshot.read(1).status.safety.level; }
+  SafetyLevel level() { return robot.exchange->snapshot.newest(1).status.safety.level; }
   double away_rad(double hip_rad, double knee_rad) const {
     return std::max(std::abs(robot.position_rad(0) - hip_rad), std::abs(robot.position_rad(1) - knee_rad));
   }

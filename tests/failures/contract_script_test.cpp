@@ -99,6 +99,25 @@ TEST_CASE("stopped within its budget, the control loop shows no effect" *
   }
 }
 
+TEST_CASE("ended by the wall clock after engine.behavior_time_max_s, with its line, and the run goes on" *
+          description("a script takes long in what instructions do not count, such as comparing long strings")) {
+  const auto project = project_copy("contract_time");
+  write(project / "behaviors/tulip/squat.lua",
+        behavior("      local a, b = (\"x\"):rep(65000) .. 1, (\"x\"):rep(65000) .. 2\n"
+                 "      for i = 1, 20000 do local less = pcall(function() return a < b end) end"));
+  for (const std::string where : {"thread", "process"}) {
+    CAPTURE(where);
+    const Outcome outcome =
+        run("run config/tulip/robot.json --plant ideal --play squat --soft --duration 2 --behaviors " + where, project);
+    CHECK_MESSAGE(has(outcome.err,
+                      "behaviors/tulip/squat.lua:11: time budget exceeded: more than 5.000 ms of "
+                      "wall-clock time in one tick"),
+                  outcome.err);
+    CHECK(has(outcome.out, "duration over after 2.000 s"));
+    CHECK(outcome.exit_code == 1);
+  }
+}
+
 TEST_CASE("the running version goes on, the error shows file:line" * description("a reload fails")) {
   const std::string good = behavior("      local nothing = 1");
   for (const std::string& bad :

@@ -36,6 +36,26 @@ TEST_CASE("after heartbeat_timeout_s the robot holds, after hold_s it damps, aft
   CHECK(robot.broken_promise().empty());
 }
 
+TEST_CASE("in that tick the robot damps, after damp_s it is off, as one fault that says who, latched until cleared" *
+          description("somebody asks for the emergency stop")) {
+  LightRobot robot(1);
+  robot.run(200);
+  robot.move(0, 0.9, 0.5);
+  robot.run(100);
+  robot.safety.emergency_stop().ask("uid 1000 (operate)");
+  robot.run(1);
+  CHECK(robot.safety.robot_level() == SafetyLevel::damp);
+  CHECK(robot.control.actuation().joints[0].mode != ActuationMode::position);
+  robot.move(0, 0.2, 0.1);
+  robot.run(static_cast<int>(1e3 * robot.safety.settings().damp_s) + 10);
+  CHECK(robot.safety.robot_level() == SafetyLevel::off);
+  CHECK(robot.control.inbox().state().refused == 1);
+  CHECK(robot.first(FaultCode::emergency_stop) > 0);
+  robot.send({.kind = CommandKind::clear_faults});
+  robot.run(50);
+  CHECK(robot.safety.robot_level() == SafetyLevel::normal);
+}
+
 TEST_CASE("while it is held set-points stay: commands are refused and counted, but for clearing faults" *
           description("the behavior engine stalls and somebody else commands")) {
   LightRobot robot(1);

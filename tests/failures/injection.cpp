@@ -159,7 +159,7 @@ void Injection::timing() {
 void Injection::heartbeat_stop() {
   begin("no heartbeat");
   robot_.behaviors_alive = false;
-  const std::int64_t last = robot_.exchange->heartbeat.read() / period_ns;  // tick of the last heartbeat
+  const std::int64_t last = robot_.exchange->heartbeat.newest() / period_ns;  // tick of the last heartbeat
   const double silent_s = random_.uniform(0.15, 3.6);
   robot_.run(static_cast<int>(1000 * silent_s));
   require_found(FaultCode::heartbeat_lost, last + 1);

@@ -55,13 +55,13 @@ std::string duo_with_mesh(const std::string& holder, const std::string& file) {
 TEST_CASE("A file that is missing, a folder, empty or too large is refused by name") {
   const Folder folder;
   CHECK(file_error(folder.path() + "/none.urdf") == folder.path() + "/none.urdf: there is no such file");
-  CHECK(file_error(folder.path()) == folder.path() + ": this is a folder, a URDF file was expected");
+  CHECK(file_error(folder.path()) == folder.path() + ": this is a folder, not a file");
   const std::string empty = folder.write("empty.urdf", "");
   CHECK(file_error(empty) == empty + ": the file is empty");
   const std::string huge = folder.write("huge.urdf", "<robot/>");
   std::filesystem::resize_file(huge, (16U << 20U) + 1);
-  CHECK(file_error(huge) == huge + ": the file has 16777217 bytes, a URDF may have 16 MiB");
-  CHECK(file_error("/dev/null") == "/dev/null: this is not a file that can be read");
+  CHECK(file_error(huge) == huge + ": the file is larger than 16 MB");
+  CHECK(file_error("/dev/null") == "/dev/null: this is no file but a device, a pipe or a socket");
 }
 
 TEST_CASE("Binary, other encodings and control characters are refused at the first byte that is no text") {

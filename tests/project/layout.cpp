@@ -190,6 +190,27 @@ Findings check_name(std::string_view path) {
   return {};
 }
 
+Findings check_writing(std::string_view path, std::string_view text) {
+  // Files of the kernel, of the test kit, of a folder that is thrown away, lines that flow; and a server's own JSON.
+  static constexpr std::array<std::string_view, 8> free{
+      "realtime/placement.cpp", "realtime/machine_load.cpp", "testing/golden_record.cpp", "app/input_files.cpp",
+      "app/log/log_output.cpp", "remote/live_hub.cpp",       "remote/live_client.cpp",    "remote/live_protocol.cpp"};
+  if (std::ranges::find(free, path) != free.end()) return {};
+  Findings findings;
+  std::size_t number = 0;
+  for (const std::string& line : lines(text)) {
+    ++number;
+    const bool opens = line.find("std::ofstream") != std::string::npos ||
+                       (line.find("fopen(") != std::string::npos && line.find(", \"w") != std::string::npos);
+    if (opens) findings.push_back(place(path, number) + "opens a file to write: write_durably tells what goes wrong");
+    const auto dump = line.find(".dump(");
+    const bool of_flight = dump != std::string::npos && dump >= 6 && line.compare(dump - 6, 6, "flight") == 0;
+    if (dump != std::string::npos && !of_flight && line.find("error_handler_t") == std::string::npos)
+      findings.push_back(place(path, number) + "dumps JSON that may hold foreign bytes: json_text takes them");
+  }
+  return findings;
+}
+
 Findings check_test_names(std::string_view path, std::string_view text) {
   constexpr std::string_view opening = "TEST_CASE(\"";
   Findings findings;

@@ -90,6 +90,19 @@ TEST_CASE("the name of every file and folder says what is in it") {
   }
 }
 
+TEST_CASE("results are written where it is told when they were not, and JSON takes foreign bytes") {
+  for (const fs::path& folder : {root / "src", root / "include/kadans"}) {
+    for (const fs::path& file : files_below(folder)) {
+      if (is_code(file)) report(check_writing(fs::relative(file, folder).generic_string(), read(file)));
+    }
+  }
+  CHECK(check_writing("app/x.cpp", "  std::ofstream out(file);\n").size() == 1);
+  CHECK(check_writing("app/x.cpp", "  FILE* f = std::fopen(name, \"wb\");\n  std::fopen(name, \"rb\");\n").size() == 1);
+  CHECK(check_writing("app/x.cpp", "  puts(json.dump());\n  flight.dump();\n") ==
+        Findings{"app/x.cpp:1: dumps JSON that may hold foreign bytes: json_text takes them"});
+  CHECK(check_writing("app/x.cpp", "  json.dump(2);\n").size() == 1);
+}
+
 TEST_CASE("no test has a name that CTest would tear apart") {
   for (const fs::path& file : files_below(root / "tests")) {
     if (file.extension() == ".cpp") report(check_test_names(fs::relative(file, root).generic_string(), read(file)));

@@ -79,9 +79,9 @@ struct LiveRobot {
     for (TaskThread* thread : threads()) thread->start();
   }
   // The supervisor waits; what the threads do until then is seen by the newest snapshot.
-  const Snapshot& run_until(std::int64_t ms) {
+  Snapshot run_until(std::int64_t ms) {
     supervisor->until(ms * tick_ns + tick_ns / 2);
-    return exchange->snapshot.read(1);
+    return exchange->snapshot.newest(1);
   }
   void stop() {
     for (TaskThread* thread : threads()) thread->stop();

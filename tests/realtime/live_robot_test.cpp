@@ -115,10 +115,12 @@ TEST_CASE("Whoever ends the run brings the robot down the ladder, and it stays t
   LiveRobot robot;
   robot.start();
   CHECK(robot.run_until(100).status.safety.level == SafetyLevel::normal);
-  robot.control_task.degrade(SafetyLevel::damp);
+  robot.safety.emergency_stop().leave();
   CHECK(robot.run_until(110).status.safety.level == SafetyLevel::damp);
-  robot.control_task.degrade(SafetyLevel::off);
-  CHECK(robot.run_until(120).status.safety.level == SafetyLevel::off);
+  const int down = static_cast<int>(std::ceil(1e3 * robot.safety.settings().damp_s));
+  const Snapshot off = robot.run_until(110 + down);
+  CHECK(off.status.safety.level == SafetyLevel::off);
+  CHECK(off.status.safety.fault_count == 0);  // nothing failed
   CHECK(robot.control.actuation().joint_count == 2);
   robot.stop();
 }
@@ -129,9 +131,9 @@ TEST_CASE("A model that comes late catches up a little, and the rest of the time
   PlantTask task(*link, plant, tick_ns);
   SensorFrame sensors;
   CHECK(task.beat({.missed = 3}));
-  CHECK(link->sensors.read().time_ns == 4 * tick_ns);
+  CHECK(link->sensors.newest().time_ns == 4 * tick_ns);
   CHECK(task.lost_periods() == 0);
   CHECK(task.beat({.missed = 25}));
-  CHECK(link->sensors.read().time_ns == 14 * tick_ns);
+  CHECK(link->sensors.newest().time_ns == 14 * tick_ns);
   CHECK(task.lost_periods() == 16);
 }

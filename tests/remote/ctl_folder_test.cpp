@@ -56,6 +56,7 @@ TEST_CASE("the sockets have a mode each by their role, and are gone with their i
     CHECK(mode_of(folder / "read") == 0666U);
     CHECK(mode_of(folder / "operate") == 0660U);
     CHECK(mode_of(folder / "develop") == 0600U);
+    CHECK(mode_of(folder / "lock") == 0600U);  // who may read it may lock it, and so lock us out
   }
   CHECK_FALSE(fs::exists(folder / "read"));
   CHECK_FALSE(fs::exists(folder / "develop"));

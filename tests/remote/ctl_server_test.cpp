@@ -10,6 +10,7 @@ using namespace kadans::remote_test;
 namespace {
 
 const char* const kp = "posture.hip.kp_Nm_per_rad";
+const char* const spare_kp = "spare.hip.kp_Nm_per_rad";
 
 std::string error_of(const Json& answer) { return answer.value("error", std::string("no error")); }
 bool says(const Json& answer, const std::string& text) { return answer.dump().find(text) != std::string::npos; }
@@ -109,11 +110,22 @@ TEST_CASE("estop damps and then switches off, orders are refused with the reason
   const auto off = [](const Json& a) { return a["safety"]["level"] == "off"; };
   CHECK(off(live.ask_until({{"verb", "status"}}, off)));
   CHECK(says(live.ask({{"verb", "set"}, {"name", kp}, {"value", 50}}), "held"));
-  CHECK(live.ask({{"verb", "faults"}})["level"] == "off");
+  const std::string who = "uid " + std::to_string(getuid()) + " (operate)";
+  const Json status = live.ask({{"verb", "status"}})["safety"];
+  CHECK(status["faults"] >= 1);
+  CHECK(status["stopped"] == true);
+  CHECK(status["first"]["text"] == "emergency_stop: " + who);
+  const Json faults = live.ask({{"verb", "faults"}});
+  CHECK(faults["level"] == "off");
+  CHECK(faults["first"]["code"] == "emergency_stop");
+  CHECK(faults["first"]["words"] == who);
+  for (const bool replace : {false, true})
+    CHECK(says(live.ask({{"verb", "play"}, {"list", "nod"}, {"replace", replace}}), "the emergency stop keeps"));
   CHECK(live.ask({{"verb", "clear_faults"}})["ok"] == true);
   const auto well = [](const Json& a) { return a["safety"]["level"] == "normal"; };
   CHECK(well(live.ask_until({{"verb", "status"}}, well)));
   CHECK(says(live.ask({{"verb", "faults"}}), "command_refused"));
+  CHECK(live.ask({{"verb", "play"}, {"list", "nod"}})["ok"] == true);
 }
 
 TEST_CASE("estop and status work although the behavior thread is dead, everything else says why not") {
@@ -125,6 +137,26 @@ TEST_CASE("estop and status work although the behavior thread is dead, everythin
   CHECK(live.ask({{"verb", "estop"}})["ok"] == true);
   const auto off = [](const Json& a) { return a["safety"]["level"] == "off"; };
   CHECK(off(live.ask_until({{"verb", "status"}}, off)));
+}
+
+TEST_CASE("an order expires with its client: nobody carries out later what nobody waits for any more") {
+  LiveInstance live({.report_max_ns = 50'000'000});
+  RawClient gone(live.socket(Role::develop));  // before anybody serves
+  REQUIRE(gone.send("{\"verb\":\"estop\"}\n{\"verb\":\"pause\"}\n"));
+  gone.close();
+  live.server->start();
+  RawClient waits(live.socket(Role::develop)), leaves(live.socket(Role::develop));
+  REQUIRE(leaves.send("{\"verb\":\"set\",\"name\":\"" + std::string(kp) + "\",\"value\":77}\n"));
+  REQUIRE(waits.send("{\"verb\":\"set\",\"name\":\"" + std::string(spare_kp) + "\",\"value\":66}\n"));
+  leaves.close();
+  const auto served = [](const Json& a) { return a["clients"]["served"] >= 2; };
+  (void)live.ask_until({{"verb", "status"}}, served);
+  live.start();
+  CHECK(Json::parse(waits.line().value())["ok"] == true);
+  CHECK(live.ask({{"verb", "get"}, {"name", kp}})["value"] == 40);
+  CHECK(live.ask({{"verb", "get"}, {"name", spare_kp}})["value"] == 66);
+  CHECK(live.ask({{"verb", "status"}})["safety"]["faults"] == 0);
+  CHECK(live.ask({{"verb", "status"}})["paused"] == false);
 }
 
 TEST_CASE("watch sends what was asked for, newer each time, until the client leaves") {

@@ -3,6 +3,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "kadans/remote/configuration_text.h"
+#include "kadans/signal/input_error.h"
 #include "kadans/telemetry/mcap_reader.h"
 #include "remote/live_instance.h"
 
@@ -74,6 +76,73 @@ TEST_CASE("save writes what was changed where it stands, with comments and order
   CHECK(live.ask({{"verb", "save"}})["saved"][0]["now"] == 4);
 }
 
+TEST_CASE("save writes parameters of behaviors under `behaviors`, where the next run finds them") {
+  LiveInstance live;
+  live.start();
+  const std::string before = live.project.read("config/bench/robot.json");
+  CHECK(live.ask({{"verb", "play"}, {"list", "wait"}})["ok"] == true);
+  CHECK(set(live, "wait.level", 2)["ok"] == true);
+  const Json saved = live.ask({{"verb", "save"}});
+  CHECK(saved["ok"] == true);
+  REQUIRE(saved["saved"].size() == 1);
+  CHECK(saved["saved"][0]["name"] == "wait.level");
+  CHECK(saved["overridden"].empty());
+  std::string wanted = before;
+  wanted.insert(wanted.find("  \"control\""), "  \"behaviors\": { \"wait\": { \"level\": 2 } },\n");
+  CHECK(live.project.read("config/bench/robot.json") == wanted);
+  CHECK(live.ask({{"verb", "save"}})["saved"].empty());
+  CHECK(live.ask({{"verb", "undo"}})["now"] == 1);  // a change again
+  CHECK(live.ask({{"verb", "save"}})["saved"][0]["now"] == 1);
+}
+
+TEST_CASE("save tells which presets override what was saved, and writes into one that is named") {
+  LiveInstance live;
+  const auto id = live.robot.catalog.parameters.find(kp);
+  REQUIRE(id);
+  for (ObjectInfo& object : live.robot.catalog.objects) {
+    if (object.name == "posture") object.presets = {{"stiff", {{*id, 90}}}, {"same", {{*id, 55}}}, {"other", {}}};
+  }
+  live.start();
+  CHECK(set(live, kp, 55)["ok"] == true);
+  CHECK(set(live, kd, 6)["ok"] == true);
+  const Json nowhere = live.ask({{"verb", "save"}, {"preset", "other"}});
+  CHECK(nowhere["ok"] == false);
+  CHECK(has(nowhere["error"], "preset 'other' sets none of what was changed; nothing was saved"));
+  const Json saved = live.ask({{"verb", "save"}});
+  CHECK(saved["saved"].size() == 2);
+  REQUIRE(saved["overridden"].size() == 1);
+  CHECK(saved["overridden"][0] == Json{{"name", kp}, {"preset", "stiff"}, {"value", 90.0}});
+  const Json absent = live.ask({{"verb", "save"}, {"preset", "stiff"}});  // of this robot's file, that is
+  CHECK(has(absent["error"], "control object 'posture' has no preset 'stiff' in it"));
+}
+
+TEST_CASE("what was saved can go into a preset as well, later too, and then that overrides nothing any more") {
+  LiveInstance live;
+  const auto id = live.robot.catalog.parameters.find(kp);
+  REQUIRE(id);
+  for (ObjectInfo& object : live.robot.catalog.objects) {
+    if (object.name == "posture") object.presets = {{"stiff", {{*id, 90}}}};
+  }
+  std::string text = live.project.read("config/bench/robot.json");
+  text.insert(text.find("\"parameters\""), "\"presets\": { \"stiff\": { \"*.kp_Nm_per_rad\": 90 } }, ");
+  ConfigurationText file(live.project.configuration(), "bench");
+  CHECK_THROWS_AS(file.save({{kp, 40, 55, {}}}, live.robot.catalog, {"stiff", {{kp, 40, 55, {}}}}), InputError);
+  live.project.write("config/bench/robot.json", text);
+  ConfigurationText known(live.project.configuration(), "bench");
+  const auto overridden = known.save({{kp, 40, 55, {}}}, live.robot.catalog);
+  REQUIRE(overridden.size() == 1);
+  CHECK(known.told(1, overridden) ==
+        "1 parameters stand in robot.json; presets override posture.hip.kp_Nm_per_rad (stiff 90)");
+  CHECK(known.save({}, live.robot.catalog, {"stiff", {{kp, 40, 55, {}}}}).empty());
+  CHECK(has(live.project.read("config/bench/robot.json"),
+            "\"stiff\": { \"*.kp_Nm_per_rad\": 90, \"hip.kp_Nm_per_rad\": 55 }"));
+  CHECK(known.save({{kp, 40, 55, {}}}, live.robot.catalog).empty());
+  CHECK_THROWS_WITH_AS(known.save({{"wave.x", 1, 2, "behaviors/lib/arm.lua"}}, live.robot.catalog),
+                       "wave.x is declared in behaviors/lib/arm.lua, and a robot's file names behaviors of "
+                       "behaviors/bench alone: change it there, or 'kadans ctl undo'",
+                       InputError);
+}
+
 TEST_CASE("save refuses when somebody edited the file meanwhile, and their text stays") {
   LiveInstance live;
   live.start();
@@ -110,11 +179,13 @@ TEST_CASE("every change stands in the record with who made it, the old value and
   McapReader record((live.project.root / "tuned.mcap").string());
   std::string log;
   for (McapMessage message; record.next(message);) {
-    if (record.channels().at(message.channel).topic == "/log")
+    const std::string& topic = record.channels().at(message.channel).topic;
+    if (topic == "/log" || topic == "/faults")
       log += std::string(reinterpret_cast<const char*>(message.payload.data()), message.payload.size()) + "\n";
   }
   const std::string who = "uid " + std::to_string(getuid()) + " (develop)";
   CHECK(has(log, who + " set " + kp + ": 40 -> 55"));
-  CHECK(has(log, who + " asked for the emergency stop"));
+  CHECK(has(log, "\"emergency_stop\""));
+  CHECK(has(log, "\"words\":\"" + who));
   CHECK(has(log, who + " undid " + kp + ": 55 -> 40"));
 }

@@ -1,7 +1,9 @@
 // What a live server tells a client, without a socket.
 #include "kadans/remote/live_client.h"
 
+#include <algorithm>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -169,6 +171,84 @@ TEST_CASE("a client of the live server that asks and does not read is given up")
   LiveClient client(viewer.hub, 1, false, "test");
   for (int i = 0; i < 200'000 && !client.hopeless(); ++i) client.text(R"({"op":"getParameters","parameterNames":[]})");
   CHECK(client.hopeless());
+}
+
+TEST_CASE("a client of the live server that nests values deep, or says no UTF-8, is told so in words of our own") {
+  Viewer viewer;
+  LiveClient client(viewer.hub, 1, true, "test");
+  (void)all_of(client);
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+  const std::string asks = R"({"op":"getParameters","parameterNames":[],"id":)";
+  const std::vector<std::string> all{"\xC3",
+                                     "{\"op\":\"\xFF\"}",
+                                     deep,
+                                     asks + deep + "}",
+                                     asks + "{}}",
+                                     R"({"op":"fetchAsset","uri":"x","requestId":1e300})",
+                                     R"({"op":"subscribe","subscriptions":[{"id":1e300,"channelId":1}]})"};
+  for (const std::string& wrong : all) {
+    client.text(wrong);
+    const std::vector<Json> told = texts_of(client);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0]["op"] == "status");
+    CHECK(told[0].dump().size() < 300);
+  }
+  CHECK_FALSE(client.hopeless());
+}
+
+TEST_CASE("subscriptions and watched parameters of a client of the live server are bounded") {
+  Viewer viewer;
+  LiveClient client(viewer.hub, 1, false, "test");
+  (void)all_of(client);
+  const std::uint32_t most = LiveClient::subscriptions_max;
+  for (std::uint32_t id = 0; id < most; ++id) subscribe(client, id, 1);
+  CHECK(texts_of(client).empty());
+  subscribe(client, most, 1);
+  CHECK(texts_of(client).size() == 1);
+  subscribe(client, 0, 1);  // one that it has
+  CHECK(texts_of(client).empty());
+  std::size_t refused = 0;
+  for (std::size_t i = 0; i <= LiveClient::watched_max; ++i) {
+    client.text(Json{{"op", "subscribeParameterUpdates"}, {"parameterNames", {"p" + std::to_string(i)}}}.dump());
+    refused += texts_of(client).size();
+  }
+  CHECK(refused == 1);
+}
+
+TEST_CASE("clients of the live server that do not read are given up before all together hold much, the worst first") {
+  Viewer viewer;
+  std::vector<std::unique_ptr<LiveClient>> clients;
+  for (std::uint64_t id = 1; id <= 50; ++id)
+    clients.push_back(std::make_unique<LiveClient>(viewer.hub, id, false, "test"));
+  LiveClient reads(viewer.hub, 100, true, "test");
+  const auto waiting = [&] {
+    std::size_t sum = reads.reply_bytes();
+    for (const auto& client : clients) sum += client->reply_bytes();
+    return sum;
+  };
+  std::size_t most = 0;
+  const std::string asks = R"({"op":"fetchAsset","requestId":1,"uri":")" + std::string(500'000, 'x') + "\"}";
+  for (int round = 0; round < 30; ++round) {
+    for (const auto& client : clients) client->text(asks);
+    most = std::max(most, waiting());
+  }
+  CHECK(most <= LiveHub::replies_max_bytes);
+  CHECK(std::ranges::any_of(clients, [](const auto& client) { return client->hopeless(); }));
+  CHECK_FALSE(reads.hopeless());
+}
+
+TEST_CASE("the live server hands out no file that is no mesh, whatever a URDF from elsewhere calls one") {
+  const Project project;
+  project.write("robot/secret.txt", "private");
+  project.write("robot/part.stl", "solid");
+  const LiveAssets assets(
+      {.name = "bench",
+       .urdf = R"(<mesh filename="secret.txt"/><mesh filename="file:///etc/passwd"/><mesh filename="part.stl"/>)",
+       .description = "{}"},
+      (project.root / "robot/robot.urdf").string());
+  CHECK(assets.read("part.stl") == "solid");
+  CHECK_FALSE(assets.read("secret.txt").has_value());
+  CHECK_FALSE(assets.read("file:///etc/passwd").has_value());
 }
 
 TEST_CASE("the live server hands out the robot's URDF and no file that it does not name") {

@@ -84,19 +84,23 @@ std::string Project::read(const std::string& file) const {
 }
 
 bool Supervisor::beat(const Beat&) {
-  instance.publish(status_of(exchange.snapshot.read(1), record.status()));
-  for (Fault fault; safety.log().try_pop(fault);) instance.tell(fault);
+  instance.publish(status_of(exchange.snapshot.newest(1), record.status()));
+  for (Fault fault; safety.log().try_pop(fault);) {
+    instance.tell(fault);
+    record.tell(fault);
+  }
   return true;
 }
 
 LiveInstance::LiveInstance(const CtlServer::Settings& settings)
     : host({.root = project.root}, with_parameters_by_object(robot.catalog), echo),
-      instance(facts_of(project), robot.catalog),
+      instance(facts_of(project), robot.catalog, robot.safety.emergency_stop()),
       server(std::make_unique<CtlServer>(instance, sockets, settings)) {
   robot.control.record_to(&control_side);
   robot.script.at = [this](std::int64_t time_ns) {
     behavior_side.beside_tick(time_ns);
-    host.tick(robot.exchange->snapshot.read(0), robot.behaviors.sender());
+    const auto snapshot = robot.exchange->snapshot.read(0);
+    host.tick(*snapshot, robot.behaviors.sender());
   };
 }
 

@@ -49,7 +49,7 @@ struct LiveInstance {
   EchoLog echo{&record_log};
   ScriptHost host;
   Instance instance;
-  ControlSide control_side{instance, robot.safety};
+  ControlSide control_side{instance};
   RecordSide record_side{instance, control_side, record_log, {}};
   BehaviorSide behavior_side{{instance, &host, nullptr, robot.behaviors, *robot.exchange, echo, echo}};
   CtlSockets sockets{{.folder = project.root / "ctl"}};

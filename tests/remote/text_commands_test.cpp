@@ -34,6 +34,7 @@ struct Desk {
     CHECK_FALSE(commands.take(text).has_value());
     for (std::int64_t tick = 1; tick < 10; ++tick) {
       live.robot.script.at(tick * 10'000'000);
+      live.robot.behaviors.tick(tick * 10'000'000);
       if (const auto answer = commands.next()) return Json::parse(*answer);
     }
     return {};

@@ -37,6 +37,21 @@ TEST_CASE("undoing what was saved is a change again, and a value set while it wa
   CHECK(history.unsaved()[0].now == 20);
 }
 
+TEST_CASE("what was set in this run is known after it was saved, until it is as it was") {
+  TuningHistory history;
+  history.note({"kp", 10, 20}, true);
+  history.note({"squat.depth_m", 0.1, 0.2, "squat.lua"}, true);
+  history.saved(history.unsaved());
+  CHECK(history.unsaved().empty());
+  REQUIRE(history.set().size() == 2);
+  CHECK(history.set()[1].chunk == "squat.lua");
+  history.drop();
+  REQUIRE(history.set().size() == 1);
+  CHECK(history.set()[0].now == 20);
+  REQUIRE(history.unsaved().size() == 1);
+  CHECK(history.unsaved()[0].chunk == "squat.lua");
+}
+
 TEST_CASE("the way back has an end") {
   TuningHistory history;
   for (double value = 0; value < 2000; ++value) history.note({"kp", value, value + 1}, true);

@@ -13,7 +13,6 @@ struct Subject {
   RunResult result;
   RunLog log;
   RobotModel model;
-  std::vector<ScenarioCheck> checks;
   std::vector<ReportTrace> traces;
 
   Subject() {
@@ -21,7 +20,8 @@ struct Subject {
     model.joints[0].name = "knee";
     result.scenario = "squat";
     result.seed = 7;
-    result.checks = {{"height", true, 0.004, 3.5}, {"tilt", false, std::numeric_limits<double>::quiet_NaN(), 4.25}};
+    result.checks = {{"height", true, 0.004, 3.5, "", "<= 0.01"},
+                     {"tilt", false, std::numeric_limits<double>::quiet_NaN(), 4.25, "never looked at", "never >= 1"}};
     result.duration_s = 20;
     result.realtime_factor = 25;
     result.control_ticks = 20000;
@@ -31,13 +31,11 @@ struct Subject {
     result.commands_sent = 72;
     result.faults = {{FaultCode::velocity_limit, 0, 1234, 13, 12},
                      {FaultCode::heartbeat_lost, no_joint, 2000, 0.2, 0.1}};
-    checks = {{.name = "height", .signal = "a", .max = 0.01}, {.name = "tilt", .signal = "b", .max = 0.05}};
     log.transition({1'500'000'000, "squat", "stand", "down", "after 1 s"});
     log.message(0, BehaviorLog::Severity::error, "squat", "squat.lua:12: attempt to call a nil value");
   }
   std::string text(const ReportStyle& style) const {
-    return text_report({result, log, model, checks, traces, "squat", "squat.mcap", "kadans sim squat.json --seed 7"},
-                       style);
+    return text_report({result, log, model, traces, "squat", "squat.mcap", "kadans sim squat.json --seed 7"}, style);
   }
 };
 
@@ -55,7 +53,8 @@ TEST_CASE("The JSON report is one line and one object with the promised keys") {
   CHECK(json["seed"] == 7);
   CHECK(json["passed"] == false);
   CHECK(json["checks"].size() == 2);
-  CHECK(json["checks"][0] == nlohmann::json{{"name", "height"}, {"passed", true}, {"value", 0.004}, {"at_s", 3.5}});
+  CHECK(json["checks"][0] ==
+        nlohmann::json{{"name", "height"}, {"passed", true}, {"value", 0.004}, {"at_s", 3.5}, {"wanted", "<= 0.01"}});
   CHECK(json["checks"][1]["value"].is_null());
   CHECK(json["duration_s"] == 20);
   CHECK(json["realtime_factor"] == 25);
@@ -78,13 +77,28 @@ TEST_CASE("The text report tells transitions, checks, errors, faults and the lin
   CHECK(has(text, "1.50 s  squat: stand -> down  (after 1 s)"));
   CHECK(has(text, "ok height"));
   CHECK(has(text, "FAILED tilt"));
-  CHECK(has(text, "<= 0.05"));
+  CHECK(has(text, "wanted <= 0.01"));
+  CHECK(has(text, "wanted never >= 1; never looked at"));
   CHECK(has(text, "error: squat.lua:12"));
   CHECK(has(text, "fault: velocity_limit of knee in tick 1234: 13, limit 12 (safety.velocity_margin)"));
   CHECK(has(text, "kadans sim squat.json --seed 7"));
   CHECK(has(text, "FAILED  1 of 2 checks"));
   CHECK(has(text, "0.800"));
   CHECK(text.find('\033') == std::string::npos);
+}
+
+TEST_CASE("With -v what was said stands among the transitions, by time") {
+  Subject subject;
+  subject.log.message(1'000'000'000, BehaviorLog::Severity::info, "squat", "still standing");
+  subject.log.message(1'500'000'000, BehaviorLog::Severity::warning, "squat", "on my way");
+  subject.log.transition({2'000'000'000, "squat", "down", "stand", "run.done"});
+  const std::string text = subject.text({.color = false, .unicode = false, .verbose = true});
+  const std::size_t first = text.find("1.00 s  squat: still standing"), second = text.find("squat: stand -> down"),
+                    third = text.find("1.50 s  squat: warning: on my way"), last = text.find("squat: down -> stand");
+  REQUIRE(last != std::string::npos);
+  CHECK(first < second);
+  CHECK(second < third);
+  CHECK(third < last);
 }
 
 TEST_CASE("Colour is there only when asked for") {

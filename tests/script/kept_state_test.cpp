@@ -56,6 +56,17 @@ void replace_host(Theatre& theatre, const std::vector<std::byte>& kept) {
 
 }  // namespace
 
+TEST_CASE("vars that hold one table many times are told as too much before they fill the memory") {
+  Theatre theatre(
+      {"local k = require 'kadans' return k.behavior 'one' { k.state 'a' { endless = true, enter = function(m)\n"
+       "local t = {} for i = 1, 15 do local u = {} for j = 1, 100 do u[j] = t end t = u end m.vars.t = t\n"
+       "end } }"});
+  theatre.tick();
+  ByteWriter bytes;
+  CHECK(theatre.host->keep(bytes, theatre.snapshot.time_ns) == "one: vars hold too much");
+  CHECK(bytes.size() < std::size_t{1} << 20);
+}
+
 TEST_CASE("states, their time, vars, motions and random numbers are the same after another host took over") {
   Theatre whole({rememberer}), broken({rememberer});
   whole.tick(30);

@@ -154,7 +154,7 @@ TEST_CASE("check_behavior tells what is wrong without running anything, and noth
   CHECK(check_behavior(KADANS_SOURCE_DIR, "behaviors/tulip/squat.lua", robot.catalog).empty());
   const auto missing = check_behavior(KADANS_SOURCE_DIR, "behaviors/tulip/none.lua", robot.catalog);
   REQUIRE(missing.size() == 1);
-  CHECK(missing[0].text() == "behaviors/tulip/none.lua:1: cannot be read, or is empty");
+  CHECK(missing[0].text() == "behaviors/tulip/none.lua:1: there is no such file");
   const Scripts scripts;
   scripts.write("a.lua",
                 "local k = require 'kadans' return k.behavior 'a' { enter = function() while true do end end,\nk.state "

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "kadans/signal/shell_word.h"
+
 using namespace kadans;
 
 TEST_CASE("A number is the whole of a text, or there is none") {
@@ -22,4 +24,22 @@ TEST_CASE("A hash has sixteen digits") {
 TEST_CASE("Printed text longer than its room is cut, not lost") {
   CHECK(printed("%d of %s", 2, "three") == "2 of three");
   CHECK(printed("%s", std::string(600, 'x').c_str()).size() == 511);
+}
+
+TEST_CASE("number_of takes whole texts that are finite numbers, and nothing else") {
+  CHECK(number_of<double>("-1.5e3") == -1500);
+  for (const char* text : {"", "nan", "-nan", "inf", "-inf", "infinity", "1e999", "1 ", " 1", "1x", "0x10", "+1"}) {
+    CAPTURE(text);
+    CHECK_FALSE(number_of<double>(text));
+  }
+  CHECK_FALSE(number_of<unsigned>("-1"));
+}
+
+TEST_CASE("a word of a command is quoted when the shell would take it for something else") {
+  CHECK(shell_word("config/scenarios/squat.json") == "config/scenarios/squat.json");
+  CHECK(shell_word("my squat.json") == "'my squat.json'");
+  CHECK(shell_word("it's") == "'it'\\''s'");
+  CHECK(shell_word("") == "''");
+  for (const char* word : {"a*", "$HOME", "a;b", "a&b", "`x`", "~", "a|b", "(x)", "#1", "a\nb"})
+    CHECK(shell_word(word).front() == '\'');
 }

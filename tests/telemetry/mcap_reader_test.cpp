@@ -68,7 +68,7 @@ std::vector<std::byte> zip_bomb(std::size_t size) {
 }  // namespace
 
 TEST_CASE("McapReader refuses what is not there or no MCAP file, with its name") {
-  CHECK_THROWS_WITH_AS(McapReader("/nonexistent.mcap"), "/nonexistent.mcap: cannot be read", InputError);
+  CHECK_THROWS_WITH_AS(McapReader("/nonexistent.mcap"), "/nonexistent.mcap: there is no such file", InputError);
   CHECK_THROWS_AS(McapReader("/"), InputError);
   const ScratchFile file;
   file.write(bytes_of("\x89MCAP1\r\n"));

@@ -70,5 +70,5 @@ TEST_CASE("Inputs whose text is not what its hash says, or whose path leads out 
   inputs = sample();
   inputs.files[0].path = "behaviors/../../etc/passwd";
   write_sample(file, inputs);
-  CHECK_THROWS_WITH_AS(read_back(file), doctest::Contains("leads out of the project"), InputError);
+  CHECK_THROWS_WITH_AS(read_back(file), doctest::Contains("is no path inside a project"), InputError);
 }

@@ -1,5 +1,6 @@
 // The page: robot and plots in the middle, signals on the left, one of five panels on the right, time below.
-import { useEffect, useRef, useState } from 'preact/hooks';
+import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
+import { keep, kept } from './data/kept.js';
 import { keys, listen_to_keys } from './keyboard.js';
 import { BehaviorPanel } from './panels/behavior_panel.jsx';
 import { LogPanel } from './panels/log_panel.jsx';
@@ -11,7 +12,7 @@ import { ScrubBar } from './panels/scrub_bar.jsx';
 import { SignalList } from './panels/signal_list.jsx';
 import { TimingPanel } from './panels/timing_panel.jsx';
 import { TopBar } from './panels/top_bar.jsx';
-import { useSession } from './watching.js';
+import { useSession, useShown } from './watching.js';
 
 const tabs = [['Behavior', BehaviorPanel], ['Parameters', ParametersPanel], ['Safety', SafetyPanel], ['Timing', TimingPanel], ['Log', LogPanel]];
 
@@ -25,19 +26,22 @@ function first_plots(session) {
 }
 
 export function first_theme() {
-  const wanted = new URLSearchParams(location.search).get('theme') ?? localStorage.getItem('kadans.theme');
+  const wanted = new URLSearchParams(location.search).get('theme') ?? kept('theme');
   if (wanted === 'dark' || wanted === 'light') return wanted;
   return matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
 }
 
-// Plots that somebody made stay, for each robot; else some to begin with.
+const is_plots = (found) => Array.isArray(found) && found.every((names) => Array.isArray(names) && names.length > 0 && names.every((name) => typeof name === 'string'));
+
+// Plots that somebody made stay, for each robot; else some to begin with. Another tab's come when the page is loaded.
 function usePlots(session) {
-  const [, set_plots] = useState(null);
-  const key = `kadans.plots.${session.description?.robot.name ?? ''}`;
-  const chosen = JSON.parse(localStorage.getItem(key) ?? 'null') ?? first_plots(session).slice(0, 2);
+  const key = `plots.${session.description?.robot.name ?? ''}`;
+  const [made, set_made] = useState({});
+  const last = useMemo(() => kept(key), [key]);
+  const chosen = made[key] ?? (is_plots(last) ? last : null) ?? first_plots(session).slice(0, 2);
   const change = (next) => {
-    localStorage.setItem(key, JSON.stringify(next));
-    set_plots(next);
+    keep(key, next);
+    set_made((all) => ({ ...all, [key]: next }));
   };
   return [chosen, change];
 }
@@ -72,23 +76,22 @@ export function App({ session, frames, drawing, open }) {
   const [help, set_help] = useState(false);
   const [plots, set_plots] = usePlots(session);
   const search_box = useRef();
-  const latest = useRef();
-  latest.current = { session, theme };
+  const shown = useShown(session);
   useSession(session, 2);
   useEffect(() => {
     document.documentElement.dataset.theme = theme;
-    localStorage.setItem('kadans.theme', theme);
+    keep('theme', theme);
   }, [theme]);
   const turn = () => set_theme((now) => (now === 'dark' ? 'light' : 'dark'));
   useEffect(
     () =>
       listen_to_keys({
-        session: () => latest.current.session,
+        session: () => shown.current,
         tab: set_tab,
         find: () => search_box.current?.focus(),
         look: () => globalThis.kadans_stage?.look_from_start(),
         theme: turn,
-        help: (shown) => set_help((now) => shown ?? !now),
+        help: (open) => set_help((now) => open ?? !now),
       }),
     [],
   );

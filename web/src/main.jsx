@@ -20,7 +20,7 @@ let session = null;
 function show(next) {
   session?.remote?.close();
   session = next;
-  globalThis.kadans = session; // for the console, and for tests
+  Object.assign(globalThis, { kadans: session, kadans_frames: frames }); // for the console, and for tests
   frames.advance = (dt_s) => session.advance(dt_s);
   const open = (source) => show(open_record(source));
   ready.then(() => render(<App {...{ session, frames, drawing, open }} />, document.getElementById('app')));

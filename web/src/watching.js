@@ -1,5 +1,16 @@
-// How panels follow a session: at a modest rate while time goes on, at once when something else changed.
-import { useEffect, useState } from 'preact/hooks';
+// How panels follow a session: at a modest rate while time goes on, at once when something else changed. And what the
+// frames of the screen may see of a panel: only what the page shows already, for frames come between a render and its
+// effects, too.
+import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks';
+
+// A value of the newest render that the page shows, for whoever draws or listens outside of renders.
+export function useShown(value) {
+  const shown = useRef(value);
+  useLayoutEffect(() => {
+    shown.current = value;
+  });
+  return shown;
+}
 
 export function useSession(session, hertz = 10) {
   const [, draw] = useState(0);

@@ -30,8 +30,9 @@ struct Robot {
   ControlObjectTypes types;  // shipped, registered by this program, brought by the robot's plug-ins
   RobotConfig config;
 };
-// Loads the plug-ins that the file names; they stay loaded. Throws InputError with everything that is wrong.
-Robot read_robot(const std::filesystem::path& file);
+// Loads the plug-ins that the file names; they stay loaded. Throws InputError with everything that is wrong, and where
+// the gate does not let a plug-in in.
+Robot read_robot(const std::filesystem::path& file, const PluginGate& gate = {});
 
 // Control objects of a configuration with their parameters set, and the catalog that describes them.
 struct ControlSystem {
@@ -42,7 +43,7 @@ struct ControlSystem {
 std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 
 // The host of a scenario's behaviors. Throws InputError.
-std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const SafeConfig& safe,
+std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept = {});
 // A model of the robot on its own. `kind` is bullet or ideal.

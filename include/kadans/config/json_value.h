@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kadans/config/problems.h"
+#include "kadans/signal/input_file.h"
 
 namespace kadans {
 
@@ -39,12 +40,9 @@ struct JsonMember {
 
 inline constexpr std::size_t json_depth_max = 64;
 inline constexpr std::size_t json_values_max = 1'000'000;
-inline constexpr std::size_t json_size_max_bytes = std::size_t{16} << 20U;
+inline constexpr std::size_t json_size_max_bytes = input_file_max_bytes;
 
 // Throws InputError with the first mistake; `file` only names the text.
 JsonValue parse_json(std::string_view text, const std::string& file);
-
-// The whole file. Throws InputError when it is missing, no file, unreadable or too large.
-std::string read_text_file(const std::filesystem::path& file, std::size_t size_max_bytes = json_size_max_bytes);
 
 }  // namespace kadans

@@ -3,21 +3,15 @@
 // signal nobody records) can still be refused where it was written.
 #pragma once
 
-#include <compare>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/text_place.h"
 
 namespace kadans {
-
-struct TextPlace {
-  int line = 0;    // 1-based; 0: no place in the file
-  int column = 0;  // 1-based, in characters
-  auto operator<=>(const TextPlace&) const = default;
-};
 
 struct PlacedName {
   std::string name;

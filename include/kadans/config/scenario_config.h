@@ -28,6 +28,15 @@ struct ScenarioJoystick {
   double lost_at_s = std::numeric_limits<double>::infinity();  // from then on it is unplugged
 };
 
+// Which plug-ins the robot may load. Those of a record from elsewhere are not taken on trust.
+struct PluginGate {
+  bool closed = false;
+  std::vector<std::filesystem::path> let_in;  // although it is closed: absolute, normal
+  std::string remedy;                         // for the others
+
+  bool lets_in(const std::filesystem::path& file) const;
+};
+
 struct ScenarioConfig {
   std::string file;
   std::string name;
@@ -51,7 +60,9 @@ struct ScenarioConfig {
   WorldConfig world;
   ScenarioJoystick joystick;
   std::string joystick_device;  // not in the file: of a live run
+  bool on_wall_clock = false;   // likewise: time does not stand while a behavior is slow
   std::vector<ScenarioCheck> checks;
+  PluginGate plugins;  // not in the file
 };
 
 // Where the names in its lists are looked for.

@@ -28,6 +28,22 @@ class Latest {
   static_assert(Readers >= 1);
   static_assert(std::atomic_ref<std::uint32_t>::is_always_lock_free, "also on 32-bit machines");
 
+  static constexpr std::size_t cache_line = 64;
+  static constexpr std::uint32_t slot_mask = 3;
+  static constexpr std::uint32_t fresh = 4;
+
+  // Slots share no cache line, so writing one does not slow down reading another.
+  struct alignas(cache_line) Slot {
+    T value;
+  };
+  struct Channel {
+    std::array<Slot, 3> slots;
+    alignas(cache_line) std::uint32_t write_slot = 0;  // writer
+    alignas(cache_line) std::uint32_t middle = 1;      // both, through atomic_ref alone
+    alignas(cache_line) std::uint32_t read_slot = 2;   // reader
+    std::uint32_t readings = 0;                        // likewise: that live
+  };
+
  public:
   // Before any thread reads or writes. Until the first publish() every reader finds `first`, and it is not news.
   explicit Latest(const T& first = T{}) noexcept {
@@ -54,15 +70,38 @@ class Latest {
     bring_near<0>(channel.slots[has_news(reader) ? middle_slot : channel.read_slot]);
   }
 
+  // The value that a reader looks at, for as long as this lives. Who reads again meanwhile finds the same value: what
+  // is looked at is never given back to the writer, however deep the call that reads again. Give it a name: of one
+  // without nothing can be kept.
+  class Reading {
+   public:
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+    ~Reading() { --channel_.readings; }
+    const T& operator*() const& noexcept { return channel_.slots[channel_.read_slot].value; }
+    const T* operator->() const& noexcept { return &**this; }
+    const T& operator*() const&& = delete;
+    const T* operator->() const&& = delete;
+
+   private:
+    friend class Latest;
+    explicit Reading(Channel& channel) noexcept : channel_(channel) { ++channel_.readings; }
+    Channel& channel_;
+  };
+
   // Thread of reader `reader` only; a reader index belongs to one thread, reader < readers(). Wait-free.
-  // The reference holds its value until the same reader reads again.
-  const T& read(std::size_t reader = 0) noexcept {
+  Reading read(std::size_t reader = 0) noexcept {
     Channel& channel = channels_[reader];
-    if (has_news(reader)) {
+    if (channel.readings == 0 && has_news(reader)) {
       const std::uint32_t newest = middle(channel).exchange(channel.read_slot, std::memory_order_acq_rel);
       channel.read_slot = newest & slot_mask;
     }
-    return channel.slots[channel.read_slot].value;
+    return Reading(channel);
+  }
+  // The same, as a copy.
+  T newest(std::size_t reader = 0) noexcept {
+    const Reading reading = read(reader);
+    return *reading;
   }
 
   // Thread of reader `reader` only: whether read() would bring a value that this reader has not seen. Wait-free.
@@ -73,21 +112,6 @@ class Latest {
   static constexpr std::size_t readers() noexcept { return Readers; }
 
  private:
-  static constexpr std::size_t cache_line = 64;
-  static constexpr std::uint32_t slot_mask = 3;
-  static constexpr std::uint32_t fresh = 4;
-
-  // Slots share no cache line, so writing one does not slow down reading another.
-  struct alignas(cache_line) Slot {
-    T value;
-  };
-  struct Channel {
-    std::array<Slot, 3> slots;
-    alignas(cache_line) std::uint32_t write_slot = 0;  // writer
-    alignas(cache_line) std::uint32_t middle = 1;      // both, through atomic_ref alone
-    alignas(cache_line) std::uint32_t read_slot = 2;   // reader
-  };
-
   static void put(const T& from, T& to) noexcept {
     if constexpr (requires { copy_used(from, to); })
       copy_used(from, to);

@@ -26,8 +26,6 @@ class ControlTask final : public Task {
   bool beat(const Beat& beat) override;
   void prepare() noexcept override;
 
-  // Any thread: from the next tick on the robot is down to this rung, or lower. It is not taken back.
-  void degrade(SafetyLevel level) noexcept { wanted_.store(level, std::memory_order_relaxed); }
   std::uint64_t ticks() const noexcept { return ticks_.get(); }
   const TickStatistics& tick_cost() const noexcept { return cost_; }  // of the engine's tick alone, in wall time
 
@@ -35,7 +33,6 @@ class ControlTask final : public Task {
   ControlEngine& engine_;
   BesideTick* after_;
   WallClock wall_;
-  std::atomic<SafetyLevel> wanted_{SafetyLevel::normal};
   Count ticks_;
   TickStatistics cost_;
 };

@@ -25,19 +25,23 @@ class LinkedPlant final : public ModelPlant {
   // The model as it is before the threads start.
   LinkedPlant(PlantExchange& exchange, ModelPlant& model);
 
-  void read(SensorFrame& sensors) noexcept override { copy_used(exchange_.sensors.read(), sensors); }
+  void read(SensorFrame& sensors) noexcept override {
+    const auto newest = exchange_.sensors.read();
+    copy_used(*newest, sensors);
+  }
   void write(const ActuationFrame& actuation) noexcept override { exchange_.actuation.publish(actuation); }
   void warm() noexcept override {
     exchange_.sensors.warm_read();
     exchange_.actuation.warm();
   }
   void step(std::int64_t) override {}
-  const PlantTruth& truth() const noexcept override { return exchange_.truth.read(); }  // control thread
+  const PlantTruth& truth() const noexcept override { return truth_ = exchange_.truth.newest(); }  // control thread
   void push(std::size_t, const Vec3&, const Vec3&) override {}
   void hash(StateHash&) const noexcept override {}
 
  private:
   PlantExchange& exchange_;
+  mutable PlantTruth truth_;  // as last asked for
 };
 
 // The model's end. When its thread comes late it steps what it missed, but at most a few periods: the rest of the time

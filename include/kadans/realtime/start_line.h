@@ -3,7 +3,7 @@
 // Threads are started one after the other by one that is not in real time, which a busy machine may keep for seconds
 // between two of them. Without this the first would beat alone meanwhile: a control thread whose model is not yet there
 // sees silent sensors.
-// Threads: each task's calls wait() once; others ask origin_ns() or open() the line.
+// Threads: each task's calls wait() once; others ask or open() the line.
 #pragma once
 
 #include <atomic>
@@ -22,6 +22,8 @@ class StartLine {
   std::int64_t wait() noexcept;
   // Any thread: the same, without being one that is waited for.
   std::int64_t origin_ns() const noexcept;
+  // Any thread: all are there, or nobody waits any more.
+  bool is_open() const noexcept { return origin_ns_.load(std::memory_order_acquire) != 0; }
   // Not all will come: nobody waits any more.
   void open() noexcept;
 

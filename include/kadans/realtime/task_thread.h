@@ -2,8 +2,7 @@
 //
 // The thread blocks all signals, so that they disturb only the thread that started it, touches its stack before the
 // first beat (of a large one 256 kB), and has its scheduling from the start: SCHED_FIFO above 0, the usual one at 0.
-// What the system refuses of that is kept and may be asked for; the task runs all the same, whoever must not go on
-// without looks at refused().
+// The task runs without what the system refuses of that; refused_priority() and refused_cpu() tell.
 //
 // pthreads, not std::thread: Xenomai replaces the pthread calls when the program is linked, not those inside libstdc++.
 // Threads: start, stop, join by the owner; the others by any.
@@ -55,11 +54,15 @@ class TaskThread {
   void start();
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }  // after the beat that goes on
   void join() noexcept;
+  // Waits until a time on CLOCK_MONOTONIC. False: the thread goes on; whoever does not join it may not destroy what it
+  // works on, nor this.
+  [[nodiscard]] bool join_until(std::int64_t monotonic_ns) noexcept;
 
   const TaskSettings& settings() const noexcept { return settings_; }
   const TaskStatistics& statistics() const noexcept { return periodic_.statistics(); }
   // How long each prepare() took.
   const TickStatistics& preparation() const noexcept { return preparation_; }
+  bool begun() const noexcept { return begun_.load(std::memory_order_relaxed); }  // it got its CPU
   bool over() const noexcept { return over_.load(std::memory_order_acquire); }
   // Once it is over: why it ended before its time, "" when it did not.
   const char* failure() const noexcept { return over() ? failure_.data() : ""; }
@@ -89,7 +92,7 @@ class TaskThread {
   TickStatistics preparation_;
   pthread_t thread_{};
   bool joinable_ = false;
-  std::atomic<bool> stop_{false}, over_{false};
+  std::atomic<bool> stop_{false}, begun_{false}, over_{false};
   std::atomic<int> refused_priority_{0}, refused_cpu_{0};
   std::atomic<std::int64_t> cpu_time_at_end_ns_{0};
   std::array<char, 256> failure_{};

@@ -20,9 +20,12 @@ namespace kadans {
 class VirtualTime {
  public:
   // Before the thread that will wait on it is started: from now on time stands until it waits, or ends. The time must
-  // outlive what it made.
-  std::unique_ptr<Wait> make_wait();
+  // outlive what it made. While time stands, until() looks some twenty times a second of wall time whether to
+  // `give_up`, and then returns early.
+  std::unique_ptr<Wait> make_wait(bool (*give_up)() noexcept = nullptr);
 
+  // Any thread: nobody waits any more, now or later; time stands.
+  void release() noexcept;
   // Any thread.
   std::int64_t now_ns() const noexcept { return now_ns_.load(std::memory_order_acquire); }
 
@@ -33,7 +36,7 @@ class VirtualTime {
     bool waits = false;
   };
 
-  void wait(Place& place, std::int64_t time_ns) noexcept;
+  void wait(Place& place, std::int64_t time_ns, bool (*give_up)() noexcept) noexcept;
   void leave(const Place& place) noexcept;
   void advance() noexcept;
 
@@ -41,6 +44,7 @@ class VirtualTime {
   std::mutex mutex_;
   std::condition_variable moved_;
   std::vector<std::unique_ptr<Place>> places_;
+  bool released_ = false;
 };
 
 }  // namespace kadans

@@ -47,6 +47,7 @@ class BehaviorSide final : public BesideTick {
     std::unique_ptr<OrderCase> order;
     OrderQueue* from;
     std::int64_t asked_ns;
+    std::uint64_t asked_tick;    // of the behaviors, which a simulation does not play in each of its own
     std::uint32_t sequence = 0;  // of its transaction; 0: it waits for the end of a tick
     ParameterChange change{};    // of set_parameter and undo
     bool lasting = false;
@@ -56,6 +57,8 @@ class BehaviorSide final : public BesideTick {
   bool carry_out_now(const Order& order, Answer& answer);
   void begin(Pending& pending);
   void settle(std::int64_t time_ns);
+  bool stopped() const;
+  bool waits_for_tick(const Pending& pending) const noexcept;
   bool settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns);
   void finish(Pending& pending);
   void say(std::int64_t time_ns, const std::string& who, const std::string& what);

@@ -1,5 +1,5 @@
-// The control thread's part of an instance: hands its row to whoever wants it, and to the record while there is one,
-// and takes the emergency stop. Two relaxed loads a port and tick while nobody looks.
+// The control thread's part of an instance: hands its row to whoever wants it, and to the record while there is one.
+// Two relaxed loads a port and tick while nobody looks.
 #pragma once
 
 #include <atomic>
@@ -8,14 +8,13 @@
 
 #include "kadans/engine/record_sink.h"
 #include "kadans/remote/instance.h"
-#include "kadans/safety/safety.h"
 
 namespace kadans {
 
 class ControlSide final : public RecordSink {
  public:
-  // Both must outlive it. All ports are open by the first tick.
-  ControlSide(Instance& instance, Safety& safety) noexcept : instance_(instance), safety_(safety) {}
+  // The instance must outlive it. All its ports are open by the first tick.
+  explicit ControlSide(Instance& instance) noexcept : instance_(instance) {}
 
   // Control thread.
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
@@ -26,12 +25,8 @@ class ControlSide final : public RecordSink {
   void record_to(RecordSink* sink) noexcept { sink_.store(sink, std::memory_order_release); }
 
  private:
-  void stop_if_asked(std::int64_t time_ns) noexcept;
-
   Instance& instance_;
-  Safety& safety_;
   std::atomic<RecordSink*> sink_{nullptr};
-  std::int64_t off_at_ns_ = INT64_MAX;  // after an emergency stop
 };
 
 }  // namespace kadans

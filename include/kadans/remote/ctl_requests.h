@@ -49,7 +49,7 @@ class CtlRequests {
   std::string faults();
   std::string told(const CtlSession& session, const CtlRequest& request, const Answer& answer);
   std::string get(const std::string& name, const Answer& report);
-  std::string save(const CtlSession& session, const Answer& answer);
+  std::string save(const CtlSession& session, const std::string& preset, const Answer& answer);
 
   Instance& instance_;
   InstancePort& port_;

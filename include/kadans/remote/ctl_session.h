@@ -55,6 +55,7 @@ class CtlSession {
   std::uint64_t order = 0;  // whose answer it waits for; 0: none
   std::int64_t ordered_ns = 0;
   bool has_console = false;
+  bool leaves = false;  // the client is gone; what it said last may still be here
   std::vector<SignalId> watched{};
   std::uint32_t every_ticks = 0;
   std::uint64_t next_tick = 0;  // of a sample

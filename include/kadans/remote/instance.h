@@ -5,7 +5,7 @@
 // values, the events and the answers; orders go the other way. It never touches what the engines work on: the tables
 // (catalog) do not change once the loop runs, everything else crosses by storages and rings that block nobody.
 //
-//   control thread   control_side.h     rows of signals to the ports that want them; the emergency stop
+//   control thread   control_side.h     rows of signals to the ports that want them
 //   behavior thread  behavior_side.h    carries out orders, between its ticks
 //   record thread    record_side.h      starts and stops records
 //   supervisor       publish(), tell()  status, words, transitions, faults
@@ -14,7 +14,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -28,6 +27,7 @@
 #include "kadans/remote/configuration_text.h"
 #include "kadans/remote/latest_row.h"
 #include "kadans/remote/order.h"
+#include "kadans/safety/emergency_stop.h"
 #include "kadans/signal/fault.h"
 #include "kadans/signal/status.h"
 #include "kadans/telemetry/event_log.h"
@@ -60,10 +60,10 @@ class InstancePort {
   explicit InstancePort(std::size_t signals) : row_(signals) {}
 
   // All of it: the client's thread.
-  const InstanceStatus& status() noexcept { return status_.read(); }
+  InstanceStatus status() noexcept { return status_.newest(); }
   // The newest row of the catalog's signals, each n-th of which was wanted. 0: none any more.
   void want_signals(std::uint32_t every_ticks) noexcept { row_.want(every_ticks); }
-  LatestRow::View signals() noexcept { return row_.read(); }
+  LatestRow::Reading signals() noexcept { return row_.read(); }
   // Transitions and words of behaviors; false when none waits.
   [[nodiscard]] bool next(Event& event) { return events_.pop(INT64_MAX, event); }
   [[nodiscard]] bool next(Fault& fault) noexcept { return faults_.try_pop(fault); }
@@ -72,6 +72,11 @@ class InstancePort {
   // The order's number, from 1; 0: refused, too many wait for their answers.
   std::uint64_t send(Order order);
   [[nodiscard]] bool next(Answer& answer);
+  // Whoever asked is gone or waits no more: the order is not carried out, unless it is being already. Its answer comes.
+  void withdraw(std::uint64_t order) noexcept {
+    behaviors_.withdraw(order);
+    records_.withdraw(order);
+  }
 
  private:
   friend class Instance;
@@ -101,12 +106,13 @@ class Instance {
     std::filesystem::path records;  // folder of records that are asked for
     double control_period_s = 0.001, behavior_period_s = 0.01;
   };
-  // When all signals are declared. The catalog must outlive it. Throws InputError when the configuration cannot be
+  // When all signals are declared. Catalog and stop must outlive it. Throws InputError when the configuration cannot be
   // read.
-  Instance(Facts facts, const Catalog& catalog)
+  Instance(Facts facts, const Catalog& catalog, EmergencyStop& stop)
       : facts_(std::move(facts)),
         catalog_(catalog),
-        configuration_(facts_.configuration),
+        stop_(stop),
+        configuration_(facts_.configuration, facts_.folders.robot),
         console_row_(catalog.signals.size()) {}
 
   // Any thread. Of the catalog: names, units, ranges, and parameters.newest(id).
@@ -115,7 +121,7 @@ class Instance {
   // Threads that serve clients.
   ConfigurationText& configuration() noexcept { return configuration_; }
   // Any thread, without asking anybody: the robot damps from the next tick on, then is off, until faults are cleared.
-  void stop_now() noexcept { stop_now_.store(true, std::memory_order_relaxed); }
+  void stop_now(const std::string& who) noexcept { stop_.ask(who); }
 
   // Any thread. The number of the control set; throws InputError with the nearest name.
   std::uint32_t set_named(const std::string& name) const;
@@ -126,7 +132,7 @@ class Instance {
 
   // Behavior thread: the newest row for consoles.
   void want_console_row(bool wanted) noexcept { console_row_.want(wanted ? 1 : 0); }
-  LatestRow::View console_row() noexcept { return console_row_.read(); }
+  LatestRow::Reading console_row() noexcept { return console_row_.read(); }
 
   // Supervisor.
   void publish(const InstanceStatus& status) noexcept;
@@ -138,10 +144,10 @@ class Instance {
 
   Facts facts_;
   const Catalog& catalog_;
+  EmergencyStop& stop_;
   ConfigurationText configuration_;
   LatestRow console_row_;
   std::vector<std::unique_ptr<InstancePort>> ports_;
-  std::atomic<bool> stop_now_{false};
 };
 
 // "position_limit at l_knee: 2.1, limit 2"

@@ -19,7 +19,24 @@ class LatestRow {
   struct View {
     std::uint64_t tick = 0;
     std::int64_t time_ns = 0;
-    std::span<const double> values;  // holds until the next read(); empty: nothing came yet
+    std::span<const double> values;  // empty: nothing came yet
+  };
+  // The row that the reader looks at, for as long as this lives: who reads again meanwhile finds the same one.
+  class Reading {
+   public:
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+    ~Reading() { --row_.readings_; }
+    const View& operator*() const& noexcept { return view_; }
+    const View* operator->() const& noexcept { return &view_; }
+    const View& operator*() const&& = delete;
+    const View* operator->() const&& = delete;
+
+   private:
+    friend class LatestRow;
+    Reading(LatestRow& row, const View& view) noexcept : row_(row), view_(view) { ++row_.readings_; }
+    LatestRow& row_;
+    View view_;
   };
 
   explicit LatestRow(std::size_t size) {
@@ -41,13 +58,13 @@ class LatestRow {
   }
 
   // Reader.
-  View read() noexcept {
-    if ((middle_.load(std::memory_order_acquire) & fresh) != 0) {
+  Reading read() noexcept {
+    if (readings_ == 0 && (middle_.load(std::memory_order_acquire) & fresh) != 0) {
       read_slot_ = middle_.exchange(read_slot_, std::memory_order_acq_rel) & slot_mask;
       any_ = true;
     }
     const Slot& slot = slots_[read_slot_];
-    return any_ ? View{slot.tick, slot.time_ns, slot.values} : View{};
+    return {*this, any_ ? View{slot.tick, slot.time_ns, slot.values} : View{}};
   }
 
  private:
@@ -63,6 +80,7 @@ class LatestRow {
   alignas(64) std::uint32_t write_slot_ = 0;
   alignas(64) std::atomic<std::uint32_t> middle_{1};
   alignas(64) std::uint32_t read_slot_ = 2;
+  std::uint32_t readings_ = 0;  // that live
   bool any_ = false;
 };
 

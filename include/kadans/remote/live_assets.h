@@ -1,4 +1,4 @@
-// Files that clients may ask for: the robot's URDF, and exactly the meshes that it names.
+// Files that clients may ask for: the robot's URDF, and exactly the meshes that it names, of at most 16 MB.
 #pragma once
 
 #include <map>

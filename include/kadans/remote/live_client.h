@@ -2,10 +2,12 @@
 // it goes out by next(), whenever the socket has room. Foxglove WebSocket protocol (foxglove.sdk.v1 and
 // foxglove.websocket.v1, which are the same in all that is used here).
 //
-// Replies wait in a queue of at most `replies_max_bytes`; a client that asks and does not read is told off. All else
-// is read from the channels when there is room for it, so a slow client keeps nothing waiting but its own picture.
+// Replies wait in a queue of at most `replies_max_bytes`; a client that asks and does not read is given up, and so is
+// the one that lets most wait when all clients together pass LiveHub::replies_max_bytes. All else is read from the
+// channels when there is room for it, so a slow client keeps nothing waiting but its own picture.
 //
-// Who writes (parameters, orders) came with the token. Server's thread.
+// Nothing that a client says ends more than the client: what cannot be read is answered, and an exception makes it
+// hopeless. Who writes (parameters, orders) came with the token. Server's thread.
 #pragma once
 
 #include <cstddef>
@@ -25,6 +27,7 @@ namespace kadans {
 class LiveClient {
  public:
   static constexpr std::size_t replies_max_bytes = std::size_t{16} << 20U;
+  static constexpr std::size_t subscriptions_max = 256, watched_max = 4096, calls_max = 256;
 
   struct Outgoing {
     bool binary = false;
@@ -37,15 +40,18 @@ class LiveClient {
   LiveClient(const LiveClient&) = delete;
   LiveClient& operator=(const LiveClient&) = delete;
 
-  void text(std::string_view json);
-  void binary(std::span<const std::byte> bytes);
-  void take(std::uint32_t call, const Answer& answer);
+  void text(std::string_view json) noexcept;
+  void binary(std::span<const std::byte> bytes) noexcept;
+  void take(std::uint32_t call, const Answer& answer) noexcept;
   // After each beat of the hub.
-  void tell_changes();
+  void tell_changes() noexcept;
 
   // False: nothing to tell now.
   [[nodiscard]] bool next(Outgoing& out);
-  bool hopeless() const noexcept { return hopeless_; }  // does not read what it asked for: to be closed
+  // Does not read what it asked for, or could not be served: to be closed.
+  bool hopeless() const noexcept { return hopeless_; }
+  std::size_t reply_bytes() const noexcept { return reply_bytes_; }
+  void give_up() noexcept;
 
  private:
   struct Subscription {
@@ -55,24 +61,31 @@ class LiveClient {
   struct Call {
     bool service = false, save = false;
     std::uint32_t service_call = 0;
-    std::string parameter{}, parameter_request{};
+    std::string parameter{}, parameter_request{};  // its name; the client's id
     double value = 0;
   };
 
-  void say(const std::string& json);
-  void say_binary(std::vector<std::byte> bytes);
+  template <typename Act>
+  void guarded(Act act) noexcept;
+  void put(Outgoing out);
+  template <typename Json>
+  void say(const Json& json);
   void complain(const std::string& what);
   void introduce();
   void advertise();
-  void obey(std::string_view json);
+  template <typename Json>
+  void obey(const Json& json);
   template <typename Json>
   void subscribe(const Json& json);
+  template <typename Json>
+  void watch(const Json& names);
   template <typename Json>
   void get_parameters(const Json& json);
   template <typename Json>
   void set_parameters(const Json& json);
   template <typename Json>
   void fetch_asset(const Json& json);
+  void answer_call(const Call& call, const Answer& answer);
   void call_service(std::span<const std::byte> bytes);
   void command(std::uint32_t service_call, const std::string& verb, const std::string& text, double value);
   void save(std::uint32_t service_call, const Answer& answer);

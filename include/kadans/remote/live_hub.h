@@ -57,6 +57,9 @@ class LiveHub {
   // that a beat that is late by its whole period costs none.
   static constexpr double rows_hz = 70, beats_hz = 2 * rows_hz, idle_hz = 60;
 
+  // Replies that wait for all clients together.
+  static constexpr std::size_t replies_max_bytes = std::size_t{64} << 20U;
+
   explicit LiveHub(Parts parts);
 
   // Before the first beat; what is given is read while it runs.
@@ -76,13 +79,16 @@ class LiveHub {
   std::uint64_t state_count() const noexcept { return state_count_; }
 
   void enter(std::uint64_t id, LiveClient& client) { clients_[id] = &client; }
-  void leave(std::uint64_t id) { clients_.erase(id); }
+  // Its orders that were not taken up yet expire.
+  void leave(std::uint64_t id);
+  // A client's replies were put into its queue: the client that lets most wait goes when all are too many.
+  void bound_replies() noexcept;
   // `call`: what the client knows its answer by. False: too many orders wait.
   [[nodiscard]] bool send(Order order, std::uint64_t client, std::uint32_t call);
   // An order has set this parameter.
   void settled(const std::string& name, double value);
   // What needs no order: the emergency stop and the pace. False: `verb` is no such thing.
-  [[nodiscard]] bool act(const std::string& verb, const std::string& text, double value);
+  [[nodiscard]] bool act(const std::string& verb, const std::string& text, double value, const std::string& who);
   bool can_pace() const noexcept { return p_.pace != nullptr; }
 
  private:

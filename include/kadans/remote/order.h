@@ -3,6 +3,7 @@
 // carry pointers, so no side waits for the other and an order may be as long as it is.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -18,6 +19,7 @@ namespace kadans {
 struct ParameterChange {
   std::string name;
   double before = 0, now = 0;
+  std::string chunk{};  // the file that declares it, of a behavior's
 };
 
 struct Order {
@@ -38,7 +40,6 @@ struct Order {
     changes,        // Answer::changes: what set_parameter changed since the start or the last `saved`
     saved,          // `changes` stand in the configuration now
     clear_faults,
-    note,           // `text` for the log: what was done without the behavior thread
     line,           // `text` for the console of this client
     complete,       // `text` = the beginning of a line
     leave_console,  // the client is gone
@@ -70,14 +71,25 @@ struct Answer {
   std::vector<BehaviorReport> behaviors{};
   bool paused = false;
   std::vector<ParameterChange> changes{};
-  std::vector<std::string> words{};  // of a completion, in place of what begins at `begin`
+  std::vector<ParameterChange> set{};  // of `changes`: also what stands in the configuration already
+  std::vector<std::string> words{};    // of a completion, in place of what begins at `begin`
   std::size_t begin = 0;
   bool incomplete = false, writes = false, leaves = false;  // a console's
 };
 
-struct OrderCase {
+// Whoever asked may withdraw an order until it is taken up: it expires with its client.
+class OrderCase {
+ public:
   Order order;
   Answer answer;
+
+  // The thread that carries out, once. False: it was withdrawn.
+  [[nodiscard]] bool take_up() noexcept { return !decided_.exchange(true, std::memory_order_acq_rel); }
+  // Client's thread. False: it is taken up already.
+  bool withdraw() noexcept { return !decided_.exchange(true, std::memory_order_acq_rel); }
+
+ private:
+  std::atomic<bool> decided_{false};
 };
 
 // From one client's thread to one that carries out, and back. At most `orders_waiting_max` are on their way.
@@ -92,16 +104,18 @@ class OrderQueue {
 
   // Client's thread. False: too many wait.
   [[nodiscard]] bool ask(std::unique_ptr<OrderCase> order);
+  // Client's thread: the order of this number is not carried out, unless it is being already.
+  void withdraw(std::uint64_t number) noexcept;
   std::unique_ptr<OrderCase> answered() noexcept;  // nullptr: none
 
   // The thread that carries out.
-  std::unique_ptr<OrderCase> take() noexcept;  // nullptr: none
+  std::unique_ptr<OrderCase> take() noexcept;  // nullptr: none; what was withdrawn goes back unanswered
   void answer(std::unique_ptr<OrderCase> order) noexcept;
 
  private:
   using Cases = Ring<OrderCase*, 16>;
   Cases asked_, answered_;
-  std::size_t on_their_way_ = 0;  // client's
+  std::vector<OrderCase*> on_their_way_;  // client's
 };
 
 }  // namespace kadans

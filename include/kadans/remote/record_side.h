@@ -54,11 +54,12 @@ class RecordSide final : public Task {
   void begin();
   // Record thread, or before the loop and after it. Throws InputError when there can be none.
   void start(const std::string& file);
-  [[nodiscard]] bool stop();  // false: recorder()->error() says why the record is not complete
+  [[nodiscard]] bool stop();  // false: error() says why the record is not complete
   // Any thread: the robot is about to be let go. No flight record any more.
   void expect_end() noexcept { ending_.store(true, std::memory_order_relaxed); }
   // After the loop: stop(), and the flight record that is still to be written.
   [[nodiscard]] bool end();
+  std::string error() const;  // of the record, else of the flight record
   // Before the loop: somebody else has a record that goes on to the end.
   void leave_to(RecordSink& own, const std::string& file);
   bool beat(const Beat&) override;
@@ -67,7 +68,7 @@ class RecordSide final : public Task {
   void tell(const Fault& fault) noexcept {
     if (Recorder* recorder = told_.load(std::memory_order_acquire); recorder != nullptr) recorder->fault(fault);
   }
-  const RecordStatus& status() noexcept { return status_.read(); }
+  RecordStatus status() noexcept { return status_.newest(); }
   // After the loop; nullptr: there was no record.
   const Recorder* recorder() const noexcept { return recorder_.get(); }
 

@@ -23,13 +23,15 @@ class TuningHistory {
   void saved(const std::vector<ParameterChange>& changes);
   // Against the configuration, by name.
   std::vector<ParameterChange> unsaved() const;
+  // What was set since the start and is not as it was then, saved or not, by name.
+  std::vector<ParameterChange> set() const;
 
  private:
   void move_on(const ParameterChange& change);
 
   std::vector<ParameterChange> steps_;
   std::vector<bool> lasting_;
-  std::map<std::string, ParameterChange> unsaved_;
+  std::map<std::string, ParameterChange> unsaved_, set_;
 };
 
 }  // namespace kadans

@@ -8,8 +8,8 @@
 
 namespace kadans {
 
-using FaultMask = std::uint32_t;
-static_assert(fault_codes <= 32);
+using FaultMask = std::uint64_t;
+static_assert(fault_codes <= 64);
 
 constexpr FaultMask bit(FaultCode code) noexcept { return FaultMask{1} << static_cast<unsigned>(code); }
 constexpr FaultMask bit_if(bool condition, FaultCode code) noexcept { return condition ? bit(code) : 0; }

@@ -2,7 +2,8 @@
 // state and the actuation of the last tick and lets the robot do less, rung by rung: normal, limited, hold, damp, off.
 //
 // Watches find what is wrong (joint_watch.h, body_watch.h, fall_watch.h, engine_watch.h), how soon stands in
-// detection.h. Reactions say which rung follows (reaction.h), ladders keep it until it may be left (ladder.h). What is
+// detection.h. Reactions say which rung follows (reaction.h), ladders keep it until it may be left (ladder.h). Somebody
+// may want it down, too (emergency_stop.h). What is
 // asked of a joint that still works is cut to its limits (joint_limiter.h); an actuation that is not finite is never
 // written, whatever the configuration says.
 //
@@ -21,6 +22,7 @@
 #include "kadans/exchange/ring.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/safety/body_watch.h"
+#include "kadans/safety/emergency_stop.h"
 #include "kadans/safety/engine_watch.h"
 #include "kadans/safety/fall_watch.h"
 #include "kadans/safety/joint_limiter.h"
@@ -64,8 +66,8 @@ class Safety {
   void imitate(const Safety& other) noexcept;
   // Notes a fault that somebody else found; its reaction follows in the next check.
   void raise(const Fault& fault) noexcept;
-  // The whole robot down to this rung from the next check on, until cleared: somebody wants it so, nothing failed.
-  void latch(SafetyLevel level) noexcept { robot_.latch(level); }
+  // For whoever wants the robot down; it outlives clear() and imitate().
+  EmergencyStop& emergency_stop() noexcept { return stop_; }
   // Lifts all latches: the next check judges anew.
   void clear() noexcept;
   // In the last check, or by clearing since: joints that damped or were off follow again what is asked of them. What is
@@ -101,7 +103,8 @@ class Safety {
   FaultMask watch_feet(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_joints(const SafetyInput& input, const ActuationFrame& actuation, double dt_s) noexcept;
   void judge_robot(const SafetyInput& input, FaultMask body, FaultMask others, double dt_s) noexcept;
-  void escalate(FaultMask faults, double dt_s) noexcept;
+  FaultMask take_stop() noexcept;
+  void go_down(FaultMask faults, double dt_s) noexcept;
   bool passes(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept;
   bool gives_way(std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
   void limit_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
@@ -124,6 +127,9 @@ class Safety {
   double last_dt_s_ = 0;      // of the last check
   double change_s_ = 0;       // in which the torque asked may have changed
   bool came_back_ = false;
+  EmergencyStop stop_;
+  FaultWords stopped_by_{};
+  bool stopped_ = false;  // by it, until cleared
   std::uint32_t fault_count_ = 0;
   Fault first_fault_;
   FaultLog log_;

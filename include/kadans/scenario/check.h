@@ -15,9 +15,19 @@ struct CheckResult {
   // The worst seen (always, never), the one that fulfilled it (eventually), the last (at_end, within), the time that it
   // took in s (settles).
   double value = 0;
-  double at_s = 0;   // when
-  std::string note;  // what `value` cannot say: "its `when` never became true"
+  double at_s = 0;       // when
+  std::string note;      // what `value` cannot say: "its `when` never became true"
+  std::string wanted{};  // "-0.01 .. 0.01", "never >= 0.6", "at the end joint.knee.position_rad > 0"
 };
+
+// What was wanted, with the note: "<= 0.05; never looked at".
+inline std::string demand(const CheckResult& check) {
+  return check.wanted + (check.wanted.empty() || check.note.empty() ? "" : "; ") + check.note;
+}
+// Behind the value that was found: ", wanted <= 0.05; never looked at".
+inline std::string wanted_clause(const CheckResult& check) {
+  return (check.wanted.empty() && check.note.empty() ? "" : ", wanted ") + demand(check);
+}
 
 class Check {
  public:

@@ -31,7 +31,4 @@ std::string html_report(const HtmlReport& report);
 // "squat-1.html": of the run of that name and seed.
 std::string report_file(const std::string& name, std::uint64_t seed);
 
-// What a check wants, in words: "-0.01 .. 0.01", ">= 0.6", or its condition.
-std::string wanted_text(const ScenarioCheck& check);
-
 }  // namespace kadans

@@ -22,11 +22,12 @@ struct ReportContext {
   std::string record;                   // file, or ""
   std::vector<std::uint64_t> hashes{};  // of the state, at times that somebody asked for
   std::string branch{};                 // name, or ""
+  std::vector<std::string> lost{};      // what was to be left behind and is not, or not whole
 };
 
-// {scenario, seed, passed, checks [{name, passed, value, at_s, note}], duration_s, realtime_factor, control_ticks,
-// behavior_ticks, state_hash, tick_ns {median, p99, max}, queue {sent, refused}, faults [], errors [], record,
-// quantities {}, metrics {}, hashes [], branch, transitions [], evidence [{check, signal, unit, from_s, to_s,
+// {scenario, seed, passed, checks [{name, passed, value, at_s, wanted, note}], duration_s, realtime_factor,
+// control_ticks, behavior_ticks, state_hash, tick_ns {median, p99, max}, queue {sent, refused}, faults [], errors [],
+// record, quantities {}, metrics {}, hashes [], branch, transitions [], evidence [{check, signal, unit, from_s, to_s,
 // values}]}, on one line; hashes and branch only when there are any, the transitions and the evidence only when the run
 // did not pass. Numbers that are not finite become null.
 std::string json_report(const RunResult& result, const ReportContext& context);
@@ -48,7 +49,6 @@ struct ReportSubject {
   const RunResult& result;
   const RunLog& log;
   const RobotModel& model;
-  const std::vector<ScenarioCheck>& checks;  // in the order of the result's
   const std::vector<ReportTrace>& traces;
   std::string title;   // one sentence on the scenario
   std::string record;  // file, or ""

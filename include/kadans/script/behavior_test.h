@@ -1,6 +1,6 @@
 // Tests of behaviors, written in Lua beside them: `describe`, `it`, `before_each`, `expect`, and k.play, which plays a
-// behavior on a robot that whoever runs the tests provides. Each file has a sandbox of its own; a test that fails or
-// errors ends itself, not the others.
+// behavior on a robot that whoever runs the tests provides. Each file has a sandbox of its own; its tests run when it
+// is loaded, each on a budget of its own, so that one that fails, errors or never ends ends itself, not the others.
 //
 //   local run = k.play "squat.lua"        a behavior beside this file, or a path from the project's root
 //   run:advance(2.0)                       virtual seconds
@@ -48,10 +48,11 @@ class TestStages {
 struct TestOutcome {
   std::string name;     // "squat goes down three times"
   std::string problem;  // "file:line: expected ..."; "" when it passed
+  double wall_s = 0;    // that it took
 };
 
-// In the order of the file. Throws InputError when the file does not load.
+// In the order of the file those whose name holds `only`. Throws InputError when the file does not load.
 std::vector<TestOutcome> run_behavior_tests(const std::filesystem::path& root, const std::filesystem::path& file,
-                                            TestStages& stages);
+                                            TestStages& stages, const std::string& only = "");
 
 }  // namespace kadans

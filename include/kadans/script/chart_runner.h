@@ -27,6 +27,7 @@ namespace kadans {
 class ByteReader;
 class ByteWriter;
 struct Motion;
+class StepMeter;
 class WarmUp;
 
 // Registry references of what the functions are given.
@@ -110,8 +111,8 @@ class ChartRunner {
 
   // chart_selection.cpp
   void select(lua_State* state, EventId event, bool events_only);
-  std::uint16_t select_always(lua_State* state, StateIndex leaf, EventId event, bool events_only);
-  std::uint16_t select_ordinary(lua_State* state, StateIndex leaf, EventId event, bool events_only);
+  std::uint16_t select_always(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event, bool events_only);
+  std::uint16_t select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event, bool events_only);
   bool is_leaf(std::size_t position) const noexcept;
   bool enabled(lua_State* state, std::uint16_t transition, EventId event, bool events_only);
   bool guard(lua_State* state, std::uint16_t transition);

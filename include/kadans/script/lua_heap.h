@@ -8,6 +8,9 @@
 // Strings have a bound of their own, since one instruction (.., <, + on digits) may go through a whole string. Lua
 // builds them in a buffer that doubles: a block that grows to a power of two is that buffer, no stack or table (these
 // hold a few slots more).
+//
+// A table that loses a key and gets another, again and again, is made anew each time: that takes no memory but time. So
+// what is allocated from forgive() on is limited too, to four times what may be in use.
 #pragma once
 
 #include <array>
@@ -35,11 +38,15 @@ class LuaHeap {
   std::span<const std::byte> tick_memory() const noexcept { return {tick_first_, tick_.next}; }
   const std::byte* tick_end() const noexcept { return tick_.next; }
 
+  // The largest block there ever was: no table, function or stack of the state is larger.
+  std::size_t largest_block_bytes() const noexcept { return largest_; }
+
   bool exceeded() const noexcept { return exceeded_; }
-  void forgive() noexcept { exceeded_ = false; }
+  void forgive() noexcept { exceeded_ = false, renewal_end_ = allocated_ + renewals_max * limit_; }
 
  private:
   static constexpr std::size_t small_step_bytes = 16, small_bytes_max = 1024;
+  static constexpr std::uint64_t renewals_max = 4;
   static constexpr std::size_t line_bytes = 64, page_bytes = 4096, arena_bytes = 16 * page_bytes;
   struct Free {
     Free* next;
@@ -65,8 +72,8 @@ class LuaHeap {
   std::byte* tick_first_ = nullptr;  // also the first block of all, the interpreter's state
   bool for_ticks_ = true;            // at first: what a state begins with
   std::size_t limit_, block_;
-  std::size_t used_ = 0;
-  std::uint64_t allocated_ = 0;
+  std::size_t used_ = 0, largest_ = 0;
+  std::uint64_t allocated_ = 0, renewal_end_ = UINT64_MAX;
   bool exceeded_ = false;
 };
 

@@ -74,14 +74,19 @@ class LuaState {
   std::filesystem::path find_module(std::string_view name) const;
   // The first line from `from` on that holds `text` between quotes or as a word; `from` itself when none does.
   int line_of(std::string_view chunk, int from, std::string_view text) const;
+  // What that takes at most.
+  double search_instructions(std::string_view chunk) const noexcept;
 
-  // Steps the collector, in proportion to what was allocated since the last call.
+  // Steps the collector, in proportion to what was allocated since the last call; to the end once three quarters of the
+  // memory are in use. Where time is limited it takes as long as a tick may at most, and goes on the next time.
   void collect() noexcept;
   std::size_t used_bytes() const noexcept;
   // What every call() needs, of the state and of the interpreter.
   void add_to(WarmUp& list) const noexcept;
 
  private:
+  void collect_in_time(int kB) noexcept;
+
   Settings settings_;
   std::unique_ptr<LuaCore> core_;
   lua_State* lua_ = nullptr;

@@ -7,7 +7,7 @@
 
 namespace kadans {
 
-enum class ScriptBreach : std::uint8_t { none, instructions, wall_time, memory };
+enum class ScriptBreach : std::uint8_t { none, instructions, wall_time, memory, interrupted };
 
 struct ScriptError {
   ScriptBreach breach = ScriptBreach::none;

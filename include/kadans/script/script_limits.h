@@ -1,5 +1,6 @@
 // What one played behavior may use. Instructions are those of the Lua interpreter, counted in steps of a thousand; a
-// library call is charged in proportion to what it does.
+// library call is charged in proportion to what it does. Time is that of the wall clock, less what the machine gave to
+// others meanwhile.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,7 @@ struct ScriptLimits {
   std::uint64_t load_instructions = 5'000'000;
   std::uint64_t reload_instructions = 1'000'000;  // less: meanwhile the behaviors stand still
   std::int64_t tick_wall_ns = 0;  // 0: no limit, as it must be on a virtual clock, where a run repeats bit for bit
+  std::int64_t load_wall_ns = 0;  // the same, to load or reload a file
   std::size_t memory_bytes = std::size_t{4} << 20;
   std::size_t block_bytes = std::size_t{576} << 10;  // one string, one table's array; the deepest stack fits
 };

@@ -3,12 +3,15 @@
 // reaction (safety/reaction.h); when each is found stands in safety/detection.h.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
 
 namespace kadans {
 
-// At most 32: the safety layer keeps a bit for each.
+// At most 64: the safety layer keeps a bit for each.
 enum class FaultCode : std::uint16_t {
   none,
   // Of a joint, or of what a control object wrote for it.
@@ -41,14 +44,15 @@ enum class FaultCode : std::uint16_t {
   foot_jump,  // a force beyond what the sensor can measure
   foot_not_finite,
   // Of the robot.
-  tilt,         // leans more than it should
-  fall,         // is falling
-  impact,       // hit something while falling
-  command_old,  // a transaction came too late
-  overruns,     // too many late ticks in a row
-  joints_lost,  // too many joints damp or are off
+  tilt,            // leans more than it should
+  fall,            // is falling
+  impact,          // hit something while falling
+  command_old,     // a transaction came too late
+  overruns,        // too many late ticks in a row
+  joints_lost,     // too many joints damp or are off
+  emergency_stop,  // somebody asked for it
 };
-inline constexpr std::size_t fault_codes = 32;
+inline constexpr std::size_t fault_codes = 33;
 
 const char* name(FaultCode code) noexcept;
 // The key of the robot's configuration that decides when this is a fault; "" for none.
@@ -56,13 +60,21 @@ const char* configuration_key(FaultCode code) noexcept;
 
 inline constexpr std::uint16_t no_joint = 0xffff;
 
+// What a fault's numbers cannot say: who asked for it. Ends with a zero.
+using FaultWords = std::array<char, 40>;
+FaultWords fault_words(std::string_view text) noexcept;  // cut where it is longer
+
 struct Fault {
   FaultCode code = FaultCode::none;
   std::uint16_t joint = no_joint;     // index in the model (a foot's: the joint that carries it), or no_joint
   alignas(8) std::uint64_t tick = 0;  // of the control engine
   double value = 0;                   // what was seen
   double limit = 0;                   // what was allowed
+  FaultWords words{};                 // in place of the two where there are none to tell
 };
-static_assert(sizeof(Fault) == 32 && alignof(Fault) == 8 && offsetof(Fault, tick) == 8, "the same on 32-bit machines");
+static_assert(sizeof(Fault) == 72 && alignof(Fault) == 8 && offsetof(Fault, tick) == 8, "the same on 32-bit machines");
+
+// "2.1, limit 2", or its words.
+std::string fault_detail(const Fault& fault);
 
 }  // namespace kadans

@@ -1,12 +1,15 @@
 // "unknown joint 'l_kne', did you mean 'l_knee'?": the known name that is nearest to a mistyped one.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace kadans {
+
+inline constexpr std::size_t nearest_name_longest = 200;  // nobody mistypes a longer one; hostile input may send it
 
 // The candidate with the smallest edit distance (insertions, deletions, substitutions, swaps of neighbours; a letter
 // of the other case counts a quarter), or "" when none is near enough to be what was meant.

@@ -1,14 +1,16 @@
-// Numbers as text and back, one way everywhere: no locale decides, and half a number is none.
+// Numbers as text and back, one way everywhere: no locale decides, and half a number is none, nor is nan.
 #pragma once
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 
 namespace kadans {
 
@@ -23,13 +25,17 @@ std::string printed(const char* pattern, Values... values) {
 // A hash as 16 digits.
 inline std::string hash_text(std::uint64_t hash) { return printed("%016llx", static_cast<unsigned long long>(hash)); }
 
-// The number that the whole of the text is; integers to a base.
+// The number that the whole of the text is, a finite one; integers to a base.
 template <typename Number, typename... Base>
 std::optional<Number> number_of(std::string_view text, Base... base) {
   Number number{};
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, number, base...);
-  return error == std::errc{} && stop == end ? std::optional(number) : std::nullopt;
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  if constexpr (std::is_floating_point_v<Number>) {
+    if (!std::isfinite(number)) return std::nullopt;
+  }
+  return number;
 }
 
 }  // namespace kadans

@@ -42,6 +42,7 @@ struct alignas(8) SupportStatus {
 
 struct SafetyStatus {
   SafetyLevel level = SafetyLevel::normal;
+  bool stopped = false;           // by the emergency stop, until cleared
   std::uint32_t fault_count = 0;  // since the start or the last clearing
   Fault first_fault;              // kept until cleared
 };
@@ -106,9 +107,9 @@ inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
 }
 
 static_assert(std::is_trivially_copyable_v<Snapshot>);
-static_assert(sizeof(BaseStatus) == 96 && sizeof(FootStatus) == 32 && sizeof(SafetyStatus) == 40 &&
+static_assert(sizeof(BaseStatus) == 96 && sizeof(FootStatus) == 32 && sizeof(SafetyStatus) == 80 &&
               sizeof(ObjectStatus) == 16 && alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 104 && offsetof(Snapshot, joints) == 32);
-static_assert(sizeof(Snapshot) == 4680);  // whoever adds to it adds to copy_used()
+static_assert(sizeof(Snapshot) == 4720);  // whoever adds to it adds to copy_used()
 
 }  // namespace kadans

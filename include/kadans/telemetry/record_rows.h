@@ -63,6 +63,7 @@ struct RecordedFault {
   std::int64_t time_ns = 0;
   std::string name, joint;  // joint: "" for none
   double value = 0, limit = 0;
+  std::string words;  // in place of the two, where there are some
 };
 
 // A transition or a line of the log; nothing when the message is neither, or damaged.

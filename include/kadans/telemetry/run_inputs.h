@@ -39,8 +39,8 @@ std::string content_hash(std::string_view text);
 
 // After open(), before the first message.
 [[nodiscard]] bool write_inputs(McapWriter& file, const RunInputs& inputs);
-// As far as the file has been read. Empty when the record has none. Throws InputError when they are damaged or a path
-// leads out of the folder that they are unpacked into.
+// As far as the file has been read. Empty when the record has none. Throws InputError when they are damaged, or a path
+// is not in normal form or leads out of the project: so no two of them mean one file.
 RunInputs read_inputs(const McapReader& file, const std::string& path);
 
 }  // namespace kadans

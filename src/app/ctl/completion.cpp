@@ -87,8 +87,6 @@ if [[ $funcstack[1] == _kadans ]]; then _kadans "$@"; elif (( $+functions[compde
 void add_completion(CLI::App& app, CompletionOptions& options) {
   CLI::App* completion = app.add_subcommand("completion", "Print what a shell needs to complete this command line");
   completion->add_option("shell", options.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
-  completion->footer(
-      "eval \"$(kadans completion bash)\" in ~/.bashrc; an installed program's is in its place already.");
 }
 
 int run_completion(const CLI::App& app, const CompletionOptions& options) {

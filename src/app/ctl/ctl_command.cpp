@@ -8,8 +8,10 @@
 
 #include "ctl/ctl_console.h"
 #include "ctl/ctl_print.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/remote/ctl_link.h"
 #include "kadans/signal/input_error.h"
+#include "option_checks.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -60,6 +62,7 @@ Json request_of(const std::string& words, const CtlOptions& options) {
   if (words == "play") return {{"verb", words}, {"list", options.list}, {"replace", options.replace}};
   if (words == "switch") return {{"verb", words}, {"set", options.name}};
   if (words == "watch") return {{"verb", words}, {"signals", options.signals}, {"rate_hz", options.rate_hz}};
+  if (words == "save" && !options.preset.empty()) return {{"verb", words}, {"preset", options.preset}};
   if (words == "fault list") return {{"verb", "faults"}};
   if (words == "fault clear") return {{"verb", "clear_faults"}};
   if (words == "record stop") return {{"verb", "record_stop"}};
@@ -84,8 +87,12 @@ int watch(CtlLink& link, const CtlOptions& options, const Json& answer) {
 
 int talk(const Verb& verb, const CtlOptions& options) {
   CtlLink link(options.socket, verb.role);
-  if (std::string(verb.words) == "repl") return ctl_console(link);
-  link.send(request_of(verb.words, options).dump());
+  if (std::string(verb.words) == "repl") {
+    if (options.json)
+      throw InputError(InputProblem{.file = "--json", .message = "a console is for people: repl has none"});
+    return ctl_console(link);
+  }
+  link.send(json_text(request_of(verb.words, options)));
   const std::optional<std::string> line = link.receive(reply_ms);
   if (!line) throw InputError({.message = "the instance does not answer"});
   const Json answer = Json::parse(*line);
@@ -95,7 +102,7 @@ int talk(const Verb& verb, const CtlOptions& options) {
     return exit_failed;
   }
   if (std::string(verb.words) == "watch") return watch(link, options, answer);
-  if (options.names) {
+  if (options.names && !options.json) {
     for (const Json& item : answer.at("items")) std::puts(item.at("name").get<std::string>().c_str());
     return exit_passed;
   }
@@ -121,8 +128,11 @@ void add_looking(CLI::App& ctl, CtlOptions& options) {
   CLI::App* watched = add(ctl, "watch");
   watched->add_option("signals", options.signals)->required()->type_name("SIGNAL...");
   watched->add_option("--rate", options.rate_hz, "Samples a second at most (default: 10)")
-      ->check(CLI::Range(0.01, 1000.0));
-  watched->add_option("--count", options.count, "Ends after so many samples")->check(CLI::Range(1L, 1'000'000'000L));
+      ->type_name("HZ")
+      ->check(number_within(0.01, 1000.0));
+  watched->add_option("--count", options.count, "Ends after so many samples")
+      ->type_name("N")
+      ->check(whole_within(1, 1'000'000'000));
 }
 
 void add_operating(CLI::App& ctl, CtlOptions& options) {
@@ -147,8 +157,9 @@ void add_operating(CLI::App& ctl, CtlOptions& options) {
 void add_developing(CLI::App& ctl, CtlOptions& options) {
   CLI::App* set = add(ctl, "set");
   set->add_option("name", options.name)->required()->type_name("NAME");
-  set->add_option("value", options.value)->required()->type_name("VALUE");
-  for (const char* plain : {"undo", "save", "repl"}) add(ctl, plain);
+  set->add_option("value", options.value)->required()->type_name("X")->check(any_number());
+  for (const char* plain : {"undo", "repl"}) add(ctl, plain);
+  add(ctl, "save")->add_option("--preset", options.preset, "Also into this preset, what it sets")->type_name("NAME");
   add(ctl, "reload")->add_option("name", options.name)->type_name("NAME");
 }
 

@@ -18,7 +18,8 @@ struct CtlOptions {
   std::string what;    // of list
   std::string name;    // of a parameter, signal, behavior, control set, record
   double value = 0;
-  std::string list;  // to be played
+  std::string preset;  // "" = none
+  std::string list;    // to be played
   bool replace = false;
   std::vector<std::string> signals;
   double rate_hz = 10;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/input_error.h"
 #include "line_editor.h"
 #include "terminal.h"
@@ -19,7 +20,7 @@ constexpr int answer_ms = 15'000;
 constexpr int keys_ms = 100;
 
 Json ask(CtlLink& link, const char* verb, const std::string& text) {
-  link.send(Json{{"verb", verb}, {"text", text}}.dump(-1, ' ', false, Json::error_handler_t::replace));
+  link.send(json_text(Json{{"verb", verb}, {"text", text}}));
   const std::optional<std::string> line = link.receive(answer_ms);
   if (!line) throw InputError({.message = "the instance does not answer"});
   return Json::parse(*line);

@@ -121,11 +121,27 @@ std::string fault_list(const Json& answer) {
   return text;
 }
 
+// What presets give other values to, and how to change that.
+std::string overridden_text(const Json& overridden) {
+  std::string text, last;
+  for (const Json& one : overridden) {
+    const std::string name = one.at("name");
+    text += (name == last ? ", " : (last.empty() ? "  " : "\n  ") + name + ": ") + one.at("preset").get<std::string>() +
+            " sets " + number(one.at("value"));
+    last = name;
+  }
+  return text.empty() ? ""
+                      : "where a behavior chooses a preset, that counts, in the next run too:\n" + text +
+                            "\n'kadans ctl save --preset NAME' writes what was set into one of them, too\n";
+}
+
 std::string save_text(const Json& answer) {
-  if (answer.at("saved").empty()) return "nothing was changed\n";
+  if (!answer.contains("overridden")) return "nothing was changed\n";
   std::string text;
   for (const Json& change : answer.at("saved")) text += change_text(change);
-  return text + "saved in " + answer.at("file").get<std::string>() + "\n";
+  text += "saved in " + answer.at("file").get<std::string>();
+  if (answer.contains("preset")) text += ", also in preset " + answer.at("preset").get<std::string>();
+  return text + "\n" + overridden_text(answer.at("overridden"));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include "kadans/config/project_root.h"
 #include "run_request.h"
-#include "terminal.h"
 #include "version.h"
 
 namespace kadans {
@@ -50,8 +49,8 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
       model_(assembly.robot().model),
       log_(logs.all),
       told_(logs.told),
-      instance_(facts_of(scenario, assembly.robot()), assembly.catalog()),
-      control_side_(instance_, parts_.control.safety()),
+      instance_(facts_of(scenario, assembly.robot()), assembly.catalog(), parts_.control.safety().emergency_stop()),
+      control_side_(instance_),
       record_side_(instance_, control_side_, logs.record, {{"robot", scenario.robot}, {"kadans", version}}),
       behavior_side_(
           {instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),
@@ -68,8 +67,10 @@ SimRemote::~SimRemote() {
   live_.stop();
   service_.stop();
   told_.tell(nullptr);
-  if (!record_side_.stop()) print_error("the record is not complete: " + record_side_.recorder()->error());
+  (void)record_side_.stop();  // of a run that threw
 }
+
+std::string SimRemote::end_record() { return record_side_.stop() ? "" : record_side_.error(); }
 
 void SimRemote::begin(RecordSink* own, const std::string& own_file) {
   told_.tell(&instance_);

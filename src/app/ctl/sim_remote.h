@@ -54,6 +54,9 @@ class SimRemote final : public RunObserver {
   // Before the first tick.
   void begin(RecordSink* own, const std::string& own_file);
 
+  // Behind the last tick: closes a record that was asked for. "", or why it is not complete.
+  std::string end_record();
+
   LivePace& pace() noexcept { return pace_; }
   void tick(double time_s, std::span<const double> row) override;
   void fault(const Fault& fault) override { instance_.tell(fault); }

@@ -7,16 +7,26 @@
 #include "kadans/config/json_value.h"
 #include "kadans/remote/page_files.h"
 #include "kadans/remote/run_description.h"
+#include "option_checks.h"
 
 namespace kadans {
 
 void add_live_place(CLI::App& command, LivePlace& place) {
   command.add_flag("--live{8765}", place.port, "Show it in a browser and to Foxglove's kin; --live=PORT, 0: any")
-      ->check(CLI::Range(0, 65535));
+      ->check(whole_within(0, 65535));
   command.add_option("--live-address", place.address, "Address to listen on (default: this machine alone)")
       ->type_name("IP");
   command.add_option("--live-token", place.token, "What a client must know to change anything (default: a new one)")
       ->type_name("TEXT");
+  add_live_hosts(command, place);
+}
+
+void add_live_hosts(CLI::App& command, LivePlace& place) {
+  command
+      .add_option("--live-host", place.hosts,
+                  "A name that clients without the token may call this machine by, beside its addresses")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
 }
 
 ViewerSubjects viewer_subjects(const RobotConfig& robot) {
@@ -28,7 +38,7 @@ ViewerSubjects viewer_subjects(const RobotConfig& robot) {
 RobotTexts robot_texts(const Assembly& assembly) {
   const RobotConfig& robot = assembly.robot();
   return {.name = robot.model.name,
-          .urdf = read_text_file(robot.model.file),
+          .urdf = read_input_file(robot.model.file),
           .description = run_description(robot, assembly.catalog(), assembly.own_host()),
           .subjects = viewer_subjects(robot)};
 }
@@ -45,7 +55,8 @@ LiveService::LiveService(const LivePlace& place, Instance& instance, const Assem
                                                   .timing = {},
                                                   .pace = pace});
   server_ = std::make_unique<LiveServer>(
-      LiveSettings{.address = place.address, .port = place.port_number(), .token = place.token}, hub_.get());
+      LiveSettings{.address = place.address, .port = place.port_number(), .token = place.token, .hosts = place.hosts},
+      hub_.get());
 }
 
 void LiveService::start(const std::vector<TimingSource>& timing) {

@@ -18,12 +18,14 @@ namespace kadans {
 struct LivePlace {
   std::string port;  // "": not served; "0": any that is free
   std::string address = "127.0.0.1";
-  std::string token;  // "": a new one
+  std::string token;               // "": a new one
+  std::vector<std::string> hosts;  // names beside those of its addresses
 
   bool wanted() const noexcept { return !port.empty(); }
   std::uint16_t port_number() const { return static_cast<std::uint16_t>(std::stoul(port)); }
 };
 void add_live_place(CLI::App& command, LivePlace& place);
+void add_live_hosts(CLI::App& command, LivePlace& place);
 
 ViewerSubjects viewer_subjects(const RobotConfig& robot);
 // What viewers need of the assembled robot.

@@ -19,7 +19,7 @@ namespace {
 // Its process starts, draws in software and loads a record of any size meanwhile; between two pictures it takes no
 // more.
 constexpr std::chrono::seconds patience{120};
-constexpr std::chrono::milliseconds look_again{200};
+constexpr std::chrono::milliseconds look_for_pictures{200};
 
 // From the server's thread to the one that waits.
 class Frames {
@@ -44,7 +44,7 @@ class Frames {
     std::unique_lock lock(mutex_);
     const auto end = std::chrono::steady_clock::now() + patience;
     while (waiting_.empty() && !done_ && problem_.empty()) {
-      if (came_.wait_for(lock, look_again) == std::cv_status::no_timeout) continue;
+      if (came_.wait_for(lock, look_for_pictures) == std::cv_status::no_timeout) continue;
       if (interrupted()) throw InputError({.message = "interrupted"});
       if (!chromium.runs()) throw InputError({.message = "chromium ended before the picture was drawn"});
       if (std::chrono::steady_clock::now() > end) throw InputError({.message = "chromium draws nothing"});
@@ -80,7 +80,7 @@ void draw_record(const PictureOrder& order,
   (void)McapReader(order.record);  // says by its name what is wrong with it
   Frames frames;
   LiveServer server(
-      {.port = 0}, nullptr,
+      {.port = 0, .token = "", .hosts = {}}, nullptr,
       {.file = std::filesystem::absolute(order.record).string(),
        .take_frame = [&frames](const std::string& name, const std::string& bytes) { frames.take(name, bytes); }});
   server.start();

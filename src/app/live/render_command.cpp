@@ -1,14 +1,15 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "kadans/campaign/durable_file.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/telemetry/animated_png.h"
 #include "live/page_commands.h"
 #include "live/record_pictures.h"
+#include "option_checks.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -17,9 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void write(const fs::path& file, const std::string& bytes) {
-  std::ofstream out(file, std::ios::binary);
-  out << bytes;
-  if (!out.flush()) throw InputError({.file = file.string(), .message = "cannot be written"});
+  write_durably(file, bytes);
   std::printf("%s\n", file.string().c_str());
 }
 
@@ -44,13 +43,16 @@ void add_render(CLI::App& app, RenderOptions& options) {
       ->required()
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
-  CLI::Option* at = render->add_option("--at", options.at_s, "One picture, at this second")->type_name("S");
+  CLI::Option* at =
+      render->add_option("--at", options.at_s, "One picture, at this second")->type_name("S")->check(any_number());
   CLI::Option* every = render->add_option("--every", options.every_s, "A picture each so many seconds")
                            ->type_name("S")
-                           ->check(CLI::Range(0.001, 1e6))
+                           ->check(number_within(0.001, 1e6))
                            ->excludes(at);
   render->add_flag("--film", options.film, "An animated PNG of all of it")->excludes(at)->excludes(every);
-  render->add_option("--fps", options.frames_per_s, "Pictures a second of the film (20)")->check(CLI::Range(1, 60));
+  render->add_option("--fps", options.frames_per_s, "Pictures a second of the film (20)")
+      ->type_name("N")
+      ->check(whole_within(1, 60));
   render->add_option("-o,--out", options.out, "File, or with --every folder (default: named as the record, here)")
       ->type_name("PATH");
   render->add_option("--size", options.size, "Width and height (960x720)")->type_name("WxH");

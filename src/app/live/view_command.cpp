@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "kadans/remote/page_files.h"
+#include "kadans/signal/input_file.h"
 #include "live/page_commands.h"
+#include "option_checks.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -32,16 +34,21 @@ void add_view(CLI::App& app, ViewOptions& options) {
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
   options.live.port = "0";
-  view->add_option("--port", options.live.port, "Port (default: one that is free)")->check(CLI::Range(0, 65535));
+  view->add_option("--port", options.live.port, "Port (default: one that is free)")
+      ->type_name("N")
+      ->check(whole_within(0, 65535));
   view->add_option("--live-address", options.live.address, "Address to listen on (default: this machine alone)")
       ->type_name("IP");
+  add_live_hosts(*view, options.live);
 }
 
 int run_view(const ViewOptions& options) {
   if (page_files().empty()) throw InputError({.message = std::string(page_is_missing)});
   const std::filesystem::path file = options.record.empty() ? "" : std::filesystem::absolute(options.record);
-  LiveServer server({.address = options.live.address, .port = options.live.port_number()}, nullptr,
-                    {.file = file.string(), .take_frame = {}});
+  if (!file.empty()) check_input_file(file);
+  LiveServer server(
+      {.address = options.live.address, .port = options.live.port_number(), .token = "", .hosts = options.live.hosts},
+      nullptr, {.file = file.string(), .take_frame = {}});
   catch_interrupts();
   server.start();
   const std::string shown = file.empty() ? "empty" : "record=record.mcap&title=" + in_url(file.filename().string());

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "log/log_verbs.h"
+#include "option_checks.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -22,8 +23,9 @@ CLI::App* verb(CLI::App& log, LogOptions& options, const char* name, const char*
 
 void add_span(CLI::App& verb, LogOptions& options) {
   verb.add_option("--from", options.from_s, "From this second of the record's time (default: its beginning)")
-      ->type_name("S");
-  verb.add_option("--to", options.to_s, "To this second (default: its end)")->type_name("S");
+      ->type_name("S")
+      ->check(any_number());
+  verb.add_option("--to", options.to_s, "To this second (default: its end)")->type_name("S")->check(any_number());
 }
 
 void add_out(CLI::App& verb, LogOptions& options, const char* doc, const char* type) {
@@ -46,7 +48,7 @@ void add_reading(CLI::App& log, LogOptions& options) {
   add_span(*csv, options);
   csv->add_option("--every", options.every_s, "A line each so many seconds, with the newest values")
       ->type_name("S")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(number_within(1e-6, 1e6));
   add_out(*csv, options, "Into a file (default: onto stdout)", "FILE");
 }
 
@@ -60,7 +62,7 @@ void add_making(CLI::App& log, LogOptions& options) {
   diff->add_option("other", options.other, "The record that it is compared with")->required()->type_name("OTHER");
   diff->add_option("--tolerance", options.tolerance, "Numbers that are no further apart are the same (default: 0)")
       ->type_name("X")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_within(0.0, 1e300));
   diff->add_flag("--json", options.json, "Print one JSON object instead of text");
 
   CLI::App* cut = verb(log, options, "cut", "A stretch of it, or some of its signals, as a record of its own");
@@ -80,14 +82,6 @@ void add_log(CLI::App& app, LogOptions& options) {
   add_reading(*log, options);
   add_making(*log, options);
   log->footer(
-      "Examples:\n"
-      "  kadans log info squat.mcap\n"
-      "  kadans log cat squat.mcap --topic transitions --topic log\n"
-      "  kadans log csv squat.mcap 'joint.*knee.*' --every 0.01 -o knees.csv\n"
-      "  kadans log plot squat.mcap plant.base.height_m 'joint.*_knee.effort_Nm' -o squat.svg\n"
-      "  kadans log diff squat.mcap again.mcap --tolerance 1e-9\n"
-      "  kadans log cut squat.mcap --from 2 --to 4 -o short.mcap\n"
-      "\n"
       "Times are seconds of the record's own clock, as `log info` shows them.\n"
       "Exit codes: 0 done (diff: the same), 1 diff: not the same, 2 wrong usage or input.");
 }

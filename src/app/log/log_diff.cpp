@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/number_text.h"
 #include "kadans/telemetry/record_diff.h"
 #include "log/log_verbs.h"
@@ -51,7 +52,7 @@ void print_json(const Findings& found) {
                   {"topics", diff.other_topics},
                   {"facts", found.facts},
                   {"complete", found.a.complete && found.b.complete}};
-  std::puts(json.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
+  std::puts(json_text(json).c_str());
 }
 
 std::string name_of(const SignalParting& parting) {

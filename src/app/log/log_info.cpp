@@ -2,7 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/signal/number_text.h"
+#include "kadans/signal/shell_word.h"
 #include "log/log_verbs.h"
 #include "run_request.h"
 #include "terminal.h"
@@ -15,7 +17,7 @@ using Json = nlohmann::ordered_json;
 // The command that makes the run again, "" when there is none: of what a robot did, or of another's record.
 std::string again(const RecordOutline& record) {
   if (record.fact("run", "clock") != "virtual") return "";
-  if (!record.fact("run", "branch_tick").empty()) return "kadans replay " + record.file;
+  if (!record.fact("run", "branch_tick").empty()) return "kadans replay " + shell_word(record.file);
   RunRequest request = request_of(record.metadata.at("run"), record.file);
   request.scenario = record.fact("run", "scenario");
   return repeat_command(request, *request.seed);
@@ -71,7 +73,7 @@ void print_json(const RecordOutline& record) {
                   {"topics", topics_json(record)},
                   {"facts", record.metadata},
                   {"attachments", attachments}};
-  std::puts(json.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
+  std::puts(json_text(json).c_str());
 }
 
 void line(const char* name, const std::string& text) {

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include "kadans/campaign/durable_file.h"
 #include "kadans/signal/number_text.h"
 #include "log/log_verbs.h"
 #include "terminal.h"
@@ -60,8 +61,13 @@ void require_free(const LogOptions& options) {
     throw InputError({.file = options.out, .message = "is there already; --force replaces it"});
 }
 
-UnfinishedFile::UnfinishedFile(fs::path file)
-    : file_(std::move(file)), unfinished_(file_.string() + "." + std::to_string(getpid()) + ".part") {}
+UnfinishedFile::UnfinishedFile(const fs::path& file) : file_(end_of_link(file)), unfinished_(file_) {
+  if (is_device_or_pipe(file_)) {
+    finished_ = true;
+  } else {
+    unfinished_ += "." + std::to_string(getpid()) + ".part";
+  }
+}
 
 UnfinishedFile::~UnfinishedFile() {
   std::error_code ignored;
@@ -69,6 +75,7 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void UnfinishedFile::finish() {
+  if (finished_) return;
   std::error_code error;
   fs::rename(unfinished_, file_, error);
   if (error) throw InputError({.file = file_.string(), .message = "cannot be written: " + error.message()});
@@ -88,7 +95,9 @@ LineOutput::~LineOutput() {
 }
 
 bool LineOutput::failed() const {
-  if (errno == EPIPE && !unfinished_) return false;
+  if (errno == EPIPE && !unfinished_) {
+    if (std::freopen("/dev/null", "w", stdout) != nullptr) return false;  // what stdout still holds is nobody's
+  }
   throw InputError({.file = name_, .message = "cannot be written: " + std::string(strerror(errno))});
 }
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
+#include "kadans/campaign/durable_file.h"
 #include "kadans/signal/number_text.h"
 #include "kadans/telemetry/signal_plot.h"
 #include "kadans/telemetry/text_plot.h"
@@ -87,13 +87,7 @@ int log_plot(const LogOptions& options) {
     sketch(plot);
     return exit_passed;
   }
-  const std::string picture = draw(plot, format);
-  UnfinishedFile file(options.out);
-  std::ofstream stream(file.path(), std::ios::binary);
-  stream << picture;
-  stream.close();
-  if (!stream) throw InputError({.file = options.out, .message = "cannot be written"});
-  file.finish();
+  write_durably(options.out, draw(plot, format));
   std::printf("%s\n", options.out.c_str());
   return exit_passed;
 }

@@ -32,11 +32,11 @@ std::string plural(std::uint64_t count, const char* what);
 // Throws InputError when the file that is to be written is there already and --force was not given, or is the record.
 void require_free(const LogOptions& options);
 
-// Under a temporary name until it is whole.
+// Under a temporary name until it is whole; a device or pipe is written to as it is.
 class UnfinishedFile {
  public:
-  explicit UnfinishedFile(std::filesystem::path file);
-  ~UnfinishedFile();  // removes what was not finished
+  explicit UnfinishedFile(const std::filesystem::path& file);  // throws InputError
+  ~UnfinishedFile();                                           // removes what was not finished
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 

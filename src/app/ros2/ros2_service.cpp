@@ -7,6 +7,7 @@
 
 #include "kadans/signal/number_text.h"
 #include "live/live_service.h"
+#include "option_checks.h"
 
 namespace kadans {
 namespace {
@@ -32,10 +33,10 @@ void add_ros2_place(CLI::App& command, Ros2Place& place) {
       command
           .add_flag("--ros2{-1}", place.domain,
                     "Publish topics of ROS 2 on this machine; --ros2=DOMAIN (default: ROS_DOMAIN_ID, else 0)")
-          ->check(CLI::Range(-1, domain_max));
+          ->check(whole_within(-1, domain_max));
   command.add_option("--ros2-rate", place.rate_hz, "How often (default: 100)")
       ->type_name("HZ")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(number_within(1.0, 1000.0))
       ->needs(ros2);
   command.add_flag("--ros2-commands", place.commands, "Obey whoever writes to /kadans/command there")->needs(ros2);
 }

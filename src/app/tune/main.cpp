@@ -30,13 +30,5 @@ int run(int argc, char** argv) {
 }  // namespace kadans
 
 int main(int argc, char** argv) {
-  try {
-    return kadans::run(argc, argv);
-  } catch (const kadans::InputError& error) {
-    kadans::print_problems(error);
-    return kadans::exit_usage;
-  } catch (const std::exception& error) {
-    kadans::print_error(std::string("internal: ") + error.what());
-    return kadans::exit_internal;
-  }
+  return kadans::ended_well([&] { return kadans::run(argc, argv); });
 }

@@ -12,6 +12,7 @@
 #include "kadans/campaign/durable_file.h"
 #include "kadans/campaign/merged_sweep.h"
 #include "kadans/campaign/parameter_edit.h"
+#include "kadans/config/foreign_json.h"
 #include "kadans/config/json_value.h"
 #include "kadans/signal/random.h"
 #include "sweep_run.h"
@@ -156,7 +157,7 @@ void Tuning::note_candidates(const std::string& name, const std::vector<std::vec
     json.push_back(std::move(candidate));
   }
   fs::create_directories(folder_ / name);
-  write_durably(folder_ / name / "candidates.json", json.dump(1) + "\n");
+  write_durably(folder_ / name / "candidates.json", json_text(json, 1) + "\n");
 }
 
 void Tuning::tell_generation(const std::vector<double>& scores) const {
@@ -179,7 +180,7 @@ void Tuning::write_configuration(const std::vector<double>& values) const {
     edits.push_back(std::move(edit));
   }
   const std::string& file = robot_.config.file;
-  write_durably(configuration_, edit_parameters(read_text_file(file), file, edits));
+  write_durably(configuration_, edit_parameters(read_input_file(file), file, edits));
 }
 
 void Tuning::report(const std::vector<double>& values, const TuningEffect& effect) const {
@@ -193,7 +194,7 @@ void Tuning::report(const std::vector<double>& values, const TuningEffect& effec
                       {"high", effect.change.mean_interval.high}};
     json["runs"] = effect.runs;
     json["configuration"] = configuration_.string();
-    std::puts(json.dump().c_str());
+    std::puts(json_text(json).c_str());
     return;
   }
   std::printf("%s%s%s\n", plan_.name.c_str(), plan_.doc.empty() ? "" : ": ", plan_.doc.c_str());

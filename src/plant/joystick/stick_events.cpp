@@ -3,14 +3,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 
 #include <linux/input.h>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -143,10 +142,7 @@ StickRecording read_stick_recording(const std::string& content, const std::strin
 }
 
 StickRecording read_stick_recording(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    throw InputError({.file = file.string(), .message = "cannot be read"});
-  return read_stick_recording(std::string(std::istreambuf_iterator<char>(stream), {}), file.string());
+  return read_stick_recording(read_input_file(file), file.string());
 }
 
 }  // namespace kadans

@@ -37,7 +37,7 @@ bool PlantServer::greeted(const WireHead& head, PlantWire::Check check, Bytes da
                           const PeerAddress& from) noexcept {
   if (check == PlantWire::Check::garbage || head.kind != WireKind::hello) return false;
   WireRefusal refusal = WireRefusal::none;
-  if (check == PlantWire::Check::other_version) refusal = WireRefusal::version;
+  if (check == PlantWire::Check::other_version) refusal = WireRefusal::other_version;
   if (check == PlantWire::Check::other_layout) refusal = WireRefusal::layout;
   if (refusal == WireRefusal::none && PlantWire::greeting_in(datagram).period_ns != period_ns_)
     refusal = WireRefusal::period;

@@ -74,7 +74,7 @@ void UdpPlant::refuse(const WireHead& head, Bytes datagram) const {
   const WireGreeting theirs = PlantWire::greeting_in(datagram);
   const std::string plant = "the plant at " + settings_.peer;
   const WireGreeting& ours = wire_.greeting();
-  if (head.refusal == WireRefusal::version)
+  if (head.refusal == WireRefusal::other_version)
     fail_with(plant + " speaks another version of the protocol: use the same Kadans on both sides");
   if (head.refusal == WireRefusal::period)
     fail_with(plant + " has a control period of " + std::to_string(theirs.period_ns) + " ns, this robot of " +

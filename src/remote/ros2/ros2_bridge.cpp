@@ -49,10 +49,10 @@ struct Ros2Bridge::Inside final : Task {
   bool beat(const Beat&) override {
     if (!topics) return join();
     if (!running.load(std::memory_order_acquire)) return true;
-    const LatestRow::View row = port.signals();
-    if (!row.values.empty() && row.tick != last_tick) {
-      last_tick = row.tick;
-      readings.take(row);
+    const auto row = port.signals();
+    if (!row->values.empty() && row->tick != last_tick) {
+      last_tick = row->tick;
+      readings.take(*row);
       topics->publish();
     }
     serve();

@@ -102,3 +102,66 @@ export async function check_files(page, record) {
   check(true, 'and one whose address is typed');
   await view.stop();
 }
+
+// A frame of the screen may come between a render and its effects. Each act is followed by one in which everything is
+// drawn anew, before the browser gets to paint: with data, for nothing is drawn where nothing changed.
+const acts = {
+  'a signal is added': 'document.querySelector("[data-signal]").dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }))',
+  'a signal is removed': 'document.querySelector(".plot .series + .series button").click()',
+  'a plot is closed': 'document.querySelector(".plot .close").click()',
+  'another tab': 'document.querySelector("[role=tab][aria-selected=false]").click()',
+  'the theme turns': 'document.querySelector(\'[title="Dark or light (t)"]\').click()',
+  'a mark goes': 'document.querySelector(".mark").click()',
+  'it pauses': 'document.querySelector(".play").click()',
+};
+
+// `problems`: of the page so far; plots draw in microtasks, whose errors nobody else catches.
+export async function check_between(page, problems) {
+  await page.click('.signals .topic:has-text("joint")');
+  await page.waitForSelector('[data-signal]');
+  for (const [what, act] of Object.entries(acts)) {
+    await page.evaluate(async (text) => {
+      const { kadans, kadans_frames } = globalThis;
+      new Function(text)();
+      for (let i = 0; i < 5; ++i) {
+        await Promise.resolve(); // renders are microtasks
+        ++kadans.version;
+        kadans_frames.step(0.001);
+      }
+    }, act);
+    check(problems.length === 0, `a frame may come right after a render: ${what} ${problems}`);
+  }
+  await page.click('.play');
+  await page.click('.signals .topic:has-text("joint")');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('1');
+}
+
+// Two tabs share what the browser keeps; a page is reloaded and closed while it loads, connects and draws.
+export async function check_tabs(context, url, watch) {
+  const page = await context.newPage();
+  watch(page);
+  await page.goto(url);
+  await page.waitForSelector('.plot');
+  await page.click('.signals .topic:has-text("joint")');
+  for (let step = 0; step < 12; ++step) {
+    const other = await context.newPage();
+    watch(other);
+    await other.goto(url, { waitUntil: 'commit' });
+    const shown = ['html', '.page', '.plot', '.chart .state'][step % 4];
+    await other.waitForSelector(shown, { state: 'attached' });
+    await page.evaluate((removes) => {
+      if (removes) [...document.querySelectorAll('.plot .series button')].at(-1).click();
+      else document.querySelector('[data-signal]').dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }));
+    }, step % 2 === 0);
+    if (step % 3 === 0) await other.reload({ waitUntil: 'commit' });
+    await other.close({ runBeforeUnload: step % 2 === 0 });
+  }
+  for (const rubbish of ['{', '7', '[[7]]', '[null]']) {
+    await page.evaluate((text) => localStorage.setItem('kadans.plots.tulip', text), rubbish);
+    await page.reload();
+    await page.waitForSelector('.plot');
+  }
+  await page.close();
+  check(true, 'two tabs, reloads and ends at any moment');
+}

@@ -2,7 +2,7 @@
 import { existsSync, readdirSync, statSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { WebSocket } from 'ws';
-import { check_files, check_keyboard, check_plots, check_theme } from './hands.mjs';
+import { check_between, check_files, check_keyboard, check_plots, check_tabs, check_theme } from './hands.mjs';
 import { check, chromium_options, folder, live_address, project, run, scenario, start, until } from './program.mjs';
 
 const page_max_bytes = 300 * 1024;
@@ -140,15 +140,20 @@ run(async () => {
   const [, url, port] = await first.begun;
   const browser = await chromium.launch(chromium_options);
   try {
-    const page = await browser.newPage({ viewport: { width: 1100, height: 640 } });
+    const context = await browser.newContext({ viewport: { width: 1100, height: 640 } });
+    const page = await context.newPage();
     const problems = [];
-    page.on('pageerror', (error) => problems.push(error.stack));
+    const watch = (other) => other.on('pageerror', (error) => problems.push(error.stack));
+    watch(page);
     await page.goto(url);
     await check_live(page, port);
     await check_hand(page);
     await check_plots(page);
+    await check_between(page, problems);
     await check_theme(page);
     await check_keyboard(page);
+
+    await check_tabs(context, url, watch);
 
     const id = await page.evaluate(() => globalThis.kadans.id);
     await first.stop();

@@ -1,7 +1,11 @@
 // Plug-ins that do not keep to the seam, one a library: HOSTILE says which.
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 #include <stdexcept>
+
+#include <unistd.h>
 
 #include "kadans/control/plugin_glue.h"
 #include "spring.h"
@@ -26,11 +30,26 @@ using namespace kadans;
 
 struct [[maybe_unused]] NoException {};
 
+// For ever; who tests it hears of it.
+[[maybe_unused]] void hang() {
+  (void)!write(STDERR_FILENO, "hangs now\n", 10);
+  for (;;) pause();
+}
+
 }  // namespace
 
 #define EXPORT extern "C" __attribute__((visibility("default"))) const kadans::Plugin* kadans_plugin()
 
-#if defined(HOSTILE_wrong_version)
+#if defined(HOSTILE_loaded)  // tells that it was, by a file
+namespace {
+const struct Loaded {
+  Loaded() {
+    if (const char* file = std::getenv("KADANS_TEST_LOADED")) std::ofstream(file) << "loaded";
+  }
+} loaded;
+}  // namespace
+EXPORT { return good(); }
+#elif defined(HOSTILE_wrong_version)
 EXPORT {
   Plugin* plugin = good();
   plugin->abi_version = 7;
@@ -114,6 +133,22 @@ EXPORT {
   Plugin* plugin = good();
   type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame*) {
     if (input->time_ns >= 100'000'000) std::raise(SIGSEGV);
+  };
+  return plugin;
+}
+#elif defined(HOSTILE_hanging_step)
+EXPORT {
+  Plugin* plugin = good();
+  type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame*) {
+    if (input->time_ns >= 100'000'000) hang();
+  };
+  return plugin;
+}
+#elif defined(HOSTILE_hanging_update)
+EXPORT {
+  Plugin* plugin = good();
+  type_of(plugin).update = [](void*, const Snapshot* snapshot) {
+    if (snapshot->time_ns >= 100'000'000) hang();
   };
   return plugin;
 }

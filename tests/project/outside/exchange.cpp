@@ -17,7 +17,7 @@ int main() {
   table.add({.name = "knee.kp_Nm_per_rad", .unit = "Nm/rad", .min = 0, .max = 200, .initial = 40, .doc = "Stiffness."},
             &kp);
   const auto id = table.find("knee.kp_Nm_per_rad");
-  const bool ok = height_m.read() == 1.0 && kp == 40 && id && table.set(*id, 60) && kp == 60 && !table.set(*id, 201);
-  std::printf("height %.1f m, kp %.0f Nm/rad: %s\n", height_m.read(), kp, ok ? "as told" : "wrong");
+  const bool ok = height_m.newest() == 1.0 && kp == 40 && id && table.set(*id, 60) && kp == 60 && !table.set(*id, 201);
+  std::printf("height %.1f m, kp %.0f Nm/rad: %s\n", height_m.newest(), kp, ok ? "as told" : "wrong");
   return ok ? 0 : 1;
 }

@@ -1,9 +1,9 @@
 // One plot of a few signals over the span of time that is looked at. Click to look at a time, drag to zoom, double
 // click for everything again; bands show the states of the behavior that moved last.
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import { bucket_times, bucket_values } from '../data/buckets.js';
-import { number, useSession } from '../watching.js';
+import { number, useSession, useShown } from '../watching.js';
 import { dragged_signal } from './signal_list.jsx';
 
 export const line_colors = ['#2f7fd1', '#d9772b', '#2f9e6e', '#b8479b', '#8a6fd1', '#c2a01e', '#4aa3a8', '#d1495b'];
@@ -33,7 +33,7 @@ function y_range(_, low, high) {
   return [low - air, high + air];
 }
 
-function options_for(names, size, theme, now) {
+function options_for({ session, names, theme, size, zoom }) {
   const ink = inks[theme];
   const axis = { stroke: ink.text, grid: { stroke: ink.grid, width: 1 }, ticks: { show: false }, font: '11px system-ui' };
   return {
@@ -48,12 +48,12 @@ function options_for(names, size, theme, now) {
     ],
     series: [{}, ...names.map((_, i) => ({ stroke: line_colors[i % line_colors.length], width: 1.4, spanGaps: true, points: { show: false } }))],
     hooks: {
-      drawClear: [(plot) => draw_bands(plot, now().session, ink.band)],
+      drawClear: [(plot) => draw_bands(plot, session, ink.band)],
       setSelect: [
         (plot) => {
           if (plot.select.width < 4) return;
           const from = plot.posToVal(plot.select.left, 'x');
-          now().zoom([from, plot.posToVal(plot.select.left + plot.select.width, 'x')]);
+          zoom([from, plot.posToVal(plot.select.left + plot.select.width, 'x')]);
           plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
         },
       ],
@@ -62,9 +62,9 @@ function options_for(names, size, theme, now) {
           let pressed = 0;
           plot.over.addEventListener('mousedown', (event) => (pressed = event.clientX));
           plot.over.addEventListener('mouseup', (event) => {
-            if (Math.abs(event.clientX - pressed) < 4) now().session.seek(plot.posToVal(event.offsetX, 'x'));
+            if (Math.abs(event.clientX - pressed) < 4) session.seek(plot.posToVal(event.offsetX, 'x'));
           });
-          plot.over.addEventListener('dblclick', () => now().zoom(null));
+          plot.over.addEventListener('dblclick', () => zoom(null));
         },
       ],
     },
@@ -101,27 +101,26 @@ function Legend({ session, names, remove, close }) {
 export function Plot({ session, names, span, zoom, theme, frames, change, close }) {
   const host = useRef();
   const line = useRef();
-  const latest = useRef();
-  latest.current = { session, names, span, zoom };
+  const shown = useShown({ span, zoom });
   const key = `${names.join()} ${theme}`;
-  useEffect(() => {
+  // A layout effect: what is drawn has the names that the page shows, in every frame.
+  useLayoutEffect(() => {
     const size = () => ({ width: host.current.clientWidth, height: host.current.clientHeight });
-    const plot = new uPlot(options_for(names, size(), theme, () => latest.current), [[], ...names.map(() => [])], host.current);
+    const options = options_for({ session, names, theme, size: size(), zoom: (range) => shown.current.zoom(range) });
+    const plot = new uPlot(options, [[], ...names.map(() => [])], host.current);
     let drawn = '';
     const draw = () => {
-      if (!host.current) return; // gone already, and soon told so
-      const now = latest.current;
       const { width, height } = size();
       if (width < 40 || height < 40) return;
-      const [from, to] = now.span();
-      const sign = `${from.toFixed(3)} ${to.toFixed(3)} ${width} ${height} ${now.session.version} ${now.session.title}`;
+      const [from, to] = shown.current.span();
+      const sign = `${from.toFixed(3)} ${to.toFixed(3)} ${width} ${height} ${session.version} ${session.title}`;
       if (sign !== drawn) {
         drawn = sign;
         if (plot.width !== width || plot.height !== height) plot.setSize({ width, height });
-        plot.setData(data_of(now.session, now.names, [from, to], width), false);
+        plot.setData(data_of(session, names, [from, to], width), false);
         plot.setScale('x', { min: from, max: to > from ? to : from + 1 });
       }
-      const left = plot.valToPos(now.session.cursor_s, 'x');
+      const left = plot.valToPos(session.cursor_s, 'x');
       const inside = left >= 0 && left <= plot.over.clientWidth;
       line.current.style.display = inside ? '' : 'none';
       line.current.style.transform = `translateX(${plot.over.offsetLeft + left}px)`;

@@ -1,7 +1,7 @@
 // The robot in 3D at the time that is looked at, with what bears it and where it looks.
 import { useLayoutEffect, useRef, useState } from 'preact/hooks';
 import { mark_colors } from '../robot/mark_colors.js';
-import { useSession } from '../watching.js';
+import { useSession, useShown } from '../watching.js';
 import { StartPanel } from './start_panel.jsx';
 
 const marks = [
@@ -26,8 +26,7 @@ export function RobotPanel({ session, theme, drawing, open }) {
   const view = useRef();
   const [shown, set_shown] = useState(() => new Set(marks.map(([name]) => name)));
   const [problem, set_problem] = useState('');
-  const latest = useRef();
-  latest.current = { session, shown, theme };
+  const seen = useShown({ session, shown, theme });
   useSession(session, 2);
 
   useLayoutEffect(() => {
@@ -35,7 +34,7 @@ export function RobotPanel({ session, theme, drawing, open }) {
       .then((made) => {
         view.current = made;
         place.current.append(made.canvas);
-        made.now = () => latest.current;
+        made.now = () => seen.current;
       })
       .catch((error) => set_problem(String(error.message ?? error)));
   }, []);

@@ -65,7 +65,7 @@ export function SafetyPanel({ session }) {
             <li key={i}>
               <button onClick={() => session.seek(fault.t)}>
                 <time>{clock(fault.t)}</time><b>{fault.name}</b><span>{fault.joint}</span>
-                {fault.value !== undefined && <small>{number(fault.value)}, limit {number(fault.limit)}</small>}
+                {fault.words ? <small>{fault.words}</small> : fault.value !== undefined && <small>{number(fault.value)}, limit {number(fault.limit)}</small>}
               </button>
             </li>
           ))}

@@ -1,6 +1,6 @@
 // Time: play, step, speed, and a bar over the whole run whose bands are the states of its behaviors.
-import { useEffect, useRef } from 'preact/hooks';
-import { clock, useSession } from '../watching.js';
+import { useLayoutEffect, useRef } from 'preact/hooks';
+import { clock, useSession, useShown } from '../watching.js';
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 5];
 
@@ -24,12 +24,11 @@ export function ScrubBar({ session, frames }) {
   useSession(session, 8);
   const bar = useRef();
   const head = useRef();
-  const latest = useRef();
-  latest.current = session;
-  useEffect(
+  const shown = useShown(session);
+  useLayoutEffect(
     () =>
       frames.add(() => {
-        const now = latest.current;
+        const now = shown.current;
         const span = now.end_s - now.start_s || 1;
         head.current.style.left = `${(100 * (now.cursor_s - now.start_s)) / span}%`;
       }),

@@ -22,7 +22,7 @@ export class RobotView {
     this.mean_ms = this.moved_ms = 0;
     globalThis.kadans_stage = this.stage; // for the console, and for tests
     const may_push = () => this.now().session.remote?.writes && this.now().session.remote.verbs.has('push');
-    const push = (link, impulse_Ns) => this.now().session.remote.command('push', { text: `${link}=${impulse_Ns.map((part) => part.toFixed(3)).join(',')}` });
+    const push = (link, impulse_Ns) => this.now().session.remote?.command('push', { text: `${link}=${impulse_Ns.map((part) => part.toFixed(3)).join(',')}` });
     new PushHand(this.stage, () => (may_push() ? this.show.model : null), push);
     frames.add(() => this.now && this.draw());
   }

@@ -39,7 +39,7 @@ inline constexpr std::size_t wire_head_bytes = 40, wire_robot_bytes = 32;
 inline constexpr std::size_t wire_bytes_max = wire_head_bytes + 9 + 52 + 28 * max_joints + 36 * max_feet + 4;
 
 enum class WireKind : std::uint8_t { none, hello, welcome, refusal, actuation, sensors, bye };
-enum class WireRefusal : std::uint8_t { none, version, layout, period, busy };
+enum class WireRefusal : std::uint8_t { none, other_version, layout, period, busy };
 
 struct WireHead {
   WireKind kind = WireKind::none;

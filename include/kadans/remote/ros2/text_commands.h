@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 
+#include "kadans/engine/clock.h"
 #include "kadans/remote/instance.h"
 #include "kadans/remote/live_hub.h"
 
@@ -23,6 +24,7 @@ namespace kadans {
 class TextCommands {
  public:
   static constexpr std::size_t text_max_bytes = 16 * 1024;
+  static constexpr std::int64_t patience_ns = 10'000'000'000;  // then an order that nobody took up is withdrawn
 
   struct Parts {
     Instance& instance;
@@ -44,11 +46,13 @@ class TextCommands {
     std::string id;  // JSON; "": none
     std::string verb;
     bool save = false;
+    std::int64_t asked_ns = 0;
   };
   std::optional<std::string> obey(const Asked& asked, const std::string& text, double value);
   void save(const Answer& answer, bool& done, std::string& text);
 
   Parts p_;
+  WallClock clock_;
   std::map<std::uint64_t, Asked> waiting_;  // by the order's number
 };
 

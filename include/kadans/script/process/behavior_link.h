@@ -42,6 +42,7 @@ struct BehaviorLink {
     std::int32_t priority = 0;  // of SCHED_FIFO; 0: usual
     std::int32_t cpu_to_leave = -1;
     std::uint32_t locks_memory = 0;
+    std::uint32_t on_wall_clock = 0;            // ScenarioConfig::on_wall_clock
     alignas(8) std::uint64_t memory_bytes = 0;  // more than it has when it begins to play; 0: no limit
     KeptState kept;                             // of the process before; size 0: there is nothing to go on with
   };

@@ -1,0 +1,67 @@
+#include "command_line.h"
+
+namespace kadans {
+namespace {
+
+constexpr const char* about =
+    "Kadans: a scriptable control runtime for robots.\n"
+    "A 1 kHz core executes compiled control objects; behaviors in Lua tell them what to do.\n";
+
+std::vector<const CLI::App*> visible_below(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+void add_commands(const CLI::App& app, const std::string& path, std::vector<CommandEntry>& all) {
+  for (const CLI::App* command : visible_below(app)) {
+    const std::string words = path + (path.empty() ? "" : " ") + command->get_name();
+    if (!visible_below(*command).empty()) {
+      add_commands(*command, words, all);
+      continue;
+    }
+    CommandEntry entry{.words = words, .command = command, .options = {}};
+    for (const CLI::App* at = command; at->get_parent() != nullptr; at = at->get_parent()) {
+      if (at != command && !command->get_fallthrough()) break;
+      for (const CLI::Option* option : at->get_options()) {
+        if (option != at->get_help_ptr()) entry.options.push_back(option);
+      }
+    }
+    all.push_back(std::move(entry));
+  }
+}
+
+}  // namespace
+
+CommandLine::CommandLine() : app(about, "kadans") {
+  app.require_subcommand(1);
+  add_sim(app, sim);
+  add_test(app, test);
+  add_replay(app, replay);
+  add_check(app, check);
+  add_sweep(app, sweep);
+  add_merge(app, merge);
+  add_tune(app, tune);
+  add_behavior(app, behavior);
+  add_repl(app, repl);
+  add_stubs(app, stubs);
+  add_params(app, params);
+  add_run(app, run);
+  add_behavior_process(app, behavior_process);
+  add_plant(app, plant);
+  add_jitter(app, jitter);
+  add_ctl(app, ctl);
+  add_completion(app, completion);
+  add_view(app, view);
+  add_render(app, render);
+  add_log(app, log);
+  add_doctor(app, doctor);
+  add_new(app, new_object);
+  add_examples(app);
+}
+
+std::vector<CommandEntry> commands_of(const CommandLine& line) {
+  std::vector<CommandEntry> all;
+  add_commands(line.app, "", all);
+  return all;
+}
+
+}  // namespace kadans

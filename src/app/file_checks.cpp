@@ -1,0 +1,139 @@
+#include "file_checks.h"
+
+#include <cstdio>
+#include <set>
+
+#include "behavior_stage.h"
+#include "json_kind.h"
+#include "kadans/config/based_on.h"
+#include "kadans/config/project_root.h"
+#include "kadans/model/urdf.h"
+#include "kadans/scenario/checks.h"
+#include "kadans/script/check_behavior.h"
+#include "played_behaviors.h"
+#include "sweep_command.h"
+#include "tune_command.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string check_urdf(const std::string& file) {
+  const RobotModel model = read_urdf(file, {.mesh_hulls = true});
+  std::size_t motors = 0;
+  for (const Joint& joint : model.joints) motors += joint.passive() ? 0 : 1;
+  char text[128];
+  std::snprintf(text, sizeof text, "robot description: %zu links, %zu joints, %zu motors, %.3f kg", model.links.size(),
+                model.joints.size(), motors, model.mass_kg());
+  return text;
+}
+
+// Whether the behaviors that the robot gives parameters take them.
+void check_behavior_values(const RobotConfig& config, const Catalog& catalog) {
+  std::set<std::string> files;
+  for (const BehaviorValue& given : config.behavior_values) files.insert(given.chunk);
+  const fs::path root = project_root(config.file);
+  std::vector<InputProblem> problems;
+  for (const std::string& file : files) {
+    for (InputProblem& problem : check_behavior(root, file, catalog)) problems.push_back(std::move(problem));
+  }
+  tell_once(problems);
+  if (!problems.empty()) throw InputError(problems);
+}
+
+std::string check_robot(const std::string& file) {
+  const Robot robot = read_robot(file);
+  const auto system = make_control_system(robot);
+  const ControlSets sets(system->catalog, std::move(system->objects));
+  check_behavior_values(robot.config, system->catalog);
+  return "robot: " + std::to_string(sets.size()) + " control objects, " + std::to_string(system->catalog.sets.size()) +
+         " control sets, " + std::to_string(system->catalog.parameters.size()) + " parameters";
+}
+
+std::string check_scenario(const std::string& file) {
+  const ScenarioConfig scenario = read_scenario_config(file);
+  RunLog log;
+  const Assembly assembly(scenario, scenario.seed, log);
+  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
+  const std::vector<InputProblem> problems = problems_of_named(scenario, assembly.catalog());
+  if (!problems.empty()) throw InputError(problems);
+  return "scenario: " + std::to_string(scenario.behaviors.size()) + " behaviors, " + std::to_string(checks.size()) +
+         " checks, " + std::to_string(assembly.catalog().signals.size()) + " signals";
+}
+
+}  // namespace
+
+std::string FileChecks::check_json(const fs::path& file) {
+  switch (kind_of(parse_based_json(read_input_file(file), file).value)) {
+    case JsonKind::tuning:
+      return check_tune_plan(file);
+    case JsonKind::sweep:
+      return check_sweep_plan(file);
+    case JsonKind::robot:
+      return check_robot(file);
+    case JsonKind::scenario:
+      return check_scenario(file);
+    case JsonKind::other:
+      break;
+  }
+  return "";
+}
+
+const FileChecks::Known& FileChecks::robot_at(const fs::path& config) {
+  std::unique_ptr<Known>& known = robots_[fs::absolute(config).lexically_normal()];
+  if (known) return *known;
+  auto read = std::make_unique<Known>();
+  read->robot = read_robot(config);
+  read->system = make_control_system(read->robot);
+  known = std::move(read);
+  return *known;
+}
+
+// A behavior belongs to the robot whose configuration has the name of the behavior's folder.
+const FileChecks::Known* FileChecks::robot_of(const fs::path& script, std::string& missing) {
+  if (!robot_.empty()) return &robot_at(robot_);
+  fs::path config;
+  try {
+    config = robot_of_behavior(script);
+  } catch (const InputError& error) {
+    missing = error.problems().front().message;
+    return nullptr;
+  }
+  return &robot_at(config);
+}
+
+std::string FileChecks::check_script_file(const CheckedFile& checked_file) {
+  const fs::path& file = checked_file.file;
+  (void)read_input_file(file);  // tells what is not there
+  std::string missing;
+  const Known* const known = robot_of(file, missing);
+  CheckedScript checked =
+      check_script(project_root(file), fs::absolute(file), known == nullptr ? nullptr : &known->system->catalog);
+  if (!checked.problems.empty() && known == nullptr)
+    checked.problems.push_back({.file = file.string(), .message = "was looked at without a robot: " + missing});
+  if (!checked.problems.empty()) throw InputError(checked.problems);
+  if (checked.kind == ScriptKind::module) return "a module";
+  if (checked.kind == ScriptKind::test) return "tests";
+  if (known == nullptr && checked_file.found) return "loads; it is of no robot here, --robot FILE checks more";
+  if (known == nullptr) throw InputError({.file = file.string(), .message = missing});
+  return "fits " + known->robot.config.name;
+}
+
+std::string FileChecks::check(const CheckedFile& checked) {
+  const fs::path& file = checked.file;
+  const std::string extension = file.extension().string();
+  if (extension == ".urdf") return check_urdf(file);
+  if (extension == ".lua") {
+    const std::string what = check_script_file(checked);
+    return what == "a module" || what == "tests" ? what : "behavior: " + what;
+  }
+  if (extension != ".json")
+    throw InputError({.file = file.string(), .message = "not a file that can be checked: .urdf, .json or .lua"});
+  const std::string what = check_json(file);
+  if (what.empty() && !checked.found)
+    throw InputError({.file = file.string(), .message = "is no robot, scenario, sweep or tuning of ours"});
+  return what;
+}
+
+}  // namespace kadans

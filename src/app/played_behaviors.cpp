@@ -1,0 +1,55 @@
+#include "played_behaviors.h"
+
+#include <filesystem>
+#include <set>
+
+#include "kadans/config/project_root.h"
+#include "kadans/script/check_behavior.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_files(const std::vector<PlayItem>& items, std::set<fs::path>& files) {
+  for (const PlayItem& item : items) files.insert(item.file);
+}
+
+std::set<fs::path> played_files(const ScenarioConfig& scenario) {
+  std::set<fs::path> files;
+  add_files(scenario.behaviors, files);
+  for (const ScenarioEvent& event : scenario.events) add_files(event.order.list, files);
+  return files;
+}
+
+std::vector<InputProblem> problems_in(const std::set<fs::path>& files, const ScenarioConfig& scenario,
+                                      const Catalog& catalog) {
+  const fs::path root = project_root(scenario.file);
+  std::vector<InputProblem> problems;
+  for (const fs::path& file : files) {
+    for (InputProblem& problem : check_behavior(root, file, catalog)) problems.push_back(std::move(problem));
+  }
+  tell_once(problems);  // what two of them require or call
+  return problems;
+}
+
+}  // namespace
+
+std::vector<InputProblem> problems_of_played(const ScenarioConfig& scenario, const Catalog& catalog) {
+  return problems_in(played_files(scenario), scenario, catalog);
+}
+
+std::vector<InputProblem> problems_of_named(const ScenarioConfig& scenario, const Catalog& catalog) {
+  std::set<fs::path> files = played_files(scenario);
+  for (const ScenarioEvent& event : scenario.events) {
+    if (!event.order.file.empty()) files.insert(event.order.file);
+  }
+  return problems_in(files, scenario, catalog);
+}
+
+void refuse_faulty_behaviors(const ScenarioConfig& scenario, const Catalog& catalog) {
+  const std::vector<InputProblem> problems = problems_of_played(scenario, catalog);
+  if (!problems.empty()) throw InputError(problems);
+}
+
+}  // namespace kadans

@@ -1,0 +1,29 @@
+// Modules of an author's own: fields that are given to them while they run, files that return nothing, and guards that
+// stand in them.
+#pragma once
+
+#include <vector>
+
+#include "known_names.h"
+#include "source_scopes.h"
+
+namespace kadans {
+
+// A file that was loaded, read.
+struct ReadSource {
+  const LuaState::Source* source = nullptr;
+  SourceScopes scopes;
+};
+
+// Whatever is given to a table as a field anywhere may be a module's, and one that is filled by computed names holds
+// what it likes.
+void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, KnownNames& known);
+
+// Modules whose value somebody uses though they return none.
+void check_module_values(const std::vector<ReadSource>& read, const LuaState& lua, std::vector<InputProblem>& problems);
+
+// Functions that guards are and that return no value, in whatever file.
+void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& known,
+                        std::vector<InputProblem>& problems);
+
+}  // namespace kadans

@@ -1,0 +1,72 @@
+#include "kadans/signal/input_file.h"
+
+#include <cerrno>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+  throw InputError({.file = file.string(), .message = why});
+}
+
+std::string reason() { return std::generic_category().message(errno); }
+
+// Open for reading; what it is, is looked at before and after: to open a device may have an effect.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::filesystem::path& file) {
+    struct stat found {};
+    if (stat(file.c_str(), &found) != 0)
+      refuse(file, errno == ENOENT || errno == ENOTDIR ? "there is no such file" : "cannot be read: " + reason());
+    check(file, found);
+    number_ = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (number_ < 0) refuse(file, "cannot be read: " + reason());
+    if (fstat(number_, &found) != 0 || !S_ISREG(found.st_mode)) {
+      close(number_);
+      refuse(file, "this is no file");
+    }
+  }
+  ~OpenFile() { close(number_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  int number() const noexcept { return number_; }
+
+ private:
+  static void check(const std::filesystem::path& file, const struct stat& found) {
+    if (S_ISDIR(found.st_mode)) refuse(file, "this is a folder, not a file");
+    if (!S_ISREG(found.st_mode)) refuse(file, "this is no file but a device, a pipe or a socket");
+  }
+  int number_ = -1;
+};
+
+}  // namespace
+
+std::string read_input_file(const std::filesystem::path& file, std::size_t size_max_bytes) {
+  constexpr std::size_t piece_bytes = std::size_t{256} << 10U;
+  const OpenFile opened(file);
+  std::string text;
+  for (;;) {
+    const std::size_t had = text.size();
+    text.resize(had + piece_bytes);
+    const ssize_t count = read(opened.number(), text.data() + had, piece_bytes);
+    if (count < 0 && errno != EINTR) refuse(file, "cannot be read: " + reason());
+    text.resize(had + static_cast<std::size_t>(count > 0 ? count : 0));
+    if (text.size() > size_max_bytes)
+      refuse(file, "the file is larger than " + std::to_string(size_max_bytes >> 20U) + " MB");
+    if (count == 0) break;
+  }
+  text.shrink_to_fit();
+  return text;
+}
+
+void check_input_file(const std::filesystem::path& file) { const OpenFile opened(file); }
+
+}  // namespace kadans

@@ -1,0 +1,67 @@
+#include "kadans/signal/utf8.h"
+
+#include <cstdint>
+
+namespace kadans {
+namespace {
+
+constexpr std::string_view replacement = "\xEF\xBF\xBD";
+constexpr std::string_view no_characters[] = {"\xEF\xBF\xBE", "\xEF\xBF\xBF"};  // U+FFFE, U+FFFF
+
+std::uint32_t byte(std::string_view text, std::size_t i) noexcept {
+  return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+}
+
+bool fits_xml(std::string_view character) noexcept {
+  if (character.size() == 1)
+    return byte(character, 0) >= 0x20U || character == "\n" || character == "\t" || character == "\r";
+  return character != no_characters[0] && character != no_characters[1];
+}
+
+}  // namespace
+
+std::size_t utf8_length(std::string_view text, std::size_t at) noexcept {
+  const std::uint32_t first = byte(text, at);
+  if (first < 0x80U) return 1;
+  const std::size_t length = first >= 0xF0U ? 4 : first >= 0xE0U ? 3 : 2;
+  if (first < 0xC2U || first > 0xF4U) return 0;
+  std::uint32_t code = first & (0x7FU >> length);
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(text, at + k) & 0xC0U) != 0x80U) return 0;
+    code = (code << 6U) | (byte(text, at + k) & 0x3FU);
+  }
+  if (length == 3 && (code < 0x800U || (code >= 0xD800U && code <= 0xDFFFU))) return 0;
+  if (length == 4 && (code < 0x10000U || code > 0x10FFFFU)) return 0;
+  return length;
+}
+
+std::size_t find_invalid_utf8(std::string_view text) noexcept {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text, i);
+    if (length == 0) return i;
+    i += length;
+  }
+  return std::string_view::npos;
+}
+
+std::string valid_utf8(std::string_view text) {
+  std::string valid;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text, i);
+    valid += length == 0 ? replacement : text.substr(i, length);
+    i += length == 0 ? 1 : length;
+  }
+  return valid;
+}
+
+std::string xml_characters(std::string_view text) {
+  const std::string valid = valid_utf8(text);
+  std::string kept;
+  for (std::size_t i = 0; i < valid.size(); i += utf8_length(valid, i)) {
+    const std::string_view character = std::string_view(valid).substr(i, utf8_length(valid, i));
+    if (fits_xml(character)) kept += character;
+  }
+  return kept;
+}
+
+}  // namespace kadans

@@ -1,0 +1,195 @@
+// Records and checkpoints that somebody sends: what they bring is unpacked beside everything that is here, and none of
+// it runs as native code.
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "kadans/telemetry/run_inputs.h"
+#include "program.h"
+
+using namespace kadans;
+using namespace kadans::program;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* plugin_source = KADANS_BINARY_DIR "/tests/plugins/loaded_plugin.so";
+
+InputFile input(const std::string& path, const std::string& text) { return {path, content_hash(text), text}; }
+
+// A project with a record of a short run and a checkpoint of it.
+struct Sent {
+  fs::path project, elsewhere;
+  fs::path loaded;  // there as soon as the plug-in is
+
+  explicit Sent(const std::string& name, bool with_plugin = false)
+      : project(project_copy(name)), elsewhere(fresh_folder(name + "_elsewhere")), loaded(elsewhere / "loaded") {
+    if (with_plugin) {
+      fs::copy(plugin_source, project / "models/own.so");
+      list_plugin(project / "config/tulip/robot.json", "models/own.so");
+    }
+    const Outcome outcome =
+        run("sim config/scenarios/squat.json --duration 0.3 --record run.mcap --checkpoint 0.2=at.mcap", project);
+    REQUIRE_MESSAGE(fs::exists(project / "at.mcap"), outcome.err);
+    setenv("KADANS_TEST_LOADED", loaded.c_str(), 1);
+  }
+  ~Sent() { unsetenv("KADANS_TEST_LOADED"); }
+  Sent(const Sent&) = delete;
+  Sent& operator=(const Sent&) = delete;
+
+  static void list_plugin(const fs::path& robot, const std::string& plugin) {
+    REQUIRE(edit(robot, "\"name\": \"tulip\",", "\"name\": \"tulip\", \"plugins\": [\"" + plugin + "\"],"));
+  }
+  RunInputs inputs() const {
+    McapReader reader((project / "run.mcap").string());
+    McapMessage message;
+    (void)reader.next(message);
+    return read_inputs(reader, "run.mcap");
+  }
+  // As a stranger writes it.
+  fs::path forged(const RunInputs& inputs) const {
+    McapWriter writer;
+    REQUIRE(writer.open((elsewhere / "forged.mcap").string()));
+    REQUIRE(write_inputs(writer, inputs));
+    REQUIRE(writer.add_metadata("checkpoint", {{"tick", "100"}, {"time_ns", "100000000"}, {"state_hash", "0"}}));
+    REQUIRE(writer.close());
+    return elsewhere / "forged.mcap";
+  }
+};
+
+// Both ways to what a record holds.
+const std::vector<std::string> ways{"replay forged.mcap --from-record", "sim --from forged.mcap --no-record"};
+
+}  // namespace
+
+TEST_CASE("A record writes nothing outside of its folder, by no name and through no link") {
+  const Sent sent("foreign_paths");
+  write(sent.elsewhere / "victim.sh", "mine");
+  fs::create_directories(sent.elsewhere / "scripts");
+  for (const std::string name :
+       {"scripts/./x.sh", "scripts//x.sh", "./x.sh", "../x.sh", "a/../../x.sh", "scripts/", "."}) {
+    CAPTURE(name);
+    RunInputs inputs = sent.inputs();
+    inputs.files.push_back(input(name, "theirs"));
+    (void)sent.forged(inputs);
+    for (const std::string& way : ways) {
+      const Outcome outcome = run(way, sent.elsewhere);
+      CHECK(outcome.exit_code == 2);
+      CHECK(has(outcome.err, "is no path inside a project"));
+    }
+  }
+  // A plug-in of the project is known by its name alone and becomes a link; a text of the same file must not follow it.
+  RunInputs inputs = sent.inputs();
+  inputs.files.push_back({"victim.sh", content_hash("mine"), std::nullopt});
+  inputs.files.push_back(input("victim.sh/x", "theirs"));
+  (void)sent.forged(inputs);
+  for (const std::string& way : ways) CHECK(run(way, sent.elsewhere).exit_code == 2);
+  CHECK(read(sent.elsewhere / "victim.sh") == "mine");
+}
+
+TEST_CASE("Native code that a record brings is not loaded, whatever its robot lists") {
+  const Sent sent("foreign_native");
+  for (const std::string& listed : {std::string("models/evil.so"), (sent.elsewhere / "evil.so").string()}) {
+    CAPTURE(listed);
+    fs::copy(plugin_source, sent.elsewhere / "evil.so", fs::copy_options::overwrite_existing);
+    RunInputs inputs = sent.inputs();
+    inputs.files.push_back(input("models/evil.so", read(plugin_source)));
+    const auto robot = std::ranges::find(inputs.files, "config/tulip/robot.json", &InputFile::path);
+    const std::string name = "\"name\": \"tulip\",";
+    robot->text->replace(robot->text->find(name), name.size(), name + " \"plugins\": [\"" + listed + "\"],");
+    *robot = input(robot->path, *robot->text);
+    (void)sent.forged(inputs);
+    for (const std::string& way : ways) {
+      const Outcome outcome = run(way, sent.elsewhere);
+      CHECK(outcome.exit_code == 2);
+      CHECK(has(outcome.err, "robot.json:"));
+      CHECK(has(outcome.err, "native code does not come out of a record"));
+    }
+    CHECK_FALSE(fs::exists(sent.loaded));
+  }
+}
+
+TEST_CASE("A record's plug-in is the one of this project when it is the same, or when that is allowed") {
+  const Sent sent("foreign_plugin", true);
+  fs::copy(sent.project / "run.mcap", sent.elsewhere / "run.mcap");
+  fs::copy(sent.project / "at.mcap", sent.elsewhere / "at.mcap");
+  const std::vector<std::string> both{"replay run.mcap --from-record", "sim --from at.mcap --no-record"};
+  for (const std::string& way : both) {
+    const Outcome none = run(way, sent.elsewhere);
+    CHECK(none.exit_code == 2);
+    CHECK(has(none.err, "needs the plug-in models/own.so, which is not in this project"));
+    const Outcome same = run(way, sent.project);
+    CHECK_MESSAGE(same.exit_code == 0, same.err);
+  }
+  CHECK(fs::exists(sent.loaded));
+  fs::remove(sent.loaded);
+  write(sent.project / "models/own.so", read(plugin_source) + "more");
+  for (const std::string& way : both) {
+    const Outcome other = run(way, sent.project);
+    CHECK(other.exit_code == 2);
+    CHECK(has(other.err, "--allow-plugins"));
+    CHECK_FALSE(fs::exists(sent.loaded));
+  }
+  CHECK(run(both[0] + " --allow-plugins", sent.project).exit_code == 0);
+  CHECK(run(both[1] + " --allow-plugins", sent.project).exit_code == 0);
+}
+
+TEST_CASE("A record beside a project of its own does not load that project's plug-ins from elsewhere") {
+  const Sent sent("foreign_beside", true);
+  const std::string record = "'" + (sent.project / "run.mcap").string() + "'";
+  const Outcome refused = run("replay " + record, sent.elsewhere);
+  CHECK(refused.exit_code == 2);
+  CHECK(has(refused.err, "--allow-plugins"));
+  CHECK_FALSE(fs::exists(sent.loaded));
+  const Outcome allowed = run("replay --allow-plugins " + record, sent.elsewhere);
+  CHECK_MESSAGE(allowed.exit_code == 0, allowed.err);
+}
+
+TEST_CASE("Files that are devices, pipes or folders are refused where a file is wanted, and nothing waits for them") {
+  const fs::path folder = project_copy("no_files");
+  REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  for (const char* name : {"pipe.lua", "pipe.json", "pipe.urdf", "pipe.mcap"})
+    fs::create_symlink("pipe", folder / name);
+  for (const char* name : {"zero.lua", "zero.json", "zero.urdf", "zero.mcap"})
+    fs::create_symlink("/dev/zero", folder / name);
+  fs::create_symlink("pipe", folder / "behaviors/tulip/pipe.lua");
+  for (const std::string kind : {"pipe", "zero"}) {
+    for (const std::string& command :
+         {"check " + kind + ".lua --robot config/tulip/robot.json", "check " + kind + ".json",
+          "check " + kind + ".urdf", "behavior check " + kind + ".lua --robot config/tulip/robot.json",
+          "log info " + kind + ".mcap", "log diff " + kind + ".mcap " + kind + ".mcap", "replay " + kind + ".mcap",
+          "sim --from " + kind + ".mcap", "view " + kind + ".mcap", "sim " + kind + ".json",
+          "run " + kind + ".json --soft"}) {
+      CAPTURE(command);
+      const Outcome outcome = run(command, folder);
+      CHECK(outcome.exit_code == 2);
+      CHECK(has(outcome.err, "a device, a pipe or a socket"));
+    }
+  }
+  CHECK(run("sim config/scenarios/squat.json --play pipe --duration 0.1 --no-record", folder).exit_code == 2);
+}
+
+TEST_CASE("A message of a record that nests deep crashes no command that reads records") {
+  const fs::path folder = fresh_folder("deep_record");
+  McapWriter writer;
+  REQUIRE(writer.open((folder / "deep.mcap").string()));
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+  for (const auto& [schema, topic] : {std::pair{"foxglove.Log", "/log"}, std::pair{"kadans.Transition", "/transitions"},
+                                      std::pair{"kadans.Fault", "/faults"}, std::pair{"other", "/other"}}) {
+    const std::uint16_t id = writer.add_schema(schema, "jsonschema", "{}");
+    const std::uint16_t channel = writer.add_channel(topic, "json", id);
+    REQUIRE(writer.write(channel, 0, 1, std::as_bytes(std::span(deep.data(), deep.size()))));
+  }
+  REQUIRE(writer.close());
+  for (const char* command :
+       {"log info deep.mcap", "log cat deep.mcap", "log csv deep.mcap", "log cut deep.mcap -o cut.mcap",
+        "log diff deep.mcap deep.mcap", "log plot deep.mcap x -o x.svg"}) {
+    CAPTURE(command);
+    CHECK(run(command, folder).exit_code <= 2);
+  }
+}
