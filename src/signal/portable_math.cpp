@@ -19,6 +19,7 @@
 //   not to know them (KADANS_PORTABLE_MATH in cmake/KadansToolchain.cmake).
 // - A compiler may contract a * b + c into one operation: -ffp-contract=off.
 // - Eigen cuts large products by the sizes of the processor's caches, unless it may not ask for them: EIGEN_NO_CPUID.
+//   The Eigen in KDL and pagmo does ask, and cuts nothing that has fewer than 48 rows and columns.
 //
 // Unlike the C library's these functions do not set errno, nor lgamma signgam. Those of complex numbers and of long
 // double are left to the C library: nothing that decides a run calls them.

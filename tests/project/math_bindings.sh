@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # math_bindings.sh FUNCTION...: the program shows these functions, and whatever it loads takes them from it. From the C
 # library's mathematics comes only what is exact by its definition: all else differs by the processor
-# (src/signal/portable_math.cpp).
+# (src/signal/portable_math.cpp). So do all other programs of the build, tests and benchmarks, that load Bullet, KDL or
+# LuaJIT; the process of the behaviors is forked from the program.
 set -euo pipefail
 
 # What rounds correctly, or has nothing to round.
@@ -33,13 +34,33 @@ looks() {
   echo "$program: $(awk '{print $1}' "$folder/bindings" | sort -u | wc -l) files"
 }
 
-program=$KADANS_BINARY_DIR/kadans
-shown=$(nm -D --defined-only "$program" | awk '{print $3}')
-for function in "$@"; do
-  for name in "$function" "${function}f"; do
-    grep -qx "$name" <<<"$shown" || { echo "$program does not show $name"; exit 1; }
+# shows PROGRAM FUNCTION...: the functions and those of single precision stand in its table of dynamic symbols.
+shows() {
+  local program=$1 function name shown
+  shift
+  shown=$(nm -D --defined-only "$program" | awk '{print $3}')
+  for function in "$@"; do
+    for name in "$function" "${function}f"; do
+      grep -qx "$name" <<<"$shown" || { echo "$program does not show $name"; exit 1; }
+    done
   done
+}
+
+program=$KADANS_BINARY_DIR/kadans
+c_library=$(ldd "$program" | awk '$1 ~ /^libm\.so/ {print $3}')
+nm -D --defined-only "$c_library" | awk '{sub("@.*", "", $3); print $3}' | sort -u >"$folder/c_functions"
+looked_at=0
+for file in "$KADANS_BINARY_DIR"/kadans* "$KADANS_BINARY_DIR"/tests/* "$KADANS_BINARY_DIR"/tests/bench/*; do
+  readelf -d "$file" 2>/dev/null | grep -q 'NEEDED.*\[lib\(Bullet\|LinearMath\|luajit\|orocos-kdl\)' || continue
+  [[ $file == *.so ]] && continue
+  shows "$file" "$@"
+  # Two tests compare with formulas of complex numbers, within wide bounds.
+  wrong=$(nm -D --undefined-only "$file" | awk '{sub("@.*", "", $2); print $2}' | sort | comm -12 - "$folder/c_functions" |
+    grep -vxE "$exact" | { [ "$file" = "$program" ] && cat || grep -vx 'cabs\|cexp'; } || true)
+  [ -z "$wrong" ] || { echo "$file takes from the C library:" $wrong; exit 1; }
+  looked_at=$((looked_at + 1))
 done
+echo "$looked_at programs bring their own mathematics"
 
 bindings "$program" sim "$KADANS_SOURCE_DIR/config/scenarios/squat.json" --duration 0.5 --no-record
 looks "$program" libBulletDynamics libBulletCollision libLinearMath libluajit liborocos-kdl
