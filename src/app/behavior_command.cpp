@@ -30,7 +30,7 @@ fs::path robot_for(const fs::path& file, const BehaviorOptions& options) {
 
 int run_checks(const BehaviorOptions& options) {
   int code = exit_passed;
-  FileChecks checks(options.robot);
+  FileChecks checks(options.robot, options.plugins);
   for (const CheckedFile& checked : files_to_check(options.files, true)) {
     try {
       std::printf("ok  %s  %s\n", checked.file.c_str(), checks.check_script_file(checked).c_str());
@@ -81,8 +81,9 @@ void add_files(CLI::App* command, BehaviorOptions& options, const char* what) {
 void add_behavior(CLI::App& app, BehaviorOptions& options) {
   CLI::App* behavior = app.add_subcommand("behavior", "Check, test and draw behaviors");
   behavior->require_subcommand(1);
-  add_files(behavior->add_subcommand("check", "Say what is wrong in behaviors, without running them"), options,
-            "Behaviors, modules and tests (Lua); folders, patterns");
+  CLI::App* check = behavior->add_subcommand("check", "Say what is wrong in behaviors, without running them");
+  add_files(check, options, "Behaviors, modules and tests (Lua); folders, patterns");
+  check->add_flag("--plugins", options.plugins, "Load the plug-ins that robots name: that runs code of their own");
   CLI::App* test =
       behavior->add_subcommand("test", "Run tests of behaviors on a robot without physics, in virtual time");
   add_files(test, options, "Tests (*_test.lua), or folders of them");

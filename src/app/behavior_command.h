@@ -17,6 +17,7 @@ struct BehaviorOptions {
   std::string only;                // of the tests: part of their names
   std::string junit;
   bool json = false;
+  bool plugins = false;  // are loaded by check
 };
 
 void add_behavior(CLI::App& app, BehaviorOptions& options);

@@ -18,12 +18,14 @@ void add_check(CLI::App& app, CheckOptions& options) {
       ->type_name("PATH...");
   check->add_option("--robot", options.robot, "Robot that behaviors are checked against (default: by their folder)")
       ->type_name("FILE");
+  check->add_flag("--plugins", options.plugins,
+                  "Load the plug-ins that robots name, to check what uses them too: that runs code of their own");
 }
 
 int run_check(const CheckOptions& options) {
   int code = exit_passed;
   bool any = false;
-  FileChecks checks(options.robot);
+  FileChecks checks(options.robot, options.plugins);
   for (const CheckedFile& checked : files_to_check(options.files, false)) {
     try {
       const std::string what = checks.check(checked);

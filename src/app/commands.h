@@ -63,7 +63,8 @@ int run_test(const TestOptions& options);
 
 struct CheckOptions {
   std::vector<std::string> files;
-  std::string robot;  // configuration that behaviors are checked against; "" = that of the folder they are in
+  std::string robot;     // configuration that behaviors are checked against; "" = that of the folder they are in
+  bool plugins = false;  // are loaded
 };
 void add_check(CLI::App& app, CheckOptions& options);
 int run_check(const CheckOptions& options);

@@ -42,7 +42,18 @@ void check_behavior_values(const RobotConfig& config, const Catalog& catalog) {
   if (!problems.empty()) throw InputError(problems);
 }
 
-std::string check_robot(const std::string& file) {
+}  // namespace
+
+FileChecks::FileChecks(std::string robot, bool plugins)
+    : robot_(std::move(robot)),
+      gate_{.closed = !plugins, .let_in = {}, .remedy = "to load it is to run its code, which --plugins does"} {}
+
+std::string FileChecks::check_robot(const fs::path& file) {
+  if (gate_.closed && !read_plugin_files(file).empty()) {
+    const RobotConfig config = read_robot_config(file, {});
+    return "robot: " + std::to_string(config.objects.size()) +
+           " control objects; its plug-ins were not loaded, so types and parameters are not checked: --plugins does";
+  }
   const Robot robot = read_robot(file);
   const auto system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));
@@ -51,8 +62,9 @@ std::string check_robot(const std::string& file) {
          " control sets, " + std::to_string(system->catalog.parameters.size()) + " parameters";
 }
 
-std::string check_scenario(const std::string& file) {
-  const ScenarioConfig scenario = read_scenario_config(file);
+std::string FileChecks::check_scenario(const fs::path& file) {
+  ScenarioConfig scenario = read_scenario_config(file);
+  scenario.plugins = gate_;
   RunLog log;
   const Assembly assembly(scenario, scenario.seed, log);
   const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
@@ -62,14 +74,12 @@ std::string check_scenario(const std::string& file) {
          " checks, " + std::to_string(assembly.catalog().signals.size()) + " signals";
 }
 
-}  // namespace
-
 std::string FileChecks::check_json(const fs::path& file) {
   switch (kind_of(parse_based_json(read_input_file(file), file).value)) {
     case JsonKind::tuning:
-      return check_tune_plan(file);
+      return check_tune_plan(file, gate_);
     case JsonKind::sweep:
-      return check_sweep_plan(file);
+      return check_sweep_plan(file, gate_);
     case JsonKind::robot:
       return check_robot(file);
     case JsonKind::scenario:
@@ -84,7 +94,7 @@ const FileChecks::Known& FileChecks::robot_at(const fs::path& config) {
   std::unique_ptr<Known>& known = robots_[fs::absolute(config).lexically_normal()];
   if (known) return *known;
   auto read = std::make_unique<Known>();
-  read->robot = read_robot(config);
+  read->robot = read_robot(config, gate_);
   read->system = make_control_system(read->robot);
   known = std::move(read);
   return *known;

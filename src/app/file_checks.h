@@ -13,8 +13,9 @@ namespace kadans {
 
 class FileChecks {
  public:
-  // `robot`: configuration that behaviors are checked against; "" = that of the folder they are in.
-  explicit FileChecks(std::string robot) : robot_(std::move(robot)) {}
+  // `robot`: configuration that behaviors are checked against; "" = that of the folder they are in. A plug-in that is
+  // loaded runs code of its own, whoever wrote it: only when `plugins` says so.
+  FileChecks(std::string robot, bool plugins);
 
   // What it is, for people, "" for JSON that was found and is none of ours. Throws InputError with everything that is
   // wrong.
@@ -31,7 +32,11 @@ class FileChecks {
   const Known* robot_of(const std::filesystem::path& script, std::string& missing);
   std::string check_json(const std::filesystem::path& file);
 
+  std::string check_robot(const std::filesystem::path& file);
+  std::string check_scenario(const std::filesystem::path& file);
+
   std::string robot_;
+  PluginGate gate_;
   std::map<std::filesystem::path, std::unique_ptr<Known>> robots_;  // that were read
 };
 

@@ -41,8 +41,8 @@ namespace {
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
 // Of the end: threads that are told to, each other part, a record on a slow disk; virtual time that stands.
-constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, record_ns = 10'000'000'000,
-                       standing_ns = 2'000'000'000;
+constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, service_ns = 5'000'000'000,
+                       record_ns = 10'000'000'000, standing_ns = 2'000'000'000;
 
 Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const RobotConfig& robot) {
   namespace fs = std::filesystem;
@@ -200,11 +200,11 @@ class LiveRun {
   }
 
   void end_services(LastResort& last_resort) {
-    last_resort.expect("the service of ROS 2", stage_ns);
+    last_resort.expect("the service of ROS 2", service_ns);
     ros2_.stop();
-    last_resort.expect("the live server", stage_ns);
+    last_resort.expect("the live server", service_ns);
     live_.stop();
-    last_resort.expect("the server of kadans ctl", stage_ns);
+    last_resort.expect("the server of kadans ctl", service_ns);
     ctl_.stop();
     last_resort.expect("the end of the run", record_ns);
   }

@@ -69,9 +69,9 @@ int run_sweep(const SweepOptions& options) {
   return passed(part) ? exit_passed : exit_failed;
 }
 
-std::string check_sweep_plan(const std::string& file) {
+std::string check_sweep_plan(const std::string& file, const PluginGate& gate) {
   const SweepPlan plan = read_sweep_plan(file);
-  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan);
+  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan, gate);
   const std::size_t cases = sweep_cases(plan, subjects, "").size();
   return "sweep: " + std::to_string(cases) + " cases, " + std::to_string(subjects.size()) + " scenarios, " +
          std::to_string(plan.metrics.size()) + " metrics";

@@ -35,6 +35,6 @@ void add_merge(CLI::App& app, MergeOptions& options);
 int run_merge(const MergeOptions& options);
 
 // What is wrong in a plan beyond its fields: patterns, ranges, signals. Throws InputError; else says what it is.
-std::string check_sweep_plan(const std::string& file);
+std::string check_sweep_plan(const std::string& file, const PluginGate& gate);
 
 }  // namespace kadans

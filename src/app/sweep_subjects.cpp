@@ -47,8 +47,10 @@ void verify_ranges(const ExperimentConfig& plan, const Robot& robot, Problems& p
   }
 }
 
-SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig& plan, Problems& problems) {
-  const ScenarioConfig scenario = read_scenario_config(named.file);
+SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig& plan, const PluginGate& gate,
+                        Problems& problems) {
+  ScenarioConfig scenario = read_scenario_config(named.file);
+  scenario.plugins = gate;
   const Robot robot = read_robot(scenario.robot, scenario.plugins);
   verify_ranges(plan, robot, problems);
   RunLog log;
@@ -69,12 +71,12 @@ SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig&
 
 }  // namespace
 
-std::vector<SweepSubject> read_sweep_subjects(const ExperimentConfig& plan) {
+std::vector<SweepSubject> read_sweep_subjects(const ExperimentConfig& plan, const PluginGate& gate) {
   Problems problems(plan.file);
   std::vector<SweepSubject> subjects;
   for (const ExperimentScenario& scenario : plan.scenarios) {
     try {
-      subjects.push_back(subject_of(scenario, plan, problems));
+      subjects.push_back(subject_of(scenario, plan, gate, problems));
     } catch (const InputError& error) {
       problems.add(error);
     }

@@ -11,7 +11,7 @@ namespace kadans {
 
 // Throws InputError with everything that is wrong in the scenarios' files, in the plan's metrics, and in the ranges of
 // what it varies.
-std::vector<SweepSubject> read_sweep_subjects(const ExperimentConfig& plan);
+std::vector<SweepSubject> read_sweep_subjects(const ExperimentConfig& plan, const PluginGate& gate = {});
 
 // The program that runs scenarios: this one, or that beside it.
 std::string run_program_path();

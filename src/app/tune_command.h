@@ -33,12 +33,12 @@ void add_tune(CLI::App& app, TuneOptions& options);
 int start_tune_program(char** argv);
 
 // The robot that all scenarios of the plan share. Throws InputError when they do not.
-Robot tuned_robot(const TunePlan& plan);
+Robot tuned_robot(const TunePlan& plan, const PluginGate& gate = {});
 // What the plan tunes in it. Throws InputError for patterns that choose nothing, ranges that a parameter has not, and a
 // start outside the range.
 std::vector<TunedAxis> tuned_axes(const TunePlan& plan, const Robot& robot);
 
 // What is wrong in a plan beyond its fields. Throws InputError; else says what it is.
-std::string check_tune_plan(const std::string& file);
+std::string check_tune_plan(const std::string& file, const PluginGate& gate);
 
 }  // namespace kadans

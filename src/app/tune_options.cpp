@@ -67,7 +67,7 @@ int start_tune_program(char** argv) {
                                            "): tuning is a program of its own, built where libpagmo-dev is installed"});
 }
 
-Robot tuned_robot(const TunePlan& plan) {
+Robot tuned_robot(const TunePlan& plan, const PluginGate& gate) {
   std::vector<std::string> robots;
   for (const ExperimentScenario& scenario : plan.scenarios) {
     robots.push_back(read_scenario_config(scenario.file).robot);
@@ -76,7 +76,7 @@ Robot tuned_robot(const TunePlan& plan) {
              "is of " + robots.back() + ", the first scenario of " + robots.front() +
                  ": one robot can be tuned at a time");
   }
-  return read_robot(robots.front());
+  return read_robot(robots.front(), gate);
 }
 
 std::vector<TunedAxis> tuned_axes(const TunePlan& plan, const Robot& robot) {
@@ -104,10 +104,10 @@ std::vector<TunedAxis> tuned_axes(const TunePlan& plan, const Robot& robot) {
   return axes;
 }
 
-std::string check_tune_plan(const std::string& file) {
+std::string check_tune_plan(const std::string& file, const PluginGate& gate) {
   const TunePlan plan = read_tune_plan(file);
-  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan);
-  const std::size_t parameters = tuned_axes(plan, tuned_robot(plan)).size();
+  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan, gate);
+  const std::size_t parameters = tuned_axes(plan, tuned_robot(plan, gate)).size();
   return "tuning: " + std::to_string(parameters) + " parameters, " + std::to_string(plan.generations) +
          " generations of " + std::to_string(plan.population) + " candidates, " + std::to_string(plan.runs) +
          " runs each, " + std::to_string(subjects.size()) + " scenarios";

@@ -118,7 +118,7 @@ void RobotReader::object(Fields& f) {
   });
   if (!f.reading()) return;
   object.type.place = f.place("type");
-  if (!object.type.name.empty() &&
+  if (!object.type.name.empty() && !object_types_.empty() &&
       std::find(object_types_.begin(), object_types_.end(), object.type.name) == object_types_.end()) {
     problems_.add_unknown(object.type.place, "type of control object", object.type.name, object_types_);
   }

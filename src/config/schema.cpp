@@ -88,7 +88,7 @@ Json schema_of(const FieldInfo& info) {
   if (!info.unit.empty()) text += (text.empty() ? "in " : ", in ") + info.unit;
   if (!text.empty()) schema["description"] = text;
   add_type(schema, info);
-  if (!info.default_json.empty()) schema["default"] = Json::parse(info.default_json);
+  if (!info.default_json.empty()) schema["default"] = parse_foreign_json(info.default_json);
   return schema;
 }
 

@@ -107,8 +107,8 @@ void LiveChannels::take(const Fault& fault, std::int64_t time_ns) {
 }
 
 void LiveChannels::take_behaviors(const std::string& json) {
-  Json description = Json::parse(description_);
-  description["behaviors"] = Json::parse(json);
+  Json description = parse_foreign_json(description_);
+  description["behaviors"] = parse_foreign_json(json);
   description_ = json_text(description);
   put_json(described_, 0, description_);
 }

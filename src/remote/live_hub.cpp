@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kadans/config/foreign_json.h"
 #include "kadans/remote/live_client.h"
 
 namespace kadans {
@@ -191,7 +192,7 @@ void LiveHub::tell_state() {
     json["held"] = p_.pace->held.load();
     json["speed"] = p_.pace->speed.load();
   }
-  const std::string text = json.dump();
+  const std::string text = json_text(json);
   if (text == state_) return;
   state_ = text;
   ++state_count_;

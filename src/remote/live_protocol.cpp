@@ -6,6 +6,8 @@
 
 #include <unistd.h>
 
+#include "kadans/config/foreign_json.h"
+
 namespace kadans {
 namespace {
 
@@ -59,18 +61,18 @@ Json service_advertisement() {
   const Json service{{"id", command_service},
                      {"name", "/kadans/command"},
                      {"type", "kadans.Command"},
-                     {"requestSchema", request.dump()},
-                     {"responseSchema", response.dump()},
+                     {"requestSchema", json_text(request)},
+                     {"responseSchema", json_text(response)},
                      {"request",
                       {{"encoding", "json"},
                        {"schemaName", "kadans.Command"},
                        {"schemaEncoding", "jsonschema"},
-                       {"schema", request.dump()}}},
+                       {"schema", json_text(request)}}},
                      {"response",
                       {{"encoding", "json"},
                        {"schemaName", "kadans.Answer"},
                        {"schemaEncoding", "jsonschema"},
-                       {"schema", response.dump()}}}};
+                       {"schema", json_text(response)}}}};
   return {{"op", "advertiseServices"}, {"services", Json::array({service})}};
 }
 

@@ -11,8 +11,8 @@ namespace kadans {
 namespace {
 
 constexpr double number_text_instructions = 150, line_instructions = 1000, caught_instructions = 400;
-constexpr int depths_apart = 256;  // two counts in one number
-constexpr int coroutines_max = 100;
+constexpr int depths_apart = 256;   // two counts in one number
+constexpr int coroutines_max = 20;  // each names its place in an error that passes
 
 // settle(depth, ok, ...): what pcall and coroutine.resume return, unless the budget is gone. An error may have passed
 // through library functions that count their depth; its message may have taken a look through its whole function.
@@ -193,7 +193,7 @@ local function result(ok, ...)
 end
 local function wrap(f)
   local thread = create(f)
-  return function(...) return result(resume(thread, ...)) end
+  return function(...) return result(settle(enter_coroutine(), raw_resume(thread, ...))) end
 end
 return pcall, xpcall, resume, wrap
 )";

@@ -193,3 +193,21 @@ TEST_CASE("A message of a record that nests deep crashes no command that reads r
     CHECK(run(command, folder).exit_code <= 2);
   }
 }
+
+TEST_CASE("check loads no plug-in that a file names, unless it is told to, and says so") {
+  const Sent sent("check_plugins", true);
+  fs::remove(sent.loaded);
+  const Outcome robot = run("check config/tulip/robot.json", sent.project);
+  CHECK(robot.exit_code == 0);
+  CHECK(has(robot.out, "its plug-ins were not loaded"));
+  for (const char* file :
+       {"config/scenarios/squat.json", "behaviors/tulip/squat.lua", "config/sweeps/push_varied.json"}) {
+    const Outcome outcome = run(std::string("check ") + file, sent.project);
+    CHECK(outcome.exit_code == 2);
+    CHECK_MESSAGE(has(outcome.err, "--plugins"), outcome.err);
+  }
+  CHECK(run("behavior check behaviors/tulip/squat.lua", sent.project).exit_code == 2);
+  CHECK_FALSE(fs::exists(sent.loaded));
+  CHECK(run("check --plugins config/scenarios/squat.json", sent.project).exit_code == 0);
+  CHECK(fs::exists(sent.loaded));
+}

@@ -40,6 +40,27 @@ TEST_CASE("run squats on threads, records every tick, and ends with the robot of
   CHECK(std::filesystem::file_size(project / "live.mcap") > 100'000);
 }
 
+TEST_CASE("run binds all functions of its libraries before main(): no thread looks one up when it first calls it") {
+  const auto project = project_copy("live_bound");
+  // The dynamic linker's own account, of the behaviors' process too.
+  write(project / "bound.sh",
+        "LD_DEBUG=bindings,files LD_DEBUG_OUTPUT=bound \"$1\" run config/tulip/robot.json --play squat --duration 1"
+        " --behaviors process --threads-on-virtual-time >out 2>&1\n");
+  const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
+  REQUIRE(std::system(("cd '" + project.string() + "' && sh bound.sh '" + program + "'").c_str()) == 0);
+  int processes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(project)) {
+    if (!entry.path().filename().string().starts_with("bound.") || entry.path().extension() == ".sh") continue;
+    const std::string account = read(entry.path());
+    const std::size_t main_begins = account.rfind("transferring control");
+    REQUIRE(main_begins != std::string::npos);
+    const std::size_t late = account.find("binding file", main_begins);
+    CHECK_MESSAGE(late == std::string::npos, account.substr(late, 200));
+    ++processes;
+  }
+  CHECK(processes == 2);
+}
+
 TEST_CASE("run ends cleanly on SIGTERM: behaviors leave, the robot is off, the record is closed") {
   const auto project = project_copy("live_term");
   // Waits for the first transition, then sends the signal.

@@ -21,7 +21,8 @@ extern "C" {
 }
 [[gnu::noinline]] void kadans_newest_write_read(Newest& newest, Element& element) {
   newest.publish(element);
-  element = newest.newest();
+  const auto reading = newest.read();
+  element = *reading;
 }
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,25 @@ TEST_CASE("results are written where it is told when they were not, and JSON tak
   CHECK(check_writing("app/x.cpp", "  puts(json.dump());\n  flight.dump();\n") ==
         Findings{"app/x.cpp:1: dumps JSON that may hold foreign bytes: json_text takes them"});
   CHECK(check_writing("app/x.cpp", "  json.dump(2);\n").size() == 1);
+  CHECK(check_writing("app/x.cpp", "  const auto json = nlohmann::json::parse(text);\n").size() == 1);
+}
+
+TEST_CASE("no type is defined in two files") {
+  std::map<std::string, std::string> where;
+  for (const fs::path& folder : {root / "src", root / "include/kadans"}) {
+    for (const fs::path& file : files_below(folder)) {
+      if (!is_code(file) || file.filename() == "ros2_bridge_missing.cpp") continue;  // built in place of another
+      for (const std::string& type : types_defined_in(read(file))) {
+        const auto [known, first] = where.emplace(type, file.string());
+        if (!first) FAIL_CHECK(type, " is defined in ", known->second, " and in ", file.string());
+      }
+    }
+  }
+  CHECK(where.size() > 300);
+  CHECK(types_defined_in(
+            "namespace kadans {\nstruct A {\n};\nclass B;\nclass C final : public A {\n};\nstruct C::F {\n};\n"
+            "namespace {\nstruct D {};\n}  // namespace\nenum class E : int { f };\n}  // namespace kadans\n") ==
+        std::vector<std::string>{"kadans::A", "kadans::C", "kadans::C::F", "kadans::E"});
 }
 
 TEST_CASE("no test has a name that CTest would tear apart") {

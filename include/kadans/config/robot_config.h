@@ -74,7 +74,7 @@ struct RobotConfig {
 };
 
 // Throws InputError with everything that is wrong, the URDF's mistakes included. `object_types`: the types of control
-// objects that the program knows.
+// objects that the program knows; none: any, what a plug-in would bring is not asked.
 RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types);
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
                                    std::span<const std::string> object_types);

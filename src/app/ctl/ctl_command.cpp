@@ -79,7 +79,7 @@ int watch(CtlLink& link, const CtlOptions& options, const Json& answer) {
     std::optional<std::string> line;
     while (!line && !interrupted()) line = link.receive(200);
     if (interrupted()) break;
-    std::puts(options.json ? line->c_str() : watch_line(Json::parse(*line)).c_str());
+    std::puts(options.json ? line->c_str() : watch_line(parse_foreign_json(*line)).c_str());
     std::fflush(stdout);
   }
   return exit_passed;
@@ -95,7 +95,7 @@ int talk(const Verb& verb, const CtlOptions& options) {
   link.send(json_text(request_of(verb.words, options)));
   const std::optional<std::string> line = link.receive(reply_ms);
   if (!line) throw InputError({.message = "the instance does not answer"});
-  const Json answer = Json::parse(*line);
+  const Json answer = parse_foreign_json(*line);
   if (!answer.value("ok", false)) {
     if (options.json) std::puts(line->c_str());
     print_error(answer.value("error", "refused"));

@@ -23,7 +23,7 @@ Json ask(CtlLink& link, const char* verb, const std::string& text) {
   link.send(json_text(Json{{"verb", verb}, {"text", text}}));
   const std::optional<std::string> line = link.receive(answer_ms);
   if (!line) throw InputError({.message = "the instance does not answer"});
-  return Json::parse(*line);
+  return parse_foreign_json(*line);
 }
 
 int from_pipe(CtlLink& link) {
