@@ -13,6 +13,7 @@ pkg_check_modules(luajit REQUIRED IMPORTED_TARGET luajit)
 pkg_check_modules(libedit REQUIRED IMPORTED_TARGET libedit)
 pkg_check_modules(sqlite3 REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(sleef REQUIRED IMPORTED_TARGET sleef)
 find_package(Boost 1.74 REQUIRED)  # headers of Beast and Asio
 # ROS 2 without ROS (docs/ros2.md). Headers, and idlc for the messages; the library is loaded when it is asked for.
 if(NOT KADANS_ROS2 STREQUAL "OFF")

@@ -21,6 +21,16 @@ add_library(kadans::flags ALIAS kadans_flags)
 set_target_properties(kadans_flags PROPERTIES EXPORT_NAME flags)
 # A fused multiply-add where the compiler finds one would make the same seed run differently on another compiler.
 target_compile_options(kadans_flags INTERFACE -ffp-contract=off)
+# The functions of src/signal/portable_math.cpp. A compiler that knew them would put its own result in place of a call with a
+# constant argument. Every program shows them to the libraries that it loads, plug-ins too.
+set(KADANS_PORTABLE_MATH sin cos sincos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp exp2 expm1 log log2 log10
+                         log1p pow cbrt hypot erf erfc tgamma lgamma)
+foreach(function IN LISTS KADANS_PORTABLE_MATH)
+  target_compile_options(kadans_flags INTERFACE -fno-builtin-${function} -fno-builtin-${function}f)
+  target_link_options(kadans_flags INTERFACE LINKER:--export-dynamic-symbol=${function},--export-dynamic-symbol=${function}f)
+endforeach()
+# Eigen cuts large products into sums by the sizes of the caches, unless it may not ask for them.
+target_compile_definitions(kadans_flags INTERFACE EIGEN_NO_CPUID)
 target_compile_features(kadans_flags INTERFACE cxx_std_20)
 
 # With a sanitizer's calls between the lines gcc warns of what cannot be; there a warning is no error.

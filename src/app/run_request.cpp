@@ -61,7 +61,8 @@ ScenarioPush parse_push(const std::string& text, double at_s) {
       push.impulse_Ns[count] = *impulse_Ns;
   }
   if (count != 3)
-    throw InputError({.file = "--push", .message = "'" + text + "' must be LINK=X,Y,Z in Ns, at most 1e4 each, such as torso=0,2,0"});
+    throw InputError({.file = "--push",
+                      .message = "'" + text + "' must be LINK=X,Y,Z in Ns, at most 1e4 each, such as torso=0,2,0"});
   return push;
 }
 

@@ -226,8 +226,8 @@ void GazeSolver::centre(const std::vector<double>& position_rad, double damping2
   double share = 1;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const double most = joints_[i].law.velocity_max_rad_s;
-    const double room = added[i] > 0 ? most - velocity[i] : most + velocity[i];
-    if (std::abs(added[i]) * share > room) share = std::max(0.0, room) / std::abs(added[i]);
+    const double room = std::max(0.0, added[i] > 0 ? most - velocity[i] : most + velocity[i]);
+    if (std::abs(added[i]) * share > room) share = room / std::abs(added[i]);
   }
   for (std::size_t i = 0; i < joints_.size(); ++i) velocity[i] += share * added[i];
 }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sine_cosine.h"
+#include "kadans/signal/sine_cosine.h"
 
 namespace kadans {
 namespace {

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kadans/signal/sine_cosine.h"
+
 namespace kadans {
 namespace {
 
@@ -49,9 +51,11 @@ void VelocityFilter::prewarp() noexcept {
 void VelocityFilter::set_step(double step_s) noexcept {
   step_s_ = step_s;
   const double late_s = step_s - config_.dt_s;
-  const double g = std::fabs(late_s) <= jitter_max * config_.dt_s
-                       ? nominal_gain_ + gain_slope_per_s_ * late_s  // along the tangent: no call of tan in most ticks
-                       : std::tan(std::numbers::pi * config_.cutoff_Hz * step_s);
+  double g = nominal_gain_ + gain_slope_per_s_ * late_s;  // along the tangent: enough in most ticks
+  if (std::fabs(late_s) > jitter_max * config_.dt_s) {
+    const auto [sine, cosine] = sine_cosine(std::numbers::pi * config_.cutoff_Hz * step_s);
+    g = sine / cosine;
+  }
   a1_ = 1 / (1 + g * (g + std::numbers::sqrt2));  // damping sqrt(2) / 2: Butterworth
   a2_ = g * a1_;
   a3_ = g * a2_;

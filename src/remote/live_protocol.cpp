@@ -104,8 +104,7 @@ std::vector<std::byte> service_response(std::uint32_t call, const std::string& j
   return taken(to);
 }
 
-std::vector<std::byte> asset_response(std::uint32_t request, const std::string& uri,
-                                      const std::string* content) {
+std::vector<std::byte> asset_response(std::uint32_t request, const std::string& uri, const std::string* content) {
   ByteWriter to;
   to.put(std::uint8_t{4});
   to.put(request);

@@ -38,8 +38,7 @@ Json parameter_json(const LiveParameter& parameter);
 std::vector<std::byte> message_data(std::uint32_t subscription, std::uint64_t time_ns,
                                     std::span<const std::byte> payload);
 std::vector<std::byte> service_response(std::uint32_t call, const std::string& json);
-std::vector<std::byte> asset_response(std::uint32_t request, const std::string& uri,
-                                      const std::string* content);
+std::vector<std::byte> asset_response(std::uint32_t request, const std::string& uri, const std::string* content);
 std::optional<ServiceCall> read_service_call(std::span<const std::byte> bytes);
 
 }  // namespace kadans

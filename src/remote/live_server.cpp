@@ -8,10 +8,10 @@
 #include <system_error>
 #include <thread>
 
+#include <arpa/inet.h>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <arpa/inet.h>
 #include <pthread.h>
 #include <sys/random.h>
 #include <sys/resource.h>

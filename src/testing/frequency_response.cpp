@@ -70,7 +70,7 @@ FrequencyResponse sweep(JointBench& bench, const SweepOptions& options, Tick&& t
     double phase_deg = std::arg(ratio) * 180 / std::numbers::pi;
     const double near_deg = response.empty() ? -180 : response.back().phase_deg;
     phase_deg += 360 * std::round((near_deg - phase_deg) / 360);
-    response.push_back({sine.frequency_Hz, std::abs(ratio), phase_deg});
+    response.push_back({sine.frequency_Hz, std::hypot(ratio.real(), ratio.imag()), phase_deg});
   }
   return response;
 }

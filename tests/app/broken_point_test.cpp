@@ -25,7 +25,7 @@ struct Breakage {
 constexpr const char* robot = "config/tulip/robot.json";
 constexpr const char* stand = "behaviors/tulip/stand.lua";
 constexpr const char* getting_up = "behaviors/tulip/get_up.lua";
-constexpr const char* rises = "set_gains(\"get_up\")";
+constexpr const char* rises = "set_gains(\"rise\")";
 constexpr const char* sinks = "set_gains(\"soft\")";
 constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";

@@ -1,5 +1,6 @@
 #include "kadans/control/gaze.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -149,6 +150,23 @@ TEST_CASE("Gaze stays finite with a target in an eye, above it, and along the ey
     bench.run(2);
     CHECK(bench.error_deg() < 0.5);
   }
+}
+
+// From the middle no joint wants to go back there, so that nothing is added to a velocity that stands at its limit.
+TEST_CASE("Gaze stays finite while a joint moves at its speed limit and has no wish of its own") {
+  const RobotModel model = kadans::test::head();
+  GazeSolver solver(model, {.head = 4, .left_eye = 6, .right_eye = 7}, {0, 1, 2, 3, 4, 5, 6});
+  solver.settings() = {.gain_per_s = 18, .damping = 0.05, .damping_singular = 0.3, .null_per_s = 3};
+  const std::vector<double> middle_rad(7, 0.0);
+  int limited = 0, finite = 0;
+  for (int i = 0; i < 200; ++i) {
+    GazeSolver::Solution solution;
+    REQUIRE(solver.solve(middle_rad, {.point_m = aside(-30 - 0.5 * i)}, solution));
+    limited += solution.scaled ? 1 : 0;
+    finite += std::ranges::all_of(solution.velocity_rad_s, [](double v) { return std::isfinite(v); }) ? 1 : 0;
+  }
+  CHECK(limited > 100);
+  CHECK(finite == 200);
 }
 
 TEST_CASE("Gaze's eyes counter a push on the neck") {

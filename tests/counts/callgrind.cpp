@@ -10,7 +10,7 @@
 namespace kadans::counts {
 namespace {
 
-// The C library has copies and sines of its own for each kind of processor: all machines shall take the same.
+// The C library has copies of its own for each kind of processor: all machines shall take the same.
 constexpr const char* plain_processor =
     "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX,-AVX2,-AVX512F,-AVX512VL,-AVX512BW,-FMA,-FMA4,-ERMS,-FSRM ";
 

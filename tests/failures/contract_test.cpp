@@ -36,8 +36,10 @@ TEST_CASE("after heartbeat_timeout_s the robot holds, after hold_s it damps, aft
   CHECK(robot.broken_promise().empty());
 }
 
-TEST_CASE("in that tick the robot damps, after damp_s it is off, as one fault that says who, until somebody outside lifts it" *
-          description("somebody asks for the emergency stop")) {
+TEST_CASE(
+    "in that tick the robot damps, after damp_s it is off, as one fault that says who, until somebody outside lifts "
+    "it" *
+    description("somebody asks for the emergency stop")) {
   LightRobot robot(1);
   robot.run(200);
   robot.move(0, 0.9, 0.5);

@@ -29,7 +29,8 @@ Findings check_length(std::string_view path, std::string_view text);
 // No word in the names of the folders and of the file is utils, common, helpers, misc or manager, nor their kin.
 Findings check_name(std::string_view path);
 // Results are written by write_durably, which tells when they were not, and JSON by json_text, which leaves no byte
-// that readers refuse; foreign JSON is read by foreign_json.h, which bounds it. `path` is below src/ or include/kadans/.
+// that readers refuse; foreign JSON is read by foreign_json.h, which bounds it. `path` is below src/ or
+// include/kadans/.
 Findings check_writing(std::string_view path, std::string_view text);
 // The types that a file defines for all files to see: those whose line begins in the first column, outside of unnamed
 // namespaces, with their namespace in front: "kadans::TextPlace". Two files with the same one are two programs.

@@ -247,7 +247,7 @@ TEST_CASE("who holds all places of a role keeps nobody out: the one that was idl
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 2; ++i) idle.push_back(std::make_unique<RawClient>(live.socket(Role::operate)));
   CHECK(live.ask({{"verb", "estop"}}, Role::operate)["ok"] == true);
-  CHECK(has(idle[0]->line().value_or(""), "another client needed the place"));
+  CHECK(idle[0]->line().value_or("").find("another client needed the place") != std::string::npos);
 }
 
 TEST_CASE("a line of more than 64 kB is refused, also when its end came with it") {
@@ -255,5 +255,5 @@ TEST_CASE("a line of more than 64 kB is refused, also when its end came with it"
   live.start();
   RawClient client(live.socket(Role::read));
   REQUIRE(client.send("{\"verb\":\"status\",\"x\":\"" + std::string(CtlSession::line_bytes_max, 'x') + "\"}\n"));
-  CHECK(has(client.line().value_or(""), "a line has at most 64 kB"));
+  CHECK(client.line().value_or("").find("a line has at most 64 kB") != std::string::npos);
 }

@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+#include "kadans/signal/state_hash.h"
+
 namespace kadans {
 namespace {
 
@@ -90,6 +92,36 @@ TEST_CASE("normal numbers have mean 0, deviation 1, no skew and the tails of the
   CHECK(std::abs(neighbours / count) < 0.009);  // each number is independent of the one before
   CHECK(std::abs(beyond_one / double{count} - 0.3173) < 0.0042);
   CHECK(std::abs(beyond_three / double{count} - 0.0027) < 0.0005);
+}
+
+TEST_CASE(
+    "normal numbers fall into every quarter of a deviation, and beyond the last, as often as the bell curve says") {
+  constexpr int count = 1'000'000, per_deviation = 4, half = 4 * per_deviation;
+  RandomStream stream(7, "bell");
+  std::array<int, 2 * half + 2> bins{};  // the first and the last are the tails
+  for (int i = 0; i < count; ++i) {
+    const double place = std::floor(stream.normal() * per_deviation);
+    ++bins[static_cast<std::size_t>(std::fmin(std::fmax(place, -half - 1), half) + half + 1)];
+  }
+  const auto below = [](int edge) { return 0.5 * std::erfc(-edge / (per_deviation * std::sqrt(2.0))); };
+  double chi_squared = 0;
+  for (int i = 0; i < 2 * half + 2; ++i) {
+    const double from = i == 0 ? 0 : below(i - half - 1), to = i == 2 * half + 1 ? 1 : below(i - half);
+    const double expected = count * (to - from), excess = bins[static_cast<std::size_t>(i)] - expected;
+    chi_squared += excess * excess / expected;
+  }
+  CHECK(chi_squared < 70);  // 33 degrees of freedom: more only once in 5000 seeds
+  CHECK(chi_squared > 11);  // nor evener than chance
+}
+
+TEST_CASE("normal numbers are the same on every machine") {
+  RandomStream stream(1, "imu");
+  for (const double expected : {-0x1.5e0feab49001fp-7, 0x1.07d27e0a023cdp+0, -0x1.eb0ecb1796d6dp-1}) {
+    CHECK(stream.normal() == expected);
+  }
+  StateHash hash;  // layers, wedges and tail
+  for (int i = 0; i < 100'000; ++i) hash.add(stream.normal());
+  CHECK(hash.value() == 0x20c0b99e65e4f2e6U);
 }
 
 TEST_CASE("streams are told apart by name and by seed, and repeat for both the same") {

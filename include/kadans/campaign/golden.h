@@ -3,7 +3,7 @@
 // makes a difference renews the file, and the diff of the tree tells which runs it touched. Hashes of each second tell
 // where.
 //
-// The numbers are those of one machine: another architecture rounds otherwise and has to have its own.
+// The numbers are those of one architecture, whatever the processor: another rounds otherwise and has to have its own.
 #pragma once
 
 #include <cstdint>

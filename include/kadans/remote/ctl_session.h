@@ -34,9 +34,9 @@ class CtlSession {
   int socket() const noexcept { return socket_; }
   Role role() const noexcept { return role_; }
   std::uint64_t number() const noexcept { return number_; }
-  std::uint32_t user() const noexcept { return user_; }           // uid; of nobody where the system does not say
-  std::int64_t heard_ns() const noexcept { return heard_ns_; }    // when it last said something
-  const std::string& who() const noexcept { return who_; }  // "uid 1000 (develop)"
+  std::uint32_t user() const noexcept { return user_; }         // uid; of nobody where the system does not say
+  std::int64_t heard_ns() const noexcept { return heard_ns_; }  // when it last said something
+  const std::string& who() const noexcept { return who_; }      // "uid 1000 (develop)"
 
   // Reads what came. False: the client is gone, or sent a line that is too long (then too_long()).
   [[nodiscard]] bool receive(std::int64_t now_ns);

@@ -22,7 +22,7 @@ class LiveAssets {
  private:
   std::string urdf_, urdf_uri_;
   Content urdf_shared_;
-  std::map<std::string, std::string, std::less<>> files_;      // by name in the URDF
+  std::map<std::string, std::string, std::less<>> files_;         // by name in the URDF
   std::map<std::string, std::weak_ptr<const std::string>> read_;  // by file
 };
 

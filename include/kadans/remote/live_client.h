@@ -27,7 +27,8 @@ namespace kadans {
 class LiveClient {
  public:
   static constexpr std::size_t replies_max_bytes = std::size_t{16} << 20U;
-  static constexpr std::size_t subscriptions_max = 256, watched_max = 4096, watched_max_bytes = 64 * 1024, calls_max = 256;
+  static constexpr std::size_t subscriptions_max = 256, watched_max = 4096, watched_max_bytes = 64 * 1024,
+                               calls_max = 256;
 
   struct Outgoing {
     bool binary = false;

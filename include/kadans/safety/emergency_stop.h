@@ -33,8 +33,8 @@ class BasicEmergencyStop {
     // words would be left, and whoever asks next, be it minutes later, would be called by them.
     (void)Memory::at(asked_).exchange(true, std::memory_order_release);
   }
-  // Any thread, wait-free: all faults are cleared, this one among them. Who asks in the same tick is heard, then this is
-  // not. It carries nothing, so its order is relaxed.
+  // Any thread, wait-free: all faults are cleared, this one among them. Who asks in the same tick is heard, then this
+  // is not. It carries nothing, so its order is relaxed.
   void lift() noexcept { Memory::at(lifted_).store(true, std::memory_order_relaxed); }
   // Any thread: the run is over, the robot goes down and stays down.
   void leave() noexcept { Memory::at(leaving_).store(true, std::memory_order_relaxed); }

@@ -1,6 +1,6 @@
 // Random numbers that repeat. Every use has a stream of its own, named, so that adding one disturbs no other; all
-// streams of a run come from the run's one seed. The same seed gives the same integers and uniform numbers everywhere;
-// normal() also asks the C library for a logarithm.
+// streams of a run come from the run's one seed. The same seed gives the same numbers everywhere; one normal number in
+// seventy asks for an exponential or a logarithm, which the program has of its own (src/signal/portable_math.cpp).
 #pragma once
 
 #include <array>
@@ -19,12 +19,12 @@ class RandomStream {
   std::uint64_t next() noexcept;
   double uniform() noexcept;                         // [0, 1)
   double uniform(double low, double high) noexcept;  // [low, high], high only by rounding
-  double normal() noexcept;                          // mean 0, standard deviation 1 (polar method, Marsaglia 1964)
+  double normal() noexcept;  // mean 0, standard deviation 1 (ziggurat, Marsaglia and Tsang 2000)
 
  private:
+  double tail() noexcept;
+
   std::array<std::uint64_t, 4> state_;
-  double spare_ = 0;
-  bool has_spare_ = false;
 };
 
 }  // namespace kadans
