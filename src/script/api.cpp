@@ -32,7 +32,9 @@ constexpr ApiEntry table[] = {
     {"m", "wait(seconds)", "nil", "Goes on so many seconds later; in `run` only"},
     {"m", "emit(event)", "boolean?, string?", "Posts an event; seen from the next tick on; nil, \"queue_full\""},
     {"m", "clear_faults()", "boolean?, string?",
-     "Lets the safety layer forget its faults; what follows in the same tick counts already; nil, \"queue_full\""},
+     "Lets the safety layer forget its faults, but for an emergency stop; what follows in the same tick counts "
+     "already; "
+     "nil, \"queue_full\""},
 
     {"object", "move(pose, options)", "kadans.Motion?, string?",
      "Moves to a pose, by name or as joint = rad, in { time_s = }; nil, \"queue_full\""},

@@ -81,7 +81,8 @@ class SourceCheck final : public SourceListener {
   }
 
   void unknown(const SourceUse& use) {
-    if (known_.globals.fields.contains(use.name)) return;
+    const auto global = known_.globals.fields.find(use.name);
+    if (global != known_.globals.fields.end()) return fields(use, global->second, use.name);  // string.format
     if (use.assigned && use.meaning.path.empty()) {
       return problem(use.line, "'" + use.name + "' would be a global: write local " + use.name);
     }

@@ -16,6 +16,7 @@ struct Mistake {
 
 const Mistake at_load[] = {
     {"x = 1", "behaviors/test.lua:1: 'x' would be a global: write local x"},
+    {"local y = string.fromat('%d', 1)", "behaviors/test.lua:1: string has no 'fromat', did you mean 'format'?"},
     {"local y = maths.pi", "behaviors/test.lua:1: unknown name 'maths', did you mean 'math'?"},
     {"local k = require 'kadan'", "behaviors/test.lua:1: no module 'kadan'"},
     {"local k = require 'kadans'\nreturn k.behaviour 't' {}",

@@ -59,7 +59,7 @@ TEST_CASE("A robot of the guide's configuration runs a scenario with the plug-in
 TEST_CASE("A plug-in that is not there or is none is refused at its place in the configuration") {
   const fs::path project = project_of_the_guide("guide_refused");
   write(project / "plugins/knee_pd.so", "no library");
-  const Outcome wrong = run("check config/tulip/robot.json", project);
+  const Outcome wrong = run("check --plugins config/tulip/robot.json", project);
   CHECK(wrong.exit_code == 2);
   CHECK(has(wrong.err, "config/tulip/robot.json:"));
   CHECK(has(wrong.err, "knee_pd.so: cannot be loaded"));
