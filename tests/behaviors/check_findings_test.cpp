@@ -144,6 +144,9 @@ const Case wrong[] = {
      "local arms = require(\"arms\")\nlocal lower =\narms.lowr\nreturn k.behavior 't' { k.state 'a' { endless = true,\n"
      "enter = lower } }",
      "t.lua:4: module 'arms' has no 'lowr', did you mean 'lower'?"},
+    {"a misspelt function of Lua's own",
+     "return k.behavior 't' { k.state 'a' { endless = true, enter = function() print(string.fromat('x')) end } }",
+     "t.lua:2: string has no 'fromat', did you mean 'format'?"},
     {"a misspelt guard of a module is nothing to ask",
      "local arms = require 'arms'\nreturn k.behavior 't' { k.state 'a' { endless = true, during = function()\n"
      "if arms:pu() then print(1) end end } }",
