@@ -21,7 +21,7 @@ struct RemoteRobot {
   UdpSettings udp{.peer = "the test"};
   RobotModel model = bench::robot();
   LossyWire wire{7};
-  IdealPlant plant{model, bench::plant_settings()};
+  IdealWorld plant{model, bench::plant_settings()};
   PlantServer server{udp, layout, wire.plant_end()};
   UdpPlant seen{udp, layout, wire.control_end(), 1};
   EngineSettings settings;

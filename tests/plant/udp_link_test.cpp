@@ -5,7 +5,7 @@
 #include <netinet/in.h>
 #include <sys/un.h>
 
-#include "kadans/plant/ideal_plant.h"
+#include "kadans/plant/ideal_world.h"
 #include "kadans/plant/udp/plant_server.h"
 #include "kadans/plant/udp/udp_plant.h"
 #include "kadans/signal/input_error.h"
@@ -44,7 +44,7 @@ ActuationFrame effort(double effort_Nm) {
 struct Ends {
   LossyWire wire{1};
   UdpSettings settings{.peer = "the test"};
-  IdealPlant model{two_joints(), {.position_rad = {0.1, 0.2}}};
+  IdealWorld model{two_joints(), {.position_rad = {0.1, 0.2}}};
   PlantServer server{settings, layout(), wire.plant_end()};
   UdpPlant plant{settings, layout(), wire.control_end(), 42};
   SensorFrame sensors;
@@ -157,7 +157,7 @@ TEST_CASE("A plant that is told goodbye ends the session and takes the next peer
   Ends ends;
   ends.connect();
   ends.tick(1);
-  ends.plant.leave();
+  ends.plant.close();
   ends.wire.step();
   CHECK_FALSE(ends.server.beat(ends.model, 1));
   CHECK(ends.server.session().left);
@@ -220,7 +220,7 @@ TEST_CASE("Other robots refuse each other and say what is different") {
 
 TEST_CASE("Garbage and strangers change nothing and are counted") {
   PlantServer server({}, layout(), DatagramSocket(named("server", nullptr)));
-  IdealPlant model(two_joints(), {.position_rad = {0, 0}});
+  IdealWorld model(two_joints(), {.position_rad = {0, 0}});
   UdpPlant plant({.peer = "the test"}, layout(), DatagramSocket(named("control", "server")), 1);
   UdpPlant stranger({.peer = "the test", .connect_timeout_s = 0.02}, layout(),
                     DatagramSocket(named("stranger", "server")), 1);
@@ -244,12 +244,12 @@ TEST_CASE("Garbage and strangers change nothing and are counted") {
   CHECK(model.truth().velocity_rad_s[0] >= velocity_rad_s);
   CHECK(server.session().link.refused >= 100);
   CHECK(server.session().link.received == 1);
-  CHECK_THROWS_WITH_AS(stranger.connect(), "the plant at the test is driven by somebody else", InputError);
+  CHECK_THROWS_WITH_AS(stranger.open(), "the plant at the test is driven by somebody else", InputError);
 }
 
 TEST_CASE("An actuation that answers a time which the plant never had is applied, and counts for no age") {
   PlantServer server({}, layout(), DatagramSocket(named("server", nullptr)));
-  IdealPlant model(two_joints(), {.position_rad = {0, 0}});
+  IdealWorld model(two_joints(), {.position_rad = {0, 0}});
   const DatagramSocket peer(named("peer", "server"));
   const PlantWire wire(layout());
   Datagram out{};

@@ -99,7 +99,7 @@ const ActuationFrame& PlantServer::damping(const PlantTruth& truth) noexcept {
   return damping_;
 }
 
-bool PlantServer::beat(ModelPlant& model, std::uint32_t periods) {
+bool PlantServer::beat(World& world, std::uint32_t periods) {
   answered_stranger_ = false;
   take_all();
   if (session_.left) return false;
@@ -108,12 +108,12 @@ bool PlantServer::beat(ModelPlant& model, std::uint32_t periods) {
   if (released && !released_) ++session_.releases;
   released_ = released;
   for (std::uint32_t i = 0; driven_ && i < periods; ++i) {
-    model.write(released ? damping(model.truth()) : actuation_);
-    model.step(period_ns_);
+    world.robot().write(released ? damping(world.truth()) : actuation_);
+    world.step(period_ns_);
   }
   silent_ns_ += static_cast<std::int64_t>(periods) * period_ns_;
   if (static_cast<double>(silent_ns_) > 1e9 * settings_.peer_timeout_s) return false;
-  model.read(sensors_);
+  world.robot().read(sensors_);
   const WireHead head{
       .kind = WireKind::sensors, .session = session_number_, .sequence = ++sent_, .time_ns = sensors_.time_ns};
   const SensorsOnWire more{.answered = newest_actuation_, .released = released_};

@@ -11,7 +11,7 @@
 
 #include <cstdint>
 
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 #include "kadans/plant/udp/arrivals.h"
 #include "kadans/plant/udp/datagram_socket.h"
 #include "kadans/plant/udp/settings.h"
@@ -36,8 +36,8 @@ class PlantServer {
     bool left = false;  // the peer said goodbye; else it fell silent
     double answer_mean_ns() const noexcept { return answers == 0 ? 0 : answer_sum_ns / static_cast<double>(answers); }
   };
-  // `periods` passed since the last beat. False: the session is over. Throws what the model's step throws.
-  bool beat(ModelPlant& model, std::uint32_t periods);
+  // `periods` passed since the last beat. False: the session is over. Throws what the world's step throws.
+  bool beat(World& world, std::uint32_t periods);
   const Session& session() const noexcept { return session_; }
   const PeerAddress& peer() const noexcept { return peer_; }
   bool released() const noexcept { return released_; }
