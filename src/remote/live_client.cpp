@@ -72,9 +72,7 @@ void LiveClient::put(Outgoing out) {
 
 template <typename J>
 void LiveClient::say(const J& json) {
-  const std::string text = json_text(json);
-  const std::span<const std::byte> bytes = bytes_of(text);
-  put({false, {bytes.begin(), bytes.end()}});
+  put_text(json_text(json));
 }
 
 void LiveClient::complain(const std::string& what) { say(Json{{"op", "status"}, {"level", 2}, {"message", what}}); }
@@ -94,19 +92,14 @@ void LiveClient::introduce() {
            {"sessionId", session_id()}});
 }
 
+void LiveClient::put_text(const std::string& text) {
+  const std::span<const std::byte> bytes = bytes_of(text);
+  put({false, {bytes.begin(), bytes.end()}});
+}
+
 void LiveClient::advertise() {
-  Json channels = Json::array();
-  for (std::size_t i = 0; i < hub_.channels().all().size(); ++i) {
-    const LiveChannel& channel = hub_.channels().all()[i];
-    channels.push_back({{"id", i + 1},
-                        {"topic", channel.topic},
-                        {"encoding", channel.encoding},
-                        {"schemaName", channel.schema_name},
-                        {"schema", channel.schema},
-                        {"schemaEncoding", channel.schema_encoding}});
-  }
-  say(Json{{"op", "advertise"}, {"channels", channels}});
-  say(service_advertisement());
+  put_text(hub_.advertisement());
+  put_text(json_text(service_advertisement()));
 }
 
 void LiveClient::text(std::string_view json) noexcept {

@@ -80,6 +80,21 @@ void LiveHub::beat() {
     report_waits_ = send({.kind = Order::Kind::report}, own, report_call);
 }
 
+const std::string& LiveHub::advertisement() {
+  if (!advertisement_.empty()) return advertisement_;
+  nlohmann::ordered_json channels = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < channels_.all().size(); ++i) {
+    const LiveChannel& channel = channels_.all()[i];
+    channels.push_back({{"id", i + 1},
+                        {"topic", channel.topic},
+                        {"encoding", channel.encoding},
+                        {"schemaName", channel.schema_name},
+                        {"schema", channel.schema},
+                        {"schemaEncoding", channel.schema_encoding}});
+  }
+  return advertisement_ = json_text({{"op", "advertise"}, {"channels", channels}});
+}
+
 bool LiveHub::send(Order order, std::uint64_t client, std::uint32_t call) {
   order.client = client;
   const std::uint64_t number = p_.port.send(std::move(order));

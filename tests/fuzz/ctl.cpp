@@ -31,7 +31,7 @@ struct Bench {
 
 class Served {
  public:
-  Served(Bench& bench, Role role) : bench_(bench), session_(ends_[0], role, 1) {}
+  Served(Bench& bench, Role role) : bench_(bench), session_(ends_[0], role, 1, 0) {}
   ~Served() {
     bench_.requests.forget(session_);
     bench_.requests.upkeep();

@@ -61,7 +61,8 @@ TEST_CASE("a line of 100 MB is cut off after 64 kB") {
   CHECK(live.server->counts().dropped == 1);
 }
 
-TEST_CASE("of 1,000 connections of one user the newest stay, the others are told why not, and other roles find their place") {
+TEST_CASE(
+    "of 1,000 connections of one user the newest stay, the others are told why not, and other roles find their place") {
   LiveInstance live;
   live.start();
   unharmed_by(live, [&] {

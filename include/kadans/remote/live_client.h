@@ -70,6 +70,7 @@ class LiveClient {
   template <typename Act>
   void guarded(Act act) noexcept;
   void put(Outgoing out);
+  void put_text(const std::string& text);
   template <typename Json>
   void say(const Json& json);
   void complain(const std::string& what);

@@ -73,6 +73,7 @@ class LiveHub {
 
   const Instance& instance() const noexcept { return p_.instance; }
   const LiveChannels& channels() const noexcept { return channels_; }
+  const std::string& advertisement();  // of the channels, the same for all
   LiveAssets& assets() noexcept { return assets_; }
   const std::vector<LiveParameter>& parameters() const noexcept { return parameters_; }
   const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // in the last beat
@@ -109,6 +110,7 @@ class LiveHub {
   Parts p_;
   LiveChannels channels_;
   LiveAssets assets_;
+  std::string advertisement_;
   std::map<std::uint64_t, LiveClient*> clients_;
   std::map<std::uint64_t, Caller> waiting_;  // by the order's number
   std::vector<LiveParameter> parameters_, changed_;

@@ -61,16 +61,29 @@ async function check_live(page, port) {
   check(true, 'a slider changes the parameter in the runtime');
 }
 
-// Where something of the scene is on the screen: `found` is a predicate on three.js's objects, as text.
-const place_of = (page, found) =>
-  page.evaluate((text) => {
+// Where something of the scene is on the screen, two frames from now: `found` is a predicate on three.js's objects, as
+// text. Null: nothing that is seen is it.
+const place_now = (page, found) =>
+  page.evaluate(async (text) => {
+    for (let i = 0; i < 2; ++i) await new Promise((drawn) => requestAnimationFrame(drawn));
     const { scene, camera, renderer } = globalThis.kadans_stage;
     let part = null;
-    scene.traverse((other) => (part ??= new Function('o', `return ${text}`)(other) ? other : null));
+    scene.traverseVisible((other) => (part ??= new Function('o', `return ${text}`)(other) ? other : null));
+    if (!part) return null;
     const at = part.getWorldPosition(camera.position.clone()).project(camera);
     const box = renderer.domElement.getBoundingClientRect();
     return { x: box.x + (box.width * (at.x + 1)) / 2, y: box.y + (box.height * (1 - at.y)) / 2 };
   }, found);
+
+// When it stands still there: a hand that aims at where it was misses.
+async function place_of(page, found) {
+  let last = null;
+  return until(`${found} stands still on the screen`, async () => {
+    const [before, now] = [last, await place_now(page, found)];
+    last = now;
+    return before && now && Math.hypot(now.x - before.x, now.y - before.y) < 0.5 ? now : null;
+  });
+}
 
 async function drag(page, from, dx, dy) {
   await page.mouse.move(from.x, from.y);
