@@ -107,8 +107,8 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   exchange_ = std::make_unique<EngineExchange>();
   plant().declare_signals(catalog.signals);
   if (const TruthSource* source = truth_source()) {
-    truth_ = std::make_unique<TruthSignals>(*source, catalog, feet_of(variant_.plant), feet_settle_s,
-                                            variant_.plant.world);
+    truth_ =
+        std::make_unique<TruthSignals>(*source, catalog, feet_of(variant_.plant), feet_settle_s, variant_.plant.world);
     for (const ObjectConfig& object : robot_.config.objects) {
       if (object.type.name == "gaze") truth_->watch(catalog, eyes_of(object));
     }
@@ -153,7 +153,7 @@ void Assembly::start_in_pose() {
 }
 
 std::unique_ptr<World> make_world(PlantKind kind, const RobotModel& model, const PlantSettings& settings,
-                                       std::uint64_t seed) {
+                                  std::uint64_t seed) {
   if (kind == PlantKind::ideal) return std::make_unique<IdealWorld>(model, settings);
   return std::make_unique<BulletWorld>(model, settings, seed);
 }

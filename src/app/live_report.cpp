@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "kadans/config/foreign_json.h"
-#include "tick_report.h"
 #include "link_report.h"
+#include "tick_report.h"
 
 namespace kadans {
 namespace {

@@ -17,7 +17,7 @@ struct LiveResult {
   const BehaviorEngine& behaviors;
   const ControlEngine& engine;
   const PlantTask* plant = nullptr;  // of a model
-  std::vector<PlantCount> link{};  // of a plant that has one
+  std::vector<PlantCount> link{};    // of a plant that has one
   const Recorder* recorder = nullptr;
   const ProcessHost* process = nullptr;  // of the behaviors
   double duration_s = 0;

@@ -1,9 +1,8 @@
-#include "kadans/plant/ideal_world.h"
-
 #include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "kadans/plant/ideal_world.h"
 #include "small_robots.h"
 
 using namespace kadans;

@@ -269,7 +269,7 @@ TEST_CASE("An actuation that answers a time which the plant never had is applied
 TEST_CASE("Nobody there is told so") {
   LossyWire wire(1);
   UdpPlant plant({.peer = "10.9.8.7:6", .connect_timeout_s = 0.02}, layout(), wire.control_end(), 1);
-  CHECK_THROWS_WITH_AS(plant.connect(),
+  CHECK_THROWS_WITH_AS(plant.open(),
                        "the plant at 10.9.8.7:6 does not answer within 0.02 s: is `kadans plant` running there, and "
                        "does the network let UDP pass?",
                        InputError);
@@ -282,7 +282,7 @@ TEST_CASE("Waiting for the plant ends when it is told to") {
   asked = 0;
   LossyWire wire(1);
   UdpPlant plant({.peer = "the test", .connect_timeout_s = 1000}, layout(), wire.control_end(), 1);
-  CHECK_FALSE(plant.connect([]() noexcept { return ++asked == 2; }));
+  CHECK_FALSE(plant.open([]() noexcept { return ++asked == 2; }));
   CHECK(asked == 2);
 }
 

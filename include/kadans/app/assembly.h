@@ -48,7 +48,7 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
                                              std::span<const std::byte> kept = {});
 // A world with this robot in it. `kind` is bullet or ideal.
 std::unique_ptr<World> make_world(PlantKind kind, const RobotModel& model, const PlantSettings& settings,
-                                       std::uint64_t seed);
+                                  std::uint64_t seed);
 // What a plant over the network must have in common with this robot.
 PlantLayout plant_layout(const RobotConfig& robot);
 

@@ -11,11 +11,11 @@
 
 #include <cstdint>
 
-#include "kadans/plant/world.h"
 #include "kadans/plant/udp/arrivals.h"
 #include "kadans/plant/udp/datagram_socket.h"
 #include "kadans/plant/udp/settings.h"
 #include "kadans/plant/udp/wire.h"
+#include "kadans/plant/world.h"
 
 namespace kadans {
 
