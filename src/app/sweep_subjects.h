@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kadans/campaign/sweep_case.h"
+#include "kadans/config/scenario_config.h"
 
 namespace kadans {
 
