@@ -11,26 +11,15 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/testing/allocation_count.h"
 #include "lossy_wire.h"
+#include "two_joints.h"
 
 using namespace kadans;
 using kadans::test::LossyWire;
+using kadans::test::two_joints;
 
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
-
-RobotModel two_joints() {
-  RobotModel model;
-  model.links.resize(3);
-  for (const char* name : {"hip", "knee"}) {
-    Joint joint;
-    joint.name = name;
-    joint.lower_rad = -10;
-    joint.upper_rad = 10;
-    model.joints.push_back(joint);
-  }
-  return model;
-}
 
 PlantLayout layout() { return {.robot = "walker", .joints = {"hip", "knee"}, .feet = {}, .period_ns = ms}; }
 

@@ -35,7 +35,7 @@ class LinkedPlant final : public ModelPlant {
     exchange_.actuation.warm();
   }
   void step(std::int64_t) override {}
-  const PlantTruth& truth() const noexcept override { return truth_ = exchange_.truth.newest(); }  // control thread
+  const PlantTruth& truth() const noexcept override;  // control thread
   void push(std::size_t, const Vec3&, const Vec3&) override {}
   void hash(StateHash&) const noexcept override {}
 
