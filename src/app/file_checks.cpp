@@ -31,14 +31,9 @@ std::string check_urdf(const std::string& file) {
 
 // Whether the behaviors that the robot gives parameters take them.
 void check_behavior_values(const RobotConfig& config, const Catalog& catalog) {
-  std::set<std::string> files;
+  std::set<fs::path> files;
   for (const BehaviorValue& given : config.behavior_values) files.insert(given.chunk);
-  const fs::path root = project_root(config.file);
-  std::vector<InputProblem> problems;
-  for (const std::string& file : files) {
-    for (InputProblem& problem : check_behavior(root, file, catalog)) problems.push_back(std::move(problem));
-  }
-  tell_once(problems);
+  const std::vector<InputProblem> problems = problems_in(files, project_root(config.file), catalog);
   if (!problems.empty()) throw InputError(problems);
 }
 

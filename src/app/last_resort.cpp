@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <system_error>
 
@@ -12,6 +11,7 @@
 #include <unistd.h>
 
 #include "kadans/engine/clock.h"
+#include "kadans/realtime/signals_blocked.h"
 
 namespace kadans {
 namespace {
@@ -23,12 +23,8 @@ void say(const char* text) noexcept { (void)!write(STDERR_FILENO, text, std::str
 LastResort::LastResort(int priority, int exit_code)
     : exit_code_(exit_code), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (wake_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  const int failed = pthread_create(&thread_, nullptr, enter, this);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  if (failed != 0) {
+  const SignalsBlocked blocked;
+  if (const int failed = pthread_create(&thread_, nullptr, enter, this); failed != 0) {
     close(wake_);
     throw std::system_error(failed, std::generic_category(), "the thread that ends what hangs");
   }

@@ -1,8 +1,5 @@
 #include "played_behaviors.h"
 
-#include <filesystem>
-#include <set>
-
 #include "kadans/config/project_root.h"
 #include "kadans/script/check_behavior.h"
 
@@ -22,21 +19,19 @@ std::set<fs::path> played_files(const ScenarioConfig& scenario) {
   return files;
 }
 
-std::vector<InputProblem> problems_in(const std::set<fs::path>& files, const ScenarioConfig& scenario,
-                                      const Catalog& catalog) {
-  const fs::path root = project_root(scenario.file);
+}  // namespace
+
+std::vector<InputProblem> problems_in(const std::set<fs::path>& files, const fs::path& root, const Catalog& catalog) {
   std::vector<InputProblem> problems;
   for (const fs::path& file : files) {
     for (InputProblem& problem : check_behavior(root, file, catalog)) problems.push_back(std::move(problem));
   }
-  tell_once(problems);  // what two of them require or call
+  tell_once(problems);
   return problems;
 }
 
-}  // namespace
-
 std::vector<InputProblem> problems_of_played(const ScenarioConfig& scenario, const Catalog& catalog) {
-  return problems_in(played_files(scenario), scenario, catalog);
+  return problems_in(played_files(scenario), project_root(scenario.file), catalog);
 }
 
 std::vector<InputProblem> problems_of_named(const ScenarioConfig& scenario, const Catalog& catalog) {
@@ -44,7 +39,7 @@ std::vector<InputProblem> problems_of_named(const ScenarioConfig& scenario, cons
   for (const ScenarioEvent& event : scenario.events) {
     if (!event.order.file.empty()) files.insert(event.order.file);
   }
-  return problems_in(files, scenario, catalog);
+  return problems_in(files, project_root(scenario.file), catalog);
 }
 
 void refuse_faulty_behaviors(const ScenarioConfig& scenario, const Catalog& catalog) {

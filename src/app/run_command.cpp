@@ -193,7 +193,7 @@ class LiveRun {
       print_error("the record is not complete: its thread hangs");
     } else if (!record_side_.end()) {
       failed_ = true;
-      print_error("the record is not complete: " + record_side_.recorder()->error());
+      print_error("the record is not complete: " + record_side_.error());
     }
     tell_flights(record_side_.status());
     return hanging;

@@ -44,8 +44,6 @@ NumberEntry parse_setting(const std::string& text, const std::string& option) {
   return {.key = text.substr(0, equals), .value = *value};
 }
 
-constexpr double push_max_Ns = 1e4;  // as in a scenario
-
 ScenarioPush parse_push(const std::string& text, double at_s) {
   const std::size_t equals = text.find('=');
   ScenarioPush push;
@@ -100,8 +98,8 @@ RunRequest request_of(const TextMap& facts, const std::string& record) {
   RunRequest request;
   request.seed = number_of<std::uint64_t>(fact(facts, "seed"));
   request.duration_s = number_of<double>(fact(facts, "duration_s"));
-  constexpr double duration_max_s = 1e6;
-  if (!request.seed || !request.duration_s || !(*request.duration_s > 0 && *request.duration_s <= duration_max_s))
+  if (!request.seed || !request.duration_s ||
+      !(*request.duration_s > 0 && *request.duration_s <= scenario_duration_max_s))
     throw InputError({.file = record, .message = "does not say with which seed and for how long it was recorded"});
   request.play = fact(facts, "play");
   request.set = split(fact(facts, "set"));

@@ -73,7 +73,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->check(any_seed());
   sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
       ->type_name("S")
-      ->check(number_within(0.001, 1e6));
+      ->check(number_within(0.001, scenario_duration_max_s));
   sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
       ->type_name("LIST");
   sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
@@ -103,7 +103,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
       ->allow_extra_args(false);
   sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
       ->type_name("S")
-      ->check(number_within(0.001, 1e6));
+      ->check(number_within(0.001, scenario_duration_max_s));
   add_report_place(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
   add_ctl_place(*sim, options.ctl);
   add_live_place(*sim, options.live);

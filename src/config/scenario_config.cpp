@@ -11,7 +11,6 @@ namespace kadans {
 namespace {
 
 const std::array<std::string, 2> plant_names{"bullet", "ideal"};
-constexpr double duration_max_s = 1e6;
 
 // How it is run among others.
 void suite_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
@@ -42,8 +41,9 @@ void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   joystick.place = f.place("recording");
   if (!joystick.recording.empty())
     joystick.recording = resolve_file(joystick.recording, joystick.place, "recording", problems).string();
-  f.number("at_s", joystick.at_s, {0, duration_max_s, "s"}, "when its first event comes");
-  f.number("lost_at_s", joystick.lost_at_s, {0, duration_max_s, "s"}, "from when on it is unplugged; else never");
+  f.number("at_s", joystick.at_s, {0, scenario_duration_max_s, "s"}, "when its first event comes");
+  f.number("lost_at_s", joystick.lost_at_s, {0, scenario_duration_max_s, "s"},
+           "from when on it is unplugged; else never");
 }
 
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
@@ -57,7 +57,7 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", problems).string();
   }
   f.choice("plant", scenario.plant, plant_names, "what plays the robot");
-  f.number("duration_s", scenario.duration_s, {1e-3, duration_max_s, "s"}, "simulated time", Need::required);
+  f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"}, "simulated time", Need::required);
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
             "where all random numbers of the run come from");
   suite_fields(f, scenario, problems);

@@ -15,7 +15,8 @@ void push_fields(Fields& f, ScenarioPush& push, Problems& problems) {
   f.number("at_s", push.at_s, time, "when", Need::required);
   f.number("duration_s", push.duration_s, {1e-3, 1e6, "s"}, "how long");
   f.choice("shape", push.shape, shape_names, "how the force goes over its time");
-  f.numbers("impulse_Ns", push.impulse_Ns, {-1e4, 1e4, "Ns"}, "the whole push, world axes: x forward, y left, z up");
+  f.numbers("impulse_Ns", push.impulse_Ns, {-push_max_Ns, push_max_Ns, "Ns"},
+            "the whole push, world axes: x forward, y left, z up");
   Vec3 force_N{};
   f.numbers("force_N", force_N, {-1e5, 1e5, "N"}, "or the force, of half_sine its peak");
   f.numbers("point_m", push.point_m, {-10, 10, "m"}, "where on the link, in its frame");

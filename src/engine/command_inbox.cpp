@@ -6,6 +6,14 @@
 #include <utility>
 
 namespace kadans {
+namespace {
+
+// While the emergency stop holds nothing is cleared.
+bool clears(const Command& command, const Safety& safety) noexcept {
+  return command.kind == CommandKind::clear_faults && !safety.stopped();
+}
+
+}  // namespace
 
 CommandInbox::CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& sets,
                            std::uint32_t commands_per_tick_max, std::int64_t age_max_ns)
@@ -55,8 +63,7 @@ RefusalReason CommandInbox::judge(const Command& command) const noexcept {
 
 RefusalReason CommandInbox::held(const Command& command, const Safety& safety, SetMask active,
                                  std::uint16_t& joint) const noexcept {
-  const bool clears = command.kind == CommandKind::clear_faults && !safety.stopped();
-  if (clears || command.kind == CommandKind::cancel_motion) return RefusalReason::none;
+  if (clears(command, safety) || command.kind == CommandKind::cancel_motion) return RefusalReason::none;
   if (safety.robot_level() >= SafetyLevel::hold) return RefusalReason::robot_held;
   const auto joint_held = [&](std::size_t at) {
     if (safety.joint_level(at) != SafetyLevel::hold) return false;
@@ -96,7 +103,7 @@ Refusal CommandInbox::judge_transaction(std::uint32_t count, const Safety& safet
   for (std::uint32_t i = 1; i <= count; ++i) {
     const Command& command = queue_.peek(i);
     Refusal refusal{.kind = command.kind, .reason = judge(command), .index = command.index, .value = command.value};
-    cleared = cleared || (command.kind == CommandKind::clear_faults && !safety.stopped());
+    cleared = cleared || clears(command, safety);
     if (refusal.reason == RefusalReason::none && !cleared)
       refusal.reason = held(command, safety, active, refusal.joint);
     if (refusal.reason != RefusalReason::none) return refusal;

@@ -1,6 +1,5 @@
 #include "kadans/realtime/keep_awake.h"
 
-#include <csignal>
 #include <ctime>
 #include <system_error>
 
@@ -8,6 +7,7 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include "kadans/realtime/signals_blocked.h"
 #include "relax.h"
 
 namespace kadans {
@@ -19,15 +19,12 @@ KeepAwake::KeepAwake(int cpu) : cpu_(cpu) {
     close(latency_);
     latency_ = -1;
   }
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const SignalsBlocked blocked;
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, std::size_t{64} * 1024);  // all of it may be locked
   const int error = pthread_create(&thread_, &attributes, spin, this);
   pthread_attr_destroy(&attributes);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (error == 0) return;
   if (latency_ >= 0) close(latency_);
   throw std::system_error(error, std::generic_category(), "no thread to keep the CPU awake");

@@ -117,6 +117,13 @@ int lock_used(std::span<const std::string_view> unused) noexcept {
   return refused;
 }
 
+// With what is locked, a thread's stack must still fit the limit: else no thread could be started.
+bool has_room_to_come() noexcept {
+  constexpr std::size_t stacks_bytes = std::size_t{64} << 20U;
+  void* const room = mmap(nullptr, stacks_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return room != MAP_FAILED && munmap(room, stacks_bytes) == 0;
+}
+
 }  // namespace
 
 int lock_memory(std::size_t reserve_bytes, std::span<const std::string_view> unused) noexcept {
@@ -125,9 +132,16 @@ int lock_memory(std::size_t reserve_bytes, std::span<const std::string_view> unu
   auto* const reserve = static_cast<volatile char*>(std::malloc(reserve_bytes));
   for (std::size_t i = 0; reserve != nullptr && i < reserve_bytes; i += page) reserve[i] = 0;
   std::free(const_cast<char*>(reserve));
-  if (unused.empty()) return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
-  const int refused = lock_used(unused);
-  return mlockall(MCL_FUTURE | MCL_ONFAULT) == 0 ? refused : errno;
+  int refused = 0;
+  if (unused.empty()) {
+    if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) refused = errno;
+  } else {
+    refused = lock_used(unused);
+    if (refused == 0 && mlockall(MCL_FUTURE | MCL_ONFAULT) != 0) refused = errno;
+  }
+  if (refused == 0 && !has_room_to_come()) refused = ENOMEM;
+  if (refused != 0) (void)munlockall();
+  return refused;
 }
 
 }  // namespace kadans

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -11,6 +10,8 @@
 
 #include <sched.h>
 #include <sys/resource.h>
+
+#include "kadans/realtime/signals_blocked.h"
 
 namespace kadans {
 namespace {
@@ -60,15 +61,12 @@ TaskThread::~TaskThread() {
 }
 
 void TaskThread::start() {
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // inherited by the thread
+  const SignalsBlocked blocked;
   int error = create(settings_.priority);
   if (error != 0 && settings_.priority > 0) {
     refused_priority_.store(error, std::memory_order_relaxed);
     error = create(0);
   }
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (error != 0) throw std::system_error(error, std::generic_category(), "no thread for task " + settings_.name);
   joinable_ = true;
   pthread_setname_np(thread_, settings_.name.substr(0, 15).c_str());

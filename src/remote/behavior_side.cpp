@@ -151,13 +151,11 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
     evaluate(order, answer);
     return true;
   }
-  if (order.kind == Order::Kind::clear_faults && snapshot.status.safety.lifts != pending.lifts) {
-    finish(pending);
-    return true;
-  }
   if (order.kind == Order::Kind::clear_faults) {
-    if (late) answer.text = "the control thread did not clear them within a second, or was stopped again";
-    return late;
+    const bool lifted = snapshot.status.safety.lifts != pending.lifts;
+    if (lifted) finish(pending);
+    if (!lifted && late) answer.text = "the control thread did not clear them within a second, or was stopped again";
+    return lifted || late;
   }
   if (waits_for_tick(pending)) {
     if (late) answer.text = "the behaviors did not tick within a second";

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <map>
 #include <system_error>
 
@@ -12,6 +11,7 @@
 #include <unistd.h>
 
 #include "ctl_json.h"
+#include "kadans/realtime/signals_blocked.h"
 
 namespace kadans {
 namespace {
@@ -41,19 +41,15 @@ CtlServer::~CtlServer() {
   if (wake_ >= 0) close(wake_);
 }
 
-// All signals stay with the thread that catches them.
 void CtlServer::start() {
   if (running_) return;
   if (wake_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const SignalsBlocked blocked;
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, stack_bytes);
   const int failed = pthread_create(&thread_, &attributes, enter, this);
   pthread_attr_destroy(&attributes);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (failed != 0) throw std::system_error(failed, std::generic_category(), "the thread that serves ctl");
   running_ = true;
 }

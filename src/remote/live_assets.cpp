@@ -38,20 +38,19 @@ std::string place_of(const std::string& name, const fs::path& folder) {
 }  // namespace
 
 LiveAssets::LiveAssets(const RobotTexts& texts, const std::string& urdf_file)
-    : urdf_(texts.urdf),
-      urdf_uri_(std::string(package) + texts.name + "/" + texts.name + ".urdf"),
-      urdf_shared_(std::make_shared<const std::string>(urdf_)) {
+    : urdf_(std::make_shared<const std::string>(texts.urdf)),
+      urdf_uri_(std::string(package) + texts.name + "/" + texts.name + ".urdf") {
   const fs::path folder = fs::absolute(urdf_file).parent_path();
   constexpr std::string_view key = "filename=\"";
-  for (std::size_t at = urdf_.find(key); at != std::string::npos; at = urdf_.find(key, at)) {
+  for (std::size_t at = texts.urdf.find(key); at != std::string::npos; at = texts.urdf.find(key, at)) {
     at += key.size();
-    const std::string name = urdf_.substr(at, urdf_.find('"', at) - at);
+    const std::string name = texts.urdf.substr(at, texts.urdf.find('"', at) - at);
     files_[name] = place_of(name, folder);
   }
 }
 
 LiveAssets::Content LiveAssets::read(std::string_view uri) {
-  if (uri == "robot.urdf" || uri == urdf_uri_) return urdf_shared_;
+  if (uri == "robot.urdf" || uri == urdf_uri_) return urdf_;
   auto found = files_.find(uri);
   if (found == files_.end()) found = files_.find(std::string(package) + std::string(uri));
   if (found == files_.end() || !is_mesh(found->second)) return nullptr;

@@ -99,7 +99,7 @@ void LiveClient::put_text(const std::string& text) {
 
 void LiveClient::advertise() {
   put_text(hub_.advertisement());
-  put_text(json_text(service_advertisement()));
+  say(service_advertisement());
 }
 
 void LiveClient::text(std::string_view json) noexcept {

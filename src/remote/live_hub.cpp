@@ -18,6 +18,7 @@ constexpr std::uint32_t report_call = 1, saved_call = 2, describe_call = 3;
 }  // namespace
 
 bool LivePace::push(const std::string& what) {
+  if (check_push) check_push(what);
   const std::lock_guard lock(mutex_);
   if (pushes_.size() == pushes_max) return false;
   pushes_.push_back(what);
@@ -200,7 +201,6 @@ bool LiveHub::act(const std::string& verb, const std::string& text, double value
     p_.instance.stop_now(who);
     return true;
   }
-  if (p_.pace != nullptr && verb == "push" && p_.pace->check_push) p_.pace->check_push(text);
   if (p_.pace == nullptr || !p_.pace->obey(verb, text, value)) return false;
   tell_state();
   return true;

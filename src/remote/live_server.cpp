@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
-#include <csignal>
 #include <system_error>
 #include <thread>
 
@@ -18,6 +17,7 @@
 #include <unistd.h>
 
 #include "kadans/config/problems.h"
+#include "kadans/realtime/signals_blocked.h"
 #include "kadans/signal/input_error.h"
 #include "live_connection.h"
 #include "live_crowd.h"
@@ -160,12 +160,8 @@ LiveServer::LiveServer(LiveSettings settings, LiveHub* hub, RecordSite site) {
 LiveServer::~LiveServer() { stop(); }
 
 void LiveServer::start() {
-  // Signals are for the thread that started us.
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_BLOCK, &all, &before);
+  const SignalsBlocked blocked;
   parts_->thread = std::thread([this] { parts_->run(); });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 void LiveServer::stop() noexcept {

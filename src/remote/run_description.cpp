@@ -136,8 +136,6 @@ Json parameters_of(const Catalog& catalog) {
   return parameters;
 }
 
-std::string text_of(const Json& json) { return json_text(json); }
-
 }  // namespace
 
 std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host) {
@@ -146,10 +144,10 @@ std::string run_description(const RobotConfig& robot, const Catalog& catalog, co
                          {"objects", objects_of(robot, catalog)},
                          {"parameters", parameters_of(catalog)},
                          {"behaviors", behaviors_of(host)}};
-  return text_of(description);
+  return json_text(description);
 }
 
-std::string behaviors_description(const ScriptHost* host) { return text_of(behaviors_of(host)); }
+std::string behaviors_description(const ScriptHost* host) { return json_text(behaviors_of(host)); }
 
 // FNV-1a.
 std::uint64_t chart_sign(const Chart& chart) noexcept {

@@ -3,11 +3,10 @@
 #include "chart_nodes.h"
 #include "kadans/signal/input_error.h"
 #include "lua_core.h"
+#include "vars_transfer.h"
 
 namespace kadans {
 namespace {
-
-constexpr int data_depth_max = 16;  // of a copy
 
 struct Looking {
   Behavior::Parts& parts;
@@ -30,7 +29,7 @@ void look_into(lua_State* state, Looking& looking, const std::string& path, cons
   if (type == LUA_TFUNCTION || type == LUA_TUSERDATA || type == LUA_TTHREAD)
     return tell(looking, path, key, std::string(" is a ") + lua_typename(state, type));
   if (type != LUA_TTABLE) return;
-  if (depth > data_depth_max) return tell(looking, path, key, " is nested too deeply, or holds itself");
+  if (depth > vars_depth_max) return tell(looking, path, key, " is nested too deeply, or holds itself");
   luaL_checkstack(state, 6, "vars");
   const int table = lua_gettop(state);
   for (lua_pushnil(state); lua_next(state, table) != 0; lua_pop(state, 1)) {

@@ -3,11 +3,11 @@
 
 #include "bindings.h"
 #include "sandbox.h"
+#include "vars_transfer.h"
 
 namespace kadans {
 namespace {
 
-constexpr int copy_depth_max = 16;
 constexpr double copied_field_instructions = 20;
 
 // m:wait(seconds): inside `run` only.
@@ -49,7 +49,7 @@ void push_copy(lua_State* state, int index, int depth) {
     luaL_error(state, "vars and args hold plain data, not a %s", luaL_typename(state, index));
   }
   if (type != LUA_TTABLE) return lua_pushvalue(state, index);
-  if (depth > copy_depth_max) luaL_error(state, "vars and args are nested too deeply");
+  if (depth > vars_depth_max) luaL_error(state, "vars and args are nested too deeply");
   luaL_checkstack(state, 6, "vars and args are nested too deeply");
   Budget& budget = core_of(state).budget;
   charge_table(state, index);

@@ -3,16 +3,16 @@
 #include <cstring>
 
 #include "motion.h"
+#include "vars_transfer.h"
 
 namespace kadans {
 namespace {
 
-constexpr int kept_depth_max = 16;  // as for a reload
 constexpr std::size_t kept_bytes_max = std::size_t{256} << 10U;
 enum Tag : std::uint8_t { tag_nil, tag_false, tag_true, tag_number, tag_string, tag_table, tag_end, tag_motion };
 
 bool put_table(lua_State* state, int index, ByteWriter& bytes, std::string& why, int depth) {
-  if (depth > kept_depth_max || lua_checkstack(state, 8) == 0) return why = "vars are nested too deeply", false;
+  if (depth > vars_depth_max || lua_checkstack(state, 8) == 0) return why = "vars are nested too deeply", false;
   bytes.put<std::uint8_t>(tag_table);
   for (lua_pushnil(state); lua_next(state, index) != 0; lua_pop(state, 1)) {
     if (bytes.size() > kept_bytes_max) return why = "vars hold too much", false;  // the same table twice counts twice
@@ -49,7 +49,7 @@ void push_motion_of(lua_State* state, ByteReader& bytes, const Catalog& catalog)
 
 // Until the end of the table; a key that is no key raises.
 void push_table(lua_State* state, ByteReader& bytes, const Catalog& catalog, int depth) {
-  if (depth > kept_depth_max) luaL_error(state, "what was kept is nested too deeply");
+  if (depth > vars_depth_max) luaL_error(state, "what was kept is nested too deeply");
   luaL_checkstack(state, 8, "what was kept is nested too deeply");
   lua_newtable(state);
   for (;;) {

@@ -7,8 +7,6 @@
 namespace kadans {
 namespace {
 
-constexpr int carried_depth_max = 16;
-
 void push_motion_across(lua_State* from, int index, lua_State* to) {
   Motion* motion = to_motion(from, index);
   if (motion == nullptr) {
@@ -20,7 +18,7 @@ void push_motion_across(lua_State* from, int index, lua_State* to) {
 }
 
 void push_table_across(lua_State* from, int index, lua_State* to, int depth) {
-  if (depth > carried_depth_max) luaL_error(to, "vars are nested too deeply to be carried through a reload");
+  if (depth > vars_depth_max) luaL_error(to, "vars are nested too deeply to be carried through a reload");
   if (lua_checkstack(from, 8) == 0) luaL_error(to, "vars cannot be read");
   luaL_checkstack(to, 8, "vars are nested too deeply");
   lua_newtable(to);

@@ -51,6 +51,13 @@ struct Sent {
     (void)reader.next(message);
     return read_inputs(reader, "run.mcap");
   }
+  // Their robot lists a plug-in.
+  static void list_plugin(RunInputs& inputs, const std::string& plugin) {
+    const auto robot = std::ranges::find(inputs.files, "config/tulip/robot.json", &InputFile::path);
+    const std::string name = "\"name\": \"tulip\",";
+    robot->text->replace(robot->text->find(name), name.size(), name + " \"plugins\": [\"" + plugin + "\"],");
+    *robot = input(robot->path, *robot->text);
+  }
   // As a stranger writes it.
   fs::path forged(const RunInputs& inputs) const {
     McapWriter writer;
@@ -99,10 +106,7 @@ TEST_CASE("Native code that a record brings is not loaded, whatever its robot li
     fs::copy(plugin_source, sent.elsewhere / "evil.so", fs::copy_options::overwrite_existing);
     RunInputs inputs = sent.inputs();
     inputs.files.push_back(input("models/evil.so", read(plugin_source)));
-    const auto robot = std::ranges::find(inputs.files, "config/tulip/robot.json", &InputFile::path);
-    const std::string name = "\"name\": \"tulip\",";
-    robot->text->replace(robot->text->find(name), name.size(), name + " \"plugins\": [\"" + listed + "\"],");
-    *robot = input(robot->path, *robot->text);
+    Sent::list_plugin(inputs, listed);
     (void)sent.forged(inputs);
     for (const std::string& way : ways) {
       const Outcome outcome = run(way, sent.elsewhere);
@@ -120,10 +124,7 @@ TEST_CASE("A record's plug-in is none that lies elsewhere on this machine, altho
   fs::copy(plugin_source, listed, fs::copy_options::overwrite_existing);
   RunInputs inputs = sent.inputs();
   inputs.files.push_back({listed, content_hash(read(plugin_source)), std::nullopt});
-  const auto robot = std::ranges::find(inputs.files, "config/tulip/robot.json", &InputFile::path);
-  const std::string name = "\"name\": \"tulip\",";
-  robot->text->replace(robot->text->find(name), name.size(), name + " \"plugins\": [\"" + listed + "\"],");
-  *robot = input(robot->path, *robot->text);
+  Sent::list_plugin(inputs, listed);
   (void)sent.forged(inputs);
   for (const std::string& way : ways) {
     const Outcome outcome = run(way, sent.elsewhere);

@@ -242,7 +242,7 @@ TEST_CASE("--json of a plant that is served, and of the run that drives it, is o
                                 port + " >plant.out 2>plant.err &\n" + program +
                                 "run config/tulip/robot.json --plant udp --soft --no-ctl --duration 0.2 --json --peer "
                                 "127.0.0.1:" +
-                                port + " >run.out 2>run.err; echo $? >code\nwait\n");
+                                port + " >run.out 2>run.err || kill %1\nwait\n");
   REQUIRE(std::system(("cd '" + folder.string() + "' && bash both.sh").c_str()) == 0);
   const std::string out = read(folder / "plant.out"), drove = read(folder / "run.out");
   CHECK_MESSAGE(nlohmann::json::accept(out), out << read(folder / "plant.err"));

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include "kadans/config/robot_config.h"
 
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 // A project of its own, so that paths count from its root.
 class Project {
  public:
-  Project() : root_(fs::path(KADANS_BINARY_DIR) / "based_on_test") {
+  Project() : root_(fs::temp_directory_path() / ("kadans_based_on_" + std::to_string(getpid()))) {
     fs::remove_all(root_);
     for (const char* folder : {"config", "models", "behaviors"}) fs::create_directories(root_ / folder);
   }

@@ -109,9 +109,8 @@ TEST_CASE("ended by the wall clock after engine.behavior_time_max_s, with its li
     CAPTURE(where);
     const Outcome outcome =
         run("run config/tulip/robot.json --plant ideal --play squat --soft --duration 2 --behaviors " + where, project);
-    CHECK_MESSAGE(has(outcome.err,
-                      "behaviors/tulip/squat.lua:11: time budget exceeded: more than 5.000 ms of "
-                      "wall-clock time in one tick"),
+    CHECK_MESSAGE(has(outcome.err, "behaviors/tulip/squat.lua:"), outcome.err);  // line 11, unless the machine is busy
+    CHECK_MESSAGE(has(outcome.err, "time budget exceeded: more than 5.000 ms of wall-clock time in one tick"),
                   outcome.err);
     CHECK(has(outcome.out, "duration over after 2.000 s"));
     CHECK(outcome.exit_code == 1);

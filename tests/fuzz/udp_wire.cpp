@@ -16,30 +16,19 @@
 #include "kadans/plant/udp/plant_server.h"
 #include "kadans/plant/udp/udp_plant.h"
 #include "kadans/signal/crc32.h"
+#include "plant/two_joints.h"
 
 namespace {
 
 using namespace kadans;
 using fuzz::require;
+using test::two_joints;
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::uint64_t session = 42;
 enum How : std::uint8_t { to_control = 1, sealed = 2, headed = 4, beat = 8, passed_on = 16 };
 
 PlantLayout layout() { return {.robot = "walker", .joints = {"hip", "knee"}, .feet = {"foot"}, .period_ns = ms}; }
-
-RobotModel two_joints() {
-  RobotModel model;
-  model.links.resize(3);
-  for (const char* name : {"hip", "knee"}) {
-    Joint joint;
-    joint.name = name;
-    joint.lower_rad = -10;
-    joint.upper_rad = 10;
-    model.joints.push_back(joint);
-  }
-  return model;
-}
 
 const PlantWire& wire() {
   static const PlantWire one(layout());

@@ -1,4 +1,5 @@
 // Both ends of a plant over the network on one thread, step by step.
+#include <chrono>
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -11,26 +12,15 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/testing/allocation_count.h"
 #include "lossy_wire.h"
+#include "two_joints.h"
 
 using namespace kadans;
 using kadans::test::LossyWire;
+using kadans::test::two_joints;
 
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
-
-RobotModel two_joints() {
-  RobotModel model;
-  model.links.resize(3);
-  for (const char* name : {"hip", "knee"}) {
-    Joint joint;
-    joint.name = name;
-    joint.lower_rad = -10;
-    joint.upper_rad = 10;
-    model.joints.push_back(joint);
-  }
-  return model;
-}
 
 PlantLayout layout() { return {.robot = "walker", .joints = {"hip", "knee"}, .feet = {}, .period_ns = ms}; }
 
@@ -100,6 +90,25 @@ int named(const char* name, const char* peer) {
   REQUIRE(connect(descriptor, reinterpret_cast<const sockaddr*>(&other), sizeof other) == 0);
   return descriptor;
 }
+
+// A port that is taken and refuses what is sent to it: its socket hears one other port only.
+struct Deaf {
+  int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  int port = 0;
+  Deaf() {
+    sockaddr_in own{.sin_family = AF_INET, .sin_port = 0, .sin_addr = {htonl(INADDR_LOOPBACK)}, .sin_zero = {}};
+    sockaddr_in other = own;
+    other.sin_port = htons(1);
+    socklen_t size = sizeof own;
+    REQUIRE(bind(descriptor, reinterpret_cast<const sockaddr*>(&own), sizeof own) == 0);
+    REQUIRE(connect(descriptor, reinterpret_cast<const sockaddr*>(&other), sizeof other) == 0);
+    REQUIRE(getsockname(descriptor, reinterpret_cast<sockaddr*>(&own), &size) == 0);
+    port = ntohs(own.sin_port);
+  }
+  ~Deaf() { close(descriptor); }
+  Deaf(const Deaf&) = delete;
+  Deaf& operator=(const Deaf&) = delete;
+};
 
 }  // namespace
 
@@ -275,6 +284,18 @@ TEST_CASE("Nobody there is told so") {
                        InputError);
   for (const char* wrong : {"", "host", "host:", "host:port", "host:70000", "host:-1"})
     CHECK_THROWS_AS(DatagramSocket::connected(wrong), InputError);
+}
+
+TEST_CASE("A plant that does not listen yet is waited for as long as one that does not answer") {
+  static int asked = 0;
+  asked = 0;
+  const Deaf deaf;
+  const std::string place = "127.0.0.1:" + std::to_string(deaf.port);
+  UdpPlant plant({.peer = place, .connect_timeout_s = 0.2}, layout(), DatagramSocket::connected(place), 1);
+  const auto begin = std::chrono::steady_clock::now();
+  CHECK_THROWS_AS(plant.open([]() noexcept { return ++asked < 0; }), InputError);
+  CHECK(std::chrono::steady_clock::now() - begin >= std::chrono::milliseconds(200));
+  CHECK(asked <= 11);  // once in 20 ms: it sleeps between
 }
 
 TEST_CASE("Waiting for the plant ends when it is told to") {

@@ -18,6 +18,8 @@
 
 namespace kadans {
 
+inline constexpr double scenario_duration_max_s = 1e6;  // of simulated time
+
 enum class PlantKind : std::uint8_t { bullet, ideal, udp };  // udp: live runs only, not in a file
 
 // A joystick's recording that is played.

@@ -8,6 +8,8 @@
 
 namespace kadans {
 
+inline constexpr double push_max_Ns = 1e4;  // along each axis
+
 struct ScenarioPush {
   enum class Shape : std::uint8_t { constant, half_sine };
   PlacedName link;

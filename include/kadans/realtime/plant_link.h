@@ -34,7 +34,7 @@ class LinkedPlant final : public Plant, public TruthSource {
     exchange_.sensors.warm_read();
     exchange_.actuation.warm();
   }
-  const PlantTruth& truth() const noexcept override { return truth_ = exchange_.truth.newest(); }  // control thread
+  const PlantTruth& truth() const noexcept override;  // control thread
 
  private:
   PlantExchange& exchange_;

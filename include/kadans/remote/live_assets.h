@@ -20,8 +20,8 @@ class LiveAssets {
   Content read(std::string_view uri);
 
  private:
-  std::string urdf_, urdf_uri_;
-  Content urdf_shared_;
+  Content urdf_;
+  std::string urdf_uri_;
   std::map<std::string, std::string, std::less<>> files_;         // by name in the URDF
   std::map<std::string, std::weak_ptr<const std::string>> read_;  // by file
 };

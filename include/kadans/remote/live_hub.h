@@ -26,9 +26,9 @@ struct LivePace {
   // Set before the server starts. Throws InputError on a push that is none.
   std::function<void(const std::string&)> check_push;
 
-  // Server's thread. False: too many wait.
+  // Server's thread. False: too many wait. Throws what check_push throws.
   [[nodiscard]] bool push(const std::string& what);
-  // hold, go, step, speed, push. False: `verb` is no such thing, or it cannot be done.
+  // hold, go, step, speed, push. False: `verb` is no such thing, or it cannot be done. Throws as push().
   [[nodiscard]] bool obey(const std::string& verb, const std::string& text, double value);
   // The simulation's: "torso=0,2,0", an impulse in Ns; none wait mostly, and then this is one load.
   std::vector<std::string> take_pushes();

@@ -1,6 +1,7 @@
 #include "kadans/plant/udp/datagram_socket.h"
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -111,8 +112,16 @@ DatagramSocket::~DatagramSocket() {
 }
 
 void DatagramSocket::wait(int milliseconds) const noexcept {
-  pollfd wanted{descriptor_, POLLIN, 0};
-  (void)poll(&wanted, 1, milliseconds);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + std::chrono::milliseconds(milliseconds);
+  for (int left = milliseconds; left >= 0;) {
+    pollfd wanted{descriptor_, POLLIN, 0};
+    if (poll(&wanted, 1, left) <= 0 || (wanted.revents & POLLIN) != 0) return;
+    int error = 0;  // that nobody listens there is no reason to wait less: somebody may soon
+    socklen_t size = sizeof error;
+    if (getsockopt(descriptor_, SOL_SOCKET, SO_ERROR, &error, &size) != 0 || error == 0) return;
+    left = static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count());
+  }
 }
 
 std::size_t DatagramSocket::receive() noexcept {

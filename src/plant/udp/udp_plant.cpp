@@ -1,6 +1,7 @@
 #include "kadans/plant/udp/udp_plant.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -35,8 +36,10 @@ UdpPlant::UdpPlant(const UdpSettings& settings, const PlantLayout& layout, Datag
 UdpPlant::~UdpPlant() { close(); }
 
 bool UdpPlant::open(bool (*give_up)() noexcept) {
-  const int greetings = static_cast<int>(std::ceil(1000 * settings_.connect_timeout_s / greet_every_ms));
-  for (int i = 0; i < greetings; ++i) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(settings_.connect_timeout_s));
+  while (Clock::now() < end) {
     if (give_up != nullptr && give_up()) return false;
     if (!welcome_) (void)greet();
     socket_.wait(greet_every_ms);

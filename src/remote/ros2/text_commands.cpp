@@ -43,7 +43,7 @@ std::optional<std::string> TextCommands::take(std::string_view text) {
     asked.verb = verb;
     return obey(asked, json.value("text", ""), json.value("value", 0.0));
   } catch (const InputError& error) {
-    return answer_text("", "", false, std::string("not understood: ") + error.what());
+    return answer_text(asked.id, asked.verb, false, std::string("not understood: ") + error.what());
   } catch (const nlohmann::json::exception& error) {  // a field is missing or of another type
     return answer_text(asked.id, asked.verb, false, std::string("not understood: ") + error.what());
   }
@@ -71,8 +71,9 @@ std::optional<std::string> TextCommands::obey(const Asked& asked, const std::str
 }
 
 std::optional<std::string> TextCommands::next() {
+  const std::int64_t now_ns = waiting_.empty() ? 0 : clock_.now_ns();
   for (const auto& [number, asked] : waiting_) {
-    if (clock_.now_ns() > asked.asked_ns + patience_ns) p_.port.withdraw(number);
+    if (now_ns > asked.asked_ns + patience_ns) p_.port.withdraw(number);
   }
   for (Answer answer; p_.port.next(answer); answer = {}) {
     const auto found = waiting_.find(answer.number);

@@ -152,38 +152,34 @@ run(async () => {
   const first = sim(0);
   const [, url, port] = await first.begun;
   const browser = await chromium.launch(chromium_options);
-  try {
-    const context = await browser.newContext({ viewport: { width: 1100, height: 640 } });
-    const page = await context.newPage();
-    const problems = [];
-    const watch = (other) => other.on('pageerror', (error) => problems.push(error.stack));
-    watch(page);
-    await page.goto(url);
-    await check_live(page, port);
-    await check_hand(page);
-    await check_plots(page);
-    await check_between(page, problems);
-    await check_theme(page);
-    await check_keyboard(page);
+  const context = await browser.newContext({ viewport: { width: 1100, height: 640 } });
+  const page = await context.newPage();
+  const problems = [];
+  const watch = (other) => other.on('pageerror', (error) => problems.push(error.stack));
+  watch(page);
+  await page.goto(url);
+  await check_live(page, port);
+  await check_hand(page);
+  await check_plots(page);
+  await check_between(page, problems);
+  await check_theme(page);
+  await check_keyboard(page);
 
-    await check_tabs(context, url, watch);
+  await check_tabs(context, url, watch);
 
-    const id = await page.evaluate(() => globalThis.kadans.id);
-    await first.stop();
-    await until('the page sees that it is gone', () => page.evaluate(() => globalThis.kadans.status !== ''));
-    const second = sim(port);
-    await second.begun;
-    await until('it connects again', () => page.evaluate((was) => globalThis.kadans.status === '' && globalThis.kadans.id !== was, id));
-    const end_s = await page.evaluate(() => globalThis.kadans.end_s);
-    await until('values come again', () => page.evaluate((was) => globalThis.kadans.end_s > was && globalThis.kadans.end_s < 60, end_s));
-    check(true, 'it connects again after the server was away');
-    await second.stop();
+  const id = await page.evaluate(() => globalThis.kadans.id);
+  await first.stop();
+  await until('the page sees that it is gone', () => page.evaluate(() => globalThis.kadans.status !== ''));
+  const second = sim(port);
+  await second.begun;
+  await until('it connects again', () => page.evaluate((was) => globalThis.kadans.status === '' && globalThis.kadans.id !== was, id));
+  const end_s = await page.evaluate(() => globalThis.kadans.end_s);
+  await until('values come again', () => page.evaluate((was) => globalThis.kadans.end_s > was && globalThis.kadans.end_s < 60, end_s));
+  check(true, 'it connects again after the server was away');
+  await second.stop();
 
-    await check_record(page, record);
-    await check_files(page, record);
-    await check_gaze(page);
-    check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
-  } finally {
-    await browser.close();
-  }
+  await check_record(page, record);
+  await check_files(page, record);
+  await check_gaze(page);
+  check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
 });

@@ -145,9 +145,5 @@ const views = {
 run(async () => {
   mkdirSync(out, { recursive: true });
   browser = await chromium.launch(chromium_options);
-  try {
-    for (const [name, view] of Object.entries(views)) if (name.includes(wanted)) await view();
-  } finally {
-    await browser.close();
-  }
+  for (const [name, view] of Object.entries(views)) if (name.includes(wanted)) await view();
 });

@@ -3,11 +3,27 @@ import { spawn } from 'node:child_process';
 
 export const [kadans, project, folder] = process.argv.slice(2);
 const patience_ms = 40_000;
+const all_ms = 240_000;
 const running = new Set();
+let last_ok = 'nothing';
 
 export function check(truth, what) {
   if (!truth) throw new Error(`not so: ${what}`);
   console.log(`ok    ${what}`);
+  last_ok = what;
+}
+
+// Rejects when there is no answer: a browser that hangs is a failure with a name.
+export async function within(what, answer) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`no answer: ${what}`)), patience_ms);
+  });
+  try {
+    return await Promise.race([answer, late]);
+  } finally {
+    clearTimeout(timer);
+  }
 }
 
 // Resolves with the first line on stderr or stdout that fits, as its match.
@@ -28,11 +44,11 @@ export function start(args, line) {
     setTimeout(() => reject(new Error(`kadans ${args.join(' ')} did not begin: ${said}`)), patience_ms).unref();
   });
   const stop = () =>
-    new Promise((resolve) => {
+    within(`kadans ${args[0]} ends by SIGINT: ${said}`, new Promise((resolve) => {
       if (child.exitCode !== null || child.signalCode !== null) return resolve();
       child.once('exit', resolve);
       child.kill('SIGINT');
-    });
+    }));
   return { child, begun, stop };
 }
 
@@ -49,7 +65,7 @@ export const live_address = /live on (http:\/\/127\.0\.0\.1:(\d+)\/\?token=(\w+)
 export async function until(what, ask) {
   const end = Date.now() + patience_ms;
   for (;;) {
-    const answer = await ask();
+    const answer = await within(what, ask());
     if (answer) return answer;
     if (Date.now() > end) throw new Error(`never so: ${what}`);
     await new Promise((resolve) => setTimeout(resolve, 20));
@@ -57,13 +73,11 @@ export async function until(what, ask) {
 }
 
 export async function run(checks) {
-  try {
-    await checks();
-  } catch (error) {
-    console.error(error);
-    process.exitCode = 1;
-  } finally {
+  const end = (error) => {
+    if (error) console.error(error);
     for (const child of running) child.kill('SIGKILL');
-  }
-  process.exit();
+    process.exit(error ? 1 : 0);
+  };
+  setTimeout(() => end(new Error(`not done in ${all_ms / 1000} s, the last that was so: ${last_ok}`)), all_ms);
+  await checks().then(() => end(), end); // a browser ends with this process
 }
