@@ -152,41 +152,25 @@ void Assembly::start_in_pose() {
   for (const auto& [joint, position_rad] : pose->position_rad) variant_.plant.position_rad[joint] = position_rad;
 }
 
-std::unique_ptr<World> make_world(PlantKind kind, const RobotModel& model, const PlantSettings& settings,
-                                  std::uint64_t seed) {
-  if (kind == PlantKind::ideal) return std::make_unique<IdealWorld>(model, settings);
-  return std::make_unique<BulletWorld>(model, settings, seed);
-}
-
-PlantLayout plant_layout(const RobotConfig& robot) {
-  PlantLayout layout{.robot = robot.name,
-                     .joints = robot.model.joint_names(),
-                     .feet = {},
-                     .period_ns = robot.engine.control_period_ns()};
-  for (const FootSettings& foot : robot.plant.feet) layout.feet.push_back(foot.link);
-  return layout;
-}
-
-std::unique_ptr<Plant> Assembly::make_udp_plant() const {
-  UdpSettings settings = robot_.config.udp;
-  if (!scenario_.peer.empty()) settings.peer = scenario_.peer;
-  if (settings.peer.empty()) {
-    throw InputError(
-        {.file = robot_.config.file,
-         .message = "says no plant.udp.peer: name the machine that serves the plant with --peer HOST:PORT"});
-  }
-  std::random_device random;
-  const std::uint64_t session = (std::uint64_t{random()} << 32U) | random();
-  return std::make_unique<UdpPlant>(settings, plant_layout(robot_.config), DatagramSocket::connected(settings.peer),
-                                    session);
+PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
+  PlantSite site{.file = robot.file,
+                 .layout = {.robot = robot.name,
+                            .joints = robot.model.joint_names(),
+                            .feet = {},
+                            .period_ns = robot.engine.control_period_ns()},
+                 .peer = peer,
+                 .damping_Nms_per_rad = robot.safety.damping_Nms_per_rad};
+  for (const FootSettings& foot : robot.plant.feet) site.layout.feet.push_back(foot.link);
+  return site;
 }
 
 void Assembly::make_plant(std::uint64_t seed) {
-  if (scenario_.plant == PlantKind::udp) {
-    elsewhere_ = make_udp_plant();
+  const PlantType& type = plant_type(robot_.config.plant_types, scenario_.plant);
+  if (!type.is_model()) {
+    elsewhere_ = type.make_plant(plant_site(robot_.config, scenario_.peer));
     return;
   }
-  sound_ = make_world(scenario_.plant, variant_.model, variant_.plant, seed);
+  sound_ = type.make_world({variant_.model, variant_.plant, seed});
   faulty_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed, *sound_);
   if (link_ != nullptr) linked_ = std::make_unique<LinkedPlant>(*link_, *world());
 }

@@ -358,8 +358,8 @@ class LiveRun {
 
 int run_live(const RunOptions& options) {
   require_kind(options.robot, JsonKind::robot);
-  if (options.virtual_time && options.plant == "udp") {
-    print_error("--threads-on-virtual-time: a plant on another machine has its own time");
+  if (options.virtual_time && !plant_type(plant_types(), options.plant).is_model()) {
+    print_error("--threads-on-virtual-time: a plant that is no model has its own time");
     return exit_usage;
   }
   if (!options.virtual_time && !rights_suffice(plant_priority, options.soft)) return exit_usage;

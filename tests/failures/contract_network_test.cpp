@@ -85,7 +85,7 @@ TEST_CASE("within the bounds the robot goes where it is told: nothing is noticed
   CHECK(samples.reordered > 100);
   CHECK(samples.duplicates > 100);
   CHECK(samples.refused == 0);
-  CHECK(robot.server.session().link.lost > 150);
+  CHECK(robot.server.link().lost > 150);
   CHECK(robot.server.session().releases == 0);
 }
 

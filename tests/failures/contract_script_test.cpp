@@ -43,7 +43,7 @@ struct Play {
       : project(project_copy(folder)) {
     write(project / "behaviors/tulip/squat.lua", lua);
     scenario = read_scenario_config(project / "config/scenarios/squat.json");
-    scenario.plant = PlantKind::ideal;
+    scenario.plant = "ideal";
     if (!reload_with.empty()) {
       const auto file = project / "behaviors/tulip/next.lua";
       write(file, reload_with);

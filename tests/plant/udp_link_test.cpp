@@ -123,7 +123,7 @@ TEST_CASE("Over the network a plant is read and driven, a round trip a tick") {
   CHECK(ends.plant.round_trip_ticks() == 0);
   CHECK(ends.plant.statistics().received == 10);
   CHECK(ends.plant.statistics().lost == 0);
-  CHECK(ends.server.session().link.received == 10);
+  CHECK(ends.server.link().received == 10);
 }
 
 TEST_CASE("Time begins for the plant with the first actuation") {
@@ -251,8 +251,8 @@ TEST_CASE("Garbage and strangers change nothing and are counted") {
     CHECK(server.beat(model, 1));
   }
   CHECK(model.truth().velocity_rad_s[0] >= velocity_rad_s);
-  CHECK(server.session().link.refused >= 100);
-  CHECK(server.session().link.received == 1);
+  CHECK(server.link().refused >= 100);
+  CHECK(server.link().received == 1);
   CHECK_THROWS_WITH_AS(stranger.open(), "the plant at the test is driven by somebody else", InputError);
 }
 

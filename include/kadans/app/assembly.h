@@ -12,7 +12,7 @@
 #include "kadans/config/scenario_config.h"
 #include "kadans/control/control_object_types.h"
 #include "kadans/engine/lockstep.h"
-#include "kadans/plant/udp/wire.h"
+#include "kadans/plant/plant_type.h"
 #include "kadans/plant/world.h"
 #include "kadans/realtime/plant_link.h"
 #include "kadans/scenario/disturbances.h"
@@ -46,19 +46,16 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept = {});
-// A world with this robot in it. `kind` is bullet or ideal.
-std::unique_ptr<World> make_world(PlantKind kind, const RobotModel& model, const PlantSettings& settings,
-                                  std::uint64_t seed);
-// What a plant over the network must have in common with this robot.
-PlantLayout plant_layout(const RobotConfig& robot);
+// What a plant that is no model is made for. `peer`: where it is; "": where the configuration says.
+PlantSite plant_site(const RobotConfig& robot, const std::string& peer);
 
 class Assembly {
  public:
   // Reads the robot and the behaviors that the scenario names. Throws InputError with everything that is wrong. The log
   // must outlive the assembly, and so must `link`: with it the world is for a thread of its own, and the engines see
   // its other end. With `outside`, which must outlive it too, the scenario's behaviors play in a process of their own,
-  // which has been started with them. When the scenario's plant is udp there is no world: no parts(), no world(), no
-  // truth().
+  // which has been started with them. When the scenario's plant is no model there is no world: no parts(), no world(),
+  // no truth().
   Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
            ProcessHost* outside = nullptr);
 
@@ -88,7 +85,6 @@ class Assembly {
   void vary(std::uint64_t seed);
   void start_in_pose();
   void make_plant(std::uint64_t seed);
-  std::unique_ptr<Plant> make_udp_plant() const;
   const TruthSource* truth_source() noexcept;
   void make_joystick_player();
   void make_behaviors();
