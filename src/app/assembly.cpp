@@ -7,8 +7,9 @@
 
 #include "kadans/config/project_root.h"
 #include "kadans/estimate/signals.h"
-#include "kadans/plant/bullet/bullet_plant.h"
-#include "kadans/plant/ideal_plant.h"
+#include "kadans/plant/bullet/bullet_world.h"
+#include "kadans/plant/ideal_world.h"
+#include "kadans/plant/udp/udp_plant.h"
 #include "kadans/scenario/planned_faults.h"
 #include "kadans/signal/nearest_name.h"
 
@@ -104,21 +105,20 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
     throw InputError({.file = robot_.config.file, .message = error.what()});
   }
   exchange_ = std::make_unique<EngineExchange>();
-  if (seen_model_ != nullptr) {
-    truth_ = std::make_unique<TruthSignals>(*seen_model_, catalog, feet_of(variant_.plant), feet_settle_s,
-                                            variant_.plant.world);
+  plant().declare_signals(catalog.signals);
+  if (const TruthSource* source = truth_source()) {
+    truth_ =
+        std::make_unique<TruthSignals>(*source, catalog, feet_of(variant_.plant), feet_settle_s, variant_.plant.world);
     for (const ObjectConfig& object : robot_.config.objects) {
       if (object.type.name == "gaze") truth_->watch(catalog, eyes_of(object));
     }
-  } else {
-    udp_plant_->declare_signals(catalog.signals);
   }
   if (outside == nullptr) host_ = make_script_host(scenario, robot_.config, catalog, seed, log);
   upkeep_first_ = catalog.signals.size();
   if (outside != nullptr) outside->attach(catalog, safe_posture_of(robot_.config.safe));
   if (host_) host_->declare_signals(catalog.signals);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
-  control_ = std::make_unique<ControlEngine>(robot_.config.engine, *plant_, *estimator_, *safety_, *sets_, catalog,
+  control_ = std::make_unique<ControlEngine>(robot_.config.engine, plant(), *estimator_, *safety_, *sets_, catalog,
                                              *exchange_);
   if (host_) faulty_host_ = make_faulty_host(scenario, *host_);
   disturbances_ = std::make_unique<Disturbances>(scenario, robot_.config.model);
@@ -152,44 +152,38 @@ void Assembly::start_in_pose() {
   for (const auto& [joint, position_rad] : pose->position_rad) variant_.plant.position_rad[joint] = position_rad;
 }
 
-std::unique_ptr<ModelPlant> make_model(PlantKind kind, const RobotModel& model, const PlantSettings& settings,
-                                       std::uint64_t seed) {
-  if (kind == PlantKind::ideal) return std::make_unique<IdealPlant>(model, settings);
-  return std::make_unique<BulletPlant>(model, settings, seed);
-}
-
-PlantLayout plant_layout(const RobotConfig& robot) {
-  PlantLayout layout{.robot = robot.name,
-                     .joints = robot.model.joint_names(),
-                     .feet = {},
-                     .period_ns = robot.engine.control_period_ns()};
-  for (const FootSettings& foot : robot.plant.feet) layout.feet.push_back(foot.link);
-  return layout;
-}
-
-void Assembly::make_udp_plant() {
-  UdpSettings settings = robot_.config.udp;
-  if (!scenario_.peer.empty()) settings.peer = scenario_.peer;
-  if (settings.peer.empty()) {
-    throw InputError(
-        {.file = robot_.config.file,
-         .message = "says no plant.udp.peer: name the machine that serves the plant with --peer HOST:PORT"});
-  }
-  std::random_device random;
-  const std::uint64_t session = (std::uint64_t{random()} << 32U) | random();
-  udp_plant_ = std::make_unique<UdpPlant>(settings, plant_layout(robot_.config),
-                                          DatagramSocket::connected(settings.peer), session);
-  plant_ = udp_plant_.get();
+PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
+  PlantSite site{.file = robot.file,
+                 .layout = {.robot = robot.name,
+                            .joints = robot.model.joint_names(),
+                            .feet = {},
+                            .period_ns = robot.engine.control_period_ns()},
+                 .peer = peer,
+                 .damping_Nms_per_rad = robot.safety.damping_Nms_per_rad};
+  for (const FootSettings& foot : robot.plant.feet) site.layout.feet.push_back(foot.link);
+  return site;
 }
 
 void Assembly::make_plant(std::uint64_t seed) {
-  if (scenario_.plant == PlantKind::udp) return make_udp_plant();
-  model_plant_ = make_model(scenario_.plant, variant_.model, variant_.plant, seed);
-  faulty_plant_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed, *model_plant_);
-  model_ = faulty_plant_ ? static_cast<ModelPlant*>(faulty_plant_.get()) : model_plant_.get();
-  if (link_ != nullptr) linked_plant_ = std::make_unique<LinkedPlant>(*link_, *model_);
-  seen_model_ = linked_plant_ ? static_cast<ModelPlant*>(linked_plant_.get()) : model_;
-  plant_ = seen_model_;
+  const PlantType& type = plant_type(robot_.config.plant_types, scenario_.plant);
+  if (!type.is_model()) {
+    elsewhere_ = type.make_plant(plant_site(robot_.config, scenario_.peer));
+    return;
+  }
+  sound_ = type.make_world({variant_.model, variant_.plant, seed});
+  faulty_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed, *sound_);
+  if (link_ != nullptr) linked_ = std::make_unique<LinkedPlant>(*link_, *world());
+}
+
+World* Assembly::world() noexcept { return faulty_ ? faulty_.get() : sound_.get(); }
+
+Plant& Assembly::plant() noexcept {
+  if (elsewhere_) return *elsewhere_;
+  return linked_ ? static_cast<Plant&>(*linked_) : world()->robot();
+}
+
+const TruthSource* Assembly::truth_source() noexcept {
+  return linked_ ? static_cast<const TruthSource*>(linked_.get()) : world();
 }
 
 void Assembly::make_joystick_player() {
@@ -213,7 +207,8 @@ void Assembly::make_behaviors() {
   BehaviorHost* host = filtered_ ? filtered_.get() : &played();
   lockstep_.reset();
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host);
-  lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_, *control_, *behaviors_);
+  if (World* const stepped = linked_ ? nullptr : world())
+    lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *stepped, *control_, *behaviors_);
 }
 
 void Assembly::filter(SnapshotFilter& filter) {
@@ -222,7 +217,7 @@ void Assembly::filter(SnapshotFilter& filter) {
 }
 
 RunParts Assembly::parts() noexcept {
-  return {.plant = *seen_model_,
+  return {.world = *world(),
           .control = *control_,
           .behaviors = *behaviors_,
           .lockstep = *lockstep_,

@@ -41,9 +41,7 @@ ScenarioConfig live_scenario(const RunOptions& options) {
   ScenarioConfig scenario;
   scenario.file = scenario.robot = options.robot;
   scenario.name = "run";
-  scenario.plant = options.plant == "udp"     ? PlantKind::udp
-                   : options.plant == "ideal" ? PlantKind::ideal
-                                              : PlantKind::bullet;
+  scenario.plant = options.plant;
   scenario.peer = options.peer;
   scenario.joystick_device = options.joystick;
   scenario.on_wall_clock = !options.virtual_time;

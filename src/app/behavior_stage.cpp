@@ -195,7 +195,7 @@ std::unique_ptr<TestStage> IdealStages::make(const fs::path& behavior, const std
   scenario.robot =
       (robot.empty() ? (robot_.empty() ? robot_of_behavior(behavior) : robot_) : project_root(behavior) / robot)
           .string();
-  scenario.plant = PlantKind::ideal;
+  scenario.plant = "ideal";
   scenario.behaviors.push_back({.file = behavior});
   return std::make_unique<IdealStage>(std::move(scenario));
 }

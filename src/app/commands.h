@@ -72,7 +72,7 @@ int run_check(const CheckOptions& options);
 struct RunOptions {
   std::string robot;
   std::string plant = "bullet";
-  std::string peer;      // of a udp plant; "" = the robot's own
+  std::string peer;      // where the drives are; "" = the robot's own
   std::string play;      // a list; "" = nothing, the robot holds
   std::string joystick;  // a device or a recording; "" = the robot's own
   std::string record;    // "" = none
@@ -104,7 +104,7 @@ int run_behavior_process(const RunOptions& options);
 struct PlantOptions {
   std::string robot;
   std::string listen;
-  std::string plant = "bullet";
+  std::string plant = "bullet", as = "udp";  // types: what is served, in whose protocol
   std::uint64_t seed = 1;
   bool soft = false;  // also without the rights to be punctual
   bool once = false;  // ends with the first session

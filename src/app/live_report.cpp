@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "kadans/config/foreign_json.h"
+#include "link_report.h"
 #include "tick_report.h"
-#include "udp_report.h"
 
 namespace kadans {
 namespace {
@@ -113,7 +113,7 @@ std::string live_text(const LiveResult& result) {
                   whole(result.plant->lost_periods()));
     all += text.data();
   }
-  if (result.udp_plant != nullptr) all += "  link: " + udp_text(result.udp_plant->statistics()) + "\n";
+  if (!result.link.empty()) all += "  link: " + link_text(result.link) + "\n";
   return all;
 }
 
@@ -146,7 +146,7 @@ std::string live_json(const LiveResult& result) {
                                 {"answer_us", percentiles_of(process.answer_cost())},
                                 {"outage_us", percentiles_of(process.outage())}};
   }
-  if (result.udp_plant != nullptr) json["link"] = udp_json(result.udp_plant->statistics());
+  if (!result.link.empty()) json["link"] = link_json(result.link);
   if (has_record(result)) {
     json["record"] = {{"rows", result.recorder->rows()},
                       {"dropped", result.recorder->dropped()},

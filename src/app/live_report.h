@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "kadans/plant/udp/udp_plant.h"
+#include "kadans/plant/plant.h"
 #include "kadans/script/process/process_host.h"
 #include "kadans/telemetry/recorder.h"
 #include "live_threads.h"
@@ -17,7 +17,7 @@ struct LiveResult {
   const BehaviorEngine& behaviors;
   const ControlEngine& engine;
   const PlantTask* plant = nullptr;  // of a model
-  const UdpPlant* udp_plant = nullptr;
+  std::vector<PlantCount> link{};    // of a plant that has one
   const Recorder* recorder = nullptr;
   const ProcessHost* process = nullptr;  // of the behaviors
   double duration_s = 0;

@@ -10,17 +10,17 @@
 #include "json_kind.h"
 #include "kadans/app/assembly.h"
 #include "kadans/config/foreign_json.h"
-#include "kadans/plant/udp/plant_server.h"
+#include "kadans/plant/plant_type.h"
 #include "kadans/realtime/keep_awake.h"
 #include "kadans/realtime/machine.h"
 #include "kadans/realtime/posix_wait.h"
 #include "kadans/realtime/rights.h"
 #include "kadans/realtime/task_thread.h"
+#include "link_report.h"
 #include "live_threads.h"
 #include "option_checks.h"
 #include "real_time_start.h"
 #include "terminal.h"
-#include "udp_report.h"
 
 namespace kadans {
 namespace {
@@ -31,64 +31,56 @@ constexpr std::uint32_t catch_up_max = 10;
 // A beat of the model's period. What it is late by more than a few periods is lost for the model, and counted.
 class ServeTask final : public Task {
  public:
-  ServeTask(PlantServer& server, ModelPlant& model) noexcept : server_(server), model_(model) {}
+  ServeTask(PlantEmulator& emulator, World& world) noexcept : emulator_(emulator), world_(world) {}
   bool beat(const Beat& beat) override {
     const std::uint32_t periods = std::min(1 + beat.missed, catch_up_max);
     lost_periods_ += 1 + std::uint64_t{beat.missed} - periods;
-    return server_.beat(model_, periods);
+    return emulator_.beat(world_, periods);
   }
   std::uint64_t lost_periods() const noexcept { return lost_periods_; }  // after the thread
 
  private:
-  PlantServer& server_;
-  ModelPlant& model_;
+  PlantEmulator& emulator_;
+  World& world_;
   std::uint64_t lost_periods_ = 0;
 };
 
 class PlantService {
  public:
-  explicit PlantService(const PlantOptions& options)
-      : options_(options), robot_(read_robot(options.robot)), server_(make_server(robot_.config, options.listen)) {}
+  explicit PlantService(const PlantOptions& options) : options_(options), robot_(read_robot(options.robot)) {}
 
   int run() {
     lock_program(true);
     std::fprintf(stderr, "serves '%s' on %s\n", robot_.config.name.c_str(), options_.listen.c_str());
     bool failed = false;
     while (!interrupted()) {
-      const std::unique_ptr<ModelPlant> model = make();
-      while (!interrupted() && !server_.await(look_every_ms)) {
+      const std::unique_ptr<World> world = make();
+      while (!interrupted() && !emulator_->await(look_every_ms)) {
       }
       if (interrupted()) break;
-      failed = !serve(*model) || failed;
+      failed = !serve(*world) || failed;
       if (options_.once) break;
     }
     return failed ? exit_failed : exit_passed;
   }
 
  private:
-  static PlantServer make_server(const RobotConfig& config, const std::string& listen) {
-    UdpSettings settings = config.udp;
-    settings.damping_Nms_per_rad = config.safety.damping_Nms_per_rad;
-    return {settings, plant_layout(config), DatagramSocket::listening(listen)};
-  }
-
-  std::unique_ptr<ModelPlant> make() const {
+  std::unique_ptr<World> make() const {
     const RobotConfig& config = robot_.config;
     try {
-      const PlantKind kind = options_.plant == "ideal" ? PlantKind::ideal : PlantKind::bullet;
-      return make_model(kind, config.model, config.plant, options_.seed);
+      return plant_type(config.plant_types, options_.plant).make_world({config.model, config.plant, options_.seed});
     } catch (const std::invalid_argument& error) {
       throw InputError({.file = config.file, .message = error.what()});
     }
   }
 
   // One session on a thread of its own. False when the model failed.
-  bool serve(ModelPlant& model) {
-    std::fprintf(stderr, "driven by %s\n", server_.peer().text().c_str());
+  bool serve(World& world) {
+    std::fprintf(stderr, "driven by %s\n", emulator_->peer_name().c_str());
     const std::int64_t period_ns = robot_.config.engine.control_period_ns();
     const bool one_cpu = sysconf(_SC_NPROCESSORS_ONLN) < 2;
     PosixWait wait(one_cpu ? 0 : default_spin_ns, WallClock().now_ns());
-    ServeTask task(server_, model);
+    ServeTask task(*emulator_, world);
     const int priority = read_rights("/").priority(plant_priority) ? plant_priority : 0;
     TaskThread thread({.name = "plant",
                        .period_ns = period_ns,
@@ -106,7 +98,7 @@ class PlantService {
   }
 
   void tell(const TaskThread& thread, const ServeTask& task) const {
-    const PlantServer::Session& s = server_.session();
+    const PlantEmulator::Session& s = emulator_->session();
     const TaskStatistics& timing = thread.statistics();
     const char* ended = thread.failure()[0] != 0 ? thread.failure() : s.left ? "the peer left" : "the peer fell silent";
     if (interrupted()) ended = "told to stop";
@@ -121,14 +113,14 @@ class PlantService {
                                         {"releases", s.releases},
                                         {"answer_ms_mean", 1e-6 * s.answer_mean_ns()},
                                         {"answer_ms_max", 1e-6 * static_cast<double>(s.answer_max_ns)},
-                                        {"link", udp_json(s.link)}};
+                                        {"link", link_json(emulator_->link_counts())}};
       std::puts(json_text(json).c_str());
     } else {
       std::printf("%s after %llu beats, %llu missed; late p99 %.1f us, work p50 %.1f p99 %.1f us\n", ended,
                   static_cast<unsigned long long>(timing.lateness.count()),
                   static_cast<unsigned long long>(timing.missed.get()), 1e-3 * timing.lateness.percentile_ns(0.99),
                   1e-3 * timing.execution.percentile_ns(0.5), 1e-3 * timing.execution.percentile_ns(0.99));
-      std::printf("  link: %s\n", udp_text(s.link).c_str());
+      std::printf("  link: %s\n", link_text(emulator_->link_counts()).c_str());
       std::printf("  actuations answer samples %.2f ms old, %.2f at most; the watchdog released the joints %u times\n",
                   1e-6 * s.answer_mean_ns(), 1e-6 * static_cast<double>(s.answer_max_ns), s.releases);
     }
@@ -137,7 +129,8 @@ class PlantService {
 
   const PlantOptions& options_;
   Robot robot_;
-  PlantServer server_;
+  std::unique_ptr<PlantEmulator> emulator_ =
+      plant_type(robot_.config.plant_types, options_.as).make_emulator(plant_site(robot_.config, ""), options_.listen);
 };
 
 }  // namespace
@@ -148,8 +141,10 @@ void add_plant(CLI::App& app, PlantOptions& options) {
   plant->add_option("--listen", options.listen, "Where it listens: \":7100\" on every address of this machine")
       ->required()
       ->type_name("HOST:PORT");
-  plant->add_option("--plant", options.plant, "What is served: bullet (default) or ideal")
-      ->check(CLI::IsMember({"bullet", "ideal"}));
+  plant->add_option("--plant", options.plant, "What is served (default: bullet)")
+      ->check(CLI::IsMember(plant_type_names(&PlantType::is_model)));
+  plant->add_option("--as", options.as, "In which type's protocol (default: udp)")
+      ->check(CLI::IsMember(plant_type_names(&PlantType::is_protocol)));
   plant->add_option("--seed", options.seed, "Seed of the model's noise (default: 1)")
       ->type_name("N")
       ->check(any_seed());

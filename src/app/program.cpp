@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "command_line.h"
+#include "kadans/plant/plant_type.h"
 #include "kadans/signal/nearest_name.h"
 #include "option_checks.h"
 #include "real_time_start.h"
@@ -11,14 +12,28 @@
 #include "version.h"
 
 namespace kadans {
+namespace {
+
+// " bullet, the robot's model ...; udp, a plant on another machine"
+std::string plant_type_docs() {
+  std::string docs;
+  for (const auto& type : plant_types()) {
+    docs += docs.empty() ? " " : "; ";
+    docs += std::string(type->name()) + ", " + std::string(type->doc());
+  }
+  return docs;
+}
+
+}  // namespace
 
 void add_run(CLI::App& app, RunOptions& options) {
   CLI::App* run =
       app.add_subcommand("run", "Drive a robot, or a model of it, on the wall clock until SIGINT or SIGTERM");
   run->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
-  run->add_option("--plant", options.plant, "What is driven: bullet (default), ideal, or udp: another machine's")
-      ->check(CLI::IsMember({"bullet", "ideal", "udp"}));
-  run->add_option("--peer", options.peer, "Where `kadans plant` runs (default: the configuration's plant.udp.peer)")
+  run->add_option("--plant", options.plant, "What is driven (default: bullet):" + plant_type_docs())
+      ->check(CLI::IsMember(plant_type_names()));
+  run->add_option("--peer", options.peer,
+                  "Where the drives are, or `kadans plant` (default: as the configuration says)")
       ->type_name("HOST:PORT");
   run->add_option("--play", options.play, "What to play: \"squat, wave\" (default: nothing, the robot holds)")
       ->type_name("LIST");

@@ -110,9 +110,9 @@ class LiveRun {
         parts_{assembly_.control(), assembly_.behaviors()},
         truth_(assembly_.truth() == nullptr ? nullptr
                                             : std::make_unique<TruthTask>(*assembly_.truth(), parts_.control)),
-        plant_(assembly_.model() == nullptr
+        plant_(assembly_.world() == nullptr
                    ? nullptr
-                   : std::make_unique<PlantTask>(*link_, *assembly_.model(),
+                   : std::make_unique<PlantTask>(*link_, *assembly_.world(),
                                                  assembly_.robot().engine.control_period_ns())),
         joystick_(make_joystick()),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
@@ -133,7 +133,7 @@ class LiveRun {
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     ctl_.start();  // who is there before the first tick may look, and stop the robot
-    if (assembly_.udp_plant() != nullptr && !assembly_.udp_plant()->connect(interrupted)) return exit_interrupted;
+    if (!assembly_.plant().open(interrupted)) return exit_interrupted;
     LastResort last_resort(timing.real_time && !timing.virtual_time ? last_resort_priority : 0, exit_failed);
     LiveThreads threads(timing,
                         {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()},
@@ -156,7 +156,7 @@ class LiveRun {
                       parts_.behaviors,
                       parts_.control,
                       plant_.get(),
-                      assembly_.udp_plant(),
+                      assembly_.plant().link_counts(),
                       record_side_.recorder(),
                       process_.get(),
                       left_at_s_,
@@ -186,7 +186,7 @@ class LiveRun {
     ActuationFrame off;
     off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
     if (!hangs(hanging, "control")) assembly_.plant().write(off);  // else the plant's own watchdog has to
-    if (assembly_.udp_plant() != nullptr) assembly_.udp_plant()->leave();
+    assembly_.plant().close();
     tell(threads.supervisor().now_ns());
     last_resort.expect("closing the record", record_ns);
     if (hangs(hanging, "record")) {
@@ -358,8 +358,8 @@ class LiveRun {
 
 int run_live(const RunOptions& options) {
   require_kind(options.robot, JsonKind::robot);
-  if (options.virtual_time && options.plant == "udp") {
-    print_error("--threads-on-virtual-time: a plant on another machine has its own time");
+  if (options.virtual_time && !plant_type(plant_types(), options.plant).is_model()) {
+    print_error("--threads-on-virtual-time: a plant that is no model has its own time");
     return exit_usage;
   }
   if (!options.virtual_time && !rights_suffice(plant_priority, options.soft)) return exit_usage;

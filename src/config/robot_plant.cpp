@@ -34,14 +34,25 @@ void drive_fields(Fields& f, DriveSettings& d) {
 
 constexpr NumberRange anywhere_m{-10, 10, "m"};
 
-void udp_fields(Fields& f, UdpSettings& udp) {
-  f.string("peer", udp.peer, "HOST:PORT of the machine that serves the plant");
-  f.number("connect_timeout_s", udp.connect_timeout_s, {0.1, 600, "s"}, "how long to wait for its answer");
-  f.number("round_trip_max_s", udp.round_trip_max_s, {1e-4, 1, "s"},
-           "readings that answer an older actuation are not new ones");
-  f.number("watchdog_s", udp.watchdog_s, {1e-3, 10, "s"}, "the plant damps its joints after so long without actuation");
-  f.number("peer_timeout_s", udp.peer_timeout_s, {0.1, 600, "s"}, "it is free for another peer after so long");
-}
+// A plant type's list of fields, as one of the file's.
+class TypeFields final : public PlantFields {
+ public:
+  explicit TypeFields(Fields& fields) : fields_(fields) {}
+  void number(std::string_view name, double& value, Range range, std::string_view doc) override {
+    fields_.number(name, value, {range.min, range.max, range.unit}, doc);
+  }
+  void integer(std::string_view name, std::uint32_t& value, Range range, std::string_view doc) override {
+    fields_.integer(name, value,
+                    {static_cast<std::uint64_t>(range.min), static_cast<std::uint64_t>(range.max), range.unit}, doc);
+  }
+  void boolean(std::string_view name, bool& value, std::string_view doc) override { fields_.boolean(name, value, doc); }
+  void string(std::string_view name, std::string& value, std::string_view doc) override {
+    fields_.string(name, value, doc);
+  }
+
+ private:
+  Fields& fields_;
+};
 
 }  // namespace
 
@@ -127,7 +138,13 @@ void RobotReader::plant(Fields& f) {
   f.integer("solver_iterations", plant.solver_iterations, {1, 1000}, "iterations of the contact solver in a step");
   f.boolean("fixed_base", plant.fixed_base, "the base link is bolted to the world");
   f.boolean("self_collision", plant.self_collision, "the robot's links collide with each other");
-  f.object("udp", "a plant on another machine", [&](Fields& e) { udp_fields(e, config_.udp); });
+  for (const auto& type : config_.plant_types) {
+    if (!type->has_fields()) continue;
+    f.object(type->name(), type->doc(), [&](Fields& e) {
+      TypeFields fields(e);
+      type->fields(fields);
+    });
+  }
   for (std::size_t i = 0; i < plant.drives.size(); ++i) {
     config_.estimate.spring_Nm_per_rad[i] = config_.safety.joints[i].spring_Nm_per_rad =
         plant.drives[i].spring_Nm_per_rad;

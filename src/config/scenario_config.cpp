@@ -6,11 +6,24 @@
 
 #include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
+#include "kadans/plant/plant_type.h"
 
 namespace kadans {
 namespace {
 
-const std::array<std::string, 2> plant_names{"bullet", "ideal"};
+// What plays the robot, and what it cannot play.
+void plant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+  const std::vector<std::string> models = plant_type_names(&PlantType::is_model);
+  auto chosen = static_cast<std::size_t>(std::ranges::find(models, scenario.plant) - models.begin());
+  f.choice("plant", chosen, models, "what plays the robot");
+  scenario.plant = models[chosen];
+  if (plant_type(plant_types(), scenario.plant).has_objects() || !f.has("world")) return;
+  std::string others;
+  for (const std::string& name : plant_type_names(&PlantType::has_objects))
+    others += (others.empty() ? "" : ", ") + name;
+  problems.add(f.place("world"),
+               "world: only the " + others + " plant has one, this scenario's plant is " + scenario.plant);
+}
 
 // How it is run among others.
 void suite_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
@@ -56,7 +69,7 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   if (!scenario.robot.empty()) {
     scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", problems).string();
   }
-  f.choice("plant", scenario.plant, plant_names, "what plays the robot");
+  plant_fields(f, scenario, problems);
   f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"}, "simulated time", Need::required);
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
             "where all random numbers of the run come from");
@@ -87,9 +100,6 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   world_fields(f, scenario.world, problems);
   f.object("joystick", "a joystick that is played from a recording",
            [&](Fields& e) { joystick_fields(e, scenario, problems); });
-  if (scenario.plant == PlantKind::ideal && f.has("world")) {
-    problems.add(f.place("world"), "world: only the bullet plant has one, this scenario's plant is ideal");
-  }
   f.list("checks", {0, 1000}, "what must hold", [&](Fields& e) {
     ScenarioCheck check;
     check_fields(e, check, scenario.duration_s, scenario.checks, problems);

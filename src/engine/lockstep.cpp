@@ -5,8 +5,8 @@
 
 namespace kadans {
 
-Lockstep::Lockstep(const EngineSettings& settings, Plant& plant, ControlEngine& control, BehaviorEngine& behaviors)
-    : plant_(plant),
+Lockstep::Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors)
+    : world_(world),
       control_(control),
       behaviors_(behaviors),
       control_period_ns_(settings.control_period_ns()),
@@ -17,7 +17,7 @@ Lockstep::Lockstep(const EngineSettings& settings, Plant& plant, ControlEngine& 
 }
 
 void Lockstep::pass_period() {
-  plant_.step(control_period_ns_);
+  world_.step(control_period_ns_);
   clock_.advance(control_period_ns_);
 }
 

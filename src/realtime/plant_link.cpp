@@ -4,11 +4,11 @@
 
 namespace kadans {
 
-LinkedPlant::LinkedPlant(PlantExchange& exchange, ModelPlant& model) : exchange_(exchange) {
+LinkedPlant::LinkedPlant(PlantExchange& exchange, World& world) : exchange_(exchange) {
   SensorFrame sensors;
-  model.read(sensors);
+  world.robot().read(sensors);
   exchange_.sensors.publish(sensors);
-  exchange_.truth.publish(model.truth());
+  exchange_.truth.publish(world.truth());
 }
 
 // A signal asks for itself: what is large is copied when there is another one, not each time.
@@ -20,14 +20,14 @@ const PlantTruth& LinkedPlant::truth() const noexcept {
 
 bool PlantTask::beat(const Beat& beat) {
   const auto actuation = exchange_.actuation.read();
-  model_.write(*actuation);
+  world_.robot().write(*actuation);
   const std::uint32_t steps = std::min(1 + beat.missed, catch_up_max);
   lost_periods_.add(1 + std::uint64_t{beat.missed} - steps);
   for (std::uint32_t i = 0; i < steps; ++i) {  // a control tick may come between any two
-    model_.step(period_ns_);
-    model_.read(sensors_);
+    world_.step(period_ns_);
+    world_.robot().read(sensors_);
     exchange_.sensors.publish(sensors_);
-    exchange_.truth.publish(model_.truth());
+    exchange_.truth.publish(world_.truth());
   }
   return true;
 }

@@ -13,7 +13,7 @@ Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& mod
   happened_.resize(faults_.size());
 }
 
-void Disturbances::apply(Lockstep& lockstep, ModelPlant& plant) {
+void Disturbances::apply(Lockstep& lockstep, World& world) {
   const double time_s = 1e-9 * static_cast<double>(lockstep.time_ns());
   bool silent = false;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -27,7 +27,7 @@ void Disturbances::apply(Lockstep& lockstep, ModelPlant& plant) {
     happened_[i] = true;
   }
   lockstep.silence_behaviors(silent);
-  pushes_.apply(plant, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
+  pushes_.apply(world, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
 }
 
 }  // namespace kadans

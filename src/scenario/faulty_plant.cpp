@@ -111,7 +111,7 @@ void FaultyPlant::write(const ActuationFrame& actuation) noexcept {
 }
 
 void FaultyPlant::hash(StateHash& hash) const noexcept {
-  plant_.hash(hash);
+  world_.hash(hash);
   for (const PlannedActuator& planned : actuator_faults_) hash.add(planned.held.effort_Nm);
 }
 

@@ -5,7 +5,7 @@
 
 namespace kadans {
 
-GazeTruth::GazeTruth(const ModelPlant& plant, const Catalog& catalog, const Eyes& eyes)
+GazeTruth::GazeTruth(const TruthSource& plant, const Catalog& catalog, const Eyes& eyes)
     : plant_(plant),
       object_(eyes.object),
       joints_(catalog.model->joints.size()),

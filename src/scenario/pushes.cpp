@@ -27,13 +27,13 @@ Pushes::Pushes(const std::vector<ScenarioPush>& pushes, const RobotModel& model,
   problems.throw_if_any();
 }
 
-void Pushes::apply(ModelPlant& plant, double time_s, double dt_s) const {
+void Pushes::apply(World& world, double time_s, double dt_s) const {
   for (const auto& [push, link] : pushes_) {
     const double share = given_share(push, time_s + dt_s) - given_share(push, time_s);
     if (share <= 0) continue;
     Vec3 force_N{};
     for (std::size_t i = 0; i < 3; ++i) force_N[i] = push.impulse_Ns[i] * share / dt_s;
-    plant.push(link, force_N, push.point_m);
+    world.push(link, force_N, push.point_m);
   }
 }
 

@@ -49,7 +49,7 @@ class Run {
 
   void step() {
     parts_.truth.update(1e-9 * static_cast<double>(parts_.lockstep.time_ns()), parts_.control.row());
-    if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.plant);
+    if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.world);
     if (parts_.joystick != nullptr)
       parts_.control.exchange().joystick.publish(parts_.joystick->at(parts_.lockstep.time_ns()));
     parts_.lockstep.step();
@@ -57,7 +57,7 @@ class Run {
     const std::span<const double> row = parts_.control.row();
     hash_.add(row.first(parts_.upkeep_first));
     hash_.add(row.subspan(parts_.upkeep_first + parts_.upkeep_count));
-    parts_.plant.hash(hash_);
+    parts_.world.hash(hash_);
     checks_.update(time_s, row);
     for (RunObserver* observer : observers_) observer->tick(time_s, row);
     const RunMark mark{parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()};

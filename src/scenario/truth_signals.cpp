@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace kadans {
-TruthSignals::TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
+TruthSignals::TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
                            const WorldSettings& world)
     : plant_(plant), model_(*catalog.model), settle_s_(settle_s), kinematics_(*catalog.model) {
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {

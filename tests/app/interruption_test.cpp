@@ -42,7 +42,7 @@ TEST_CASE("a script that would go on for long is stopped by SIGINT and SIGTERM i
   const auto project = project_copy("interruption");
   write(project / "behaviors/tulip/squat.lua", slow);
   ScenarioConfig scenario = read_scenario_config(project / "config/scenarios/squat.json");
-  scenario.plant = PlantKind::ideal;
+  scenario.plant = "ideal";
   for (const int number : {SIGINT, SIGTERM}) {
     const pid_t child = fork();
     if (child == 0) _exit(run_signalled(scenario, number));

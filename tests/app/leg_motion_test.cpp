@@ -7,7 +7,7 @@
 
 #include "kadans/app/assembly.h"
 #include "kadans/model/dynamics.h"
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "kadans/plant/bullet/bullet_world.h"
 
 using namespace kadans;
 
@@ -106,7 +106,7 @@ class Stand {
  private:
   const RobotConfig& config_;
   std::unique_ptr<ControlSystem> system_;
-  BulletPlant plant_;
+  BulletWorld plant_;
   ControlSets sets_;
   Estimator estimator_;
   Safety safety_;

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "chain_robot.h"
-#include "kadans/plant/ideal_plant.h"
+#include "kadans/plant/ideal_world.h"
 
 namespace kadans::bench {
 
@@ -25,7 +25,7 @@ struct ChainRig {
   Robot robot;
   std::unique_ptr<ControlSystem> system = with_gains(make_control_system(robot));
   Catalog& catalog = system->catalog;
-  IdealPlant plant{robot.config.model, robot.config.plant};
+  IdealWorld plant{robot.config.model, robot.config.plant};
   ControlSets sets{catalog, std::move(system->objects)};
   Estimator estimator{robot.config.model, robot.config.estimate, robot.config.engine.control_period_s};
   Safety safety{robot.config.safety, robot.config.model};

@@ -41,7 +41,7 @@ TickCost tick_cost(ControlEngine& control, BehaviorEngine& behaviors, Recorder& 
 
 TickCost tulip_tick() {
   ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json");
-  scenario.plant = PlantKind::ideal;
+  scenario.plant = "ideal";
   scenario.behaviors.clear();
   RunLog log;
   Assembly robot(scenario, 1, log);

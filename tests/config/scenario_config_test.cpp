@@ -31,7 +31,7 @@ TEST_CASE("Every broken scenario is refused at its place, with what was meant") 
 TEST_CASE("A scenario names its robot and behaviors by path and bounds signals in time") {
   const ScenarioConfig scenario = read_scenario_config_text(right_scenario, file);
   CHECK(scenario.name == "stand");
-  CHECK(scenario.plant == PlantKind::bullet);
+  CHECK(scenario.plant == "bullet");
   CHECK(scenario.duration_s == 2.5);
   CHECK(scenario.seed == 7);
   CHECK(scenario.robot == KADANS_SOURCE_DIR "/config/tulip/robot.json");

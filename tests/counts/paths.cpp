@@ -90,7 +90,7 @@ void simulated_ms(int calls) {
 
 constexpr Path all[] = {
     {"control_tick_14", "kadans::ControlEngine::tick(long, double, unsigned int)", 500, control_ticks},
-    {"plant_step_standing", "kadans::BulletPlant::step(long)", 1000, standing_steps},
+    {"plant_step_standing", "kadans::BulletWorld::step(long)", 1000, standing_steps},
     {"contact_solver_standing",
      "kadans::bullet::TreeSolver::solveMultiBodyGroup(btCollisionObject**, int, btPersistentManifold**, int, "
      "btTypedConstraint**, int, btMultiBodyConstraint**, int, btContactSolverInfo const&, btIDebugDraw*, "

@@ -9,7 +9,7 @@
 #include "kadans/engine/control_engine.h"
 #include "kadans/engine/lockstep.h"
 #include "kadans/estimate/signals.h"
-#include "kadans/plant/ideal_plant.h"
+#include "kadans/plant/ideal_world.h"
 
 namespace kadans::bench {
 
@@ -80,7 +80,7 @@ struct Robot {
   std::unique_ptr<ControlObject> at_drives;
   EngineSettings settings;
   RobotModel model = robot();
-  IdealPlant plant{model, plant_settings()};
+  IdealWorld plant{model, plant_settings()};
   Catalog catalog;
   Estimator estimator{model, {}, 0.001};
   Safety safety{safety_settings(), model};

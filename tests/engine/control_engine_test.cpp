@@ -24,7 +24,6 @@ class Recorder final : public Plant {
     calls[count++ % calls.size()] = 'w';
     written = actuation;
   }
-  void step(std::int64_t) override {}
 
   std::array<char, 64> calls{};
   std::size_t count = 0;

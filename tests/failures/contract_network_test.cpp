@@ -21,7 +21,7 @@ struct RemoteRobot {
   UdpSettings udp{.peer = "the test"};
   RobotModel model = bench::robot();
   LossyWire wire{7};
-  IdealPlant plant{model, bench::plant_settings()};
+  IdealWorld plant{model, bench::plant_settings()};
   PlantServer server{udp, layout, wire.plant_end()};
   UdpPlant seen{udp, layout, wire.control_end(), 1};
   EngineSettings settings;
@@ -85,7 +85,7 @@ TEST_CASE("within the bounds the robot goes where it is told: nothing is noticed
   CHECK(samples.reordered > 100);
   CHECK(samples.duplicates > 100);
   CHECK(samples.refused == 0);
-  CHECK(robot.server.session().link.lost > 150);
+  CHECK(robot.server.link().lost > 150);
   CHECK(robot.server.session().releases == 0);
 }
 

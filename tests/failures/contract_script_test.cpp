@@ -43,7 +43,7 @@ struct Play {
       : project(project_copy(folder)) {
     write(project / "behaviors/tulip/squat.lua", lua);
     scenario = read_scenario_config(project / "config/scenarios/squat.json");
-    scenario.plant = PlantKind::ideal;
+    scenario.plant = "ideal";
     if (!reload_with.empty()) {
       const auto file = project / "behaviors/tulip/next.lua";
       write(file, reload_with);
@@ -56,7 +56,7 @@ struct Play {
     Checks checks(robot.catalog().signals);
     const RunParts parts = robot.parts();
     result = run_scenario(parts, duration_s, checks, {});
-    knee_rad = parts.plant.truth().position_rad[robot.robot().model.find_joint("l_knee").value()];
+    knee_rad = parts.world.truth().position_rad[robot.robot().model.find_joint("l_knee").value()];
   }
   bool said(const std::string& what) const {
     for (const LogLine& line : log.lines()) {

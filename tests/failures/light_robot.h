@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "kadans/plant/ideal_plant.h"
+#include "kadans/plant/ideal_world.h"
 #include "kadans/signal/random.h"
 #include "rig.h"
 
@@ -15,7 +15,7 @@ inline constexpr std::size_t joints = 4;
 
 // The ideal plant with feet, noise, and drives whose position and velocity modes are servos: the ideal plant's own
 // would be where they are told to be at once.
-class NoisyPlant final : public ModelPlant {
+class NoisyPlant final : public OneRobotWorld {
  public:
   NoisyPlant(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
       : ideal_(model, settings), random_(seed, "light robot") {}
@@ -27,7 +27,7 @@ class NoisyPlant final : public ModelPlant {
   void hash(StateHash& hash) const noexcept override { ideal_.hash(hash); }
 
  private:
-  IdealPlant ideal_;
+  IdealWorld ideal_;
   RandomStream random_;
 };
 

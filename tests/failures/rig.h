@@ -19,9 +19,9 @@ namespace kadans::failures {
 inline constexpr std::int64_t period_ns = 1'000'000;
 
 // Keeps what it is told and what its motors say; everything else is another plant's.
-class ListeningPlant final : public ModelPlant {
+class ListeningPlant final : public OneRobotWorld {
  public:
-  explicit ListeningPlant(ModelPlant& plant) : plant_(plant) {}
+  explicit ListeningPlant(World& world) : world_(world), plant_(world.robot()) {}
   void read(SensorFrame& sensors) noexcept override {
     plant_.read(sensors);
     for (std::size_t i = 0; i < sensors.joint_count; ++i) motor_Nm_[i] = sensors.joints[i].motor_effort_Nm;
@@ -30,17 +30,18 @@ class ListeningPlant final : public ModelPlant {
     written_ = actuation;
     plant_.write(actuation);
   }
-  void step(std::int64_t dt_ns) override { plant_.step(dt_ns); }
-  const PlantTruth& truth() const noexcept override { return plant_.truth(); }
+  void step(std::int64_t dt_ns) override { world_.step(dt_ns); }
+  const PlantTruth& truth() const noexcept override { return world_.truth(); }
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
-    plant_.push(link, force_N, point_in_link_m);
+    world_.push(link, force_N, point_in_link_m);
   }
-  void hash(StateHash& hash) const noexcept override { plant_.hash(hash); }
+  void hash(StateHash& hash) const noexcept override { world_.hash(hash); }
   const ActuationFrame& written() const noexcept { return written_; }
   double motor_Nm(std::size_t joint) const noexcept { return motor_Nm_[joint]; }
 
  private:
-  ModelPlant& plant_;
+  World& world_;
+  Plant& plant_;
   ActuationFrame written_;
   std::array<double, max_joints> motor_Nm_{};
 };
@@ -48,7 +49,7 @@ class ListeningPlant final : public ModelPlant {
 // What a rig keeps references to.
 struct RigParts {
   const RobotModel& model;
-  ModelPlant& plant;
+  World& plant;
   Catalog& catalog;
   std::vector<std::unique_ptr<ControlObject>> objects;  // the first one becomes the saboteur's
   EngineSettings engine{};

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kadans/app/assembly.h"
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "kadans/plant/bullet/bullet_world.h"
 #include "rig.h"
 
 namespace kadans::failures {
@@ -10,7 +10,7 @@ namespace kadans::failures {
 struct TulipParts {
   TulipParts(std::uint64_t seed);
   Robot robot;
-  BulletPlant sound;
+  BulletWorld sound;
   std::unique_ptr<ControlSystem> system;
 };
 

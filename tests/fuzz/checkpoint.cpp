@@ -37,13 +37,13 @@ Contents contents(const fs::path& folder) {
   return all;
 }
 
-// world/home is the project around the working directory, world/tmp takes what is unpacked.
-struct World {
+// outside/home is the project around the working directory, outside/tmp takes what is unpacked.
+struct Outside {
   fuzz::FuzzFolder folder;
   fs::path unpacked = folder.path() / "tmp";
   Contents before;
 
-  World() {
+  Outside() {
     folder.write("home/models/own.so", plugin);
     folder.write("home/scripts/x.sh", "mine");
     folder.write("home/config/robot.json", "{}");
@@ -66,7 +66,7 @@ struct World {
 // The working directory is the project in it, for a while.
 class Home {
  public:
-  explicit Home(const World& world) { fs::current_path(world.folder.path() / "home"); }
+  explicit Home(const Outside& outside) { fs::current_path(outside.folder.path() / "home"); }
   ~Home() { fs::current_path(before_); }
   Home(const Home&) = delete;
   Home& operator=(const Home&) = delete;
@@ -95,15 +95,15 @@ std::string made_of(fuzz::FuzzInput input) {
   return read_input_file(file.path());
 }
 
-void unpack(const World& world, const std::string& file) {
+void unpack(const Outside& outside, const std::string& file) {
   const Checkpoint checkpoint = read_checkpoint(file);
   const UnpackedInputs unpacked(checkpoint.inputs, file, false);
   fs::path own = unpacked.scenario();
-  while (own.parent_path() != world.unpacked && own.has_relative_path()) own = own.parent_path();
-  require(own.parent_path() == world.unpacked, "a scenario is unpacked into a folder of its own");
+  while (own.parent_path() != outside.unpacked && own.has_relative_path()) own = own.parent_path();
+  require(own.parent_path() == outside.unpacked, "a scenario is unpacked into a folder of its own");
   require(fs::is_regular_file(unpacked.scenario()), "a scenario is there");
   require((fs::status(own).permissions() & fs::perms::others_all) == fs::perms::none, "others do not see it");
-  require(world.untouched(own), "nothing is written elsewhere");
+  require(outside.untouched(own), "nothing is written elsewhere");
   for (const auto& entry : fs::recursive_directory_iterator(own)) {
     const bool plug_in = entry.is_symlink() && fs::read_symlink(entry.path()) == fs::current_path() / "models/own.so";
     require(!entry.is_symlink() || plug_in, "no link is unpacked but to a plug-in that lies here");
@@ -113,15 +113,15 @@ void unpack(const World& world, const std::string& file) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const World world;
+  static const Outside outside;
   std::string content(reinterpret_cast<const char*>(data), size);
   if (!content.starts_with(mcap_magic.substr(0, 4))) content = made_of({data, size});
   const fuzz::MemoryFile file(content);
   try {
-    const Home home(world);
-    unpack(world, file.path());
+    const Home home(outside);
+    unpack(outside, file.path());
   } catch (const InputError&) {  // what cannot be unpacked is told
   }
-  require(world.untouched({}), "all that was unpacked is gone");
+  require(outside.untouched({}), "all that was unpacked is gone");
   return 0;
 }

@@ -12,7 +12,7 @@
 #include <sys/socket.h>
 
 #include "fuzz_input.h"
-#include "kadans/plant/ideal_plant.h"
+#include "kadans/plant/ideal_world.h"
 #include "kadans/plant/udp/plant_server.h"
 #include "kadans/plant/udp/udp_plant.h"
 #include "kadans/signal/crc32.h"
@@ -97,7 +97,7 @@ struct Line {
 struct Ends {
   Line control, plant;
   UdpSettings settings{.peer = "the input"};
-  IdealPlant model{two_joints(), {.position_rad = {0.1, 0.2}}};
+  IdealWorld model{two_joints(), {.position_rad = {0.1, 0.2}}};
   PlantServer server{settings, layout(), DatagramSocket(plant.ends[0])};
   UdpPlant seen{settings, layout(), DatagramSocket(control.ends[0]), session};
   SensorFrame sensors;

@@ -13,7 +13,7 @@ using namespace kadans::test;
 
 TEST_CASE("A squatting TULip's plant allocates nothing after its first second") {
   const Robot robot = tulip(Drives::rigid);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   JointHold hold(robot);
   long allocations = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -43,7 +43,7 @@ TEST_CASE("A TULip that falls beside a ball allocates nothing after its first se
     Robot robot = tulip(Drives::rigid);
     robot.settings.world.objects = {
         {.name = "ball", .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4}, .pose = {.position_m = {0.4, 0.5, 0.1}}}};
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     JointHold hold(robot);
     long allocations = 0;
     for (int i = 0; i < 3500; ++i) {

@@ -46,7 +46,7 @@ Robot torso_with_arm(double gap_m) {
 
 TEST_CASE("A box rests at its own height and its foot sensors carry m g") {
   Robot robot = box(4, {0.22, 0.1, 0.03});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   CHECK(plant.truth().base.position_m[2] == doctest::Approx(0.015).epsilon(1e-9));
   run(plant, 500);
   CHECK(std::abs(plant.truth().base.position_m[2] - 0.015) < 1e-6);
@@ -65,7 +65,7 @@ TEST_CASE("A heavy landing is not cut off: the ground stops any impulse") {
   Robot robot = box(500, {0.3, 0.3, 0.3});
   robot.settings.stand_on_ground = false;
   robot.settings.base.position_m = {0, 0, 1.15};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   double lowest_m = 1;
   for (int i = 0; i < 1500; ++i) {
     plant.step(ms);
@@ -78,12 +78,12 @@ TEST_CASE("A heavy landing is not cut off: the ground stops any impulse") {
 TEST_CASE("A box stays on a slope just under the friction angle and slides just over it") {
   const double friction = 0.8 * 0.5, angle_rad = std::atan(friction);  // the product of both surfaces
   Robot under = box_on_slope(angle_rad - 0.01, 0.8, 0.5);
-  BulletPlant stays(under.model, under.settings, 1);
+  BulletWorld stays(under.model, under.settings, 1);
   run(stays, 1000);
   CHECK(std::abs(stays.truth().base.position_m[0]) < 1e-3);
 
   Robot over = box_on_slope(angle_rad + 0.05, 0.8, 0.5);
-  BulletPlant slides(over.model, over.settings, 1);
+  BulletWorld slides(over.model, over.settings, 1);
   run(slides, 1000);
   const double slope_rad = angle_rad + 0.05;
   const double acceleration = g * (std::sin(slope_rad) - friction * std::cos(slope_rad));
@@ -93,7 +93,7 @@ TEST_CASE("A box stays on a slope just under the friction angle and slides just 
 TEST_CASE("Friction never exceeds mu N, in whatever direction it acts along an axis") {
   for (const double direction : {-1.0, 1.0}) {
     Robot robot = box_on_slope(0.6 * direction, 1, 0.3);
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     for (int i = 0; i < 200; ++i) {
       plant.step(ms);
       const Vec3& force = plant.truth().foot_force_N[0];
@@ -105,7 +105,7 @@ TEST_CASE("Friction never exceeds mu N, in whatever direction it acts along an a
 TEST_CASE("A box that stands under a swaying load does not creep") {
   Robot robot = box(4, {0.22, 0.1, 0.03});
   robot.settings.surfaces.push_back({"box", 0.8});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   for (int i = 0; i < 10000; ++i) {
     plant.push(0, {3 * std::sin(0.01 * i), 2 * std::cos(0.013 * i), 0}, {0, 0, 0.1});
     plant.step(ms);
@@ -117,7 +117,7 @@ TEST_CASE("An arm that swings in stops at the torso, and swings through when sel
   for (const bool self_collision : {true, false}) {
     Robot robot = torso_with_arm(0.03);
     robot.settings.self_collision = self_collision;
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     ActuationFrame inwards;
     inwards.joint_count = 2;
     inwards.joints[1] = {.effort_Nm = -0.5, .mode = ActuationMode::effort};
@@ -141,7 +141,7 @@ TEST_CASE("A child swings through its parent: what a joint holds together does n
   robot.model.links[0].collisions.push_back({"post", "base", {{0, 0, 0.3}, {1, 0, 0, 0}}, Box{{0.1, 0.1, 0.3}}});
   robot.model.links[1].collisions.push_back({"arm", "arm", {{0, 0, -0.18}, {1, 0, 0, 0}}, Box{{0.04, 0.04, 0.3}}});
   robot.drive().torque_max_Nm = 1;
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(0.1));
   run(plant, 2000);
   CHECK(plant.truth().position_rad[0] == doctest::Approx(0.1 / 0.02 * 2 * 2 / 2).epsilon(0.01));  // over the top
@@ -149,7 +149,7 @@ TEST_CASE("A child swings through its parent: what a joint holds together does n
 
 TEST_CASE("Links that overlap at the zero pose, grandparent and grandchild, leave each other alone") {
   Robot robot = torso_with_arm(-0.01);  // the arm reaches 1 cm into the torso
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 200);
   CHECK(std::abs(plant.truth().position_rad[0]) < 1e-9);
   CHECK(std::abs(plant.truth().position_rad[1]) < 1e-9);
@@ -158,13 +158,13 @@ TEST_CASE("Links that overlap at the zero pose, grandparent and grandchild, leav
 TEST_CASE("Spheres and cylinders rest on the ground where they touch it") {
   Robot ball = box(1, {0.1, 0.1, 0.1});
   ball.model.links[0].collisions[0].shape = Sphere{0.05};
-  BulletPlant round(ball.model, ball.settings, 1);
+  BulletWorld round(ball.model, ball.settings, 1);
   run(round, 500);
   CHECK(round.truth().base.position_m[2] == doctest::Approx(0.05).epsilon(1e-4));
   Robot drum = box(1, {0.1, 0.1, 0.1});
   drum.model.links[0].collisions[0].shape = Cylinder{0.05, 0.1};
   drum.settings.base.orientation = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
-  BulletPlant lying(drum.model, drum.settings, 1);
+  BulletWorld lying(drum.model, drum.settings, 1);
   run(lying, 500);
   CHECK(lying.truth().base.position_m[2] == doctest::Approx(0.05).epsilon(1e-4));
   CHECK(lying.truth().foot_force_N[0][2] == doctest::Approx(g).epsilon(1e-3));

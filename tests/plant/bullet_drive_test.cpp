@@ -23,7 +23,7 @@ Robot driven_arm(const DriveSettings& drive) {
 TEST_CASE("A drive gives at most torque_max, in both directions") {
   Robot robot = driven_arm({.torque_max_Nm = 3});
   for (const double sign : {-1.0, 1.0}) {
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     plant.write(effort(sign * 50));
     run(plant, 100);
     CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(sign * 3 * 0.1 / link_kg_m2).epsilon(1e-6));
@@ -33,7 +33,7 @@ TEST_CASE("A drive gives at most torque_max, in both directions") {
 
 TEST_CASE("A rigid rotor's inertia moves with the joint: acceleration = torque / (link + rotor)") {
   Robot robot = driven_arm({.torque_max_Nm = 3, .rotor_inertia_kg_m2 = 0.03});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(2));
   run(plant, 100);
   const double acceleration = 2 / (link_kg_m2 + 0.03);
@@ -47,7 +47,7 @@ TEST_CASE("A rigid rotor's inertia moves with the joint: acceleration = torque /
 TEST_CASE("The speed-torque line: full torque to the knee, none beyond no-load speed, full braking at any speed") {
   const DriveSettings drive{.torque_max_Nm = 4, .velocity_max_rad_s = 8, .knee_velocity_rad_s = 4};
   Robot robot = driven_arm(drive);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(4));
   double fastest = 0;
   for (int i = 0; i < 400; ++i) {
@@ -68,7 +68,7 @@ TEST_CASE("A position drive at 9000/180 holds still on a bare foot's inertia, an
   Robot robot = pendulum(0.4, 0.05, 0.0037);
   robot.settings.gravity_m_s2 = {0, 0, -g};
   robot.settings.drives = {{.torque_max_Nm = 20, .position_gain_Nm_per_rad = 9000, .velocity_gain_Nms_per_rad = 180}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(position(0.8));
   double largest_Nm = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -88,7 +88,7 @@ TEST_CASE("A position drive's gain is in Nm/rad: it gives way by load / gain") {
                             .position_gain_Nm_per_rad = 50,
                             .velocity_gain_Nms_per_rad = 2});
   robot.settings.gravity_m_s2 = {g, 0, 0};  // pulls along x: a load of -m g c cos(position) about y
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(position(0));
   run(plant, 3000);
   const double at_rad = plant.truth().position_rad[0];
@@ -101,7 +101,7 @@ TEST_CASE("A velocity drive cannot be asked beyond its no-load speed") {
                             .knee_velocity_rad_s = 6,
                             .rotor_inertia_kg_m2 = 0.01,
                             .velocity_gain_Nms_per_rad = 100});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(velocity(20));
   run(plant, 2000);
   CHECK(plant.truth().velocity_rad_s[0] > 5.5);
@@ -111,7 +111,7 @@ TEST_CASE("A velocity drive cannot be asked beyond its no-load speed") {
 TEST_CASE("A velocity drive keeps its speed under load, within its torque") {
   Robot robot = driven_arm({.torque_max_Nm = 5, .rotor_inertia_kg_m2 = 0.01, .velocity_gain_Nms_per_rad = 100});
   robot.settings.gravity_m_s2 = {0, 0, -g};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(velocity(2));
   run(plant, 300);
   for (int i = 0; i < 3000; ++i) {
@@ -122,7 +122,7 @@ TEST_CASE("A velocity drive keeps its speed under load, within its torque") {
 
 TEST_CASE("Viscous friction brakes exponentially, dry friction linearly and to a stop") {
   Robot viscous = driven_arm({.torque_max_Nm = 10, .rotor_inertia_kg_m2 = 0.02, .viscous_Nms_per_rad = 0.1});
-  BulletPlant slowing(viscous.model, viscous.settings, 1);
+  BulletWorld slowing(viscous.model, viscous.settings, 1);
   slowing.write(effort(10));
   run(slowing, 20);
   slowing.write(effort(0));
@@ -131,7 +131,7 @@ TEST_CASE("Viscous friction brakes exponentially, dry friction linearly and to a
   CHECK(slowing.truth().velocity_rad_s[0] == doctest::Approx(start * std::exp(-0.4 * 0.1 / 0.04)).epsilon(0.01));
 
   Robot dry = driven_arm({.torque_max_Nm = 10, .rotor_inertia_kg_m2 = 0.02, .coulomb_Nm = 1});
-  BulletPlant stopping(dry.model, dry.settings, 1);
+  BulletWorld stopping(dry.model, dry.settings, 1);
   stopping.write(effort(9));
   run(stopping, 20);
   const double speed = stopping.truth().velocity_rad_s[0];
@@ -150,7 +150,7 @@ TEST_CASE("The URDF's joint damping and friction add to the drive's") {
   Robot robot = driven_arm({.torque_max_Nm = 10});
   robot.model.joints[0].damping_Nms_per_rad = 0.5;
   robot.model.joints[0].friction_Nm = 1;
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(3));
   run(plant, 2000);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx((3 - 1) / 0.5).epsilon(1e-3));
@@ -161,7 +161,7 @@ TEST_CASE("A passive joint's spring and damper are stable on an inertia far too 
   robot.settings.drives = {
       {.parallel_spring_Nm_per_rad = 25, .parallel_rest_rad = 0.1, .parallel_damping_Nms_per_rad = 0.6}};
   robot.settings.position_rad = {0.4};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   double last = 0.4;
   for (int i = 0; i < 500; ++i) {
     plant.step(ms);

@@ -19,7 +19,7 @@ Robot falling_box() {
 }
 
 // Seconds between two passages through zero in the same direction, times interpolated.
-double measured_period_s(BulletPlant& plant, int steps) {
+double measured_period_s(BulletWorld& plant, int steps) {
   double last = plant.truth().position_rad[0], first_s = -1, period_s = 0;
   int passages = 0;
   for (int i = 1; i <= steps; ++i) {
@@ -59,7 +59,7 @@ Robot swinging(double amplitude_rad) {
 
 TEST_CASE("A box in free fall gains g t and nothing brakes it") {
   Robot robot = falling_box();
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 800);
   CHECK(plant.truth().base_velocity_m_s[2] == doctest::Approx(-g * 0.8).epsilon(1e-9));
   CHECK(100 - plant.truth().base.position_m[2] == doctest::Approx(g * 0.8 * 0.8 / 2).epsilon(2e-3));
@@ -68,7 +68,7 @@ TEST_CASE("A box in free fall gains g t and nothing brakes it") {
 
 TEST_CASE("A step is exactly as long as asked for, however short or long") {
   Robot robot = falling_box();
-  BulletPlant fine(robot.model, robot.settings, 1), coarse(robot.model, robot.settings, 1);
+  BulletWorld fine(robot.model, robot.settings, 1), coarse(robot.model, robot.settings, 1);
   run(fine, 1000, ms / 4);
   run(coarse, 10, 25 * ms);
   CHECK(fine.truth().base_velocity_m_s[2] == doctest::Approx(-g * 0.25).epsilon(1e-9));
@@ -78,7 +78,7 @@ TEST_CASE("A step is exactly as long as asked for, however short or long") {
 TEST_CASE("A small pendulum swings with the period of its formula, and never falls asleep") {
   const double small_s = 2 * std::numbers::pi * std::sqrt(0.6 / (2 * g * 0.5));
   Robot robot = swinging(0.002);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   CHECK(measured_period_s(plant, 20000) == doctest::Approx(small_s).epsilon(1e-4));
   double largest = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -91,13 +91,13 @@ TEST_CASE("A small pendulum swings with the period of its formula, and never fal
 TEST_CASE("A wide pendulum swings with the period of the elliptic integral") {
   const double small_s = 2 * std::numbers::pi * std::sqrt(0.6 / (2 * g * 0.5));
   Robot robot = swinging(2.5);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   CHECK(measured_period_s(plant, 20000) == doctest::Approx(exact_period_s(small_s, 2.5)).epsilon(1e-3));
 }
 
 TEST_CASE("A pendulum keeps its energy over 20 s") {
   Robot robot = swinging(1.5);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   const auto energy_J = [&] {
     const PlantTruth& truth = plant.truth();
     return 0.3 * truth.velocity_rad_s[0] * truth.velocity_rad_s[0] - 2 * g * 0.5 * std::cos(truth.position_rad[0]);
@@ -113,7 +113,7 @@ TEST_CASE("A pendulum keeps its energy over 20 s") {
 
 TEST_CASE("Drives inside a free robot move its parts and not its centre of mass") {
   Robot robot = tumbling_chain();
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   const Vec3 com = plant.truth().com_m;
   ActuationFrame actuation;
   actuation.joint_count = 2;
@@ -135,7 +135,7 @@ TEST_CASE("Bullet's frames are the model's: base, feet and centre of mass agree 
   robot.settings.feet.push_back({.link = "end"});
   robot.settings.position_rad = {0.7, -1.1};
   robot.settings.base.orientation = normalized({0.9, 0.1, -0.3, 0.2});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   ActuationFrame actuation;
   actuation.joint_count = 2;
   actuation.joints[1] = {.effort_Nm = 0.5, .mode = ActuationMode::effort};
@@ -156,7 +156,7 @@ TEST_CASE("Bullet's frames are the model's: base, feet and centre of mass agree 
 TEST_CASE("A free joint spins as fast as it is driven: no silent clamp at 100 rad/s") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.drive().torque_max_Nm = 10;
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(4));
   run(plant, 1000);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(200).epsilon(1e-6));
@@ -165,7 +165,7 @@ TEST_CASE("A free joint spins as fast as it is driven: no silent clamp at 100 ra
 TEST_CASE("A push acts once, at its point") {
   Robot robot = falling_box();
   robot.settings.gravity_m_s2 = {0, 0, 0};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.push(0, {6, 0, 0}, {0, 0, 0.1});
   run(plant, 5);
   CHECK(plant.truth().com_velocity_m_s[0] == doctest::Approx(6 * 1e-3 / 3).epsilon(1e-9));
@@ -183,7 +183,7 @@ TEST_CASE("A full inertia tensor answers a torque with its inverse") {
   inertia.yy = 0.03;
   inertia.zz = 0.06;
   inertia.xy = 0.02;
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.push(0, {0, 0, 10}, {0, 0.5, 0});  // together a torque of 10 Nm about x
   plant.push(0, {0, 0, -10}, {0, -0.5, 0});
   plant.step(ms);

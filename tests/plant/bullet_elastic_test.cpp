@@ -34,7 +34,7 @@ TEST_CASE("A series elastic drive answers a torque step as its formula says") {
                               .viscous_Nms_per_rad = 0.1,
                               .spring_Nm_per_rad = spring,
                               .spring_damping_Nms_per_rad = 0.1});
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     plant.write(effort(10));
     SensorFrame sensors;
     double worst = 0;
@@ -55,7 +55,7 @@ TEST_CASE("A stiff series spring carries the rotor along: acceleration = torque 
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.settings.drives = {
       {.torque_max_Nm = 3, .rotor_inertia_kg_m2 = 0.03, .spring_Nm_per_rad = 3000, .spring_damping_Nms_per_rad = 2}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(2));
   run(plant, 200);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(0.2 * 2 / 0.05).epsilon(0.01));
@@ -64,7 +64,7 @@ TEST_CASE("A stiff series spring carries the rotor along: acceleration = torque 
 TEST_CASE("An undamped series spring neither gains nor loses energy") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.settings.drives = {{.torque_max_Nm = 10, .rotor_inertia_kg_m2 = 0.01, .spring_Nm_per_rad = 300}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(10));
   run(plant, 10);
   plant.write(effort(0));
@@ -90,7 +90,7 @@ TEST_CASE("Springs from 50 to 3000 Nm/rad are stable on a rotor of 0.01 kg m2 an
                               .rotor_inertia_kg_m2 = 0.01,
                               .spring_Nm_per_rad = spring,
                               .spring_damping_Nms_per_rad = 0.1}};
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     plant.write(effort(5));
     run(plant, 5);
     plant.write(effort(-5));
@@ -106,7 +106,7 @@ TEST_CASE("A rotor too light for the step takes smaller ones") {
                             .rotor_inertia_kg_m2 = 2e-4,
                             .spring_Nm_per_rad = 3000,
                             .spring_damping_Nms_per_rad = 0.05});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(10));
   run(plant, 2000);
   CHECK(plant.truth().drive_torque_Nm[0] == doctest::Approx(10).epsilon(1e-3));
@@ -121,7 +121,7 @@ TEST_CASE("Position mode of an elastic drive is the rotor's: the link settles a 
                             .spring_damping_Nms_per_rad = 0.5,
                             .position_gain_Nm_per_rad = 9000,
                             .velocity_gain_Nms_per_rad = 180}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(position(1));
   run(plant, 4000);
   const double load_Nm = g * 0.1 * std::sin(plant.truth().position_rad[0]);
@@ -136,7 +136,7 @@ TEST_CASE("The speed-torque line holds for a rotor behind a spring") {
                             .rotor_inertia_kg_m2 = 0.01,
                             .spring_Nm_per_rad = 200,
                             .spring_damping_Nms_per_rad = 0.5}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(4));
   run(plant, 1500);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(8).epsilon(0.01));
@@ -151,7 +151,7 @@ TEST_CASE("A transmission that is hit carries more than its motor gives, and the
                             .spring_damping_Nms_per_rad = 1};
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.settings.drives = {drive};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   SensorFrame sensors;
   double rotor_rad = 0, rotor_rad_s = 0, most_on_joint_Nm = 0;
   for (int i = 0; i < 600; ++i) {

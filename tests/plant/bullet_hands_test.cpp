@@ -28,7 +28,7 @@ TEST_CASE("A pendulum is held until its release and then swings with its period"
   Robot robot = box(1, {0.1, 0.1, 0.1});
   WorldPendulum shape{.length_m = 1.5, .radius_m = 0.1, .mass_kg = 2, .distance_m = 0.1, .release_s = 0.5};
   robot.settings.world.objects = {object("pendulum", shape, {3, 0, 1})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 500);
   const ObjectTruth& bob = plant.truth().objects[0];
   CHECK(bob.pose.position_m[0] == doctest::Approx(2.9).epsilon(1e-9));
@@ -55,7 +55,7 @@ TEST_CASE("A pendulum hits with the speed of its fall and loses what the robot g
   robot.settings.ground_friction = 0;
   WorldPendulum shape{.length_m = 1.5, .radius_m = 0.05, .mass_kg = 2, .distance_m = 0.4};
   robot.settings.world.objects = {object("pendulum", shape, {-0.15, 0, 0.1})};  // touches the box when it hangs
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   double fastest = 0;
   for (int i = 0; i < 650; ++i) {
     plant.step(ms);
@@ -78,7 +78,7 @@ TEST_CASE("A floor that moves carries what stands on it") {
       robot.settings.world.objects = {object("platform", WorldBox{{2, 2, 0.1}}, {0, 0, 0.05})};
       robot.settings.world.objects[0].motion = motion;
     }
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     run(plant, 1500);
     const PlantTruth& truth = plant.truth();
     CHECK(truth.base_velocity_m_s[0] == doctest::Approx(0.4).epsilon(1e-3));
@@ -97,7 +97,7 @@ TEST_CASE("A conveyor carries and stays, a slippery patch carries little") {
     robot.settings.world.objects[0].friction = friction;
     robot.settings.world.objects[0].motion = steady({0.3, 0, 0});
     robot.settings.world.objects[0].motion.conveyor = true;
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     run(plant, 1000);
     const double expected = friction == 1 ? 0.3 : 0.8 * friction * g * 1;
     CHECK(plant.truth().base_velocity_m_s[0] == doctest::Approx(expected).epsilon(0.01));
@@ -109,7 +109,7 @@ TEST_CASE("A lift presses with the weight and its acceleration") {
   Robot robot = box(4, {0.22, 0.1, 0.03});
   robot.settings.world.objects = {object("lift", WorldBox{{1, 1, 0.1}}, {0, 0, 0.05})};
   robot.settings.world.objects[0].motion = {.knots = {{0, {0, 0, 0}}, {1, {0, 0, 2}}}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 500);
   CHECK(plant.truth().foot_force_N[0][2] == doctest::Approx(4 * (g + 2)).epsilon(1e-3));
 }
@@ -125,7 +125,7 @@ TEST_CASE("A payload weighs on the feet from its time on, until its end") {
   Robot robot = box(4, {0.22, 0.1, 0.03});
   robot.settings.world.payloads = {
       {.name = "bag", .link = "box", .point_m = {0.05, 0, 0.1}, .mass_kg = 1.5, .from_s = 0.5, .until_s = 1}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 490);
   CHECK(plant.truth().foot_force_N[0][2] == doctest::Approx(4 * g).epsilon(1e-4));
   run(plant, 490);
@@ -143,7 +143,7 @@ TEST_CASE("A payload's inertia is in what a torque turns") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.drive().torque_max_Nm = 1;
   robot.settings.world.payloads = {{.name = "weight", .link = "arm", .point_m = {0, 0, -0.3}, .mass_kg = 0.5}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(0.1));
   run(plant, 500);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(0.1 * 0.5 / (0.02 + 0.5 * 0.09)).epsilon(1e-3));
@@ -155,7 +155,7 @@ TEST_CASE("A world that has settled allocates nothing more") {
                                   object("ball", WorldBall{0.07, 0.4, 0.002, 0.6}, {0.3, 0.2, 0.27}),
                                   object("pendulum", WorldPendulum{1.5, 0.1, 2, 0.5}, {3, 0.3, 0.3})};
   robot.settings.world.ground_motion = steady({0.1, 0, 0});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 1000);
   const testing::AllocationCount heap;
   run(plant, 1000);

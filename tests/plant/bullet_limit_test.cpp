@@ -32,7 +32,7 @@ TEST_CASE("Joint limits hold under full torque and at speed, and throw nothing b
       CAPTURE(drive.rotor_inertia_kg_m2);
       CAPTURE(sign);
       Robot robot = limited_arm(drive);
-      BulletPlant plant(robot.model, robot.settings, 1);
+      BulletWorld plant(robot.model, robot.settings, 1);
       plant.write(effort(25 * sign));
       double lowest = 0, highest = 0;
       for (int i = 0; i < 1000; ++i) {
@@ -51,7 +51,7 @@ TEST_CASE("Joint limits hold under full torque and at speed, and throw nothing b
 TEST_CASE("A limit only pushes: the joint leaves it freely") {
   Robot robot = limited_arm({.torque_max_Nm = 25});
   robot.settings.position_rad = {1.0};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(-0.2));
   run(plant, 100);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(-0.2 * 0.1 / 0.02).epsilon(1e-3));
@@ -60,7 +60,7 @@ TEST_CASE("A limit only pushes: the joint leaves it freely") {
 TEST_CASE("A joint that starts 0.1 rad beyond its limit comes back, slowly") {
   Robot robot = limited_arm({.torque_max_Nm = 25});
   robot.settings.position_rad = {-0.6};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   double fastest = 0;
   for (int i = 0; i < 1000; ++i) {
     plant.step(ms);
@@ -74,7 +74,7 @@ TEST_CASE("A prismatic joint slides along its axis and stops at its limit") {
   Robot robot = limited_arm({.torque_max_Nm = 10});
   robot.model.joints[0].type = JointType::prismatic;
   robot.settings.feet.push_back({.link = "arm"});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(2));
   run(plant, 500);
   CHECK(plant.truth().position_rad[0] == doctest::Approx(2 * 0.5 * 0.5 / 2).epsilon(0.01));

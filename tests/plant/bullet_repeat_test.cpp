@@ -26,7 +26,7 @@ Robot falling_arm() {
 
 std::uint64_t tumble(std::uint64_t seed) {
   Robot robot = falling_arm();
-  BulletPlant plant(robot.model, robot.settings, seed);
+  BulletWorld plant(robot.model, robot.settings, seed);
   SensorFrame sensors;
   StateHash hash;
   for (int i = 0; i < 2000; ++i) {
@@ -48,7 +48,7 @@ TEST_CASE("The same seed repeats bit for bit in one process, another seed does n
 
 TEST_CASE("Two plants stepped in turns do not disturb each other") {
   Robot robot = falling_arm();
-  BulletPlant alone(robot.model, robot.settings, 1), a(robot.model, robot.settings, 1),
+  BulletWorld alone(robot.model, robot.settings, 1), a(robot.model, robot.settings, 1),
       b(robot.model, robot.settings, 2);
   run(alone, 500);
   for (int i = 0; i < 500; ++i) {
@@ -65,10 +65,10 @@ TEST_CASE("An actuation that is not finite is as good as off") {
   robot.settings.gravity_m_s2 = {0, 0, -g};
   robot.settings.position_rad = {1};
   robot.settings.drives = {{.torque_max_Nm = 5, .position_gain_Nm_per_rad = 100, .velocity_gain_Nms_per_rad = 5}};
-  BulletPlant off(robot.model, robot.settings, 1);
+  BulletWorld off(robot.model, robot.settings, 1);
   run(off, 200);
   for (const ActuationFrame& bad : {effort(nan), effort(infinite), position(nan), velocity(-infinite)}) {
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     plant.write(effort(3));
     plant.write(bad);
     run(plant, 200);
@@ -79,7 +79,7 @@ TEST_CASE("An actuation that is not finite is as good as off") {
 TEST_CASE("A frame with fewer joints than the robot leaves the rest off") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.settings.drives = {{.torque_max_Nm = 5}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(effort(3));
   plant.write(ActuationFrame{});
   run(plant, 100);
@@ -88,14 +88,14 @@ TEST_CASE("A frame with fewer joints than the robot leaves the rest off") {
 
 TEST_CASE("A state that is not finite stops the run and names where") {
   Robot robot = pendulum(1, 0.1, 0.02);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.push(1, {1e308, 0, 0}, {0, 0, -100});
   CHECK_THROWS_WITH_AS(run(plant, 3), "the model's state is not finite: joint 'swing'", std::runtime_error);
 }
 
 TEST_CASE("A step of no time changes nothing") {
   Robot robot = falling_arm();
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   const std::uint64_t before = state_hash(plant);
   plant.step(0);
   CHECK(state_hash(plant) == before);

@@ -15,7 +15,7 @@ struct Spread {
 };
 
 template <typename Reading>
-Spread spread(BulletPlant& plant, int steps, Reading reading) {
+Spread spread(BulletWorld& plant, int steps, Reading reading) {
   SensorFrame sensors;
   std::vector<double> values;
   for (int i = 0; i < steps; ++i) {
@@ -36,12 +36,12 @@ TEST_CASE("An encoder reads in whole counts and its noise has the deviation set"
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.settings.position_rad = {0.12345};
   robot.settings.encoders = {{.resolution_rad = 0.01, .noise_rad = 0}};
-  BulletPlant coarse(robot.model, robot.settings, 1);
+  BulletWorld coarse(robot.model, robot.settings, 1);
   SensorFrame sensors;
   coarse.read(sensors);
   CHECK(sensors.joints[0].position_rad == doctest::Approx(0.12).epsilon(1e-12));
   robot.settings.encoders = {{.resolution_rad = 0, .noise_rad = 0.02}};
-  BulletPlant noisy(robot.model, robot.settings, 1);
+  BulletWorld noisy(robot.model, robot.settings, 1);
   const Spread position = spread(noisy, 4000, [](const SensorFrame& s) { return s.joints[0].position_rad; });
   CHECK(position.mean == doctest::Approx(0.12345).epsilon(0.02));
   CHECK(position.deviation == doctest::Approx(0.02).epsilon(0.05));
@@ -49,7 +49,7 @@ TEST_CASE("An encoder reads in whole counts and its noise has the deviation set"
 
 TEST_CASE("Every step is a new reading, and reading twice is not") {
   Robot robot = pendulum(1, 0.1, 0.02);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   SensorFrame first, second, third;
   plant.read(first);
   plant.read(second);
@@ -64,7 +64,7 @@ TEST_CASE("Every step is a new reading, and reading twice is not") {
 TEST_CASE("At rest the IMU feels gravity upwards, in its own axes, in free fall nothing") {
   Robot robot = box(2, {0.2, 0.2, 0.2});
   robot.settings.imu.pose.orientation = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};  // its z along the body's x
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 300);
   SensorFrame sensors;
   plant.read(sensors);
@@ -73,7 +73,7 @@ TEST_CASE("At rest the IMU feels gravity upwards, in its own axes, in free fall 
 
   robot.settings.stand_on_ground = false;
   robot.settings.base.position_m = {0, 0, 10};
-  BulletPlant falling(robot.model, robot.settings, 1);
+  BulletWorld falling(robot.model, robot.settings, 1);
   run(falling, 100);
   falling.read(sensors);
   for (const double component : sensors.imu.acceleration_m_s2) CHECK(std::abs(component) < 1e-6);
@@ -85,7 +85,7 @@ TEST_CASE("Off the axis a turning IMU feels the centripetal acceleration") {
   robot.settings.stand_on_ground = false;
   robot.settings.base.position_m = {0, 0, 5};
   robot.settings.imu.pose.position_m = {0.3, 0, 0};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   const double inertia_kg_m2 = 2 * 0.08 / 12;
   plant.push(0, {0, 10, 0}, {1, 0, 0});
   plant.push(0, {0, -10, 0}, {0, 0, 0});
@@ -101,7 +101,7 @@ TEST_CASE("An impact is in the IMU's acceleration") {
   Robot robot = box(2, {0.2, 0.2, 0.2});
   robot.settings.stand_on_ground = false;
   robot.settings.base.position_m = {0, 0, 0.6};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   SensorFrame sensors;
   double largest = 0, sum = 0;
   for (int i = 0; i < 500; ++i) {
@@ -118,19 +118,19 @@ TEST_CASE("IMU noise has the deviation set, and its bias is drawn once a run") {
   Robot robot = box(2, {0.2, 0.2, 0.2});
   robot.settings.imu.gyro_noise_rad_s = 0.01;
   robot.settings.imu.gyro_bias_rad_s = 0.1;
-  BulletPlant plant(robot.model, robot.settings, 7);
+  BulletWorld plant(robot.model, robot.settings, 7);
   const auto rate = [](const SensorFrame& s) { return s.imu.angular_velocity_rad_s[0]; };
   const Spread early = spread(plant, 3000, rate), late = spread(plant, 3000, rate);
   CHECK(early.deviation == doctest::Approx(0.01).epsilon(0.05));
   CHECK(std::abs(early.mean) > 0.005);
   CHECK(late.mean == doctest::Approx(early.mean).epsilon(0.05));
-  BulletPlant other(robot.model, robot.settings, 8);
+  BulletWorld other(robot.model, robot.settings, 8);
   CHECK(std::abs(spread(other, 3000, rate).mean - early.mean) > 0.005);
 }
 
 TEST_CASE("The four pressure sensors show where the load is") {
   Robot robot = box(2, {0.2, 0.2, 0.05});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   for (int i = 0; i < 500; ++i) {
     plant.push(0, {0, 0, -20}, {0.08, 0, 0});
     plant.step(ms);
@@ -147,7 +147,7 @@ TEST_CASE("The four pressure sensors show where the load is") {
 TEST_CASE("Foot noise never shows a negative force") {
   Robot robot = box(2, {0.2, 0.2, 0.05});
   robot.settings.feet[0].noise_N = 20;
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   SensorFrame sensors;
   double least_N = 1, most_N = 0;
   for (int i = 0; i < 500; ++i) {

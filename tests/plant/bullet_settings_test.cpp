@@ -24,7 +24,7 @@ void put(Robot& robot, const Shape& shape) {
 
 std::string refusal(const Robot& robot) {
   try {
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

@@ -22,7 +22,7 @@ TEST_CASE("TULip stands for 2 s on joint torques, with every kind of drive") {
   for (const Drives kind : {Drives::elastic, Drives::stiff_spring, Drives::rigid}) {
     CAPTURE(static_cast<int>(kind));
     const Robot robot = tulip(kind);
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     const Pose left = plant.truth().feet[0];
     JointHold hold(robot);
     double most_tilt_rad = 0;
@@ -40,7 +40,7 @@ TEST_CASE("TULip stands for 2 s on joint torques, with every kind of drive") {
 
 TEST_CASE("TULip's feet creep less than 0.06 mm in 10 s of standing") {
   const Robot robot = tulip(Drives::rigid);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   JointHold hold(robot);
   for (int i = 0; i < 1000; ++i) hold.tick(plant);
   const Vec3 at = plant.truth().feet[0].position_m;
@@ -51,7 +51,7 @@ TEST_CASE("TULip's feet creep less than 0.06 mm in 10 s of standing") {
 
 TEST_CASE("TULip's two feet carry its weight") {
   const Robot robot = tulip(Drives::rigid);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   JointHold hold(robot);
   double sensors_N = 0, truth_N = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -80,7 +80,7 @@ TEST_CASE("TULip stands on a box and on a ramp of 5 degrees as on the ground") {
       }
     }
     robot.settings.world.objects = {under};
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     JointHold hold(robot);
     for (int i = 0; i < 2000; ++i) hold.tick(plant);
     const Vec3 at = plant.truth().feet[0].position_m;
@@ -101,7 +101,7 @@ TEST_CASE("TULip stands on a box and on a ramp of 5 degrees as on the ground") {
 TEST_CASE(
     "TULip's hips turn about one point without colliding, and its joints stay within their limits when it falls") {
   const Robot robot = tulip(Drives::elastic);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   double worst_rad = 0;
   for (int i = 0; i < 3000; ++i) {
     plant.step(ms);  // no torque: it collapses
@@ -117,7 +117,7 @@ TEST_CASE(
 
 TEST_CASE("TULip falls the same way twice") {
   const Robot robot = tulip(Drives::elastic);
-  BulletPlant first(robot.model, robot.settings, 1), second(robot.model, robot.settings, 1);
+  BulletWorld first(robot.model, robot.settings, 1), second(robot.model, robot.settings, 1);
   run(first, 3000);
   run(second, 3000);
   CHECK(state_hash(first) == state_hash(second));
@@ -125,7 +125,7 @@ TEST_CASE("TULip falls the same way twice") {
 
 TEST_CASE("A standing TULip's plant allocates nothing, neither in read and write nor in a step") {
   const Robot robot = tulip(Drives::elastic);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   JointHold hold(robot);
   for (int i = 0; i < 1000; ++i) hold.tick(plant);
   const testing::AllocationCount heap;

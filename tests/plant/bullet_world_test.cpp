@@ -27,7 +27,7 @@ Robot foot() {
   return robot;
 }
 
-double pressure_N(BulletPlant& plant) {
+double pressure_N(BulletWorld& plant) {
   SensorFrame sensors;
   plant.read(sensors);
   double sum_N = 0;
@@ -42,7 +42,7 @@ double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2]
 TEST_CASE("A robot starts on the box under it and stands there as on the ground") {
   Robot robot = foot();
   robot.settings.world.objects = {object("step", WorldBox{{1, 1, 0.2}}, {0, 0, 0.1})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   CHECK(plant.truth().base.position_m[2] == doctest::Approx(0.215).epsilon(1e-9));
   for (int i = 0; i < 10000; ++i) {
     plant.push(0, {3 * std::sin(0.01 * i), 2 * std::cos(0.013 * i), 0}, {0, 0, 0.1});
@@ -64,7 +64,7 @@ TEST_CASE("A foot that overhangs a box by less than half stands, by more than ha
     Robot robot = foot();
     robot.settings.world.objects = {object("step", WorldBox{{1, 1, 0.2}}, {-0.5, 0, 0.1})};
     robot.settings.base.position_m = {overhang_m - 0.11, 0, 0};
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     run(plant, 1500);
     const double height_m = plant.truth().base.position_m[2];
     if (overhang_m < 0.11) {
@@ -86,7 +86,7 @@ TEST_CASE("A foot stands on a ramp of 5 degrees and its force is its weight") {
       robot.settings.world.objects = {object("ramp", WorldRamp{2, 1, incline_rad}, {-1, 0, 0})};
     }
     robot.settings.base.orientation = from_axis_angle({0, 1, 0}, -incline_rad);
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     run(plant, 500);
     const Vec3 before = plant.truth().base.position_m;
     run(plant, 5000);
@@ -107,7 +107,7 @@ TEST_CASE("On a ramp friction is the product of both surfaces") {
     robot.settings.world.objects = {object("ramp", WorldRamp{20, 2, incline_rad}, {-15, 0, 0})};
     robot.settings.world.objects[0].friction = 0.5;
     robot.settings.base.orientation = from_axis_angle({0, 1, 0}, -incline_rad);
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     run(plant, 1000);
     const double speed = length(plant.truth().base_velocity_m_s);
     if (more_rad < 0) {
@@ -123,7 +123,7 @@ TEST_CASE("Stairs carry at the height of each step") {
   robot.settings.world.objects = {object("stairs", WorldStairs{3, 0.1, 0.3, 1}, {1, 0, 0})};
   for (int step = 1; step <= 3; ++step) {
     robot.settings.base.position_m = {1 + 0.3 * (step - 0.5), 0, 0};
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     run(plant, 300);
     CHECK(plant.truth().base.position_m[2] == doctest::Approx(0.1 * step + 0.015).epsilon(1e-5));
   }
@@ -133,7 +133,7 @@ TEST_CASE("A wall stops what slides against it and feels its momentum") {
   Robot robot = box(2, {0.2, 0.2, 0.1});
   robot.settings.ground_friction = 0;
   robot.settings.world.objects = {object("wall", WorldWall{2, 1, 0.1}, {0.5, 0, 0})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.push(0, {2000, 0, 0}, {0, 0, 0});  // 1 m/s
   double impulse_Ns = 0, furthest_m = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -151,7 +151,7 @@ TEST_CASE("A box slides over the seam of two boxes as over one") {
   robot.settings.surfaces[0].friction = 0;
   robot.settings.world.objects = {object("first", WorldBox{{1, 1, 0.2}}, {0, 0, 0.1}),
                                   object("second", WorldBox{{1, 1, 0.2}}, {1, 0, 0.1})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 100);
   plant.push(0, {2000, 0, 0}, {0, 0, 0});  // 0.5 m/s
   run(plant, 2000);
@@ -164,7 +164,7 @@ TEST_CASE("A ball at rest stays where it lies, on the ground and on a box") {
   robot.settings.world.objects = {object("table", WorldBox{{1, 1, 0.5}}, {3, 0, 0.25}),
                                   object("low", WorldBall{0.07, 0.4}, {1, 1, 0.07}),
                                   object("high", WorldBall{0.07, 0.4, 0.002, 0.6}, {3.1, 0.2, 0.57})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 5000);
   for (const std::size_t i : {1U, 2U}) {
     const Vec3& start_m = robot.settings.world.objects[i].pose.position_m;
@@ -180,7 +180,7 @@ TEST_CASE("A ball rolls down a slope with 5/7 g sin a") {
   robot.settings.world.slope_rad = slope_rad;
   robot.settings.world.objects = {object("ball", WorldBall{0.1, 0.45}, {5, 3, 0.1 / std::cos(slope_rad) + 0.5017})};
   robot.settings.base.orientation = from_axis_angle({0, 1, 0}, -slope_rad);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 100);
   const double before = length(plant.truth().objects[0].velocity_m_s);
   run(plant, 1000);
@@ -196,7 +196,7 @@ TEST_CASE("Rolling friction slows a ball by 5/7 g times lever arm over radius, a
   WorldBall shape{radius_m, 0.45, lever_m};
   shape.velocity_m_s = {1, 0, 0};
   robot.settings.world.objects = {object("ball", shape, {1, 1, radius_m})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 300);  // slides until it rolls
   const double before = plant.truth().objects[0].velocity_m_s[0];
   run(plant, 500);
@@ -211,7 +211,7 @@ TEST_CASE("Rolling friction slows a ball by 5/7 g times lever arm over radius, a
 TEST_CASE("A ball bounces with its restitution") {
   Robot robot = foot();
   robot.settings.world.objects = {object("ball", WorldBall{0.1, 0.45, 0, 0.8}, {1, 1, 1.1})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   double down = 0, up = 0;
   for (int i = 0; i < 600; ++i) {
     plant.step(ms);
@@ -229,7 +229,7 @@ TEST_CASE("A kick gives the ball what it takes from the robot") {
   robot.settings.stand_on_ground = false;
   robot.settings.base.position_m = {0, 0, 1};
   robot.settings.world.objects = {object("ball", WorldBall{0.1, 0.5, 0, 0.5}, {0.3, 0.03, 1.02})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.push(0, {4000, 0, 0}, {0, 0, 0});  // 2 m/s
   run(plant, 300);
   const PlantTruth& truth = plant.truth();
@@ -245,7 +245,7 @@ TEST_CASE("Boxes stack and a free box weighs on the robot's foot") {
   Robot robot = box(4, {0.4, 0.4, 0.1});
   robot.settings.world.objects = {object("crate", WorldBox{{0.2, 0.2, 0.2}, 3}, {0, 0, 0.2}),
                                   object("upper", WorldBox{{0.2, 0.2, 0.2}, 1}, {0.02, 0, 0.4})};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 3000);
   const PlantTruth& truth = plant.truth();
   CHECK(truth.objects[0].pose.position_m[2] == doctest::Approx(0.2).epsilon(1e-3));
@@ -262,7 +262,7 @@ TEST_CASE("Spheres and cylinders of a robot rest on a box where they touch it") 
       robot.model.links[0].collisions[0].shape = shape;
       if (lying) robot.settings.base.orientation = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
       robot.settings.world.objects = {object("step", WorldBox{{1, 1, 0.2}}, {0, 0, 0.1})};
-      BulletPlant plant(robot.model, robot.settings, 1);
+      BulletWorld plant(robot.model, robot.settings, 1);
       run(plant, 500);
       CHECK(plant.truth().base.position_m[2] == doctest::Approx(0.25).epsilon(1e-4));
       CHECK(plant.truth().foot_force_N[0][2] == doctest::Approx(g).epsilon(1e-3));
@@ -280,7 +280,7 @@ TEST_CASE("A world repeats bit for bit") {
                                     object("stairs", WorldStairs{3, 0.05, 0.2, 1}, {-0.5, 0, 0}),
                                     object("pendulum", WorldPendulum{1.5, 0.1, 2, 0.5}, {0.05, 0.3, 0.3})};
     robot.settings.world.payloads = {{"bag", "box", {0, 0, 0.1}, 0.5, 0.2}};
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     StateHash hash;
     for (int i = 0; i < 1500; ++i) {
       plant.step(ms);

@@ -1,9 +1,8 @@
-#include "kadans/plant/ideal_plant.h"
-
 #include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "kadans/plant/ideal_world.h"
 #include "small_robots.h"
 
 using namespace kadans;
@@ -12,7 +11,7 @@ using namespace kadans::test;
 TEST_CASE("The ideal plant's joint is a double integrator of its rotor's inertia") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.drive().rotor_inertia_kg_m2 = 0.5;
-  IdealPlant plant(robot.model, robot.settings);
+  IdealWorld plant(robot.model, robot.settings);
   plant.write(effort(2));
   run(plant, 100);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(0.1 * 2 / 0.5));
@@ -25,7 +24,7 @@ TEST_CASE("The ideal plant obeys position and velocity at once, within the joint
   robot.model.joints[0].type = JointType::revolute;
   robot.model.joints[0].lower_rad = -1;
   robot.model.joints[0].upper_rad = 1;
-  IdealPlant plant(robot.model, robot.settings);
+  IdealWorld plant(robot.model, robot.settings);
   plant.write(position(0.4));
   plant.step(ms);
   CHECK(plant.truth().position_rad[0] == 0.4);
@@ -41,7 +40,7 @@ TEST_CASE("The ideal plant obeys position and velocity at once, within the joint
 TEST_CASE("The ideal plant's sensors count up, show its state and stand upright") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.settings.position_rad = {0.3};
-  IdealPlant plant(robot.model, robot.settings);
+  IdealWorld plant(robot.model, robot.settings);
   SensorFrame before, after;
   plant.read(before);
   plant.step(ms);
@@ -55,7 +54,7 @@ TEST_CASE("The ideal plant's sensors count up, show its state and stand upright"
 
 TEST_CASE("The ideal plant takes no number that is not finite, and hashes its state") {
   Robot robot = pendulum(1, 0.1, 0.02);
-  IdealPlant plant(robot.model, robot.settings), other(robot.model, robot.settings);
+  IdealWorld plant(robot.model, robot.settings), other(robot.model, robot.settings);
   plant.write(effort(NAN));
   run(plant, 10);
   run(other, 10);

@@ -97,11 +97,11 @@ ActuationFrame velocity(double velocity_rad_s) {
   return one_joint({.velocity_rad_s = velocity_rad_s, .mode = ActuationMode::velocity});
 }
 
-void run(Plant& plant, int steps, std::int64_t dt_ns) {
+void run(World& plant, int steps, std::int64_t dt_ns) {
   for (int i = 0; i < steps; ++i) plant.step(dt_ns);
 }
 
-std::uint64_t state_hash(const ModelPlant& plant) {
+std::uint64_t state_hash(const World& plant) {
   StateHash hash;
   plant.hash(hash);
   return hash.value();

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "kadans/plant/bullet/bullet_world.h"
 
 namespace kadans::test {
 
@@ -32,7 +32,7 @@ ActuationFrame effort(double effort_Nm);
 ActuationFrame position(double position_rad);
 ActuationFrame velocity(double velocity_rad_s);
 
-void run(Plant& plant, int steps, std::int64_t dt_ns = ms);
-std::uint64_t state_hash(const ModelPlant& plant);
+void run(World& plant, int steps, std::int64_t dt_ns = ms);
+std::uint64_t state_hash(const World& plant);
 
 }  // namespace kadans::test

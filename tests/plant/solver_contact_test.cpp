@@ -60,7 +60,7 @@ TEST_CASE("What slides is braked alike and straight in every direction") {
   for (const double heading_rad : {0.0, 0.4, M_PI / 4, 1.9, -2.5}) {
     CAPTURE(heading_rad);
     const Robot robot = cube(1);
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     const double force_N = 2 * 1500;
     plant.push(0, {force_N * std::cos(heading_rad), force_N * std::sin(heading_rad), 0}, {});
     run(plant, 50);
@@ -75,7 +75,7 @@ TEST_CASE("What slides is braked alike and straight in every direction") {
 
 TEST_CASE("A falling TULip's feet never push against the cone of friction") {
   const Robot robot = tulip(Drives::rigid);
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   JointHold hold(robot);
   double worst_N = 0, pressed_N = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -100,7 +100,7 @@ TEST_CASE("A cube thrown at the ground never has more energy than it began with,
     robot.settings.stand_on_ground = false;
     robot.settings.base.position_m[2] = 0.4;
     robot.settings.base.orientation = normalized({random.normal(), random.normal(), random.normal(), random.normal()});
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     const auto push_N = [&] { return 2000 * random.normal(); };
     plant.push(0, {push_N(), push_N(), push_N()}, {0.02 * random.normal(), 0.02 * random.normal(), 0});
     plant.step(ms);
@@ -122,7 +122,7 @@ TEST_CASE("A limp TULip that is let fall never has more energy than it began wit
     for (DriveSettings& drive : robot.settings.drives) drive = {};
     robot.settings.stand_on_ground = false;
     robot.settings.base = {.position_m = {0, 0, 1.1}, .orientation = normalized({1, 0.3 * lean_rad, lean_rad / 2, 0})};
-    BulletPlant plant(robot.model, robot.settings, 1);
+    BulletWorld plant(robot.model, robot.settings, 1);
     Dynamics dynamics(robot.model, {.base = Dynamics::Base::floating});
     const double begun_J = energy_J(dynamics, plant.truth());
     double most_J = 0, before_J = begun_J, largest_gain_J = 0;
@@ -146,7 +146,7 @@ TEST_CASE("Servos that reach their torque limit stay there, and servos that do n
                             .rotor_inertia_kg_m2 = 0.02,
                             .position_gain_Nm_per_rad = 4000,
                             .velocity_gain_Nms_per_rad = 800}};
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   plant.write(position(1.2));  // needs 4.6 Nm
   double most_Nm = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -168,7 +168,7 @@ TEST_CASE("Nothing is allocated once a second has passed, lying with a ball besi
   robot.settings.base.orientation = {std::sqrt(0.5), 0, std::sqrt(0.5), 0};
   robot.settings.world.objects.push_back(
       {.name = "ball", .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4}, .pose = {.position_m = {0.1, 0.5, 0.1}}});
-  BulletPlant plant(robot.model, robot.settings, 1);
+  BulletWorld plant(robot.model, robot.settings, 1);
   run(plant, 1000);
   const testing::AllocationCount heap;
   run(plant, 2000);

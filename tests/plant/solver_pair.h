@@ -21,9 +21,9 @@ struct SolverPair {
     robot.settings.solver_iterations = 400;
     return robot;
   }
-  static BulletPlant with(Robot robot, ContactSolver solver) {
+  static BulletWorld with(Robot robot, ContactSolver solver) {
     prepared(robot, solver);
-    return BulletPlant(robot.model, robot.settings, 1);
+    return BulletWorld(robot.model, robot.settings, 1);
   }
 
   void tick() {
@@ -73,7 +73,7 @@ struct SolverPair {
     return worst;
   }
 
-  BulletPlant tree, stock;
+  BulletWorld tree, stock;
   JointHold tree_hold, stock_hold;
 };
 

@@ -55,7 +55,7 @@ Robot tulip(Drives kind) {
   return robot;
 }
 
-void JointHold::tick(BulletPlant& plant) {
+void JointHold::tick(BulletWorld& plant) {
   plant.read(sensors_);
   actuation_.joint_count = sensors_.joint_count;
   plant.write(actuation_);

@@ -6,7 +6,7 @@
 #include <netinet/in.h>
 #include <sys/un.h>
 
-#include "kadans/plant/ideal_plant.h"
+#include "kadans/plant/ideal_world.h"
 #include "kadans/plant/udp/plant_server.h"
 #include "kadans/plant/udp/udp_plant.h"
 #include "kadans/signal/input_error.h"
@@ -34,7 +34,7 @@ ActuationFrame effort(double effort_Nm) {
 struct Ends {
   LossyWire wire{1};
   UdpSettings settings{.peer = "the test"};
-  IdealPlant model{two_joints(), {.position_rad = {0.1, 0.2}}};
+  IdealWorld model{two_joints(), {.position_rad = {0.1, 0.2}}};
   PlantServer server{settings, layout(), wire.plant_end()};
   UdpPlant plant{settings, layout(), wire.control_end(), 42};
   SensorFrame sensors;
@@ -123,7 +123,7 @@ TEST_CASE("Over the network a plant is read and driven, a round trip a tick") {
   CHECK(ends.plant.round_trip_ticks() == 0);
   CHECK(ends.plant.statistics().received == 10);
   CHECK(ends.plant.statistics().lost == 0);
-  CHECK(ends.server.session().link.received == 10);
+  CHECK(ends.server.link().received == 10);
 }
 
 TEST_CASE("Time begins for the plant with the first actuation") {
@@ -166,7 +166,7 @@ TEST_CASE("A plant that is told goodbye ends the session and takes the next peer
   Ends ends;
   ends.connect();
   ends.tick(1);
-  ends.plant.leave();
+  ends.plant.close();
   ends.wire.step();
   CHECK_FALSE(ends.server.beat(ends.model, 1));
   CHECK(ends.server.session().left);
@@ -229,7 +229,7 @@ TEST_CASE("Other robots refuse each other and say what is different") {
 
 TEST_CASE("Garbage and strangers change nothing and are counted") {
   PlantServer server({}, layout(), DatagramSocket(named("server", nullptr)));
-  IdealPlant model(two_joints(), {.position_rad = {0, 0}});
+  IdealWorld model(two_joints(), {.position_rad = {0, 0}});
   UdpPlant plant({.peer = "the test"}, layout(), DatagramSocket(named("control", "server")), 1);
   UdpPlant stranger({.peer = "the test", .connect_timeout_s = 0.02}, layout(),
                     DatagramSocket(named("stranger", "server")), 1);
@@ -251,14 +251,14 @@ TEST_CASE("Garbage and strangers change nothing and are counted") {
     CHECK(server.beat(model, 1));
   }
   CHECK(model.truth().velocity_rad_s[0] >= velocity_rad_s);
-  CHECK(server.session().link.refused >= 100);
-  CHECK(server.session().link.received == 1);
-  CHECK_THROWS_WITH_AS(stranger.connect(), "the plant at the test is driven by somebody else", InputError);
+  CHECK(server.link().refused >= 100);
+  CHECK(server.link().received == 1);
+  CHECK_THROWS_WITH_AS(stranger.open(), "the plant at the test is driven by somebody else", InputError);
 }
 
 TEST_CASE("An actuation that answers a time which the plant never had is applied, and counts for no age") {
   PlantServer server({}, layout(), DatagramSocket(named("server", nullptr)));
-  IdealPlant model(two_joints(), {.position_rad = {0, 0}});
+  IdealWorld model(two_joints(), {.position_rad = {0, 0}});
   const DatagramSocket peer(named("peer", "server"));
   const PlantWire wire(layout());
   Datagram out{};
@@ -278,7 +278,7 @@ TEST_CASE("An actuation that answers a time which the plant never had is applied
 TEST_CASE("Nobody there is told so") {
   LossyWire wire(1);
   UdpPlant plant({.peer = "10.9.8.7:6", .connect_timeout_s = 0.02}, layout(), wire.control_end(), 1);
-  CHECK_THROWS_WITH_AS(plant.connect(),
+  CHECK_THROWS_WITH_AS(plant.open(),
                        "the plant at 10.9.8.7:6 does not answer within 0.02 s: is `kadans plant` running there, and "
                        "does the network let UDP pass?",
                        InputError);
@@ -293,7 +293,7 @@ TEST_CASE("A plant that does not listen yet is waited for as long as one that do
   const std::string place = "127.0.0.1:" + std::to_string(deaf.port);
   UdpPlant plant({.peer = place, .connect_timeout_s = 0.2}, layout(), DatagramSocket::connected(place), 1);
   const auto begin = std::chrono::steady_clock::now();
-  CHECK_THROWS_AS(plant.connect([]() noexcept { return ++asked < 0; }), InputError);
+  CHECK_THROWS_AS(plant.open([]() noexcept { return ++asked < 0; }), InputError);
   CHECK(std::chrono::steady_clock::now() - begin >= std::chrono::milliseconds(200));
   CHECK(asked <= 11);  // once in 20 ms: it sleeps between
 }
@@ -303,7 +303,7 @@ TEST_CASE("Waiting for the plant ends when it is told to") {
   asked = 0;
   LossyWire wire(1);
   UdpPlant plant({.peer = "the test", .connect_timeout_s = 1000}, layout(), wire.control_end(), 1);
-  CHECK_FALSE(plant.connect([]() noexcept { return ++asked == 2; }));
+  CHECK_FALSE(plant.open([]() noexcept { return ++asked == 2; }));
   CHECK(asked == 2);
 }
 

@@ -50,7 +50,7 @@ struct Script final : BesideTick {
 struct LiveRobot {
   EngineSettings settings;
   RobotModel model = bench::robot();
-  IdealPlant plant{model, bench::plant_settings()};
+  IdealWorld plant{model, bench::plant_settings()};
   std::unique_ptr<PlantExchange> link = std::make_unique<PlantExchange>();
   LinkedPlant seen{*link, plant};
   Catalog catalog;

@@ -126,7 +126,7 @@ TEST_CASE("Whoever ends the run brings the robot down the ladder, and it stays t
 }
 
 TEST_CASE("A model that comes late catches up a little, and the rest of the time is counted as lost for it") {
-  IdealPlant plant(bench::robot(), bench::plant_settings());
+  IdealWorld plant(bench::robot(), bench::plant_settings());
   const auto link = std::make_unique<PlantExchange>();
   PlantTask task(*link, plant, tick_ns);
   SensorFrame sensors;

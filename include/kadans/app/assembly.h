@@ -12,8 +12,8 @@
 #include "kadans/config/scenario_config.h"
 #include "kadans/control/control_object_types.h"
 #include "kadans/engine/lockstep.h"
-#include "kadans/plant/plant.h"
-#include "kadans/plant/udp/udp_plant.h"
+#include "kadans/plant/plant_type.h"
+#include "kadans/plant/world.h"
 #include "kadans/realtime/plant_link.h"
 #include "kadans/scenario/disturbances.h"
 #include "kadans/scenario/faulty_host.h"
@@ -46,19 +46,16 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept = {});
-// A model of the robot on its own. `kind` is bullet or ideal.
-std::unique_ptr<ModelPlant> make_model(PlantKind kind, const RobotModel& model, const PlantSettings& settings,
-                                       std::uint64_t seed);
-// What a plant over the network must have in common with this robot.
-PlantLayout plant_layout(const RobotConfig& robot);
+// What a plant that is no model is made for. `peer`: where it is; "": where the configuration says.
+PlantSite plant_site(const RobotConfig& robot, const std::string& peer);
 
 class Assembly {
  public:
   // Reads the robot and the behaviors that the scenario names. Throws InputError with everything that is wrong. The log
-  // must outlive the assembly, and so must `link`: with it the model is for a thread of its own, and the engines see
+  // must outlive the assembly, and so must `link`: with it the world is for a thread of its own, and the engines see
   // its other end. With `outside`, which must outlive it too, the scenario's behaviors play in a process of their own,
-  // which has been started with them. When the scenario's plant is udp there is no model: no parts(), no model(), no
-  // truth().
+  // which has been started with them. When the scenario's plant is no model there is no world: no parts(), no world(),
+  // no truth().
   Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
            ProcessHost* outside = nullptr);
 
@@ -73,10 +70,9 @@ class Assembly {
   RunParts parts() noexcept;
   ControlEngine& control() noexcept { return *control_; }
   BehaviorEngine& behaviors() noexcept { return *behaviors_; }
-  Plant& plant() noexcept { return *plant_; }                  // what the engine sees
-  ModelPlant* model() noexcept { return model_; }              // faults included; nullptr: there is none
-  TruthSignals* truth() noexcept { return truth_.get(); }      // likewise
-  UdpPlant* udp_plant() noexcept { return udp_plant_.get(); }  // not connected; nullptr: there is a model
+  Plant& plant() noexcept;                                 // what the engine sees; not open yet
+  World* world() noexcept;                                 // faults included; nullptr: there is none
+  TruthSignals* truth() noexcept { return truth_.get(); }  // likewise
   // What was set and drawn for this run.
   const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
@@ -89,7 +85,7 @@ class Assembly {
   void vary(std::uint64_t seed);
   void start_in_pose();
   void make_plant(std::uint64_t seed);
-  void make_udp_plant();
+  const TruthSource* truth_source() noexcept;
   void make_joystick_player();
   void make_behaviors();
   BehaviorHost& played() noexcept;
@@ -101,13 +97,9 @@ class Assembly {
   Robot robot_;
   PlantVariant variant_;
   std::vector<QuantityValue> quantities_;
-  std::unique_ptr<ModelPlant> model_plant_;
-  std::unique_ptr<FaultyPlant> faulty_plant_;  // around it, when something of it fails
-  ModelPlant* model_ = nullptr;                // the outer of the two
-  std::unique_ptr<LinkedPlant> linked_plant_;  // when the model is on another thread
-  ModelPlant* seen_model_ = nullptr;           // this, or the model
-  std::unique_ptr<UdpPlant> udp_plant_;        // when the plant is on another machine
-  Plant* plant_ = nullptr;                     // what the engine sees
+  std::unique_ptr<World> sound_, faulty_;  // the other is around it when something of its robot fails
+  std::unique_ptr<LinkedPlant> linked_;    // when the world is on another thread
+  std::unique_ptr<Plant> elsewhere_;       // when there is no world
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;
   std::unique_ptr<Estimator> estimator_;

@@ -19,8 +19,8 @@
 #include "kadans/estimate/settings.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/joystick/settings.h"
+#include "kadans/plant/plant_type.h"
 #include "kadans/plant/settings.h"
-#include "kadans/plant/udp/settings.h"
 #include "kadans/safety/settings.h"
 
 namespace kadans {
@@ -56,8 +56,8 @@ struct RobotConfig {
   RobotModel model;
   EngineSettings engine;
   PlantSettings plant;
-  UdpSettings udp;
-  JoystickSettings joystick;  // engine.joystick: whether the file has one
+  PlantTypes plant_types = kadans::plant_types();  // with this robot's settings
+  JoystickSettings joystick;                       // engine.joystick: whether the file has one
   EstimateSettings estimate;
   SafetySettings safety;
   std::vector<ObjectConfig> objects;

@@ -20,8 +20,6 @@ namespace kadans {
 
 inline constexpr double scenario_duration_max_s = 1e6;  // of simulated time
 
-enum class PlantKind : std::uint8_t { bullet, ideal, udp };  // udp: live runs only, not in a file
-
 // A joystick's recording that is played.
 struct ScenarioJoystick {
   std::string recording;  // "": none
@@ -43,9 +41,9 @@ struct ScenarioConfig {
   std::string file;
   std::string name;
   std::string doc;
-  std::string robot;  // path of the robot's configuration, resolved
-  PlantKind plant = PlantKind::bullet;
-  std::string peer;  // not in the file: of a udp plant; "": the robot's own
+  std::string robot;             // path of the robot's configuration, resolved
+  std::string plant = "bullet";  // a type of plant_type.h; in a file a model
+  std::string peer;              // not in the file: where the drives of one that is no model are; "": the robot's own
   double duration_s = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> tags;

@@ -8,7 +8,7 @@
 
 #include "kadans/config/fields.h"
 #include "kadans/model/robot_model.h"
-#include "kadans/plant/world.h"
+#include "kadans/plant/world_settings.h"
 
 namespace kadans {
 

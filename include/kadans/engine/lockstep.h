@@ -1,5 +1,5 @@
-// Virtual time on one thread: the plant's time leads, everything else follows in a fixed order, so that the same seed
-// gives the same run bit for bit. One step is a control period: control tick, behavior tick when it is due, plant.
+// Virtual time on one thread: the world's time leads, everything else follows in a fixed order, so that the same seed
+// gives the same run bit for bit. One step is a control period: control tick, behavior tick when it is due, world.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include "kadans/engine/clock.h"
 #include "kadans/engine/control_engine.h"
 #include "kadans/engine/tick_statistics.h"
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 
 namespace kadans {
 
@@ -16,9 +16,9 @@ class Lockstep {
  public:
   // Keeps references. Throws std::invalid_argument unless the behavior period is a whole multiple of the control
   // period.
-  Lockstep(const EngineSettings& settings, Plant& plant, ControlEngine& control, BehaviorEngine& behaviors);
+  Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors);
 
-  // Throws what the plant's step throws.
+  // Throws what the world's step throws.
   void step();
 
   // What tests and scenarios let go wrong: control ticks that are missed before the next one, and behavior ticks that
@@ -34,7 +34,7 @@ class Lockstep {
  private:
   void pass_period();
 
-  Plant& plant_;
+  World& world_;
   ControlEngine& control_;
   BehaviorEngine& behaviors_;
   VirtualClock clock_;

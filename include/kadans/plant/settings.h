@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kadans/model/robot_model.h"
-#include "kadans/plant/world.h"
+#include "kadans/plant/world_settings.h"
 
 namespace kadans {
 

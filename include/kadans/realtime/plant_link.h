@@ -1,6 +1,6 @@
-// A model on a thread of its own, and what the control thread sees of it.
+// A world on a thread of its own, and what the control thread sees of it.
 //
-// The model's thread steps it once a period and publishes what its sensors say; the control thread reads the newest and
+// The world's thread steps it once a period and publishes what its sensors say; the control thread reads the newest and
 // leaves its actuation, which holds until the model's next step, as a drive would. Both through storages that never
 // block: position independent, so the model may as well be another process.
 #pragma once
@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "kadans/exchange/latest.h"
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 #include "kadans/realtime/task_thread.h"
 
 namespace kadans {
@@ -19,11 +19,11 @@ struct PlantExchange {
   Latest<ActuationFrame> actuation;  // written by the control thread
 };
 
-// The control thread's end. Its step does nothing: the model lives on its own.
-class LinkedPlant final : public ModelPlant {
+// The control thread's end.
+class LinkedPlant final : public Plant, public TruthSource {
  public:
-  // The model as it is before the threads start.
-  LinkedPlant(PlantExchange& exchange, ModelPlant& model);
+  // The world as it is before the threads start.
+  LinkedPlant(PlantExchange& exchange, World& world);
 
   void read(SensorFrame& sensors) noexcept override {
     const auto newest = exchange_.sensors.read();
@@ -34,10 +34,7 @@ class LinkedPlant final : public ModelPlant {
     exchange_.sensors.warm_read();
     exchange_.actuation.warm();
   }
-  void step(std::int64_t) override {}
   const PlantTruth& truth() const noexcept override;  // control thread
-  void push(std::size_t, const Vec3&, const Vec3&) override {}
-  void hash(StateHash&) const noexcept override {}
 
  private:
   PlantExchange& exchange_;
@@ -48,17 +45,17 @@ class LinkedPlant final : public ModelPlant {
 // did not pass for the model, and is counted.
 class PlantTask final : public Task {
  public:
-  PlantTask(PlantExchange& exchange, ModelPlant& model, std::int64_t period_ns) noexcept
-      : exchange_(exchange), model_(model), period_ns_(period_ns) {}
+  PlantTask(PlantExchange& exchange, World& world, std::int64_t period_ns) noexcept
+      : exchange_(exchange), world_(world), period_ns_(period_ns) {}
 
-  bool beat(const Beat& beat) override;  // throws what the model's step throws
+  bool beat(const Beat& beat) override;  // throws what the world's step throws
   std::uint64_t lost_periods() const noexcept { return lost_periods_.get(); }
 
  private:
   static constexpr std::uint32_t catch_up_max = 10;
 
   PlantExchange& exchange_;
-  ModelPlant& model_;
+  World& world_;
   std::int64_t period_ns_;
   Count lost_periods_;
   SensorFrame sensors_;

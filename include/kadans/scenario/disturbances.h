@@ -18,7 +18,7 @@ class Disturbances {
   Disturbances(const ScenarioConfig& scenario, const RobotModel& model);
 
   // Before each step.
-  void apply(Lockstep& lockstep, ModelPlant& plant);
+  void apply(Lockstep& lockstep, World& world);
 
  private:
   Pushes pushes_;

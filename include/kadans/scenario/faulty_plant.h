@@ -1,5 +1,5 @@
-// A plant whose sensors and drives fail on time: a plant around another one that spoils what is read from it and what
-// is written to it. Everything else passes through.
+// A world whose robot has sensors and drives that fail on time: a world around another one that spoils what is read
+// from its robot and what is written to it. Everything else passes through.
 //
 // The thread that owns the model adds faults; read and write neither allocate nor throw.
 #pragma once
@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 #include "kadans/signal/random.h"
 
 namespace kadans {
@@ -48,10 +48,11 @@ struct ActuatorFault {
   double size = 0;
 };
 
-class FaultyPlant final : public ModelPlant {
+class FaultyPlant final : public OneRobotWorld {
  public:
   // Keeps a reference. The seed is the run's.
-  FaultyPlant(ModelPlant& plant, std::uint64_t seed) noexcept : plant_(plant), random_(seed, "sensor faults") {}
+  FaultyPlant(World& world, std::uint64_t seed) noexcept
+      : world_(world), plant_(world.robot()), random_(seed, "sensor faults") {}
 
   static constexpr std::size_t late_ticks_max = 255;
 
@@ -61,10 +62,10 @@ class FaultyPlant final : public ModelPlant {
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
-  void step(std::int64_t dt_ns) override { plant_.step(dt_ns); }
-  const PlantTruth& truth() const noexcept override { return plant_.truth(); }
+  void step(std::int64_t dt_ns) override { world_.step(dt_ns); }
+  const PlantTruth& truth() const noexcept override { return world_.truth(); }
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
-    plant_.push(link, force_N, point_in_link_m);
+    world_.push(link, force_N, point_in_link_m);
   }
   void hash(StateHash& hash) const noexcept override;
 
@@ -81,7 +82,8 @@ class FaultyPlant final : public ModelPlant {
   void spoil(Planned& planned, SensorFrame& sensors) noexcept;
   void spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept;
 
-  ModelPlant& plant_;
+  World& world_;
+  Plant& plant_;
   RandomStream random_;
   std::vector<Planned> faults_;
   std::vector<PlannedActuator> actuator_faults_;

@@ -12,7 +12,7 @@
 
 #include "kadans/control/catalog.h"
 #include "kadans/model/kinematics.h"
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 
 namespace kadans {
 
@@ -22,14 +22,14 @@ class GazeTruth {
     std::string object, left, right;  // the control object, the eyes' links
   };
   // Finds the object's target among the catalog's signals.
-  GazeTruth(const ModelPlant& plant, const Catalog& catalog, const Eyes& eyes);
+  GazeTruth(const TruthSource& plant, const Catalog& catalog, const Eyes& eyes);
 
   // This must stay where it is from then on.
   void declare(SignalTable& table);
   void update(std::span<const double> row) noexcept;
 
  private:
-  const ModelPlant& plant_;
+  const TruthSource& plant_;
   std::string object_;
   std::size_t joints_;
   Kinematics kinematics_;

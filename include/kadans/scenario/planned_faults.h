@@ -15,7 +15,7 @@ namespace kadans {
 // Around the plant: its sensors and drives that fail, and the delay of its actuation. Nothing when none does. Throws
 // InputError for joints and feet that the robot does not have.
 std::unique_ptr<FaultyPlant> make_faulty_plant(const ScenarioConfig& scenario, const PlantVariant& variant,
-                                               const EngineSettings& engine, std::uint64_t seed, ModelPlant& plant);
+                                               const EngineSettings& engine, std::uint64_t seed, World& world);
 
 // Around the behaviors, when commands fail on their way.
 std::unique_ptr<FaultyHost> make_faulty_host(const ScenarioConfig& scenario, BehaviorHost& host);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kadans/config/scenario_push.h"
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 
 namespace kadans {
 
@@ -16,7 +16,7 @@ class Pushes {
 
   // Before the step of the plant that begins at this time and lasts dt_s. The impulse of a push comes out right however
   // its times lie to the steps': each step gets the mean force over its time.
-  void apply(ModelPlant& plant, double time_s, double dt_s) const;
+  void apply(World& world, double time_s, double dt_s) const;
 
  private:
   struct Push {

@@ -7,7 +7,7 @@
 
 #include "kadans/engine/lockstep.h"
 #include "kadans/plant/joystick/stick.h"
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 #include "kadans/scenario/checks.h"
 #include "kadans/scenario/disturbances.h"
 #include "kadans/scenario/run_log.h"
@@ -16,7 +16,7 @@
 namespace kadans {
 
 struct RunParts {
-  ModelPlant& plant;
+  World& world;
   ControlEngine& control;
   BehaviorEngine& behaviors;
   Lockstep& lockstep;

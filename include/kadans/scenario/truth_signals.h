@@ -25,7 +25,7 @@
 
 #include "kadans/control/catalog.h"
 #include "kadans/model/kinematics.h"
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 #include "kadans/scenario/gaze_truth.h"
 #include "kadans/scenario/world_signals.h"
 
@@ -39,7 +39,7 @@ class TruthSignals {
     std::string link;
     std::vector<Vec3> sole_m;  // in the link's frame
   };
-  TruthSignals(const ModelPlant& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
+  TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
                const WorldSettings& world = {});
 
   // Before the run.
@@ -68,7 +68,7 @@ class TruthSignals {
   double reference_rad(std::size_t joint, std::span<const double> row) const noexcept;
   double reference_height_m(std::span<const double> row) noexcept;
 
-  const ModelPlant& plant_;
+  const TruthSource& plant_;
   const RobotModel& model_;
   double settle_s_;
   Kinematics kinematics_;

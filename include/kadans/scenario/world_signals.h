@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "kadans/plant/plant.h"
 #include "kadans/plant/world.h"
 
 namespace kadans {

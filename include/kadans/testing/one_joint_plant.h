@@ -46,7 +46,7 @@ class OneJointPlant final : public Plant {
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
-  void step(std::int64_t dt_ns) override;
+  void step(std::int64_t dt_ns);
   // A torque on the link for the next step only.
   void push(double torque_Nm) noexcept { push_Nm_ = torque_Nm; }
 

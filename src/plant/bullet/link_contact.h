@@ -2,7 +2,7 @@
 #pragma once
 
 #include "body.h"
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 
 namespace kadans::bullet {
 

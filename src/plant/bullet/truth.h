@@ -5,7 +5,7 @@
 
 #include "body.h"
 #include "drive.h"
-#include "kadans/plant/plant.h"
+#include "kadans/plant/world.h"
 #include "world_objects.h"
 
 namespace kadans::bullet {

@@ -10,8 +10,8 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "contact_world.h"
-#include "kadans/plant/plant.h"
 #include "kadans/plant/world.h"
+#include "kadans/plant/world_settings.h"
 #include "rolling_rows.h"
 
 namespace kadans::bullet {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kadans/model/robot_model.h"
-#include "kadans/plant/world.h"
+#include "kadans/plant/world_settings.h"
 
 namespace kadans::bullet {
 

@@ -26,6 +26,7 @@ void PlantServer::begin(std::uint64_t session, const PeerAddress& from) noexcept
   actuation_ = {};
   arrivals_ = {};
   session_ = {};
+  link_ = {};
 }
 
 void PlantServer::answer(WireKind kind, WireRefusal refusal, std::uint64_t session, const PeerAddress& to) noexcept {
@@ -44,7 +45,7 @@ bool PlantServer::greeted(const WireHead& head, PlantWire::Check check, Bytes da
   const bool again = in_session_ && from == peer_ && head.session == session_number_;
   if (refusal == WireRefusal::none && in_session_ && !again) refusal = WireRefusal::busy;
   if (refusal != WireRefusal::none) {
-    ++session_.link.refused;
+    ++link_.refused;
     if (!std::exchange(answered_stranger_, true)) answer(WireKind::refusal, refusal, head.session, from);
     return true;
   }
@@ -63,12 +64,12 @@ void PlantServer::take(Bytes datagram, const PeerAddress& from) noexcept {
   } else if (ours && head.kind == WireKind::actuation) {
     take_actuation(head, datagram);
   } else {
-    ++session_.link.refused;
+    ++link_.refused;
   }
 }
 
 void PlantServer::take_actuation(const WireHead& head, Bytes datagram) noexcept {
-  if (!arrivals_.is_newest(head.sequence, session_.link)) return;
+  if (!arrivals_.is_newest(head.sequence, link_)) return;
   wire_.actuation_in(datagram, actuation_);
   newest_actuation_ = head.sequence;
   silent_ns_ = 0;
@@ -99,7 +100,7 @@ const ActuationFrame& PlantServer::damping(const PlantTruth& truth) noexcept {
   return damping_;
 }
 
-bool PlantServer::beat(ModelPlant& model, std::uint32_t periods) {
+bool PlantServer::beat(World& world, std::uint32_t periods) {
   answered_stranger_ = false;
   take_all();
   if (session_.left) return false;
@@ -108,19 +109,19 @@ bool PlantServer::beat(ModelPlant& model, std::uint32_t periods) {
   if (released && !released_) ++session_.releases;
   released_ = released;
   for (std::uint32_t i = 0; driven_ && i < periods; ++i) {
-    model.write(released ? damping(model.truth()) : actuation_);
-    model.step(period_ns_);
+    world.robot().write(released ? damping(world.truth()) : actuation_);
+    world.step(period_ns_);
   }
   silent_ns_ += static_cast<std::int64_t>(periods) * period_ns_;
   if (static_cast<double>(silent_ns_) > 1e9 * settings_.peer_timeout_s) return false;
-  model.read(sensors_);
+  world.robot().read(sensors_);
   const WireHead head{
       .kind = WireKind::sensors, .session = session_number_, .sequence = ++sent_, .time_ns = sensors_.time_ns};
   const SensorsOnWire more{.answered = newest_actuation_, .released = released_};
   if (socket_.send(wire_.sensors(head, more, sensors_, out_), peer_)) {
-    ++session_.link.sent;
+    ++link_.sent;
   } else {
-    ++session_.link.unsent;
+    ++link_.unsent;
   }
   return true;
 }

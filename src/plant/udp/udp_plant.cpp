@@ -22,15 +22,20 @@ std::string shape(std::string_view robot, std::uint32_t joints, std::uint32_t fe
 
 }  // namespace
 
+std::vector<PlantCount> counts_of(const UdpStatistics& s) {
+  return {{"sent", s.sent},           {"unsent", s.unsent},         {"received", s.received}, {"lost", s.lost},
+          {"reordered", s.reordered}, {"duplicates", s.duplicates}, {"late", s.late},         {"refused", s.refused}};
+}
+
 UdpPlant::UdpPlant(const UdpSettings& settings, const PlantLayout& layout, DatagramSocket socket, std::uint64_t session)
     : settings_(settings), layout_(layout), wire_(layout), socket_(std::move(socket)), session_(session) {
   const double ticks = std::ceil(settings.round_trip_max_s * 1e9 / static_cast<double>(layout.period_ns));
   round_trip_max_ticks_ = static_cast<std::uint64_t>(std::max(2.0, ticks));
 }
 
-UdpPlant::~UdpPlant() { leave(); }
+UdpPlant::~UdpPlant() { close(); }
 
-bool UdpPlant::connect(bool (*give_up)() noexcept) {
+bool UdpPlant::open(bool (*give_up)() noexcept) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(settings_.connect_timeout_s));
@@ -144,7 +149,7 @@ void UdpPlant::write(const ActuationFrame& actuation) noexcept {
   send(wire_.actuation(head, actuation, out_));
 }
 
-void UdpPlant::leave() noexcept {
+void UdpPlant::close() noexcept {
   if (std::exchange(left_, true) || !welcome_) return;
   for (int i = 0; i < 3; ++i) send(wire_.bye(next_head(WireKind::bye), out_));  // one of them will come
 }

@@ -1,5 +1,5 @@
 #include "engines.h"
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "kadans/plant/bullet/bullet_world.h"
 
 namespace kadans::bench {
 namespace {
@@ -30,7 +30,7 @@ class KadansEngine final : public Engine {
   int contact_count() const override { return static_cast<int>(plant_.truth().contact_count); }
 
  private:
-  BulletPlant plant_;
+  BulletWorld plant_;
 };
 
 }  // namespace

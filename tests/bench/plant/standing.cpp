@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "kadans/model/urdf.h"
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "kadans/plant/bullet/bullet_world.h"
 
 namespace kadans::bench {
 namespace {
@@ -43,7 +43,7 @@ PlantSettings standing_settings(const RobotModel& model) {
 }
 
 void put_on_ground(const RobotModel& model, PlantSettings& settings) {
-  settings.base = BulletPlant(model, settings, 1).truth().base;
+  settings.base = BulletWorld(model, settings, 1).truth().base;
   settings.stand_on_ground = false;
 }
 

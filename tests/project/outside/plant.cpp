@@ -3,7 +3,7 @@
 #include <string>
 
 #include "kadans/model/urdf.h"
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "kadans/plant/bullet/bullet_world.h"
 
 int main() {
   const kadans::RobotModel model = kadans::read_urdf(std::string(KADANS_DATA_DIR) + "/models/tulip/tulip.urdf");
@@ -13,7 +13,7 @@ int main() {
   settings.position_rad.resize(model.joints.size());
   settings.base.position_m = {0, 0, 5};
   settings.stand_on_ground = false;
-  kadans::BulletPlant plant(model, settings, 1);
+  kadans::BulletWorld plant(model, settings, 1);
   const double start_m = plant.truth().base.position_m[2];
   for (int i = 0; i < 100; ++i) plant.step(1'000'000);
 

@@ -5,6 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
+
+#include "kadans/plant/plant.h"
 
 namespace kadans {
 
@@ -18,6 +21,8 @@ struct UdpStatistics {
   std::uint32_t late = 0;     // the newest, but too old to count as new
   std::uint32_t refused = 0;  // garbage, another robot's, another session's, a stranger's
 };
+
+std::vector<PlantCount> counts_of(const UdpStatistics& statistics);
 
 class Arrivals {
  public:

@@ -6,12 +6,11 @@
 // actuation for watchdog_s the plant damps its joints itself, as drives do when their bus is silent, until there is one
 // again; after peer_timeout_s, or when the peer says goodbye, the session is over.
 //
-// Threads: await() before a session, beat() in it; statistics() after it.
 #pragma once
 
 #include <cstdint>
 
-#include "kadans/plant/plant.h"
+#include "kadans/plant/plant_type.h"
 #include "kadans/plant/udp/arrivals.h"
 #include "kadans/plant/udp/datagram_socket.h"
 #include "kadans/plant/udp/settings.h"
@@ -19,26 +18,17 @@
 
 namespace kadans {
 
-class PlantServer {
+class PlantServer final : public PlantEmulator {
  public:
   // Throws std::invalid_argument.
   PlantServer(const UdpSettings& settings, const PlantLayout& layout, DatagramSocket socket);
 
-  // Answers what came, after waiting for it for so long; true once there is a peer: a session began.
-  bool await(int milliseconds) noexcept;
-
-  struct Session {
-    UdpStatistics link;
-    std::uint32_t releases = 0;      // times that the watchdog took the joints
-    std::int64_t answer_max_ns = 0;  // oldest sample that an actuation was told to answer, by the plant's clock
-    double answer_sum_ns = 0;
-    std::uint64_t answers = 0;
-    bool left = false;  // the peer said goodbye; else it fell silent
-    double answer_mean_ns() const noexcept { return answers == 0 ? 0 : answer_sum_ns / static_cast<double>(answers); }
-  };
-  // `periods` passed since the last beat. False: the session is over. Throws what the model's step throws.
-  bool beat(ModelPlant& model, std::uint32_t periods);
-  const Session& session() const noexcept { return session_; }
+  bool await(int milliseconds) noexcept override;
+  bool beat(World& world, std::uint32_t periods) override;
+  std::string peer_name() const override { return peer_.text(); }
+  const Session& session() const noexcept override { return session_; }
+  std::vector<PlantCount> link_counts() const override { return counts_of(link_); }
+  const UdpStatistics& link() const noexcept { return link_; }
   const PeerAddress& peer() const noexcept { return peer_; }
   bool released() const noexcept { return released_; }
 
@@ -69,6 +59,7 @@ class PlantServer {
   SensorFrame sensors_;
   Arrivals arrivals_;
   Session session_;
+  UdpStatistics link_;
   Datagram out_{};
 };
 

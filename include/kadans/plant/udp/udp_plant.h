@@ -24,23 +24,21 @@ class UdpPlant final : public Plant {
  public:
   // `session` tells this run from others: draw it. Throws std::invalid_argument.
   UdpPlant(const UdpSettings& settings, const PlantLayout& layout, DatagramSocket socket, std::uint64_t session);
-  ~UdpPlant() override;  // says goodbye
+  ~UdpPlant() override;  // closes
 
-  // Before the loop: greets the plant until it welcomes us and a first sample is here. Throws InputError that says
-  // what stands in the way. False: give_up(), asked every 20 ms and after each signal, ended it.
-  bool connect(bool (*give_up)() noexcept = nullptr);
+  // Greets the plant until it welcomes us and a first sample is here.
+  bool open(bool (*give_up)() noexcept = nullptr) override;
   // The same in steps: whether it is done; throws when the plant refuses for good.
   bool greet();
   bool welcomed();
   // Before the loop: plant.link.*, what became of the datagrams.
-  void declare_signals(SignalTable& table) const;
+  void declare_signals(SignalTable& table) const override;
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
-  void step(std::int64_t) override {}
-  // After the loop: the plant need not wait for us.
-  void leave() noexcept;
+  void close() noexcept override;  // the plant need not wait for us
 
+  std::vector<PlantCount> link_counts() const override { return counts_of(statistics_); }
   const UdpStatistics& statistics() const noexcept { return statistics_; }  // control thread, or after it
   bool released() const noexcept { return more_.released; }
   double round_trip_ticks() const noexcept { return round_trip_ticks_; }

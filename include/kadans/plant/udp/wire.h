@@ -29,6 +29,7 @@
 #include <string>
 #include <vector>
 
+#include "kadans/plant/plant_type.h"
 #include "kadans/signal/frames.h"
 
 namespace kadans {
@@ -54,13 +55,6 @@ struct WireGreeting {
   std::int64_t period_ns = 0;
   std::uint32_t joints = 0, feet = 0;
   std::array<char, wire_robot_bytes> robot{};  // what is left of it is 0
-};
-
-// What both sides must agree on.
-struct PlantLayout {
-  std::string robot;
-  std::vector<std::string> joints, feet;  // names, in the order of the frames
-  std::int64_t period_ns = 1'000'000;
 };
 
 struct SensorsOnWire {

@@ -1,4 +1,4 @@
-#include "kadans/plant/world.h"
+#include "kadans/plant/world_settings.h"
 
 #include <algorithm>
 #include <cmath>

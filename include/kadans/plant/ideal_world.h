@@ -2,15 +2,15 @@
 // are obeyed at once. The base stands still and upright.
 #pragma once
 
-#include "kadans/plant/plant.h"
 #include "kadans/plant/settings.h"
+#include "kadans/plant/world.h"
 
 namespace kadans {
 
-class IdealPlant final : public ModelPlant {
+class IdealWorld final : public OneRobotWorld {
  public:
   // settings.position_rad is where the joints start. Each joint's inertia is its rotor's, or 1 kg m2 where that is 0.
-  IdealPlant(const RobotModel& model, const PlantSettings& settings);
+  IdealWorld(const RobotModel& model, const PlantSettings& settings);
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;

@@ -1,4 +1,4 @@
-#include "kadans/plant/ideal_plant.h"
+#include "kadans/plant/ideal_world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ bool finite(const JointActuation& actuation) noexcept {
 
 }  // namespace
 
-IdealPlant::IdealPlant(const RobotModel& model, const PlantSettings& settings) {
+IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings) {
   const std::size_t joints = model.joints.size();
   require(joints <= max_joints, "at most " + std::to_string(max_joints) + " joints");
   require(settings.position_rad.size() == joints, "position_rad must have one entry a joint");
@@ -39,7 +39,7 @@ IdealPlant::IdealPlant(const RobotModel& model, const PlantSettings& settings) {
   }
 }
 
-void IdealPlant::read(SensorFrame& sensors) noexcept {
+void IdealWorld::read(SensorFrame& sensors) noexcept {
   sensors.time_ns = time_ns_;
   sensors.joint_count = truth_.joint_count;
   sensors.foot_count = 0;
@@ -50,7 +50,7 @@ void IdealPlant::read(SensorFrame& sensors) noexcept {
   sensors.imu = {{0, 0, 0}, {0, 0, 9.81}, sequence_ + 1};
 }
 
-void IdealPlant::write(const ActuationFrame& actuation) noexcept {
+void IdealWorld::write(const ActuationFrame& actuation) noexcept {
   actuation_ = actuation;
   actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
@@ -58,7 +58,7 @@ void IdealPlant::write(const ActuationFrame& actuation) noexcept {
   }
 }
 
-void IdealPlant::step(std::int64_t dt_ns) {
+void IdealWorld::step(std::int64_t dt_ns) {
   if (dt_ns <= 0) return;
   const double dt_s = static_cast<double>(dt_ns) * 1e-9;
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
@@ -80,7 +80,7 @@ void IdealPlant::step(std::int64_t dt_ns) {
   ++sequence_;
 }
 
-void IdealPlant::hash(StateHash& hash) const noexcept {
+void IdealWorld::hash(StateHash& hash) const noexcept {
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
     hash.add(truth_.position_rad[i]);
     hash.add(truth_.velocity_rad_s[i]);

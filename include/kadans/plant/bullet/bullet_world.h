@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <memory>
 
-#include "kadans/plant/plant.h"
 #include "kadans/plant/settings.h"
+#include "kadans/plant/world.h"
 
 namespace kadans {
 
-class BulletPlant final : public ModelPlant {
+class BulletWorld final : public OneRobotWorld {
  public:
   // `seed` feeds every noise. Throws std::invalid_argument naming what in the settings does not fit the model.
-  BulletPlant(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed);
-  ~BulletPlant() override;
+  BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed);
+  ~BulletWorld() override;
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
@@ -23,8 +23,8 @@ class BulletPlant final : public ModelPlant {
   void hash(StateHash& hash) const noexcept override;
 
  private:
-  class World;
-  std::unique_ptr<World> world_;
+  class Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 }  // namespace kadans

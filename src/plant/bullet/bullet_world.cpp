@@ -1,4 +1,4 @@
-#include "kadans/plant/bullet/bullet_plant.h"
+#include "kadans/plant/bullet/bullet_world.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -34,9 +34,9 @@ bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v
 
 }  // namespace
 
-class BulletPlant::World {
+class BulletWorld::Inside {
  public:
-  World(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
+  Inside(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
       : settings_(checked(model, settings)),
         joint_names_(model.joint_names()),
         mask_(make_pair_mask(model, settings)),
@@ -192,23 +192,23 @@ class BulletPlant::World {
   std::int64_t time_ns_ = 0;
 };
 
-BulletPlant::BulletPlant(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
-    : world_(std::make_unique<World>(model, settings, seed)) {}
+BulletWorld::BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
+    : inside_(std::make_unique<Inside>(model, settings, seed)) {}
 
-BulletPlant::~BulletPlant() = default;
+BulletWorld::~BulletWorld() = default;
 
-void BulletPlant::read(SensorFrame& sensors) noexcept { copy_used(world_->sensors(), sensors); }
+void BulletWorld::read(SensorFrame& sensors) noexcept { copy_used(inside_->sensors(), sensors); }
 
-void BulletPlant::write(const ActuationFrame& actuation) noexcept { world_->write(actuation); }
+void BulletWorld::write(const ActuationFrame& actuation) noexcept { inside_->write(actuation); }
 
-void BulletPlant::step(std::int64_t dt_ns) { world_->step(dt_ns); }
+void BulletWorld::step(std::int64_t dt_ns) { inside_->step(dt_ns); }
 
-const PlantTruth& BulletPlant::truth() const noexcept { return world_->truth(); }
+const PlantTruth& BulletWorld::truth() const noexcept { return inside_->truth(); }
 
-void BulletPlant::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
-  world_->push(link, force_N, point_in_link_m);
+void BulletWorld::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
+  inside_->push(link, force_N, point_in_link_m);
 }
 
-void BulletPlant::hash(StateHash& hash) const noexcept { world_->hash(hash); }
+void BulletWorld::hash(StateHash& hash) const noexcept { inside_->hash(hash); }
 
 }  // namespace kadans

@@ -1,0 +1,16 @@
+// What became of what passed between a plant and whoever drives it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "kadans/plant/plant.h"
+
+namespace kadans {
+
+std::string link_text(const std::vector<PlantCount>& counts);  // "12 sent, 0 unsent, ..."
+nlohmann::ordered_json link_json(const std::vector<PlantCount>& counts);
+
+}  // namespace kadans

@@ -1,0 +1,55 @@
+#include <random>
+
+#include "kadans/plant/plant_type.h"
+#include "kadans/plant/udp/plant_server.h"
+#include "kadans/plant/udp/udp_plant.h"
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+namespace {
+
+class UdpType final : public PlantType {
+ public:
+  std::string_view name() const noexcept override { return "udp"; }
+  std::string_view doc() const noexcept override { return "a plant on another machine"; }
+
+  bool has_fields() const noexcept override { return true; }
+  void fields(PlantFields& f) override {
+    f.string("peer", settings_.peer, "HOST:PORT of the machine that serves the plant");
+    f.number("connect_timeout_s", settings_.connect_timeout_s, {0.1, 600, "s"}, "how long to wait for its answer");
+    f.number("round_trip_max_s", settings_.round_trip_max_s, {1e-4, 1, "s"},
+             "readings that answer an older actuation are not new ones");
+    f.number("watchdog_s", settings_.watchdog_s, {1e-3, 10, "s"},
+             "the plant damps its joints after so long without actuation");
+    f.number("peer_timeout_s", settings_.peer_timeout_s, {0.1, 600, "s"}, "it is free for another peer after so long");
+  }
+
+  std::unique_ptr<Plant> make_plant(const PlantSite& site) const override {
+    UdpSettings settings = settings_;
+    if (!site.peer.empty()) settings.peer = site.peer;
+    if (settings.peer.empty()) {
+      throw InputError(
+          {.file = site.file,
+           .message = "says no plant.udp.peer: name the machine that serves the plant with --peer HOST:PORT"});
+    }
+    std::random_device random;
+    const std::uint64_t session = (std::uint64_t{random()} << 32U) | random();
+    return std::make_unique<UdpPlant>(settings, site.layout, DatagramSocket::connected(settings.peer), session);
+  }
+
+  bool is_protocol() const noexcept override { return true; }
+  std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const override {
+    UdpSettings settings = settings_;
+    settings.damping_Nms_per_rad = site.damping_Nms_per_rad;
+    return std::make_unique<PlantServer>(settings, site.layout, DatagramSocket::listening(listen));
+  }
+
+ private:
+  UdpSettings settings_;
+};
+
+}  // namespace
+
+std::unique_ptr<PlantType> make_udp_type() { return std::make_unique<UdpType>(); }
+
+}  // namespace kadans
