@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace kadans {
 namespace {
+
+RegisteredPlantType* newest_registered = nullptr;  // constant-initialised: there before any constructor runs
 
 [[noreturn]] void fail(const PlantType& type, const char* what) {
   throw std::logic_error("a plant of type " + std::string(type.name()) + what);
@@ -16,6 +19,20 @@ std::unique_ptr<World> PlantType::make_world(const WorldSite&) const { fail(*thi
 std::unique_ptr<Plant> PlantType::make_plant(const PlantSite&) const { fail(*this, " is part of a world"); }
 std::unique_ptr<PlantEmulator> PlantType::make_emulator(const PlantSite&, const std::string&) const {
   fail(*this, " speaks no protocol");
+}
+
+RegisteredPlantType::RegisteredPlantType(Make make) noexcept
+    : make_(make), next_(std::exchange(newest_registered, this)) {}
+
+void RegisteredPlantType::add_all(PlantTypes& types) {
+  const auto name = [](const auto& type) { return type->name(); };
+  const auto shipped = static_cast<std::ptrdiff_t>(types.size());
+  for (const auto* one = newest_registered; one != nullptr; one = one->next_) types.push_back(one->make_());
+  std::ranges::sort(types.begin() + shipped, types.end(), {}, name);  // no linker's order
+  PlantTypes all = types;
+  std::ranges::sort(all, {}, name);
+  const auto twice = std::ranges::adjacent_find(all, {}, name);
+  if (twice != all.end()) throw std::invalid_argument("two types of plants have the name " + std::string(name(*twice)));
 }
 
 const PlantType& plant_type(const PlantTypes& types, std::string_view name) {

@@ -1,7 +1,12 @@
 // The types of plants that a robot can be driven through: a model in a simulated world, or a bus with drives.
 //
 // A type is a folder of src/plant with a file type.cpp; nothing else names it. The robot's configuration reads its
-// fields under plant.NAME, `--plant NAME` chooses it, schema and check know it by what it says of itself here.
+// fields under plant.NAME, `--plant NAME` chooses it, schema and check know it by what it says of itself here. A
+// program that links Kadans (app/program.h) registers types of its own before main():
+//
+//   KADANS_REGISTER_PLANT_TYPE(make_bench_type);  // std::unique_ptr<kadans::PlantType> make_bench_type();
+//
+// docs/hardware.md says how one is written.
 //
 // Before the loop, one thread, but for what the made plants and emulators say of themselves.
 #pragma once
@@ -112,7 +117,8 @@ class PlantType {
 
 using PlantTypes = std::vector<std::shared_ptr<PlantType>>;
 
-// Those of this program, each with its default settings, by name.
+// Those of this program, each with its default settings: the shipped ones by name, then those that were registered.
+// Throws std::invalid_argument when two have one name.
 PlantTypes plant_types();
 // One that is there. Throws std::out_of_range.
 const PlantType& plant_type(const PlantTypes& types, std::string_view name);
@@ -120,4 +126,26 @@ const PlantType& plant_type(const PlantTypes& types, std::string_view name);
 // Names of the types for which `is` holds; of all.
 std::vector<std::string> plant_type_names(bool (PlantType::*is)() const noexcept = nullptr);
 
+// One link in the list of what was registered before main(); never made but by the macro.
+class RegisteredPlantType {
+ public:
+  using Make = std::unique_ptr<PlantType> (*)();
+  explicit RegisteredPlantType(Make make) noexcept;
+  static void add_all(PlantTypes& types);
+
+ private:
+  Make make_;
+  RegisteredPlantType* next_;
+};
+
 }  // namespace kadans
+
+// At namespace scope in a source file of the program itself: the linker drops those of a static library that nothing
+// else refers to.
+#define KADANS_REGISTER_PLANT_TYPE(make) KADANS_REGISTER_PLANT_TYPE_AT(make, __COUNTER__)
+#define KADANS_REGISTER_PLANT_TYPE_AT(make, count) KADANS_REGISTER_PLANT_TYPE_AS(make, count)
+#define KADANS_REGISTER_PLANT_TYPE_AS(make, count)                                \
+  namespace {                                                                     \
+  const ::kadans::RegisteredPlantType kadans_registered_plant_type_##count(make); \
+  }                                                                               \
+  static_assert(true) /* takes the semicolon */
