@@ -16,12 +16,6 @@ namespace {
 constexpr std::size_t overhead_bytes = 64;  // of a reply in the queue
 constexpr std::size_t id_max_bytes = 256;
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
-  return text;
-}
-
 // Numbers of subscriptions and requests. Throws InputError.
 std::uint32_t whole_number(const Json& json) {
   if (json.is_number_unsigned() && json.get<std::uint64_t>() <= UINT32_MAX) return json.get<std::uint32_t>();
@@ -40,8 +34,9 @@ std::string request_id(const Json& json) {
 
 LiveClient::LiveClient(LiveHub& hub, std::uint64_t id, bool writes, std::string who)
     : hub_(hub), id_(id), writes_(writes), who_(std::move(who)) {
-  introduce();
-  advertise();
+  put_text(hub_.introduction(writes_));
+  put_text(hub_.advertisement());
+  put_text(service_advertisement());
   hub_.enter(id_, *this);  // last: nothing throws any more
 }
 
@@ -77,29 +72,9 @@ void LiveClient::say(const J& json) {
 
 void LiveClient::complain(const std::string& what) { say(Json{{"op", "status"}, {"level", 2}, {"message", what}}); }
 
-void LiveClient::introduce() {
-  Json metadata(hub_.channels().signals());
-  metadata["mode"] = hub_.instance().facts().mode;
-  metadata["robot"] = hub_.instance().facts().name;
-  metadata["writes"] = writes_ ? "yes" : "no";
-  metadata["verbs"] = verbs_text(hub_.can_pace());
-  metadata["plays"] = joined(playable_names(hub_.instance().facts().folders));
-  say(Json{{"op", "serverInfo"},
-           {"name", "kadans " + hub_.instance().facts().version + ": " + hub_.instance().facts().name},
-           {"capabilities", {"parameters", "parametersSubscribe", "services", "assets"}},
-           {"supportedEncodings", Json::array({"json"})},
-           {"metadata", metadata},
-           {"sessionId", session_id()}});
-}
-
 void LiveClient::put_text(const std::string& text) {
   const std::span<const std::byte> bytes = bytes_of(text);
   put({false, {bytes.begin(), bytes.end()}});
-}
-
-void LiveClient::advertise() {
-  put_text(hub_.advertisement());
-  say(service_advertisement());
 }
 
 void LiveClient::text(std::string_view json) noexcept {

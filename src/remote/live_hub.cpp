@@ -7,6 +7,7 @@
 
 #include "kadans/config/foreign_json.h"
 #include "kadans/remote/live_client.h"
+#include "live_protocol.h"
 
 namespace kadans {
 namespace {
@@ -79,6 +80,29 @@ void LiveHub::beat() {
   if (beats_ % timing_every == 0 && !p_.timing.empty()) channels_.take_timing(timing_json(p_.timing), time_ns);
   if (beats_++ % report_every == 0 && !report_waits_)
     report_waits_ = send({.kind = Order::Kind::report}, own, report_call);
+}
+
+const std::string& LiveHub::introduction(bool writes) {
+  std::string plays;
+  for (const std::string& name : playable_names(p_.instance.facts().folders))
+    plays += (plays.empty() ? "" : " ") + name;
+  if (plays != plays_) introductions_ = {};
+  plays_ = plays;
+  std::string& text = introductions_[writes ? 1 : 0];
+  if (!text.empty()) return text;
+  const Instance::Facts& facts = p_.instance.facts();
+  nlohmann::ordered_json metadata(channels_.signals());
+  metadata["mode"] = facts.mode;
+  metadata["robot"] = facts.name;
+  metadata["writes"] = writes ? "yes" : "no";
+  metadata["verbs"] = verbs_text(can_pace());
+  metadata["plays"] = plays;
+  return text = json_text({{"op", "serverInfo"},
+                           {"name", "kadans " + facts.version + ": " + facts.name},
+                           {"capabilities", {"parameters", "parametersSubscribe", "services", "assets"}},
+                           {"supportedEncodings", nlohmann::ordered_json::array({"json"})},
+                           {"metadata", metadata},
+                           {"sessionId", session_id()}});
 }
 
 const std::string& LiveHub::advertisement() {

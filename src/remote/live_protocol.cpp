@@ -33,6 +33,32 @@ std::vector<std::byte> taken(const ByteWriter& writer) {
   return {bytes.begin(), bytes.end()};
 }
 
+Json command_in_json() {
+  const Json request{
+      {"title", "kadans.Command"},
+      {"type", "object"},
+      {"properties",
+       {{"verb", {{"type", "string"}}}, {"text", {{"type", "string"}}}, {"value", {{"type", "number"}}}}}};
+  const Json response{{"title", "kadans.Answer"},
+                      {"type", "object"},
+                      {"properties", {{"done", {{"type", "boolean"}}}, {"text", {{"type", "string"}}}}}};
+  return {{"id", command_service},
+          {"name", "/kadans/command"},
+          {"type", "kadans.Command"},
+          {"requestSchema", json_text(request)},
+          {"responseSchema", json_text(response)},
+          {"request",
+           {{"encoding", "json"},
+            {"schemaName", "kadans.Command"},
+            {"schemaEncoding", "jsonschema"},
+            {"schema", json_text(request)}}},
+          {"response",
+           {{"encoding", "json"},
+            {"schemaName", "kadans.Answer"},
+            {"schemaEncoding", "jsonschema"},
+            {"schema", json_text(response)}}}};
+}
+
 }  // namespace
 
 std::string session_id() { return std::to_string(getpid()); }
@@ -49,31 +75,10 @@ std::optional<Order::Kind> order_of(std::string_view verb) {
   return found->second;
 }
 
-Json service_advertisement() {
-  const Json request{
-      {"title", "kadans.Command"},
-      {"type", "object"},
-      {"properties",
-       {{"verb", {{"type", "string"}}}, {"text", {{"type", "string"}}}, {"value", {{"type", "number"}}}}}};
-  const Json response{{"title", "kadans.Answer"},
-                      {"type", "object"},
-                      {"properties", {{"done", {{"type", "boolean"}}}, {"text", {{"type", "string"}}}}}};
-  const Json service{{"id", command_service},
-                     {"name", "/kadans/command"},
-                     {"type", "kadans.Command"},
-                     {"requestSchema", json_text(request)},
-                     {"responseSchema", json_text(response)},
-                     {"request",
-                      {{"encoding", "json"},
-                       {"schemaName", "kadans.Command"},
-                       {"schemaEncoding", "jsonschema"},
-                       {"schema", json_text(request)}}},
-                     {"response",
-                      {{"encoding", "json"},
-                       {"schemaName", "kadans.Answer"},
-                       {"schemaEncoding", "jsonschema"},
-                       {"schema", json_text(response)}}}};
-  return {{"op", "advertiseServices"}, {"services", Json::array({service})}};
+const std::string& service_advertisement() {
+  static const std::string text =
+      json_text({{"op", "advertiseServices"}, {"services", Json::array({command_in_json()})}});
+  return text;
 }
 
 Json service_failure(std::uint32_t call, const std::string& why) {

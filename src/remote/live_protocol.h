@@ -31,7 +31,7 @@ std::string verbs_text(bool paced);
 // The order that a verb means: "play", "stop", "clear_faults" ...
 std::optional<Order::Kind> order_of(std::string_view verb);
 
-Json service_advertisement();
+const std::string& service_advertisement();  // the same to all clients
 Json service_failure(std::uint32_t call, const std::string& why);
 Json parameter_json(const LiveParameter& parameter);
 

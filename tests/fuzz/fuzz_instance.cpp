@@ -1,6 +1,6 @@
 #include "fuzz_instance.h"
 
-#include <fstream>
+#include <cstdio>
 
 namespace kadans::fuzz {
 namespace {
@@ -41,7 +41,7 @@ Instance::Facts facts_of(const fs::path& root) {
           .version = "0",
           .configuration = root / "config/bench/robot.json",
           .root = root,
-          .folders = {root / "config/bench/robot.json", "bench"},
+          .folders = {root / "robot.json", "bench"},
           .records = root / "records"};
 }
 
@@ -50,20 +50,32 @@ Instance::Facts facts_of(const fs::path& root) {
 FuzzProject::FuzzProject() {
   folder_.write("behaviors/bench/nod.lua", nod);
   folder_.write("behaviors/bench/wait.lua", wait);
+  std::fprintf(stderr, "inputs that an instance had before lie in %s\n", (root() / "inputs").c_str());
+}
+
+const FuzzProject& FuzzProject::only() {
+  static const FuzzProject project;
+  return project;
 }
 
 const FuzzProject& FuzzProject::fresh() {
-  static const FuzzProject project;
+  const FuzzProject& project = only();
   fs::remove_all(project.root() / "records");
+  fs::remove_all(project.root() / "inputs");
   fs::create_directories(project.root() / "records");
   project.folder_.write("config/bench/robot.json", configuration);
   return project;
+}
+
+void FuzzProject::keep(std::string_view input, int number) {
+  only().folder_.write("inputs/" + std::to_string(100 + number), std::string(input));
 }
 
 FuzzInstance::FuzzInstance()
     : host({.root = root_, .limits = limits}, with_parameters_by_object(robot.catalog), echo),
       instance(facts_of(root_), robot.catalog, robot.safety.emergency_stop()) {
   robot.control.record_to(&control_side);
+  record_side.record_as({.settings = {.file = {.chunk_bytes = 1U << 14U}}});  // a record is short here
 }
 
 LiveHub::Parts FuzzInstance::hub_parts(LivePace* pace) {
@@ -85,6 +97,10 @@ void FuzzInstance::step() {
   for (Fault fault; robot.safety.log().try_pop(fault);) instance.tell(fault);
   (void)record_side.beat({.due_ns = lockstep.time_ns()});
   instance.publish(status_of(robot.exchange->snapshot.newest(1), record_side.status()));
+}
+
+bool FuzzInstance::runs() {
+  return !robot.exchange->snapshot.newest(1).status.safety.stopped && !record_side.status().goes_on;
 }
 
 }  // namespace kadans::fuzz

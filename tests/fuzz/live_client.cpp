@@ -7,8 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "../../src/remote/live_protocol.h"
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
+#include "kadans/config/foreign_json.h"
 
 namespace {
 
@@ -44,7 +46,8 @@ class Viewer {
   }
   bool changed() const {
     const InstanceStatus now = status_of(bench_.instance.robot.exchange->snapshot.newest(1), {});
-    return parameters() != first_ || now.safety.stopped || bench_.pace.held.load() || bench_.pace.speed.load() != 1;
+    return parameters() != first_ || now.safety.stopped || bench_.pace.held.load() != held_ ||
+           bench_.pace.speed.load() != speed_;
   }
 
  private:
@@ -62,8 +65,8 @@ class Viewer {
         require(kind == 1 || kind == 3 || kind == 4, "a binary message has a kind");
       } else {
         const auto* text = reinterpret_cast<const char*>(out.bytes.data());
-        const auto json = nlohmann::json::parse(text, text + out.bytes.size(), nullptr, false);
-        require(json.is_object() && json.contains("op"), "a text is JSON and says what it is");
+        const std::string_view said(text, out.bytes.size());
+        require(said.starts_with(R"({"op":)") && nlohmann::json::accept(said), "a text is JSON and says what it is");
       }
     }
     require(client_.reply_bytes() == 0, "nothing waits for who reads");
@@ -72,23 +75,30 @@ class Viewer {
   Bench& bench_;
   LiveClient client_;
   std::vector<double> first_ = parameters();
+  bool held_ = bench_.pace.held.load();
+  double speed_ = bench_.pace.speed.load();
 };
 
-// Tells which of these a client with the token may change something by.
+// Tells which of these a client with the token may change something by: what is no order is none for the server either.
 bool may_change(bool binary, std::string_view message) {
-  return binary ? message.starts_with('\2') : message.find_first_of("P\\") != std::string_view::npos;
+  const std::optional<ServiceCall> call = binary ? read_service_call(fuzz::bytes_in(message)) : std::nullopt;
+  if (binary && !call) return false;
+  const auto json = read_foreign_json(call ? std::string_view(call->request) : message);
+  if (!json || !json->is_object()) return false;
+  if (!call) return json->value("op", Json()) == "setParameters";
+  const Json verb = json->value("verb", Json());
+  return verb.is_string() && verbs_text(true).find(verb.get_ref<const std::string&>()) != std::string::npos;
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static std::unique_ptr<Bench> kept;  // until an input changes it
-  if (!kept) kept = std::make_unique<Bench>();
+  static fuzz::KeptBench<Bench> kept;
   fuzz::FuzzInput input(data, size);
   const bool writes = (input.byte() & 1U) != 0;
   bool used = false;
   {
-    Viewer viewer(*kept, writes);
+    Viewer viewer(kept.get(), writes);
     for (int i = 0; !input.empty(); ++i) {
       const bool binary = (input.byte() & 1U) != 0;
       const std::string_view message = input.take(input.length());
@@ -99,6 +109,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     viewer.beat();
     require(writes || !viewer.changed(), "who has no token changes nothing");
   }
-  if (used) kept.reset();
+  if (used) kept.changed_by({reinterpret_cast<const char*>(data), size});
   return 0;
 }

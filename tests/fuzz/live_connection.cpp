@@ -87,14 +87,13 @@ class Served {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static std::unique_ptr<Bench> kept;  // until an input could change it
-  if (!kept) kept = std::make_unique<Bench>();
+  static fuzz::KeptBench<Bench> kept;
   fuzz::FuzzInput input(data, size);
   const std::uint8_t has = input.byte();
   std::string all;
   bool took = false;
   {
-    Served served(*kept, (has & 1U) != 0, (has & 2U) != 0);
+    Served served(kept.get(), (has & 1U) != 0, (has & 2U) != 0);
     while (!input.empty()) {
       const std::string_view piece = input.take(input.length());
       all += piece;
@@ -105,6 +104,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const bool trusted = all.find(token) != std::string::npos;
   require(!took || trusted, "no picture is taken without the token");
-  if (trusted) kept.reset();
+  if (trusted) kept.changed_by({reinterpret_cast<const char*>(data), size});
   return 0;
 }

@@ -88,6 +88,21 @@ TEST_CASE("a client of the live server learns who it is, what there is and which
   CHECK(texts[2]["op"] == "advertiseServices");
 }
 
+TEST_CASE("each client of the live server learns whether it writes and what can be played by then") {
+  Viewer viewer;
+  const auto told = [&viewer](std::uint64_t id, bool writes) {
+    LiveClient client(viewer.hub, id, writes, "test");
+    return texts_of(client).at(0)["metadata"];
+  };
+  CHECK(told(1, false)["writes"] == "no");
+  CHECK(told(2, true)["writes"] == "yes");
+  CHECK(told(3, false)["writes"] == "no");
+  CHECK(told(4, true)["plays"] == "nod wait");
+  viewer.live.project.write("behaviors/bench/later.lua", "");
+  CHECK(told(5, false)["plays"] == "later nod wait");
+  CHECK(told(6, true)["plays"] == "later nod wait");
+}
+
 TEST_CASE("a slow client of the live server gets the newest values and skips what came between") {
   Viewer viewer;
   LiveClient slow(viewer.hub, 1, false, "test");

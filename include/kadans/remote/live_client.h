@@ -74,8 +74,6 @@ class LiveClient {
   template <typename Json>
   void say(const Json& json);
   void complain(const std::string& what);
-  void introduce();
-  void advertise();
   template <typename Json>
   void obey(const Json& json);
   template <typename Json>

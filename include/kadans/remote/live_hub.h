@@ -2,6 +2,7 @@
 // and the orders that wait for their answers. One thread, the server's, drives it by beat().
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -73,7 +74,9 @@ class LiveHub {
 
   const Instance& instance() const noexcept { return p_.instance; }
   const LiveChannels& channels() const noexcept { return channels_; }
-  const std::string& advertisement();  // of the channels, the same for all
+  // What a client is told first, who the server is and what there is. Made once for all clients.
+  const std::string& introduction(bool writes);
+  const std::string& advertisement();  // of the channels
   LiveAssets& assets() noexcept { return assets_; }
   const std::vector<LiveParameter>& parameters() const noexcept { return parameters_; }
   const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // in the last beat
@@ -110,6 +113,8 @@ class LiveHub {
   Parts p_;
   LiveChannels channels_;
   LiveAssets assets_;
+  std::string plays_;                         // what can be played, as introductions_ tell
+  std::array<std::string, 2> introductions_;  // to who reads, to who writes; "": not made yet
   std::string advertisement_;
   std::map<std::uint64_t, LiveClient*> clients_;
   std::map<std::uint64_t, Caller> waiting_;  // by the order's number
