@@ -9,20 +9,6 @@ namespace {
 using Kind = SourceToken::Kind;
 using Tokens = std::vector<SourceToken>;
 
-// Names of fields that something is assigned to: `.x = `, `["x"] = `, `function t.x`, `function t:x`.
-void add_assigned(const Tokens& tokens, std::set<std::string>& names) {
-  for (std::size_t i = 1; i + 2 < tokens.size(); ++i) {
-    const bool dotted = tokens[i - 1].is(".") || tokens[i - 1].is(":");
-    if (dotted && tokens[i].kind == Kind::name && (tokens[i + 1].is("=") || tokens[i + 1].is(",")))
-      names.insert(tokens[i].text);
-    if (tokens[i - 1].is("[") && tokens[i].kind == Kind::text && tokens[i + 1].is("]")) names.insert(tokens[i].text);
-    if (!tokens[i - 1].is("function")) continue;
-    for (std::size_t at = i; tokens[at].kind == Kind::name || tokens[at].is(".") || tokens[at].is(":"); ++at) {
-      if (tokens[at].kind == Kind::name) names.insert(tokens[at].text);
-    }
-  }
-}
-
 // The local that a file ends with returning, or "".
 std::string returned_name(const Tokens& tokens) {
   std::size_t end = tokens.size();
@@ -76,11 +62,18 @@ bool uses_value(const Tokens& tokens, std::size_t at) {
 
 }  // namespace
 
-void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, KnownNames& known) {
-  std::set<std::string> assigned;
-  for (const ReadSource& one : read) add_assigned(one.scopes.tokens(), assigned);
+void name_modules(const std::vector<ReadSource>& read, const LuaState& lua, const KnownNames& known,
+                  SourceFacts& facts) {
+  for (const auto& [name, ignored] : known.modules) {
+    if (const ReadSource* const file = file_of(read, lua, name)) facts.name_module(name, file->scopes.file());
+  }
+}
+
+void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, const SourceFacts& facts,
+                   KnownNames& known) {
+  known.given_somewhere = facts.given_somewhere();
   for (auto& [name, module] : known.modules) {
-    for (const std::string& field : assigned) module.fields.try_emplace(field);
+    for (const std::string& field : facts.fields_of(name)) module.fields.try_emplace(field);
     const ReadSource* const file = file_of(read, lua, name);
     if (file == nullptr) continue;
     const std::string table = returned_name(file->scopes.tokens());
@@ -115,9 +108,11 @@ void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& k
     for (const SourceFunction& function : functions) {
       if (function.guard && !function.returns_value) tell(function.line);
     }
-    const auto guards = known.guards.find(one.source->chunk);
-    if (guards == known.guards.end()) continue;
-    for (const int line : guards->second) {  // all that begin there: which of them it is cannot be told
+    const auto chart = known.functions.find(one.source->chunk);
+    if (chart == known.functions.end()) continue;
+    for (const auto& [at, keys] : chart->second) {  // all that begin there: which of them it is cannot be told
+      if (!keys.contains("when")) continue;
+      const int line = at;
       const auto begins = [line](const SourceFunction& function) { return function.line == line; };
       const auto returns = [&](const SourceFunction& function) { return begins(function) && function.returns_value; };
       if (std::ranges::any_of(functions, begins) && std::ranges::none_of(functions, returns)) tell(line);

@@ -15,9 +15,14 @@ struct ReadSource {
   SourceScopes scopes;
 };
 
-// Whatever is given to a table as a field anywhere may be a module's, and one that is filled by computed names holds
-// what it likes.
-void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, KnownNames& known);
+// Which file each name in `require` is.
+void name_modules(const std::vector<ReadSource>& read, const LuaState& lua, const KnownNames& known,
+                  SourceFacts& facts);
+
+// Whatever a module is given as a field anywhere is its own, and one that is filled by computed names holds what it
+// likes.
+void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, const SourceFacts& facts,
+                   KnownNames& known);
 
 // Modules whose value somebody uses though they return none.
 void check_module_values(const std::vector<ReadSource>& read, const LuaState& lua, std::vector<InputProblem>& problems);

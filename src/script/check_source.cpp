@@ -109,6 +109,7 @@ class SourceCheck final : public SourceListener {
     if (field && (use.assigned || use.written + 1 < path.size())) return;
     const std::string& name = field ? path[1] : use.method;
     if (name.empty() || name == "*" || module->second.fields.contains(name)) return;
+    if (known_.given_somewhere.contains(name)) return;
     problem(field ? use.lines[1] : use.line,
             "module '" + path.front() + "' has no '" + name + "'" + hint_text(name, module->second.names()));
   }
@@ -237,12 +238,17 @@ class SourceCheck final : public SourceListener {
 }  // namespace
 
 void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<InputProblem>& problems) {
+  SourceFacts facts;
   std::vector<ReadSource> read;
   for (const LuaState::Source& source : parts.lua->sources()) {
-    read.push_back({&source, SourceScopes(lex_source(source.text))});
+    read.push_back({&source, SourceScopes(lex_source(source.text), read.size(), facts)});
     if (!parts.chart.machines.empty()) read.back().scopes.know_functions(known.functions[source.chunk]);
   }
-  widen_modules(read, *parts.lua, known);
+  name_modules(read, *parts.lua, known, facts);
+  std::vector<SourceScopes*> files;
+  for (ReadSource& one : read) files.push_back(&one.scopes);
+  learn_facts(files, facts);
+  widen_modules(read, *parts.lua, facts, known);
   for (ReadSource& one : read) SourceCheck(parts, known, *one.source, problems).run(one.scopes);
   check_module_values(read, *parts.lua, problems);
   check_guard_values(read, known, problems);

@@ -73,22 +73,24 @@ void read_modules(lua_State* state, KnownNames& known) {
   lua_pop(state, 1);
 }
 
-void read_place(lua_State* state, int reference, std::map<std::string, std::set<int>>& places) {
+void read_place(lua_State* state, int reference, const char* key, KnownNames& known) {
   if (reference == Chart::no_function) return;
   lua_Debug function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
   if (lua_getinfo(state, ">S", &function) == 0 || function.source[0] != '@') return;
-  places[function.source + 1].insert(function.linedefined);
+  known.functions[function.source + 1][function.linedefined].insert(key);
 }
 
 void read_functions(lua_State* state, const Chart& chart, KnownNames& known) {
   for (const Chart::State& one : chart.states) {
-    for (const int function : {one.enter, one.exit, one.during, one.run}) read_place(state, function, known.functions);
+    read_place(state, one.enter, "enter", known);
+    read_place(state, one.exit, "exit", known);
+    read_place(state, one.during, "during", known);
+    read_place(state, one.run, "run", known);
   }
   for (const Chart::Transition& transition : chart.transitions) {
-    read_place(state, transition.when, known.guards);
-    read_place(state, transition.when, known.functions);
-    read_place(state, transition.action, known.functions);
+    read_place(state, transition.when, "when", known);
+    read_place(state, transition.action, "action", known);
   }
 }
 

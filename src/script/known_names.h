@@ -24,8 +24,10 @@ struct KnownNames {
   std::map<std::string, std::vector<std::string>> parameters;  // by the file that declares them
   std::map<std::string, std::vector<std::string>> vars;        // by the file of the behavior
   std::map<std::string, Shape> modules;  // the author's own, by the names in `require`; what is no table is open
-  // Where the guards of transitions begin, and all functions of the chart, by their file.
-  std::map<std::string, std::set<int>> guards, functions;
+  // Fields that are given to tables of which nobody knows whose they are: they may be any module's.
+  std::set<std::string> given_somewhere;
+  // The functions of the chart by their file and the line where they begin: the keys ("enter", "when" ...) of each.
+  std::map<std::string, std::map<int, std::set<std::string>>> functions;
 };
 
 // Of a behavior that is loaded, or of a module: then `m` and `s` are open, for nobody knows who will play it.

@@ -128,6 +128,22 @@ int opens(const SourceToken& token) {
   return 0;
 }
 
+// Behind a value: what goes on with it is no name, and no keyword but these.
+bool begins_statement(const SourceToken& token) {
+  if (token.kind == SourceToken::Kind::keyword) return token.text != "and" && token.text != "or";
+  return token.kind == SourceToken::Kind::name || token.is("::");
+}
+
+bool may_end_value(const SourceToken& token) {
+  if (token.kind == SourceToken::Kind::symbol || token.kind == SourceToken::Kind::keyword) {
+    for (const char* last : {")", "}", "]", "...", "end", "nil", "true", "false"}) {
+      if (token.is(last)) return true;
+    }
+    return false;
+  }
+  return token.kind != SourceToken::Kind::end;
+}
+
 }  // namespace
 
 std::vector<SourceToken> lex_source(std::string_view text) { return Lexer(text).run(); }
@@ -155,6 +171,22 @@ std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::s
     fresh = depth == 0 && (tokens[at].is(",") || tokens[at].is(";"));
   }
   return parts;
+}
+
+std::vector<std::size_t> values_of(const std::vector<SourceToken>& tokens, std::size_t at) {
+  std::vector<std::size_t> values{at};
+  int depth = 0;
+  for (bool whole = false; tokens[at].kind != SourceToken::Kind::end;
+       ++at) {  // whole: a value may end before the token
+    const SourceToken& token = tokens[at];
+    const int change = opens(token);
+    if (depth == 0 && (change < 0 || token.is(";") || (whole && begins_statement(token)))) break;
+    if (depth == 0 && token.is(",")) values.push_back(at + 1);
+    depth += change;
+    whole = depth == 0 && may_end_value(token);
+  }
+  values.push_back(at);
+  return values;
 }
 
 }  // namespace kadans

@@ -32,4 +32,7 @@ std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at);
 // The first tokens of what stands in a bracket, commas or semicolons between; `at` is the first one of all.
 std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::size_t at);
 
+// The first tokens of the values behind an '=', commas between, then the token behind them all; `at` is the first one.
+std::vector<std::size_t> values_of(const std::vector<SourceToken>& tokens, std::size_t at);
+
 }  // namespace kadans

@@ -7,8 +7,6 @@ namespace {
 
 using Kind = SourceToken::Kind;
 
-bool same(const SourceMeaning& a, const SourceMeaning& b) { return a.role == b.role && a.path == b.path; }
-
 // Keys of functions that are over within their tick.
 bool is_at_once(const std::string& key) {
   return key == "enter" || key == "exit" || key == "during" || key == "action";
@@ -21,33 +19,47 @@ bool begins_value(const SourceToken& token) {
          token.is("true") || token.is("false");
 }
 
+// What a name is given until it gets its value.
+bool holds_nothing(const SourceToken& token) { return token.is("nil") || token.is("false"); }
+
 }  // namespace
 
-SourceScopes::SourceScopes(std::vector<SourceToken> tokens) : tokens_(std::move(tokens)) {
-  tokens_.resize(tokens_.size() + 4, SourceToken{Kind::end, "", tokens_.empty() ? 1 : tokens_.back().line});
+void learn_facts(const std::vector<SourceScopes*>& files, SourceFacts& facts) {
+  using Phase = SourceFacts::Phase;
+  for (const Phase phase : {Phase::values, Phase::unknown, Phase::calls}) {
+    facts.phase = phase;
+    for (int i = 0; i < 20; ++i) {  // as deep as functions hand `m` and `s` on
+      facts.learnt = false;
+      for (SourceScopes* const file : files) file->read();
+      if (!facts.learnt) break;
+    }
+  }
 }
 
-void SourceScopes::tell(SourceListener& listener) {
-  for (int i = 0; i < 20; ++i) {  // as deep as functions hand `m` and `s` on
-    learnt_ = false;
-    walk(nullptr);
-    if (!learnt_) break;
+SourceScopes::SourceScopes(std::vector<SourceToken> tokens, std::size_t file, SourceFacts& facts)
+    : tokens_(std::move(tokens)), file_(file), facts_(&facts) {
+  tokens_.resize(tokens_.size() + 4, SourceToken{Kind::end, "", tokens_.empty() ? 1 : tokens_.back().line});
+  for (const SourceToken& token : tokens_) {
+    if (token.is("function")) ++functions_by_line_[token.line];
   }
-  walk(&listener);
 }
 
 void SourceScopes::walk(SourceListener* listener) {
   listener_ = listener;
   blocks_.assign(1, {});
+  braces_.clear();
   next_locals_.clear();
-  functions_[0].returns = 0;  // the file's own
+  function(0).returns = 0;  // the file's own
+  function(0).line = tokens_[0].line;
   for (std::size_t at = 0; tokens_[at].kind != Kind::end;) at = step(at);
 }
 
 std::vector<SourceFunction> SourceScopes::functions() const {
   std::vector<SourceFunction> all;
-  for (const auto& [at, function] : functions_)
-    all.push_back({tokens_[at].line, function.under_when, function.returns_value});
+  for (auto one = facts_->functions.lower_bound({file_, 0}); one != facts_->functions.end(); ++one) {
+    if (one->first.file != file_) break;
+    all.push_back({one->second.line, one->second.under_when, facts_->returns_value(one->first)});
+  }
   return all;
 }
 
@@ -65,18 +77,15 @@ std::size_t SourceScopes::step(std::size_t at) {
   const SourceToken& token = tokens_[at];
   if (token.kind == Kind::name) return name_at(at);
   if (token.kind != Kind::keyword) {
-    if (token.is("::")) return at + 3;
-    return at + 1;
+    symbol_at(at);
+    return token.is("::") ? at + 3 : at + 1;
   }
   if (token.text == "goto") return at + 2;
   if (token.text == "function") return function_at(at);
   if (token.text == "local") return local_at(at);
   if (token.text == "for") return for_at(at);
+  if (token.text == "return") return_at(at);
   const std::size_t function = blocks_.back().function;
-  if (token.text == "return") {
-    ++functions_[function].returns;
-    functions_[function].returns_value = functions_[function].returns_value || begins_value(tokens_[at + 1]);
-  }
   if (token.text == "do" || token.text == "then" || token.text == "repeat") open(function);
   if (token.text == "until") next_locals_ = blocks_.back().locals;
   if (token.text == "else" || token.text == "elseif" || token.text == "end" || token.text == "until") close();
@@ -88,148 +97,185 @@ std::size_t SourceScopes::step(std::size_t at) {
   return at + 1;
 }
 
+// Braces, and ["key"] = in them or behind a value that has no name.
+void SourceScopes::symbol_at(std::size_t at) {
+  if (tokens_[at].is("{")) braces_.push_back({at, blocks_.size()});
+  if (tokens_[at].is("}") && !braces_.empty()) braces_.pop_back();
+  if (!tokens_[at].is("[") || tokens_[at + 1].kind != Kind::text || !tokens_[at + 2].is("]")) return;
+  if (!tokens_[at + 3].is("=")) return;
+  const std::string& key = tokens_[at + 1].text;
+  if (in_table()) {
+    facts_->give_field({SourceRole::table, {}, {file_, braces_.back().token}}, key, value_at(at + 4));
+  } else {
+    facts_->give_somewhere(key);
+  }
+}
+
+void SourceScopes::return_at(std::size_t at) {
+  const std::size_t token = blocks_.back().function;
+  ++function(token).returns;
+  if (!begins_value(tokens_[at + 1])) return;
+  if (token == 0) facts_->give_module(file_, value_at(at + 1));
+  if (facts_->phase != SourceFacts::Phase::calls) return;
+  const std::optional<SourcePlace> tail = tail_at(at + 1);
+  if (tail) {
+    function(token).tails.insert(*tail);
+  } else {
+    function(token).returns_value = true;
+  }
+}
+
 // function [name{.name}[:name]] (parameters)
-std::size_t SourceScopes::function_at(std::size_t at) {
-  const std::size_t start = at++;
-  bool method = false;
-  while (!tokens_[at].is("(") && tokens_[at].kind != Kind::end) {
-    method = method || tokens_[at].is(":");
-    ++at;
-  }
-  Function& function = functions_[start];
+std::size_t SourceScopes::function_at(std::size_t start) {
+  Function& function = this->function(start);
+  function.line = tokens_[start].line;
   function.returns = 0;
+  function.in_chart = !chart_ || chart_->contains(function.line);
+  call_by_chart(start);
   if (start >= 2 && tokens_[start - 1].is("=") && is_key(start - 2)) {
-    function.literal = is_at_once(tokens_[start - 2].text);
-    give_key(tokens_[start - 2].text, start);
+    function.literal = function.in_chart && is_at_once(tokens_[start - 2].text);
+    give_key(tokens_[start - 2].text, {file_, start});
   }
+  const SourceMeaning holder = name_function(start);
+  std::size_t at = start + 1;
+  while (!tokens_[at].is("(") && tokens_[at].kind != Kind::end) ++at;
+  const auto declare = [&](std::size_t number, const std::string& name, std::size_t token,
+                           const SourceMeaning& otherwise) {
+    const auto given = function.given.find(number);
+    facts_->give_local({file_, token}, given == function.given.end() ? otherwise : given->second);
+    next_locals_[name] = token;
+  };
   std::size_t number = 0;
-  if (method) next_locals_["self"] = {};
+  if (at > start + 3 && tokens_[at - 2].is(":")) declare(number++, "self", start, holder);
   for (++at; !tokens_[at].is(")") && tokens_[at].kind != Kind::end; ++at) {
-    if (tokens_[at].kind != Kind::name) continue;
-    const auto given = function.given.find(number++);
-    next_locals_[tokens_[at].text] = given == function.given.end() ? SourceMeaning{} : given->second;
+    if (tokens_[at].kind == Kind::name) declare(number++, tokens_[at].text, at, {});
   }
   open(start, true);
   return at + 1;
 }
 
+// Gives the function to its name: a local that was declared before, or a field. Returns what the field is of.
+SourceMeaning SourceScopes::name_function(std::size_t start) {
+  if (tokens_[start + 1].kind != Kind::name) return {};
+  std::vector<std::string> names;
+  for (std::size_t at = start + 1; tokens_[at].kind == Kind::name; at += 2) {
+    names.push_back(tokens_[at].text);
+    if (!tokens_[at + 1].is(".") && !tokens_[at + 1].is(":")) break;
+  }
+  const SourceMeaning value{SourceRole::function, {}, {file_, start}};
+  bool outer = false;
+  const std::size_t* declared = find(names.front(), outer);
+  if (names.size() == 1) {
+    if (declared != nullptr) facts_->give_local({file_, *declared}, value);
+    return {};
+  }
+  SourceMeaning holder = declared == nullptr ? SourceMeaning{} : facts_->local({file_, *declared});
+  if (holder.role != SourceRole::none) holder.path.insert(holder.path.end(), names.begin() + 1, names.end() - 1);
+  facts_->give_field(holder, names.back(), value);
+  return holder;
+}
+
+// A function of the chart, however it came there, is known by its line, unless more of them begin in it.
+void SourceScopes::call_by_chart(std::size_t function) {
+  const int line = tokens_[function].line;
+  if (!chart_ || functions_by_line_[line] != 1) return;
+  const auto found = chart_->find(line);
+  if (found == chart_->end()) return;
+  for (const std::string& key : found->second) give_key(key, {file_, function});
+}
+
 std::size_t SourceScopes::local_at(std::size_t at) {
   if (tokens_[at + 1].is("function")) {
-    blocks_.back().locals[tokens_[at + 2].text] = {SourceRole::function, {}, at + 1};
+    blocks_.back().locals[tokens_[at + 2].text] = at + 2;
     return function_at(at + 1);
   }
-  std::vector<std::string> names;
+  std::vector<std::size_t> names;
   ++at;
   while (tokens_[at].kind == Kind::name) {
-    names.push_back(tokens_[at].text);
+    names.push_back(at);
     const bool more = tokens_[at + 1].is(",");
     at += more ? 2 : 1;
     if (!more) break;
   }
-  const SourceMeaning meaning = names.size() == 1 && tokens_[at].is("=") ? value_at(at + 1) : SourceMeaning{};
-  // The names hold from here on: what stands right of '=' is read with them, which matters to no check.
-  for (const std::string& name : names) {
-    bool outer = false;
-    if (tokens_[at].is("=") && find(name, outer) != nullptr && meaning.role == SourceRole::none &&
-        tokens_[at + 1].text == name) {
-      continue;  // local x = x.y
+  if (tokens_[at].is("=")) {
+    const std::vector<std::size_t> values = values_of(tokens_, at + 1);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const bool own = i + 1 < values.size();  // else of the last value, a call
+      if (!own || !holds_nothing(tokens_[values[i]]))
+        facts_->give_local({file_, names[i]}, own ? value_at(values[i]) : SourceMeaning{});
     }
-    blocks_.back().locals[name] = meaning;
+    while (at < values.back()) at = step(at);
   }
+  for (const std::size_t name : names) blocks_.back().locals[tokens_[name].text] = name;  // they hold from here on
   return at;
 }
 
 std::size_t SourceScopes::for_at(std::size_t at) {
-  std::map<std::string, SourceMeaning> names;
+  std::map<std::string, std::size_t> names;
   for (++at; tokens_[at].kind == Kind::name || tokens_[at].is(","); ++at) {
-    if (tokens_[at].kind == Kind::name) names[tokens_[at].text] = {};
+    if (tokens_[at].kind == Kind::name) names[tokens_[at].text] = at;
   }
   while (!tokens_[at].is("do") && tokens_[at].kind != Kind::end) at = step(at);
   next_locals_ = std::move(names);
   return at;  // at `do`
 }
 
-bool SourceScopes::is_key(std::size_t at) const {
-  if (tokens_[at].kind != Kind::name || !tokens_[at + 1].is("=") || at == 0) return false;
-  return tokens_[at - 1].is("{") || tokens_[at - 1].is(",") || tokens_[at - 1].is(";");
-}
-
-const SourceMeaning* SourceScopes::find(const std::string& name, bool& outer) const {
-  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) {
-    const auto found = block->locals.find(name);
-    if (found == block->locals.end()) continue;
-    outer = block->function != blocks_.back().function;
-    return &found->second;
-  }
-  return nullptr;
-}
-
-// The fields after a name, then a method and the bracket of a call.
-std::size_t SourceScopes::fields_at(std::size_t at, SourceUse& use) const {
-  for (;;) {
-    if (tokens_[at].is(".") && tokens_[at + 1].kind == Kind::name) {
-      use.meaning.path.push_back(tokens_[at + 1].text);
-      use.lines.push_back(tokens_[at + 1].line);
-      at += 2;
-    } else if (tokens_[at].is("[") && tokens_[at + 1].kind == Kind::text && tokens_[at + 2].is("]")) {
-      use.meaning.path.push_back(tokens_[at + 1].text);
-      use.lines.push_back(tokens_[at + 1].line);
-      at += 3;
-    } else {
-      break;
-    }
-    ++use.written;
-  }
-  if (tokens_[at].is("[")) {  // a field that only the run knows
-    use.meaning.path.emplace_back("*");
-    use.lines.push_back(tokens_[at].line);
-    ++use.written;
-    use.assigned = false;
-    return at;
-  }
-  if (tokens_[at].is(":") && tokens_[at + 1].kind == Kind::name) {
-    use.method = tokens_[at + 1].text;
-    at += 2;
-  }
-  if (tokens_[at].is("(") || tokens_[at].is("{") || tokens_[at].kind == Kind::text) {
-    use.arguments = tokens_[at].is("(") ? at + 1 : at;
-    return tokens_[at].is("(") ? at + 1 : at;
-  }
-  return at;
+// key = value
+std::size_t SourceScopes::key_at(std::size_t at) {
+  const std::string& key = tokens_[at].text;
+  const SourceMeaning value = value_at(at + 2);
+  if (!holds_nothing(tokens_[at + 2]))
+    facts_->give_field({SourceRole::table, {}, {file_, braces_.back().token}}, key, value);
+  const SourceMeaning function = facts_->resolve(value);
+  if (function.role == SourceRole::function && tokens_[at + 2].kind == Kind::name) give_key(key, function.place);
+  return at + 2;
 }
 
 std::size_t SourceScopes::name_at(std::size_t at) {
-  if (at > 0 && (tokens_[at - 1].is(".") || tokens_[at - 1].is(":"))) return at + 1;
-  if (is_key(at)) {
-    const SourceMeaning value = value_at(at + 2);
-    if (value.role == SourceRole::function && tokens_[at + 2].kind == Kind::name) {
-      give_key(tokens_[at].text, value.function);
-    }
-    return at + 2;
+  if (at > 0 && (tokens_[at - 1].is(".") || tokens_[at - 1].is(":"))) {  // of a value that has no name
+    if (tokens_[at + 1].is("=") || tokens_[at + 1].is(",")) facts_->give_somewhere(tokens_[at].text);
+    return at + 1;
   }
+  if (is_key(at)) return key_at(at);
   SourceUse use;
-  use.name = tokens_[at].text;
-  use.line = tokens_[at].line;
-  const SourceMeaning* meaning = find(use.name, use.outer);
-  use.known = meaning != nullptr;
-  if (use.known) use.meaning = *meaning;
-  use.lines.assign(use.meaning.path.size(), use.line);
-  for (const Block& block : blocks_) use.guard = use.guard || functions_[block.function].guard;
+  const std::size_t fields = start_at(at, use);
+  for (const Block& block : blocks_) use.guard = use.guard || function(block.function).guard;
   use.at_once = at_once(at);
-  const std::size_t next = fields_at(at + 1, use);
-  use.next = next;
-  use.assigned = use.arguments == 0 && tokens_[next].is("=");
-  if (use.arguments != 0 && use.meaning.role == SourceRole::function && use.written == 0) hand_on(use);
+  use.next = fields_at(fields, use);
+  use.assigned = use.arguments == 0 && is_assigned(use.next);
+  if (use.assigned && use.known) assign(use, at);
+  look_through(use);
+  if (const std::optional<SourcePlace> callee = callee_of(use)) hand_on(use, *callee);
   if (listener_ != nullptr) listener_->used(use, tokens_);
-  return next;
+  return use.next;
+}
+
+// name{.name} = value, alone or with others.
+void SourceScopes::assign(const SourceUse& use, std::size_t at) {
+  const bool alone = tokens_[use.next].is("=") && !(at > 0 && tokens_[at - 1].is(","));
+  const SourceMeaning value = alone ? value_at(use.next + 1) : SourceMeaning{};
+  const bool nothing = alone && holds_nothing(tokens_[use.next + 1]);
+  if (use.written == 0) {
+    bool outer = false;
+    if (!nothing) facts_->give_local({file_, *find(use.name, outer)}, value);
+    return;
+  }
+  const std::string& field = use.meaning.path.back();
+  SourceMeaning holder = use.meaning;
+  holder.path.pop_back();
+  if (nothing) {
+    facts_->give_somewhere(field);
+  } else {
+    facts_->give_field(holder, field, value);
+  }
 }
 
 // The key of the function around the token that is over within its tick, when what stands here runs whenever that
 // function does: a literal's mistakes count on every way through it, those of what it calls only on the straight one.
 std::string SourceScopes::at_once(std::size_t at) const {
   const Block& block = blocks_.back();
-  const auto found = functions_.find(block.function);
-  if (found == functions_.end() || found->second.at_once.empty()) return "";
+  const auto found = facts_->functions.find({file_, block.function});
+  if (found == facts_->functions.end() || found->second.at_once.empty()) return "";
   const Function& function = found->second;
   const bool chosen = at > 0 && (tokens_[at - 1].is("and") || tokens_[at - 1].is("or"));
   const int own = at > 0 && tokens_[at - 1].is("return") ? 1 : 0;
@@ -237,100 +283,36 @@ std::string SourceScopes::at_once(std::size_t at) const {
   return function.literal || straight ? function.at_once : "";
 }
 
-// Whether a call gives the handle of a motion and nothing is asked of that at once.
-bool SourceScopes::is_motion(const SourceUse& call) const {
-  if (call.meaning.role != SourceRole::machine || call.meaning.path.size() != 1 || call.arguments == 0) return false;
-  if (call.method != "move" && call.method != "move_through" && call.method != "set") return false;
-  const SourceToken& after = tokens_[end_of_call(tokens_, call.arguments)];
-  return !after.is(".") && !after.is(":") && !after.is("[") && !after.is("and") && !after.is("or");
+// A function that is written in one of the files is called: it is given what stands in the brackets, and is where its
+// caller is.
+void SourceScopes::hand_on(const SourceUse& call, SourcePlace callee) {
+  Function& function = facts_->functions[callee];
+  if (facts_->phase == SourceFacts::Phase::calls) {
+    const bool guard = call.guard && !function.guard, at_once = !call.at_once.empty() && function.at_once.empty();
+    if (guard) function.guard = true;
+    if (at_once) function.at_once = call.at_once;
+    facts_->learnt = facts_->learnt || guard || at_once;
+  }
+  std::size_t number = call.method.empty() ? 0 : 1;
+  if (!tokens_[call.arguments - 1].is("(")) return;
+  for (const std::size_t argument : parts_of(tokens_, call.arguments))
+    facts_->give_parameter(callee, number++, value_at(argument));
 }
 
-// What the expression at the token stands for, as far as one name and its fields tell.
-SourceMeaning SourceScopes::value_at(std::size_t at) const {
-  if (tokens_[at].is("function")) return {SourceRole::function, {}, at};
-  if (tokens_[at].kind != Kind::name) return {};
-  if (tokens_[at].text == "require" && (tokens_[at + 1].text == "kadans" || tokens_[at + 2].text == "kadans")) {
-    return {SourceRole::module, {}, 0};
-  }
-  if (tokens_[at].text == "require") {
-    const std::size_t name = tokens_[at + 1].is("(") ? at + 2 : at + 1;
-    const SourceToken& after = tokens_[name == at + 1 ? name + 1 : name + 2];
-    const bool whole = !after.is(".") && !after.is("(") && !after.is(":") && !after.is("[");
-    if (tokens_[name].kind == Kind::text && whole) return {SourceRole::own_module, {tokens_[name].text}, 0};
-    return {};
-  }
-  bool outer = false;
-  const SourceMeaning* meaning = find(tokens_[at].text, outer);
-  if (meaning == nullptr) return {};
-  SourceUse use;
-  use.meaning = *meaning;
-  const std::size_t next = fields_at(at + 1, use);
-  if (use.meaning.role == SourceRole::module && use.meaning.path.size() == 1 && use.meaning.path[0] == "params") {
-    return {SourceRole::parameters, {}, 0};
-  }
-  if (is_motion(use)) return {SourceRole::motion, {}, 0};
-  if (use.arguments != 0 || !use.method.empty() || use.written > 4) return {};
-  const SourceToken& after = tokens_[next];
-  const bool whole = after.kind == Kind::name || after.is(",") || after.is(")") || after.is("}") || after.is(";") ||
-                     after.kind == Kind::end ||
-                     (after.kind == Kind::keyword && after.text != "and" && after.text != "or");
-  return whole && (use.meaning.path.empty() || use.meaning.path.back() != "*") ? use.meaning : SourceMeaning{};
-}
-
-// A function that is written here is called: it is given what stands in the brackets, and is where its caller is.
-void SourceScopes::hand_on(const SourceUse& call) {
-  const SourceMeaning& callee = call.meaning;
-  std::size_t at = call.arguments;
-  Function& function = functions_[callee.function];
-  if (call.guard && !function.guard) function.guard = learnt_ = true;
-  if (!call.at_once.empty() && function.at_once.empty()) {
-    function.at_once = call.at_once;
-    learnt_ = true;
-  }
-  if (!tokens_[at - 1].is("(")) return;
-  int depth = 0;
-  std::size_t number = 0;
-  bool first = true;
-  for (; tokens_[at].kind != Kind::end; ++at) {
-    const SourceToken& token = tokens_[at];
-    if (depth == 0 && first) give(callee.function, number, value_at(at));
-    first = false;
-    for (const char* opens : {"(", "{", "[", "function", "if", "do", "repeat"}) depth += token.is(opens) ? 1 : 0;
-    if (token.is(")") && depth == 0) return;
-    for (const char* closes : {")", "}", "]", "end", "until"}) depth -= token.is(closes) ? 1 : 0;
-    if (depth == 0 && token.is(",")) {
-      ++number;
-      first = true;
-    }
-  }
-}
-
-void SourceScopes::give_key(const std::string& key, std::size_t function) {
-  const SourceMeaning machine{SourceRole::machine, {}, 0}, snapshot{SourceRole::snapshot, {}, 0};
-  Function& given = functions_[function];
-  const bool of_chart = !chart_lines_ || chart_lines_->contains(tokens_[function].line);
-  if (key == "when") {
-    give(function, 0, snapshot);
-    give(function, 1, machine);
-    given.under_when = of_chart;
-    if (!given.guard) given.guard = learnt_ = true;
-  } else if (key == "run" || is_at_once(key)) {
-    give(function, 0, machine);
-    give(function, 1, snapshot);
-    if (key == "run" || !of_chart || !given.at_once.empty()) return;
-    given.at_once = key;
-    learnt_ = true;
-  }
-}
-
-void SourceScopes::give(std::size_t function, std::size_t parameter, const SourceMeaning& meaning) {
-  if (meaning.role == SourceRole::none || meaning.role == SourceRole::function) return;
-  auto& given = functions_[function].given;
-  const auto [entry, added] = given.emplace(parameter, meaning);
-  if (added) learnt_ = true;
-  if (!added && !same(entry->second, meaning) && entry->second.role != SourceRole::none) {
-    entry->second = {};  // now this, now that: nothing is known
-    learnt_ = true;
+void SourceScopes::give_key(const std::string& key, SourcePlace place) {
+  const SourceMeaning machine{SourceRole::machine}, snapshot{SourceRole::snapshot};
+  const bool when = key == "when", at_once = is_at_once(key);
+  Function& function = facts_->functions[place];
+  if (!function.in_chart || (!when && !at_once && key != "run")) return;
+  facts_->give_parameter(place, when ? 1 : 0, machine);
+  facts_->give_parameter(place, when ? 0 : 1, snapshot);
+  if (facts_->phase != SourceFacts::Phase::calls) return;
+  if (when) {
+    facts_->learnt = facts_->learnt || !function.guard;
+    function.under_when = function.guard = true;
+  } else if (at_once && function.at_once.empty()) {
+    function.at_once = key;
+    facts_->learnt = true;
   }
 }
 
