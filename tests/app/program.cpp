@@ -24,10 +24,13 @@ Outcome run(const std::string& arguments, const fs::path& where) {
 
 namespace {
 
-// The folders of this process: ctest runs several cases of one program at once, each in a process of its own.
+// The folders of this process: ctest runs several cases of one program at once, each in a process of its own. They lie
+// in a project that holds nothing, so that no file of this one is found above them.
 struct OwnFolders {
   fs::path root = fs::path(KADANS_BINARY_DIR) / "tests" / "folders" / std::to_string(getpid());
-  OwnFolders() = default;
+  OwnFolders() {
+    for (const char* part : {"config", "behaviors"}) fs::create_directories(root / part);
+  }
   ~OwnFolders() {
     std::error_code ignored;
     fs::remove_all(root, ignored);

@@ -103,7 +103,8 @@ class Storm {
 };
 
 std::string record_file(const char* name) {
-  return (std::filesystem::temp_directory_path() / ("kadans_" + std::to_string(getpid()) + std::string(name) + ".mcap")).string();
+  return (std::filesystem::temp_directory_path() / ("kadans_" + std::to_string(getpid()) + std::string(name) + ".mcap"))
+      .string();
 }
 
 }  // namespace
