@@ -112,7 +112,9 @@ async function check_gaze(page) {
   await page.goto((await head.begun)[1]);
   const target = () => value(page, 'control.gaze.target_z_m');
   await until('the robot is drawn', () => page.evaluate(() => globalThis.kadans_drawn?.robot && globalThis.kadans.end_s > 0.5));
-  const [before, tilt] = [await target(), await value(page, 'joint.eye_tilt.position_rad')];
+  // The eyes jump, then the neck follows and they turn back: what stays is the sum.
+  const tilt = async () => (await Promise.all(['lower_tilt', 'upper_tilt', 'eye_tilt'].map((joint) => value(page, `joint.${joint}.position_rad`)))).reduce((sum, rad) => sum + rad);
+  const [before, level] = [await target(), await tilt()];
   // As a hand does: it goes to the target until the page says that there is something to take.
   const taken = await until('the target can be taken', async () => {
     const at = await place_of(page, "o.name === 'gaze target'");
@@ -121,7 +123,7 @@ async function check_gaze(page) {
   });
   await drag(page, taken, 0, -40);
   await until('the target is higher', async () => (await target()) > before + 0.05);
-  await until('the eyes turn', async () => Math.abs((await value(page, 'joint.eye_tilt.position_rad')) - tilt) > 0.02);
+  await until('the eyes look higher', async () => (await tilt()) < level - 0.02);
   check(true, 'the mouse leads the gaze');
   await head.stop();
 }
