@@ -90,11 +90,21 @@ std::optional<SourcePlace> SourceFacts::table(SourceMeaning meaning) const {
   return meaning.place;
 }
 
-bool SourceFacts::returns_value(SourcePlace function, int depth) const {
+bool SourceFacts::returns_value(SourcePlace function) const {
+  std::set<SourcePlace> without;
+  return returns_value(function, 0, without);
+}
+
+// `without`: those that were looked through and return nothing, so that each is looked through once.
+bool SourceFacts::returns_value(SourcePlace function, int depth, std::set<SourcePlace>& without) const {
+  if (without.contains(function)) return false;
   const auto found = functions.find(function);
   if (found == functions.end() || found->second.returns_value || depth > steps_max) return true;
-  return std::ranges::any_of(found->second.tails,
-                             [&](const SourcePlace& tail) { return returns_value(tail, depth + 1); });
+  for (const SourcePlace& tail : found->second.tails) {
+    if (returns_value(tail, depth + 1, without)) return true;
+  }
+  without.insert(function);
+  return false;
 }
 
 std::vector<std::string> SourceFacts::fields_of(const std::string& module) const {

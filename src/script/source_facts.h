@@ -79,7 +79,7 @@ class SourceFacts {
   SourceMeaning resolve(const SourceMeaning& meaning, std::size_t& written) const;
   SourceMeaning resolve(const SourceMeaning& meaning) const;
   // Whether a call of it has a value, as far as is known.
-  bool returns_value(SourcePlace function, int depth = 0) const;
+  bool returns_value(SourcePlace function) const;
   // That a module of the author's own is given in any file.
   std::vector<std::string> fields_of(const std::string& module) const;
   const std::set<std::string>& given_somewhere() const noexcept { return given_somewhere_; }
@@ -91,6 +91,7 @@ class SourceFacts {
  private:
   template <typename Values, typename Key>
   void learn(Values& values, const Key& key, const SourceMeaning& value);
+  bool returns_value(SourcePlace function, int depth, std::set<SourcePlace>& without) const;
   std::optional<SourceMeaning> follow(const SourceMeaning& meaning) const;
   std::optional<SourcePlace> table(SourceMeaning meaning) const;
 

@@ -263,3 +263,20 @@ TEST_CASE("behavior check follows no function that another value may stand for")
   add_modules(project);
   for (const Text& one : left_alone) compare(project, one);
 }
+
+TEST_CASE("Functions that return one another's values in very many ways are looked through once each") {
+  const Project project;
+  constexpr int layers = 14, width = 6;  // 6^14 ways
+  std::string before = "local M = {}";
+  for (int layer = 0; layer < layers; ++layer) {
+    for (int i = 0; i < width; ++i) {
+      before += " function M.f" + std::to_string(layer) + "_" + std::to_string(i) + "(s)";
+      for (int next = 0; next < width && layer + 1 < layers; ++next)
+        before += " if s.time_s > " + std::to_string(next) + " then return M.f" + std::to_string(layer + 1) + "_" +
+                  std::to_string(next) + "(s) end";
+      before += " end";
+    }
+  }
+  CHECK(program::has(project.problems(guard(before, "function(s) return M.f0_0(s) end")),
+                     "a guard that returns nothing is never true"));
+}
