@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "kadans/config/project_root.h"
 #include "kadans/estimate/signals.h"
-#include "kadans/plant/bullet/bullet_world.h"
-#include "kadans/plant/ideal_world.h"
-#include "kadans/plant/udp/udp_plant.h"
 #include "kadans/scenario/planned_faults.h"
 #include "kadans/signal/nearest_name.h"
 

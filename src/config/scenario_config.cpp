@@ -1,7 +1,6 @@
 #include "kadans/config/scenario_config.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 
 #include "kadans/config/based_on.h"

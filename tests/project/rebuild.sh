@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # rebuild.sh PRESET TARGET...: builds targets in the preset's way below the build folder, then runs those that are test
-# programs. With KADANS_SOAK set it builds and runs all there are, with the tests' usual counts; else clang optimises less,
-# for the time it takes. Address randomisation is off throughout: ThreadSanitizer of gcc 12 does not start on kernels with
-# more of it.
+# programs. With KADANS_SOAK set it builds and runs all there are, with the tests' usual counts. Address randomisation is
+# off throughout: ThreadSanitizer of gcc 12 does not start on kernels with more of it.
 set -euo pipefail
 preset=$1
 shift
@@ -10,13 +9,8 @@ build="$KADANS_BINARY_DIR/$preset"
 
 [ $# -gt 0 ] || { echo "nothing to build yet"; exit 0; }
 cd "$KADANS_SOURCE_DIR"
-how=(-DKADANS_REBUILD_TESTS=OFF)
-if [ -n "${KADANS_SOAK:-}" ]; then
-  how+=(-DCMAKE_UNITY_BUILD=OFF)  # clang-tidy looks at one file at a time
-elif [ "$preset" = clang ]; then
-  how+=("-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG")
-fi
-cmake --preset "$preset" -B "$build" "${how[@]}" >"$KADANS_BINARY_DIR/$preset.configure.log" 2>&1 ||
+unity=${KADANS_SOAK:+-DCMAKE_UNITY_BUILD=OFF}  # clang-tidy looks at one file at a time
+cmake --preset "$preset" -B "$build" -DKADANS_REBUILD_TESTS=OFF $unity >"$KADANS_BINARY_DIR/$preset.configure.log" 2>&1 ||
   { cat "$KADANS_BINARY_DIR/$preset.configure.log"; exit 1; }
 [ -z "${KADANS_SOAK:-}" ] || set -- all
 setarch -R cmake --build "$build" --target "$@"

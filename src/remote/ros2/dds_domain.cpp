@@ -71,8 +71,8 @@ DdsDomain::DdsDomain(std::uint32_t domain) : api_(dds_api()), number_(domain) {
   (void)checked(participant_, "lets nobody in");
 }
 
-// Cyclone 0.10.2 waits without end for its receiving thread when rubbish from the network is the last that came: then
-// the domain is left behind, for the end of the process to take.
+// After a flood of rubbish dds_delete of Cyclone 0.10.2 was seen to wait for longer than five seconds: then the domain
+// is left behind, for the end of the process to take.
 DdsDomain::~DdsDomain() {
   std::promise<void> gone;
   const std::future<void> over = gone.get_future();

@@ -5,7 +5,6 @@
 // a beat takes what has come, applies the newest actuation, lets a period pass and sends the sample. Without an
 // actuation for watchdog_s the plant damps its joints itself, as drives do when their bus is silent, until there is one
 // again; after peer_timeout_s, or when the peer says goodbye, the session is over.
-//
 #pragma once
 
 #include <cstdint>
