@@ -139,6 +139,14 @@ async function check_record(page, record) {
     return page.evaluate(() => globalThis.kadans.cursor_s);
   };
   const end_s = await page.evaluate(() => globalThis.kadans.end_s);
+  const between_s = await page.evaluate((clientX) => {
+    const whole_s = kadans.end_s;
+    kadans.end_s = whole_s / 2; // more or less of it is there than when the bar was drawn
+    document.querySelector('.bar').dispatchEvent(new PointerEvent('pointerdown', { buttons: 1, pointerId: 1, clientX, bubbles: true }));
+    kadans.end_s = whole_s;
+    return kadans.cursor_s;
+  }, bar.x + 0.5 * bar.width);
+  check(Math.abs(between_s - 0.25 * end_s) < 0.05 * end_s, 'the bar goes by the time that there is, not by the one that it shows');
   const early_s = await go(0.1);
   await until('an early picture', async () => (await active(page)) === 'settle');
   const [knee, drawn] = [await value(page, 'joint.l_knee.position_rad'), await picture(page)];

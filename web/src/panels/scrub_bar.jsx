@@ -36,10 +36,11 @@ export function ScrubBar({ session, frames }) {
   );
   const span = session.end_s - session.start_s || 1;
   const share = (t) => `${(100 * (Math.max(t, session.start_s) - session.start_s)) / span}%`;
+  // By the time that there is now: what was drawn last may be older.
   const seek = (event) => {
     if (event.buttons !== 1) return;
     const box = bar.current.getBoundingClientRect();
-    session.seek(session.start_s + (span * (event.clientX - box.left)) / box.width);
+    session.seek(session.start_s + ((session.end_s - session.start_s) * (event.clientX - box.left)) / box.width);
     bar.current.setPointerCapture?.(event.pointerId);
   };
   return (
