@@ -58,14 +58,8 @@ function floor.up(base)
   return { x = -math.sin(base.pitch_rad), y = flat * math.sin(base.roll_rad), z = flat * math.cos(base.roll_rad) }
 end
 
--- "prone", "supine", "left" or "right" (the side it lies on), or "upright" when the torso is not lying at all.
-function floor.posture(base)
-  local up = floor.up(base)
-  if up.z > 0.6 then return "upright" end
-  if up.x < -0.6 then return "prone" end
-  if up.x > 0.6 then return "supine" end
-  return up.y < 0 and "left" or "right"
-end
+-- Whether the torso lies, on whichever side.
+function floor.lies(base) return base.posture ~= "upright" and base.posture ~= "falling" end
 
 -- The whole turn to add to a shoulder's `target` so that it is nearest to where the arm is, within its limits.
 function floor.nearest_turn(target, position)

@@ -1,18 +1,14 @@
 local floor = require "floor"
 
-local function base(roll, pitch) return { roll_rad = roll, pitch_rad = pitch } end
 local function joints(left, right)
   return { l_shoulder_pitch = { position_rad = left }, r_shoulder_pitch = { position_rad = right } }
 end
 
 describe("floor", function()
-  it("tells how the robot lies, also where roll and yaw cannot be told apart", function()
-    expect(floor.posture(base(0.1, 0.2))).to_equal "upright"
-    expect(floor.posture(base(0, 1.5))).to_equal "prone"
-    expect(floor.posture(base(2.5, 1.5))).to_equal "prone"
-    expect(floor.posture(base(0, -1.5))).to_equal "supine"
-    expect(floor.posture(base(-1.5, 0))).to_equal "left"
-    expect(floor.posture(base(1.5, 0))).to_equal "right"
+  it("tells a torso that lies from one that stands or is on its way down", function()
+    for posture, lies in pairs { upright = false, falling = false, prone = true, supine = true, left = true, right = true } do
+      expect(floor.lies { posture = posture }).to_equal(lies)
+    end
   end)
 
   it("takes an arm the nearer way round, within the shoulder's limits", function()

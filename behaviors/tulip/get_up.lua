@@ -49,7 +49,7 @@ local function fell_forward(s)
   return up.x < 0 and up.z > P.folded
 end
 
-local function is(posture) return function(s) return floor.posture(s.base) == posture end end
+local function is(posture) return function(s) return s.base.posture == posture end end
 
 local function play(m, steps)
   for _, step in ipairs(steps) do m.posture:move(step[1], { time_s = step.time_s }):wait() end
@@ -100,7 +100,7 @@ return k.behavior "get_up" {
     end,
     { when = stands, to = "steady" },
     { when = is "prone", to = "fold" },
-    { when = function(s) return floor.posture(s.base) == "left" or floor.up(s.base).y <= 0 end, to = "roll_left" },
+    { when = function(s) return s.base.posture == "left" or floor.up(s.base).y <= 0 end, to = "roll_left" },
     { after = 0, to = "roll_right" },
   },
   k.state "roll_left"  (roll "left"),

@@ -9,7 +9,7 @@ local P = k.params {
   arms_rad = { -0.5, min = -2, max = 2, unit = "rad", doc = "where to" },
 }
 
-local function lies(s) return floor.posture(s.base) ~= "upright" end
+local function lies(s) return floor.lies(s.base) end
 
 return k.behavior "stay_up" {
   controls = "balanced",

@@ -13,7 +13,7 @@ local P = k.params {
   hold_s   = { 0.27, min = 0, max = 5, unit = "s", doc = "time from the landing until the step gives way" },
 }
 
-local function lies(s) return floor.posture(s.base) ~= "upright" end
+local function lies(s) return floor.lies(s.base) end
 
 -- The right foot, which was behind, has come down ahead.
 local function passed(s)

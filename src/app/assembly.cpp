@@ -94,6 +94,7 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
     vary(seed);
     make_plant(seed);
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
+    robot_.config.safety.drive_words = plant_type(robot_.config.plant_types, scenario_.plant).drive_words();
     estimator_ =
         std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
     safety_ = std::make_unique<Safety>(robot_.config.safety, robot_.config.model);
@@ -153,10 +154,12 @@ PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
                  .layout = {.robot = robot.name,
                             .joints = robot.model.joint_names(),
                             .feet = {},
+                            .sensors = {},
                             .period_ns = robot.engine.control_period_ns()},
                  .peer = peer,
                  .damping_Nms_per_rad = robot.safety.damping_Nms_per_rad};
   for (const FootSettings& foot : robot.plant.feet) site.layout.feet.push_back(foot.link);
+  for (const SensorChannel& sensor : robot.plant.channels) site.layout.sensors.push_back(sensor.name);
   return site;
 }
 

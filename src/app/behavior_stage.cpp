@@ -4,10 +4,14 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 
 #include "kadans/app/assembly.h"
 #include "kadans/app/snapshot_filter.h"
 #include "kadans/config/project_root.h"
+#include "kadans/estimate/axes.h"
+#include "kadans/signal/sine_cosine.h"
+#include "kadans/signal/status_fields.h"
 
 namespace kadans {
 namespace {
@@ -17,7 +21,8 @@ namespace fs = std::filesystem;
 // What stands in for numbers of the snapshot.
 class Sensors final : public SnapshotFilter {
  public:
-  explicit Sensors(const RobotModel& model) : model_(model) {}
+  explicit Sensors(const Catalog& catalog)
+      : joints_(catalog.model->joint_names()), fields_(status_fields(catalog.sensors)) {}
 
   bool set(const std::string& name, double value) {
     if (!std::isfinite(value)) return false;
@@ -28,81 +33,73 @@ class Sensors final : public SnapshotFilter {
   }
   void change(Snapshot& snapshot) noexcept override {
     for (const auto& [name, value] : values_) (void)put(snapshot, name, value);
+    if (!values_.contains("base.posture") && (values_.contains("base.roll_rad") || values_.contains("base.pitch_rad")))
+      lie_as_leant(snapshot.status.base);
   }
 
  private:
   bool put(Snapshot& snapshot, const std::string& name, double value) const {
-    if (name == "safety.level") {
-      if (!(value >= 0 && value <= static_cast<double>(SafetyLevel::off))) return false;
-      snapshot.status.safety.level = static_cast<SafetyLevel>(value);
+    for (const StatusField& field : fields_) {
+      const bool chosen = field.type == StatusField::Type::choice;
+      if (field.at == nullptr || (chosen && !(value >= 0 && value < static_cast<double>(field.choices)))) continue;
+      const std::optional<std::size_t> index = index_in(name, field);
+      if (!index) continue;
+      field.at(snapshot, *index).set(value);
       return true;
     }
-    if (bool* held = find_button(snapshot, name)) return *held = value != 0, true;
-    for (const auto& [foot, side] : {std::pair{0, "left"}, std::pair{1, "right"}}) {
-      if (name != std::string("feet.") + side + ".contact") continue;
-      snapshot.status.feet[static_cast<std::size_t>(foot)].contact = value != 0;
-      return true;
-    }
-    double* number = find(snapshot, name);
-    if (number != nullptr) *number = value;
-    return number != nullptr;
+    return false;
   }
 
-  static bool* find_button(Snapshot& snapshot, const std::string& name) {
-    JoystickState& joystick = snapshot.joystick;
-    if (name == "joystick.connected") return &joystick.connected;
-    for (std::size_t i = 0; i < joystick_buttons; ++i) {
-      if (name == "joystick.button_" + std::to_string(i + 1)) return &joystick.buttons[i];
-    }
-    return nullptr;
+  // Who sets the angles means the posture too.
+  static void lie_as_leant(BaseStatus& base) noexcept {
+    const auto [sin_roll, cos_roll] = sine_cosine(base.roll_rad);
+    const auto [sin_pitch, cos_pitch] = sine_cosine(base.pitch_rad);
+    base.posture = posture_of({-sin_pitch, cos_pitch * sin_roll, cos_pitch * cos_roll});
   }
 
-  double* find(Snapshot& snapshot, const std::string& name) const {
-    for (std::size_t i = 0; i < joystick_axes; ++i) {
-      if (name == std::string("joystick.") + joystick_axis_names[i]) return &snapshot.joystick.axes[i];
+  // Of which joint or foot `name` is this field: "joints.l_knee.position_rad", "feet.left.contact"; 0 of
+  // "base.roll_rad".
+  std::optional<std::size_t> index_in(const std::string& name, const StatusField& field) const {
+    using enum StatusField::Part;
+    const auto is = [&](const std::string& path) { return name == path + "." + field.name; };
+    const auto one_of = [&](const char* part, const std::vector<std::string>& names) -> std::optional<std::size_t> {
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        if (is(std::string(part) + "." + names[i])) return i;
+      }
+      return std::nullopt;
+    };
+    switch (field.part) {
+      case joint:
+        return one_of("joints", joints_);
+      case foot:
+        return one_of("feet", {"left", "right"});
+      case base:
+        return is("base") ? std::optional<std::size_t>(0) : std::nullopt;
+      case rate:
+        return is("base.angular_velocity_rad_s") ? std::optional<std::size_t>(0) : std::nullopt;
+      case support:
+        return is("support") ? std::optional<std::size_t>(0) : std::nullopt;
+      case safety:
+        return is("safety") ? std::optional<std::size_t>(0) : std::nullopt;
+      case joystick:
+        return is("joystick") ? std::optional<std::size_t>(0) : std::nullopt;
+      case sensors:
+        return is("sensors") ? std::optional<std::size_t>(0) : std::nullopt;
+      case root:
+        break;
     }
-    BaseStatus& base = snapshot.status.base;
-    const std::pair<const char*, double*> fields[] = {
-        {"base.roll_rad", &base.roll_rad},
-        {"base.pitch_rad", &base.pitch_rad},
-        {"base.yaw_rad", &base.yaw_rad},
-        {"base.tilt_rad", &base.tilt_rad},
-        {"base.height_m", &base.height_m},
-        {"base.angular_velocity_rad_s.x", &base.angular_velocity_rad_s[0]},
-        {"base.angular_velocity_rad_s.y", &base.angular_velocity_rad_s[1]},
-        {"base.angular_velocity_rad_s.z", &base.angular_velocity_rad_s[2]},
-        {"feet.left.force_N", &snapshot.status.feet[0].force_N},
-        {"feet.left.cop_x_m", &snapshot.status.feet[0].cop_x_m},
-        {"feet.left.cop_y_m", &snapshot.status.feet[0].cop_y_m},
-        {"feet.right.force_N", &snapshot.status.feet[1].force_N},
-        {"feet.right.cop_x_m", &snapshot.status.feet[1].cop_x_m},
-        {"feet.right.cop_y_m", &snapshot.status.feet[1].cop_y_m},
-        {"support.force_N", &snapshot.status.support.force_N},
-        {"support.cop_x_m", &snapshot.status.support.cop_x_m},
-        {"support.cop_y_m", &snapshot.status.support.cop_y_m}};
-    for (const auto& [known, number] : fields) {
-      if (name == known) return number;
-    }
-    for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-      const std::string prefix = "joints." + model_.joints[i].name + ".";
-      if (!name.starts_with(prefix)) continue;
-      JointState& joint = snapshot.joints.joints[i];
-      const std::string field = name.substr(prefix.size());
-      if (field == "position_rad") return &joint.position_rad;
-      if (field == "velocity_rad_s") return &joint.velocity_rad_s;
-      if (field == "effort_Nm") return &joint.effort_Nm;
-    }
-    return nullptr;
+    return std::nullopt;
   }
 
-  const RobotModel& model_;
+  std::vector<std::string> joints_;
+  std::vector<StatusField> fields_;
   std::map<std::string, double> values_;
 };
 
 class IdealStage final : public TestStage {
  public:
   explicit IdealStage(ScenarioConfig scenario)
-      : scenario_(std::move(scenario)), assembly_(scenario_, scenario_.seed, log_), sensors_(assembly_.robot().model) {
+      : scenario_(std::move(scenario)), assembly_(scenario_, scenario_.seed, log_), sensors_(assembly_.catalog()) {
     assembly_.filter(sensors_);
   }
 
@@ -114,7 +111,7 @@ class IdealStage final : public TestStage {
     sensors_.change(seen_);
   }
   const Snapshot& snapshot() const override { return seen_; }
-  const RobotModel& model() const override { return assembly_.robot().model; }
+  const Catalog& catalog() const override { return assembly_.catalog(); }
   std::string state() const override { return behavior().state(); }
   std::string outcome() const override { return behavior().outcome(); }
   std::string error() const override { return behavior().failed() ? behavior().error().text() : ""; }

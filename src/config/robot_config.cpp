@@ -58,6 +58,9 @@ void RobotReader::read(Fields& f) {
   f.object("safe", "the posture the robot goes to when a behavior failed",
            [&](Fields& safe) { safe_fields(safe, config_, problems_); });
   f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });
+  f.map("sensors", "what the robot senses beside joints, IMU and feet, by name", [&](Fields& e) { sensor(e); });
+  for (auto* const channels : {&config_.estimate.channels, &config_.safety.channels})
+    *channels = config_.plant.channels;
   f.object("start", "where the robot starts", [&](Fields& e) { start(e); });
   f.object("joystick", "a joystick that behaviors read as s.joystick", [&](Fields& e) { joystick(e); });
   f.object("estimate", "how the estimator is set up", [&](Fields& e) { estimate(e); });

@@ -151,6 +151,34 @@ void RobotReader::plant(Fields& f) {
   }
 }
 
+// By its name, which is a field in Lua and a part of a signal's name.
+void RobotReader::sensor(Fields& entry) {
+  constexpr double most = 1e12;
+  SensorChannel channel{.name = std::string(entry.key()), .unit = {}, .doc = {}, .min = -most, .max = most};
+  entry.string("unit", channel.unit, "of its readings, such as m, V or C; none: a switch or a count");
+  entry.string("doc", channel.doc, "a sentence for people");
+  entry.number("min", channel.min, {-most, most, ""}, "a reading below it is a fault");
+  entry.number("max", channel.max, {-most, most, ""}, "a reading above it is a fault");
+  entry.number("period_s", channel.period_s, {0, 60, "s"}, "between two readings; 0: one in each tick");
+  entry.number("value", channel.value, {-most, most, ""}, "that a model reads; scenarios set sensor.NAME.value");
+  entry.number("noise", channel.noise, {0, most, ""}, "of a model: standard deviation");
+  if (!entry.reading()) return;
+  const auto is_part = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  if (channel.name.size() > 32 || channel.name.empty() || !std::ranges::all_of(channel.name, is_part) ||
+      (channel.name[0] >= '0' && channel.name[0] <= '9'))
+    problems_.add(entry.key_place(),
+                  "'" + channel.name + "' is no name of a sensor: letters, digits and _, at most 32");
+  if (!(channel.min <= channel.max))
+    problems_.add(entry.place("max"), entry.path("max") + " is " + number_text(channel.max) +
+                                          ", must be at least min, " + number_text(channel.min));
+  if (config_.plant.channels.size() == max_channels)
+    return problems_.add(entry.key_place(), "a robot has at most " + std::to_string(max_channels) + " sensors");
+  if (channel.doc.empty()) channel.doc = "Sensor " + channel.name + ".";
+  config_.plant.channels.push_back(std::move(channel));
+}
+
 void RobotReader::start(Fields& f) {
   PlantSettings& plant = config_.plant;
   Vec3 angles_rad{};

@@ -30,6 +30,7 @@ class RobotReader {
   void foot(Fields& f);
   void start(Fields& f);
   void estimate(Fields& f);
+  void sensor(Fields& entry);
 
   // robot_joystick.cpp
   void joystick(Fields& f);

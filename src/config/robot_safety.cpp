@@ -1,4 +1,5 @@
 // The part of a robot's configuration that stands on safety: limits by joint, what the watches look for, reactions.
+#include <algorithm>
 #include <array>
 
 #include "kadans/config/name_pattern.h"
@@ -19,7 +20,9 @@ std::vector<std::string> level_names() {
 std::vector<std::string> fault_names() {
   std::vector<std::string> names;
   for (std::size_t code = 1; code < fault_codes; ++code) {
-    if (static_cast<FaultCode>(code) != FaultCode::emergency_stop)  // what follows from it is no matter of taste
+    const auto fault = static_cast<FaultCode>(code);
+    if (fault != FaultCode::emergency_stop &&
+        fault != FaultCode::emergency_input)  // what follows is no matter of taste
       names.emplace_back(name(static_cast<FaultCode>(code)));
   }
   return names;
@@ -52,6 +55,18 @@ void sensor_fields(Fields& f, SensorWatchSettings& s) {
   f.number("acceleration_max_m_s2", s.acceleration_max_m_s2, {0, 1e5, "m/s2"}, "that the accelerometer can measure");
   f.integer("foot_stuck_ticks", s.foot_stuck_ticks, {2, 100000}, "readings exactly the same of a foot that had noise");
   f.number("foot_force_max_N", s.foot_force_max_N, {0, 1e6, "N"}, "that one pressure sensor can measure");
+}
+
+void drive_fields(Fields& f, DriveWatchSettings& s) {
+  f.number("enable_s", s.enable_s, {0, 60, "s"}, "that a drive may take until it is enabled, once asked for torque");
+  f.number("hot_C", s.hot_C, {1, 300, "C"}, "a drive that says so is too hot");
+  f.number("sample_age_max_s", s.sample_age_max_s, {1e-4, 10, "s"}, "of a joint's reading when the frame is made");
+}
+
+void supply_fields(Fields& f, SupplySettings& s) {
+  f.number("lowest_V", s.lowest_V, {0, 1000, "V"}, "of the drives' supply; 0: not watched");
+  f.number("highest_V", s.highest_V, {0, 1000, "V"}, "of the drives' supply; 0: not watched");
+  f.number("time_s", s.time_s, {0, 10, "s"}, "beyond them for so long is a fault");
 }
 
 void fall_fields(Fields& f, FallSettings& s) {
@@ -112,8 +127,9 @@ void RobotReader::reaction(Fields& entry) {
   static const std::vector<std::string> levels = level_names(), faults = fault_names();
   Reaction scratch;
   Reaction* reaction = &scratch;
-  for (std::size_t i = 0; i < faults.size(); ++i) {
-    if (entry.key() == faults[i]) reaction = &config_.safety.reactions[i + 1];
+  for (std::size_t code = 1; code < fault_codes; ++code) {
+    const bool theirs = std::ranges::find(faults, entry.key()) != faults.end();
+    if (theirs && entry.key() == name(static_cast<FaultCode>(code))) reaction = &config_.safety.reactions[code];
   }
   if (entry.reading() && reaction == &scratch) problems_.add_unknown(entry.key_place(), "fault", entry.key(), faults);
   entry.choice("joint", reaction->joint, levels, "rung of the joint concerned");
@@ -135,6 +151,8 @@ void RobotReader::safety(Fields& f) {
   f.number("heartbeat_timeout_s", s.heartbeat_timeout_s, {0.01, 60, "s"}, "silence of the behavior engine that counts");
   f.integer("silent_ticks_max", s.silent_ticks_max, {1, 10000}, "missing readings in a row that do not count");
   f.object("sensors", "when a sensor is not believed", [&](Fields& e) { sensor_fields(e, s.sensors); });
+  f.object("drives", "what the drives say of themselves", [&](Fields& e) { drive_fields(e, s.drives); });
+  f.object("supply", "the drives' supply", [&](Fields& e) { supply_fields(e, s.supply); });
   f.integer("overruns_in_a_row_max", s.overruns_in_a_row_max, {1, 10000}, "overruns in a row that count");
   f.integer("joints_lost_max", s.joints_lost_max, {0, max_joints},
             "more joints that damp or are off make the robot damp");

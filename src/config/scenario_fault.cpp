@@ -11,7 +11,7 @@ struct KindInfo {
   const char* name;
   const char* size;  // what `size` means; "" when it means nothing
 };
-constexpr std::array<KindInfo, 16> kinds{{
+constexpr std::array<KindInfo, 22> kinds{{
     {"sensor_silent", ""},
     {"sensor_stuck", ""},
     {"sensor_offset", "added: rad, of the IMU rad/s, of a foot N"},
@@ -23,6 +23,12 @@ constexpr std::array<KindInfo, 16> kinds{{
     {"drive_stuck", ""},
     {"drive_offset", "added effort, Nm"},
     {"drive_late", "delay in control ticks, at most 255"},
+    {"drive_tripped", "the maker's code that it tells"},
+    {"drive_disabled", ""},
+    {"drive_hot", "temperature that it tells, C"},
+    {"drive_old", "age of its readings, s"},
+    {"supply", "voltage of the drives' supply, V"},
+    {"emergency_button", ""},
     {"behaviors_silent", ""},
     {"commands_lost", ""},
     {"commands_late", "delay in behavior ticks"},
@@ -46,7 +52,7 @@ void verify(const Fields& f, const ScenarioFault& fault, Problems& problems) {
   const bool wants_of = fault.of_sensor() || fault.of_drive();
   if (wants_of && fault.of.name.empty())
     problems.add(f.place(), f.path() + " is" + kind + " and needs of: the joint" +
-                                (fault.of_sensor() ? ", the foot's link, or imu" : ""));
+                                (fault.of_sensor() ? ", the foot's link, a sensor, or imu" : ""));
   if (!wants_of && f.has("of")) problems.add(f.place("of"), f.path("of") + " means nothing to a fault" + kind);
   if (!(fault.from_s < fault.until_s))
     problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(fault.until_s) +
@@ -62,7 +68,7 @@ void verify(const Fields& f, const ScenarioFault& fault, Problems& problems) {
 void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
   constexpr NumberRange time{0, 1e6, "s"};
   f.choice("kind", fault.kind, names_of_kinds(), "what fails and how", Need::required);
-  f.string("of", fault.of.name, "of sensors: a joint, a foot's link, or imu; of drives: a joint");
+  f.string("of", fault.of.name, "of sensors: a joint, a foot's link, a sensor, or imu; of drives: a joint");
   f.number("from_s", fault.from_s, time, "from this time on");
   f.number("until_s", fault.until_s, time, "up to this time, else to the end");
   f.number("size", fault.size, {-1e6, 1e6, ""}, "how much; what it means depends on the kind");

@@ -13,6 +13,8 @@ bool blend(double weight, const JointActuation& proposal, JointActuation& actuat
   actuation.effort_Nm = between(actuation.effort_Nm, proposal.effort_Nm);
   actuation.position_rad = between(actuation.position_rad, proposal.position_rad);
   actuation.velocity_rad_s = between(actuation.velocity_rad_s, proposal.velocity_rad_s);
+  actuation.stiffness_Nm_per_rad = between(actuation.stiffness_Nm_per_rad, proposal.stiffness_Nm_per_rad);
+  actuation.damping_Nms_per_rad = between(actuation.damping_Nms_per_rad, proposal.damping_Nms_per_rad);
   return weight > 0;
 }
 

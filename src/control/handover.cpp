@@ -20,6 +20,7 @@ double effort_before_Nm(const Handover& handover) noexcept {
       return handover.last.effort_Nm;
     case ActuationMode::position:
     case ActuationMode::velocity:
+    case ActuationMode::impedance:
       return handover.state.effort_Nm;
   }
   return 0;
@@ -35,6 +36,8 @@ PositionStart position_before(const Handover& handover) noexcept {
       return {ahead_rad, state.velocity_rad_s, last.effort_Nm};
     case ActuationMode::velocity:
       return {ahead_rad, last.velocity_rad_s, last.effort_Nm};
+    case ActuationMode::impedance:  // whose gains are others than the next one's
+      return {ahead_rad, state.velocity_rad_s, state.effort_Nm};
     case ActuationMode::position:
       return {last.position_rad + dt_s * last.velocity_rad_s, last.velocity_rad_s, last.effort_Nm};
   }

@@ -1,6 +1,7 @@
 #include "kadans/control/joint_impedance.h"
 
 #include <algorithm>
+#include <string>
 
 #include "kadans/control/jointwise.h"
 
@@ -34,8 +35,22 @@ void ImpedanceLaw::cancel(std::uint32_t which) noexcept { (which == 0 ? referenc
 
 double ImpedanceLaw::remaining_s() const noexcept { return std::max(reference_.remaining_s(), effort_.remaining_s()); }
 
+namespace {
+
+class JointImpedance final : public Jointwise<ImpedanceLaw> {
+ public:
+  explicit JointImpedance(const ObjectSetup& setup) : Jointwise(setup) {
+    const std::string* loop = setup.options.find("loop");
+    if (loop == nullptr || *loop == "here") return;
+    if (*loop != "drive") throw OptionError("loop", "loop is '" + *loop + "', must be here or drive");
+    for (std::size_t i = 0; i < size(); ++i) law(i).compute_in_drive(true);
+  }
+};
+
+}  // namespace
+
 std::unique_ptr<ControlObject> make_joint_impedance(const ObjectSetup& setup) {
-  return std::make_unique<Jointwise<ImpedanceLaw>>(setup);
+  return std::make_unique<JointImpedance>(setup);
 }
 
 }  // namespace kadans

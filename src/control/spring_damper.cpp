@@ -29,7 +29,13 @@ JointActuation SpringDamper::step(double reference_rad, double reference_velocit
                               c.damping_Nms_per_rad * (reference_velocity_rad_s - joint.velocity_rad_s);
   s.effort_Nm = std::clamp(unlimited_Nm, -c.effort_max_Nm, c.effort_max_Nm);
   s.saturated = s.effort_Nm != unlimited_Nm;
-  return {.effort_Nm = s.effort_Nm, .mode = ActuationMode::effort};
+  if (!in_drive_) return {.effort_Nm = s.effort_Nm, .mode = ActuationMode::effort};
+  return {.effort_Nm = std::clamp(effort_Nm, -c.effort_max_Nm, c.effort_max_Nm),
+          .position_rad = reference_rad,
+          .velocity_rad_s = reference_velocity_rad_s,
+          .stiffness_Nm_per_rad = c.stiffness_Nm_per_rad,
+          .damping_Nms_per_rad = c.damping_Nms_per_rad,
+          .mode = ActuationMode::impedance};
 }
 
 }  // namespace kadans

@@ -21,7 +21,8 @@ constexpr double fade_slope_max = 1.875;  // in its middle
 
 double drive_torque_Nm(const DriveLaw& drive, const JointActuation& actuation, double position_rad,
                        double velocity_rad_s) noexcept {
-  const double velocity_Nm = drive.velocity_gain_Nms_per_rad * (actuation.velocity_rad_s - velocity_rad_s);
+  const double velocity_error_rad_s = actuation.velocity_rad_s - velocity_rad_s;
+  const double velocity_Nm = drive.velocity_gain_Nms_per_rad * velocity_error_rad_s;
   switch (actuation.mode) {
     case ActuationMode::off:
       return 0;
@@ -32,6 +33,9 @@ double drive_torque_Nm(const DriveLaw& drive, const JointActuation& actuation, d
     case ActuationMode::position:
       return actuation.effort_Nm + velocity_Nm +
              drive.position_gain_Nm_per_rad * (actuation.position_rad - position_rad);
+    case ActuationMode::impedance:
+      return actuation.effort_Nm + actuation.damping_Nms_per_rad * velocity_error_rad_s +
+             actuation.stiffness_Nm_per_rad * (actuation.position_rad - position_rad);
   }
   return 0;
 }

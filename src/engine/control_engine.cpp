@@ -30,6 +30,8 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
                  .base = snapshot_.status.base,
                  .health = estimator_.health()},
                 actuation_, snapshot_.status.safety);
+  if (safety_.falls() && snapshot_.status.base.posture == Posture::upright)
+    snapshot_.status.base.posture = Posture::falling;
   plant_.write(drive(time_ns, dt_s));
   copy_used(actuation_, written_);
   const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
@@ -87,6 +89,16 @@ void ControlEngine::rehearse() noexcept {
   if (sink_ != nullptr) sink_->warm();
 }
 
+void ControlEngine::tell_drives() noexcept {
+  PowerStatus& power = snapshot_.power;
+  power.supply_V = sensors_.supply_V;
+  power.emergency = sensors_.emergency;
+  for (std::size_t i = 0; i < snapshot_.joints.count; ++i) {
+    const JointSample& said = sensors_.joints[i];
+    power.drives[i] = {said.temperature_C, said.code, said.drive, said.homed};
+  }
+}
+
 void ControlEngine::publish(std::int64_t time_ns) noexcept {
   snapshot_.tick = tick_;
   snapshot_.time_ns = time_ns;
@@ -94,6 +106,7 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   sets_.fill(snapshot_);
   inbox_.motions().fill(snapshot_);
   snapshot_.joystick = exchange_.joystick.newest();
+  tell_drives();
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);
   if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);

@@ -1,11 +1,12 @@
 #include "kadans/engine/control_engine.h"
 #include "kadans/estimate/signals.h"
+#include "kadans/signal/status_fields.h"
 
 namespace kadans {
 
 void ControlEngine::declare_signals(Catalog& catalog) {
   SignalTable& table = catalog.signals;
-  kadans::declare_signals(table, *catalog.model, estimator_.settings(), snapshot_.joints, snapshot_.status);
+  kadans::declare_signals(table, *catalog.model, estimator_.settings(), snapshot_);
   constexpr const char* axes[] = {"x", "y", "z"};
   for (std::size_t i = 0; i < 3; ++i) {
     table.add({std::string("imu.acceleration_") + axes[i] + "_m_s2", "m/s2",
@@ -24,16 +25,7 @@ void ControlEngine::declare_signals(Catalog& catalog) {
 }
 
 void ControlEngine::declare_joystick(SignalTable& table) const {
-  const JoystickState& joystick = snapshot_.joystick;
-  constexpr const char* docs[joystick_axes] = {"To the right, -1..1.", "Away from the hand, -1..1.",
-                                               "Clockwise from above, -1..1.", "Forward, -1..1."};
-  for (std::size_t i = 0; i < joystick_axes; ++i) {
-    table.add({std::string("joystick.") + joystick_axis_names[i], "", docs[i]}, &joystick.axes[i]);
-  }
-  for (std::size_t i = 0; i < joystick_buttons; ++i) {
-    table.add({"joystick.button_" + std::to_string(i + 1), "", "1 while it is held."}, &joystick.buttons[i]);
-  }
-  table.add({"joystick.connected", "", "1 while there is one."}, &joystick.connected);
+  declare_part(table, StatusField::Part::joystick, "joystick", snapshot_);
 }
 
 }  // namespace kadans

@@ -14,4 +14,12 @@ Attitude attitude(const Axes& axes) noexcept {
   return {std::atan2(y[2], z[2]), pitch_rad, std::atan2(x[1], x[0]), tilt_rad};
 }
 
+Posture posture_of(const Vec3& up) noexcept {
+  constexpr double lying = 0.6;
+  if (up[2] > lying) return Posture::upright;
+  if (up[0] < -lying) return Posture::prone;
+  if (up[0] > lying) return Posture::supine;
+  return up[1] < 0 ? Posture::left : Posture::right;
+}
+
 }  // namespace kadans

@@ -1,5 +1,7 @@
 // The constructor of the estimator: checks every setting, and says which joint or foot is wrong.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -49,6 +51,13 @@ Estimator::Estimator(const RobotModel& model, const EstimateSettings& settings, 
   if (!(dt_s > 0 && std::isfinite(dt_s))) refuse("dt_s = " + std::to_string(dt_s) + " must be > 0");
   add_joints(model, settings, dt_s);
   add_feet(model, settings);
+  if (settings.channels.size() > max_channels)
+    refuse(std::to_string(settings.channels.size()) + " sensors, at most " + std::to_string(max_channels));
+  health_.channel_count = static_cast<std::uint32_t>(settings.channels.size());
+  channels_.fill(std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < settings.channels.size(); ++i)
+    health_.channels[i].period_ticks =
+        static_cast<std::uint32_t>(std::max(1.0, std::ceil(settings.channels[i].period_s / dt_s - 1e-9)));
 }
 
 void Estimator::add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s) {

@@ -35,6 +35,7 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
   status.foot_count = health_.foot_count;
   for (std::size_t i = 0; i < feet_.size(); ++i) update_foot(i, sensors.feet[i], status.feet[i]);
   update_support(joints, base, status);
+  update_channels(sensors, status);
   started_ = true;
 }
 
@@ -44,13 +45,17 @@ void Estimator::update_joint(std::size_t joint, const JointSample& sample, bool 
   track.elapsed_s += dt_s;
   if (!is_new(sample.sequence, track.last_sequence, look, health)) return;
 
+  // A bus that says when each reading was taken knows better than the tick.
+  const bool timed = sample.time_ns > track.last_time_ns && track.last_time_ns != 0;
+  const double elapsed_s = timed ? seconds_between(track.last_time_ns, sample.time_ns) : track.elapsed_s;
   const bool position_ok = std::isfinite(sample.position_rad);
   const bool motor_ok = std::isfinite(sample.motor_position_rad) && std::isfinite(sample.motor_effort_Nm);
   health.finite = position_ok && motor_ok;
   if (position_ok) {
     track.state.position_rad = sample.position_rad;
-    track.state.velocity_rad_s = track.velocity.update(sample.position_rad, track.elapsed_s);
+    track.state.velocity_rad_s = track.velocity.update(sample.position_rad, elapsed_s);
     track.elapsed_s = 0;
+    track.last_time_ns = sample.time_ns;
   }
   if (track.spring_Nm_per_rad > 0) {
     const double deflection_rad = sample.motor_position_rad - sample.position_rad;
@@ -77,6 +82,7 @@ Axes Estimator::update_base(const ImuSample& sample, double dt_s, BaseStatus& ba
   base.pitch_rad = angles.pitch_rad;
   base.yaw_rad = angles.yaw_rad;
   base.tilt_rad = angles.tilt_rad;
+  base.posture = posture_of({axes.x[2], axes.y[2], axes.z[2]});
   return axes;
 }
 
@@ -95,6 +101,19 @@ void Estimator::update_foot(std::size_t foot, const FootSample& sample, FootStat
   }
   const ContactDetector::State& state = track.detector.state();
   status = {state.contact, state.force_N, state.cop_m[0], state.cop_m[1]};
+}
+
+void Estimator::update_channels(const SensorFrame& sensors, RobotStatus& status) noexcept {
+  status.channel_count = health_.channel_count;
+  for (std::size_t i = 0; i < health_.channel_count; ++i) {
+    SensorState& health = health_.channels[i];
+    const ChannelSample& sample = sensors.channels[i];
+    if (is_new(sample.sequence, last_channel_sequences_[i], i < sensors.channel_count, health)) {
+      health.finite = std::isfinite(sample.value);
+      if (health.finite) channels_[i] = sample.value;
+    }
+    status.channels[i] = channels_[i];
+  }
 }
 
 // The legs that bear: how high the base is, and where the ground bears the robot.

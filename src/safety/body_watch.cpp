@@ -59,6 +59,19 @@ void ImuWatch::describe(const SensorState& health, Fault& fault) const noexcept 
   }
 }
 
+FaultMask ChannelWatch::look(const ChannelSample& sample, const SensorState& health) noexcept {
+  using enum FaultCode;
+  const bool silent = health.silent_ticks > silent_ticks_max_ + health.period_ticks - 1;
+  const bool beyond = health.silent_ticks == 0 && health.finite && !(sample.value >= min_ && sample.value <= max_);
+  return bit_if(silent, channel_silent) | bit_if(!health.finite, channel_not_finite) | bit_if(beyond, channel_range);
+}
+
+void ChannelWatch::describe(const ChannelSample& sample, Fault& fault) const noexcept {
+  fault.value = sample.value;
+  fault.limit = sample.value < min_ ? min_ : max_;
+  fault.words = name_;
+}
+
 FaultMask FootWatch::look(const FootSample& sample, const SensorState& health) noexcept {
   using enum FaultCode;
   FaultMask found =

@@ -13,6 +13,7 @@ std::uint32_t detection_ticks(FaultCode code, const SafetySettings& settings, do
     case sensor_silent:
     case imu_silent:
     case foot_silent:
+    case channel_silent:
       return settings.silent_ticks_max + 1;
     case sensor_stuck:
       return settings.sensors.stuck_ticks + 1;
@@ -24,6 +25,11 @@ std::uint32_t detection_ticks(FaultCode code, const SafetySettings& settings, do
       return ticks(settings.heartbeat_timeout_s) + 1;
     case overruns:
       return settings.overruns_in_a_row_max;
+    case drive_not_enabled:
+      return ticks(settings.drives.enable_s) + 1;
+    case supply_low:
+    case supply_high:
+      return ticks(settings.supply.time_s) + 1;
     case fall:
       return ticks(settings.fall.time_s) + 1;
     default:

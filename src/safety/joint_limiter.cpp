@@ -83,8 +83,11 @@ FaultMask JointLimiter::limit_set_point(double position_rad, JointActuation& act
   asked_rad_s_ = actuation.velocity_rad_s;
   actuation.velocity_rad_s = given_rad_s_ = std::clamp(asked_rad_s_, bound.low, bound.high);
   if (std::abs(asked_rad_s_) > velocity_max_rad_s_) of_set_point_ |= bit(FaultCode::soft_speed);
+  // A spring or damper that pushes is none.
+  actuation.stiffness_Nm_per_rad = std::max(0.0, actuation.stiffness_Nm_per_rad);
+  actuation.damping_Nms_per_rad = std::max(0.0, actuation.damping_Nms_per_rad);
   asked_rad_ = given_rad_ = position_rad;
-  if (actuation.mode == ActuationMode::position) {
+  if (has_position(actuation.mode)) {
     asked_rad_ = actuation.position_rad;
     actuation.position_rad = given_rad_ = std::clamp(asked_rad_, lower_rad_, upper_rad_);
     if (given_rad_ != asked_rad_) of_set_point_ |= bit(FaultCode::soft_stop);

@@ -10,7 +10,9 @@ constexpr double continuous_share_default = 0.6;
 
 double first_not_finite(const JointActuation& a) noexcept {
   if (!std::isfinite(a.effort_Nm)) return a.effort_Nm;
-  return std::isfinite(a.position_rad) ? a.velocity_rad_s : a.position_rad;
+  if (!std::isfinite(a.position_rad)) return a.position_rad;
+  if (!std::isfinite(a.velocity_rad_s)) return a.velocity_rad_s;
+  return std::isfinite(a.stiffness_Nm_per_rad) ? a.damping_Nms_per_rad : a.stiffness_Nm_per_rad;
 }
 
 }  // namespace
@@ -60,7 +62,7 @@ bool JointWatch::stuck(const Input& in) noexcept {
   if (++same_ < stuck_ticks_ || passive_) return false;
   if (motor_high_rad_ - motor_low_rad_ > stuck_motion_rad_) return true;
   if (spring_Nm_per_rad_ > 0) return false;  // the motor's encoder has told all
-  const double asked_max = in.asked.mode == ActuationMode::position ? stuck_motion_rad_ : stuck_effort_Nm_;
+  const double asked_max = has_position(in.asked.mode) ? stuck_motion_rad_ : stuck_effort_Nm_;
   return asked_high_ - asked_low_ > asked_max;
 }
 

@@ -25,6 +25,7 @@ void Safety::clear() noexcept {
     came_back_ = std::exchange(joints_[i].gave_way, false) || came_back_;
   }
   for (Ladder& ladder : foot_ladders_) ladder.clear();
+  for (Ladder& ladder : channel_ladders_) ladder.clear();
   robot_.clear();
   engine_.clear();
   pending_ = cut_ = 0;
@@ -37,9 +38,11 @@ void Safety::imitate(const Safety& other) noexcept {
   std::copy_n(other.joints_.begin(), joint_count_, joints_.begin());
   feet_ = other.feet_;
   foot_ladders_ = other.foot_ladders_;
+  std::copy_n(other.channel_ladders_.begin(), settings_.channels.size(), channel_ladders_.begin());
   imu_ = other.imu_;
   fall_ = other.fall_;
   engine_ = other.engine_;
+  supply_ = other.supply_;
   robot_ = other.robot_;
   pending_ = other.pending_;
   cut_ = other.cut_;
@@ -50,7 +53,7 @@ void Safety::imitate(const Safety& other) noexcept {
 
 FaultMask Safety::watch_body(const SafetyInput& in, double dt_s) noexcept {
   return engine_.look(in.heartbeat_age_s, in.missed_ticks) | imu_.look(in.sensors.imu, in.health.imu) |
-         fall_.look(in.base, in.sensors.imu, dt_s);
+         fall_.look(in.base, in.sensors.imu, dt_s) | supply_.look(in.sensors, dt_s);
 }
 
 FaultMask Safety::watch_feet(const SafetyInput& in, double dt_s) noexcept {
@@ -71,6 +74,23 @@ FaultMask Safety::watch_feet(const SafetyInput& in, double dt_s) noexcept {
   return all;
 }
 
+FaultMask Safety::watch_channels(const SafetyInput& in, double dt_s) noexcept {
+  FaultMask all = 0;
+  for (std::size_t i = 0; i < settings_.channels.size(); ++i) {
+    const ChannelSample& sample = in.sensors.channels[i];
+    const FaultMask found = channels_[i].look(sample, in.health.channels[i]);
+    if (found == 0 && channel_ladders_[i].idle()) continue;
+    FaultMask fresh = channel_ladders_[i].update(found, dt_s, settings_.reactions, &Reaction::joint);
+    for (; fresh != 0; fresh &= fresh - 1) {
+      Fault fault{.code = first_of(fresh), .tick = in.tick};
+      channels_[i].describe(sample, fault);
+      raise(fault);
+    }
+    all |= found;
+  }
+  return all;
+}
+
 FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actuation, double dt_s) noexcept {
   FaultMask all = 0;
   lost_ = 0;
@@ -83,13 +103,16 @@ FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actu
                                  .written_Nm = joint.last_Nm,
                                  .follows = !joint.gave_way,
                                  .dt_s = dt_s};
-    const FaultMask found = joint.watch.look(look);
+    const DriveWatch::Input drive{look.sample, !joint.limiter.passive() && look.asked.mode != ActuationMode::off,
+                                  in.sensors.time_ns, dt_s};
+    const FaultMask found = joint.watch.look(look) | joint.drive.look(drive);
     joint.finite = (found & bit(FaultCode::actuation_not_finite)) == 0;
     if ((found | joint.cut) == 0 && joint.ladder.idle()) continue;
     FaultMask fresh = joint.ladder.update(found | joint.cut, dt_s, settings_.reactions, &Reaction::joint) & found;
     for (; fresh != 0; fresh &= fresh - 1) {
       Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(i), .tick = in.tick};
       joint.watch.describe(look, fault);
+      joint.drive.describe(drive, fault);
       raise(fault);
     }
     all |= found;
@@ -108,6 +131,7 @@ void Safety::judge_robot(const SafetyInput& in, FaultMask body, FaultMask others
     imu_.describe(in.health.imu, fault);
     fall_.describe(in.base, fault);
     engine_.describe(fault);
+    supply_.describe(fault);
     if (fault.code == FaultCode::joints_lost) {
       fault.value = lost_;
       fault.limit = settings_.joints_lost_max;
@@ -128,7 +152,7 @@ FaultMask Safety::take_stop(bool& lift) noexcept {
 // From hold to damp after hold_s, from damp to off after damp_s: because a fault lasts, or somebody wants it. Who wants
 // it does not wait in hold.
 void Safety::go_down(FaultMask faults, double dt_s) noexcept {
-  const bool wanted = stopped_ || stop_.leaving();
+  const bool wanted = stopped_ || stop_.leaving() || (faults & bit(FaultCode::emergency_input)) != 0;
   if (wanted) lasting_s_ = std::max(lasting_s_, settings_.hold_s);
   if (wanted) robot_.latch(SafetyLevel::damp);
   if (wanted || (faults & escalating_) != 0) {
@@ -176,7 +200,7 @@ bool Safety::gives_way(std::size_t index, double dt_s, const JointActuation& act
   JointGuard& joint = joints_[index];
   const SafetyLevel level = joint_level(index);
   // The drive makes the torque in its own modes: on the way down it cannot be softened.
-  const bool by_drive = actuation.mode == ActuationMode::position || actuation.mode == ActuationMode::velocity;
+  const bool by_drive = actuation.mode != ActuationMode::effort && actuation.mode != ActuationMode::off;
   const bool must = level >= SafetyLevel::damp || !joint.finite || (by_drive && fall_.share() < 1);
   if (level >= SafetyLevel::damp) {
     joint.authority = 0;
@@ -216,7 +240,7 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   bool lift = false;
   const FaultMask stop = take_stop(lift);
   const FaultMask joints = watch_joints(in, actuation, dt_s);
-  const FaultMask feet = watch_feet(in, dt_s);
+  const FaultMask feet = watch_feet(in, dt_s) | watch_channels(in, dt_s);
   const FaultMask body =
       watch_body(in, dt_s) | bit_if(lost_ > settings_.joints_lost_max, FaultCode::joints_lost) | stop;
   const FaultMask others = raised | joints | feet;

@@ -24,13 +24,21 @@ void check_settings(const SafetySettings& s) {
   require(s.soft_stop.zone_rad >= 0 && s.soft_stop.stiffness_Nm_per_rad >= 0, "a soft stop must not be negative");
   require(s.thermal.ambient_C < s.thermal.warm_C && s.thermal.warm_C <= s.thermal.hot_C,
           "thermal: ambient_C < warm_C <= hot_C must hold");
+  require(s.drives.enable_s >= 0 && s.drives.hot_C > 0 && s.drives.sample_age_max_s > 0,
+          "drives: enable_s must be at least 0, hot_C and sample_age_max_s above 0");
+  require(s.supply.highest_V == 0 || s.supply.lowest_V < s.supply.highest_V, "supply: lowest_V < highest_V must hold");
   require(s.fall.soft_share >= 0 && s.fall.soft_share <= 1, "fall.soft_share must be 0..1");
 }
 
 }  // namespace
 
 Safety::Safety(const SafetySettings& settings, const RobotModel& model)
-    : settings_(settings), joint_count_(model.joints.size()), imu_(settings), fall_(settings), engine_(settings) {
+    : settings_(settings),
+      joint_count_(model.joints.size()),
+      imu_(settings),
+      fall_(settings),
+      engine_(settings),
+      supply_(settings) {
   if (settings_.joints.size() != joint_count_) {
     throw std::invalid_argument("safety limits for " + std::to_string(settings_.joints.size()) +
                                 " joints, the robot has " + std::to_string(joint_count_));
@@ -40,9 +48,13 @@ Safety::Safety(const SafetySettings& settings, const RobotModel& model)
   for (std::size_t i = 0; i < joint_count_; ++i) {
     check_limits(settings_.joints[i], model.joints[i]);
     joints_[i].watch = JointWatch(settings_, settings_.joints[i]);
+    joints_[i].drive = DriveWatch(settings_);
     joints_[i].limiter = JointLimiter(settings_, settings_.joints[i]);
   }
   feet_.fill(FootWatch(settings_));
+  require(settings_.channels.size() <= max_channels, "at most " + std::to_string(max_channels) + " sensors");
+  for (std::size_t i = 0; i < settings_.channels.size(); ++i)
+    channels_[i] = ChannelWatch(settings_, settings_.channels[i]);
   for (std::size_t code = 0; code < fault_codes; ++code) {
     if (settings_.reactions[code].escalate) escalating_ |= bit(static_cast<FaultCode>(code));
   }

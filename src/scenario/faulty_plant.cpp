@@ -8,6 +8,7 @@ namespace {
 // The one value of a sensor that an error of some size is added to.
 double& value_of(const SensorFault& fault, SensorFrame& frame) noexcept {
   if (fault.place == SensorPlace::imu) return frame.imu.angular_velocity_rad_s[0];
+  if (fault.place == SensorPlace::channel) return frame.channels[fault.index].value;
   return fault.place == SensorPlace::foot ? frame.feet[fault.index].force_N[0] : frame.joints[fault.index].position_rad;
 }
 
@@ -15,6 +16,7 @@ double& value_of(const SensorFault& fault, SensorFrame& frame) noexcept {
 void repeat(const SensorFault& fault, const SensorFrame& from, SensorFrame& frame) noexcept {
   if (fault.place == SensorPlace::joint) frame.joints[fault.index].position_rad = from.joints[fault.index].position_rad;
   if (fault.place == SensorPlace::foot) frame.feet[fault.index].force_N = from.feet[fault.index].force_N;
+  if (fault.place == SensorPlace::channel) frame.channels[fault.index].value = from.channels[fault.index].value;
   if (fault.place != SensorPlace::imu) return;
   frame.imu.angular_velocity_rad_s = from.imu.angular_velocity_rad_s;
   frame.imu.acceleration_m_s2 = from.imu.acceleration_m_s2;
@@ -23,7 +25,35 @@ void repeat(const SensorFault& fault, const SensorFrame& from, SensorFrame& fram
 void silence(const SensorFault& fault, const SensorFrame& from, SensorFrame& frame) noexcept {
   if (fault.place == SensorPlace::joint) frame.joints[fault.index] = from.joints[fault.index];
   if (fault.place == SensorPlace::foot) frame.feet[fault.index] = from.feet[fault.index];
+  if (fault.place == SensorPlace::channel) frame.channels[fault.index] = from.channels[fault.index];
   if (fault.place == SensorPlace::imu) frame.imu = from.imu;
+}
+
+// Of any kind of fault.
+template <typename Fault>
+bool is_now(const Fault& fault, std::int64_t time_ns) noexcept {
+  return time_ns >= fault.from_ns && time_ns < fault.until_ns;
+}
+
+// What a drive that fails says of itself.
+void tell(const ActuatorFault& fault, std::int64_t time_ns, JointSample& sample) noexcept {
+  switch (fault.kind) {
+    case ActuatorFaultKind::tripped:
+      sample.drive = DriveState::fault;
+      sample.code = static_cast<std::uint32_t>(fault.size);
+      break;
+    case ActuatorFaultKind::disabled:
+      sample.drive = DriveState::ready;
+      break;
+    case ActuatorFaultKind::hot:
+      sample.temperature_C = static_cast<float>(fault.size);
+      break;
+    case ActuatorFaultKind::old:
+      sample.time_ns = time_ns - static_cast<std::int64_t>(1e9 * fault.size);
+      break;
+    default:
+      break;
+  }
 }
 
 }  // namespace
@@ -34,10 +64,19 @@ void FaultyPlant::read(SensorFrame& sensors) noexcept {
   time_ns_ = sensors.time_ns;
   for (Planned& planned : faults_) {
     const SensorFault& fault = planned.fault;
-    if (sensors.time_ns < fault.from_ns || sensors.time_ns >= fault.until_ns) continue;
+    if (!is_now(fault, sensors.time_ns)) continue;
     if (!planned.begun) planned.first = fault.kind == SensorFaultKind::silent ? before : sensors;
     spoil(planned, sensors);
     planned.begun = true;
+  }
+  for (const PlannedActuator& planned : actuator_faults_) {
+    const ActuatorFault& fault = planned.fault;
+    if (is_now(fault, sensors.time_ns)) tell(fault, sensors.time_ns, sensors.joints[fault.joint]);
+  }
+  for (const SupplyFault& fault : supply_faults_) {
+    if (!is_now(fault, sensors.time_ns)) continue;
+    if (fault.button) sensors.emergency = true;
+    if (!fault.button) sensors.supply_V = fault.supply_V;
   }
 }
 
@@ -75,12 +114,17 @@ void FaultyPlant::add(const ActuatorFault& fault) {
 
 void FaultyPlant::spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept {
   const ActuatorFault& fault = planned.fault;
-  if (time_ns_ < fault.from_ns || time_ns_ >= fault.until_ns) {
+  if (!is_now(fault, time_ns_)) {
     planned.held = actuation;
     return;
   }
   switch (fault.kind) {
+    case ActuatorFaultKind::hot:
+    case ActuatorFaultKind::old:
+      break;
     case ActuatorFaultKind::dead:
+    case ActuatorFaultKind::tripped:
+    case ActuatorFaultKind::disabled:
       actuation = {};
       break;
     case ActuatorFaultKind::weak:

@@ -12,9 +12,10 @@ using Kind = ScenarioFault::Kind;
 constexpr std::array<SensorFaultKind, 6> sensor_kinds{SensorFaultKind::silent, SensorFaultKind::stuck,
                                                       SensorFaultKind::offset, SensorFaultKind::noise,
                                                       SensorFaultKind::jump,   SensorFaultKind::not_finite};
-constexpr std::array<ActuatorFaultKind, 5> drive_kinds{ActuatorFaultKind::dead, ActuatorFaultKind::weak,
-                                                       ActuatorFaultKind::stuck, ActuatorFaultKind::offset,
-                                                       ActuatorFaultKind::late};
+constexpr std::array<ActuatorFaultKind, 9> drive_kinds{
+    ActuatorFaultKind::dead,     ActuatorFaultKind::weak, ActuatorFaultKind::stuck,
+    ActuatorFaultKind::offset,   ActuatorFaultKind::late, ActuatorFaultKind::tripped,
+    ActuatorFaultKind::disabled, ActuatorFaultKind::hot,  ActuatorFaultKind::old};
 
 std::int64_t in_ns(double time_s) {
   return std::isfinite(time_s) ? std::llround(time_s * 1e9) : std::numeric_limits<std::int64_t>::max();
@@ -28,6 +29,12 @@ class PlantFaults {
   void add(const ScenarioFault& fault) {
     if (fault.of_sensor()) add_sensor(fault);
     if (fault.of_drive()) add_drive(fault);
+    if (fault.of_supply()) {
+      plant_.add(SupplyFault{.button = fault.kind == Kind::emergency_button,
+                             .supply_V = fault.size,
+                             .from_ns = in_ns(fault.from_s),
+                             .until_ns = in_ns(fault.until_s)});
+    }
   }
 
   void delay_all(double ticks) {
@@ -61,6 +68,8 @@ class PlantFaults {
     const auto joint = std::ranges::find(joints_, of.name);
     const auto& feet = variant_.plant.feet;
     const auto foot = std::ranges::find(feet, of.name, &FootSettings::link);
+    const auto& channels = variant_.plant.channels;
+    const auto channel = std::ranges::find(channels, of.name, &SensorChannel::name);
     if (of.name == "imu") {
       planned.place = SensorPlace::imu;
     } else if (joint != joints_.end()) {
@@ -68,8 +77,12 @@ class PlantFaults {
     } else if (foot != feet.end()) {
       planned.place = SensorPlace::foot;
       planned.index = static_cast<std::size_t>(foot - feet.begin());
+    } else if (channel != channels.end()) {
+      planned.place = SensorPlace::channel;
+      planned.index = static_cast<std::size_t>(channel - channels.begin());
     } else {
       std::vector<std::string> known = joints_;
+      for (const SensorChannel& each : channels) known.push_back(each.name);
       known.emplace_back("imu");
       for (const FootSettings& each : feet) known.push_back(each.link);
       problems_.add_unknown(of.place, "sensor", of.name, known);
@@ -89,7 +102,9 @@ class PlantFaults {
 std::unique_ptr<FaultyPlant> make_faulty_plant(const ScenarioConfig& scenario, const PlantVariant& variant,
                                                const EngineSettings& engine, std::uint64_t seed, World& world) {
   const double late_ticks = std::round(variant.actuation_delay_s / engine.control_period_s);
-  const auto of_plant = [](const ScenarioFault& fault) { return fault.of_sensor() || fault.of_drive(); };
+  const auto of_plant = [](const ScenarioFault& fault) {
+    return fault.of_sensor() || fault.of_drive() || fault.of_supply();
+  };
   if (late_ticks == 0 && std::ranges::none_of(scenario.faults, of_plant)) return nullptr;
   auto faulty = std::make_unique<FaultyPlant>(world, seed);
   Problems problems(scenario.file);

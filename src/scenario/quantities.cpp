@@ -92,6 +92,10 @@ void Quantities::add_sensors(PlantSettings& plant) {
   add_value("imu.accelerometer_noise_m_s2", noise, plant.imu.accelerometer_noise_m_s2);
   add_value("imu.accelerometer_bias_m_s2", noise, plant.imu.accelerometer_bias_m_s2);
   for (FootSettings& foot : plant.feet) add_value("foot." + foot.link + ".noise_N", noise, foot.noise_N);
+  for (SensorChannel& sensor : plant.channels) {
+    add_value("sensor." + sensor.name + ".value", {-1e12, 1e12, sensor.unit}, sensor.value);
+    add_value("sensor." + sensor.name + ".noise", {0, 1e12, sensor.unit}, sensor.noise);
+  }
 }
 
 void Quantities::add_joints(const RobotModel& model, PlantSettings& plant) {

@@ -1,14 +1,19 @@
 #include "kadans/script/api.h"
 
 #include <cstdio>
+#include <deque>
+#include <iterator>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "api_options.h"
+#include "kadans/signal/status_fields.h"
 
 namespace kadans {
 namespace {
 
-constexpr ApiEntry table[] = {
+constexpr ApiEntry written[] = {
     {"kadans", "behavior(name)", "fun(body: table): kadans.Behavior", "A behavior: k.behavior \"name\" { ... }"},
     {"kadans", "state(name)", "fun(body: table): kadans.Node", "A state, with transitions and states inside"},
     {"kadans", "parallel(name)", "fun(body: table): kadans.Node", "A state whose regions are all active together"},
@@ -56,50 +61,63 @@ constexpr ApiEntry table[] = {
      "Goes on when it is over; in `run` only; nil, outcome and reason when it did not arrive"},
     {"motion", "cancel()", "boolean?, string?", "Comes to rest where it is; nil, \"queue_full\""},
 
-    {"s", "time_s", "number", "Time on the engine's clock, in s"},
-    {"s", "tick", "number", "Ticks of the control engine"},
     {"s", "joints", "kadans.Joints", "By name"},
     {"s", "base", "kadans.Base", "The trunk"},
     {"s", "feet", "kadans.Feet", "left and right"},
     {"s", "support", "kadans.Support", "Where the ground bears the robot"},
     {"s", "safety", "kadans.Safety", "What the safety layer allows"},
     {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
-    {"joint", "position_rad", "number", "Position in rad"},
-    {"joint", "velocity_rad_s", "number", "Velocity in rad/s"},
-    {"joint", "effort_Nm", "number", "Torque at the joint in Nm"},
-    {"base", "roll_rad", "number", "Roll in rad"},
-    {"base", "pitch_rad", "number", "Pitch in rad; positive leans forward"},
-    {"base", "yaw_rad", "number", "Yaw in rad"},
-    {"base", "tilt_rad", "number", "Angle from upright in rad, >= 0"},
-    {"base", "height_m", "number", "Over the lowest sole in m; holds when no foot bears"},
     {"base", "angular_velocity_rad_s", "kadans.Rate", "In the base frame"},
-    {"rate", "x", "number", "About x in rad/s"},
-    {"rate", "y", "number", "About y in rad/s"},
-    {"rate", "z", "number", "About z in rad/s"},
-    {"foot", "contact", "boolean", "Whether it bears"},
-    {"foot", "force_N", "number", "Sum of its sensors in N"},
-    {"foot", "cop_x_m", "number", "Centre of pressure in the foot's frame in m; holds without contact"},
-    {"foot", "cop_y_m", "number", "Centre of pressure in the foot's frame in m; holds without contact"},
-    {"support", "force_N", "number", "Sum over the feet in contact in N"},
-    {"support", "cop_x_m", "number", "Centre of pressure, forward of the trunk in m; holds without contact"},
-    {"support", "cop_y_m", "number", "Centre of pressure, left of the trunk in m; holds without contact"},
-    {"safety", "level", "'normal'|'limited'|'hold'|'damp'|'off'", "Rung of the degradation ladder"},
-    {"safety", "faults", "number", "Faults since the last clearing"},
-    {"safety", "first_fault", "number", "Code of the first fault; 0: none"},
-    {"joystick", "x", "number", "To the right, -1..1; 0 within the dead zone"},
-    {"joystick", "y", "number", "Away from the hand, -1..1"},
-    {"joystick", "twist", "number", "Clockwise from above, -1..1"},
-    {"joystick", "throttle", "number", "Forward, -1..1"},
-    {"joystick", "button_1", "boolean", "Whether it is held"},
-    {"joystick", "button_2", "boolean", "Whether it is held"},
-    {"joystick", "button_3", "boolean", "Whether it is held"},
-    {"joystick", "button_4", "boolean", "Whether it is held"},
-    {"joystick", "button_5", "boolean", "Whether it is held"},
-    {"joystick", "button_6", "boolean", "Whether it is held"},
-    {"joystick", "button_7", "boolean", "Whether it is held"},
-    {"joystick", "button_8", "boolean", "Whether it is held"},
-    {"joystick", "connected", "boolean", "Whether there is one"},
+    {"s", "sensors", "kadans.Sensors",
+     "What the robot's configuration names under `sensors`; NaN before the first reading"},
 };
+
+// Where a part of the snapshot is documented.
+const char* owner_of(StatusField::Part part) {
+  using enum StatusField::Part;
+  switch (part) {
+    case joint:
+      return "joint";
+    case base:
+      return "base";
+    case rate:
+      return "rate";
+    case foot:
+      return "foot";
+    case support:
+      return "support";
+    case safety:
+      return "safety";
+    case joystick:
+      return "joystick";
+    case sensors:
+      return "sensors";
+    case root:
+      break;
+  }
+  return "s";
+}
+
+std::string type_of(const StatusField& field) {
+  if (field.type == StatusField::Type::number) return "number";
+  if (field.type == StatusField::Type::flag) return "boolean";
+  std::string type;
+  for (std::size_t i = 0; i < field.choices; ++i) type += (i == 0 ? "'" : "|'") + std::string(field.choice(i)) + "'";
+  return type;
+}
+
+// What is written above, and the fields of the snapshot.
+std::vector<ApiEntry> whole_api() {
+  static std::deque<std::string> texts;
+  const auto kept = [](std::string text) { return texts.emplace_back(std::move(text)).c_str(); };
+  std::vector<ApiEntry> all(std::begin(written), std::end(written));
+  for (const StatusField& field : status_fields()) {
+    const std::string unit = field.unit;
+    all.push_back({owner_of(field.part), field.name, kept(type_of(field)),
+                   kept(field.doc + (unit.empty() ? "" : ", in " + unit))});
+  }
+  return all;
+}
 
 struct Owner {
   const char* name;
@@ -186,7 +204,10 @@ void add_object(std::string& text, const Catalog& catalog, const ObjectInfo& obj
 
 }  // namespace
 
-std::span<const ApiEntry> script_api() noexcept { return table; }
+std::span<const ApiEntry> script_api() {
+  static const std::vector<ApiEntry> all = whole_api();
+  return all;
+}
 
 std::string lua_stubs(const Catalog& catalog) {
   std::string text =
@@ -199,10 +220,14 @@ std::string lua_stubs(const Catalog& catalog) {
   text += motion_option_stubs();
   text += "---@class kadans.Joints\n";
   for (const Joint& joint : catalog.model->joints) text += "---@field " + joint.name + " kadans.Joint\n";
+  text += "\n---@class kadans.Sensors\n";
+  for (const SensorChannel& sensor : catalog.sensors)
+    text +=
+        "---@field " + sensor.name + " number " + sensor.doc + (sensor.unit.empty() ? "" : " In " + sensor.unit) + "\n";
   text += "\n---@class kadans.Feet\n---@field left kadans.Foot\n---@field right kadans.Foot\n\n";
   for (const Owner& owner : owners) {
     text += "---@class " + std::string(owner.type) + "\n";
-    for (const ApiEntry& entry : table) {
+    for (const ApiEntry& entry : script_api()) {
       if (std::string_view(entry.owner) == owner.name) text += stub_line(entry);
     }
     if (std::string_view(owner.name) == "m") {
@@ -221,7 +246,7 @@ std::string api_reference() {
       "[behaviors.md](behaviors.md).\n";
   for (const Owner& owner : owners) {
     text += "\n## " + std::string(owner.title) + "\n\n| name | type or result | |\n|---|---|---|\n";
-    for (const ApiEntry& entry : table) {
+    for (const ApiEntry& entry : script_api()) {
       if (std::string_view(entry.owner) != owner.name) continue;
       std::string type = entry.type;
       for (std::size_t at = 0; (at = type.find('|', at)) != std::string::npos; at += 2) type.insert(at, "\\");

@@ -28,7 +28,7 @@ int read_file(lua_State* state) {
 int open_bindings(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   open_machines(state, parts.chart, parts.bindings, parts.tables);
-  parts.tables.snapshot = parts.snapshot_tables.open(state, *parts.catalog.model, parts.settings.feet, true);
+  parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, parts.settings.feet, true);
   return 0;
 }
 

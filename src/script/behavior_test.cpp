@@ -84,7 +84,7 @@ int play(lua_State* state) {
   if (!make_stage(testing, file, luaL_checkstring(state, 2))) return raise(state, testing);
   Played& played = testing.played.back();
   static const std::vector<std::string> feet{"left", "right"};
-  played.snapshot = played.tables.open(state, played.stage->model(), feet);
+  played.snapshot = played.tables.open(state, played.stage->catalog(), feet);
   lua_pushinteger(state, static_cast<lua_Integer>(testing.played.size() - 1));
   return 1;
 }

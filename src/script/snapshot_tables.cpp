@@ -10,8 +10,6 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t fields_a_part_max = 5;
-
 // first_read(content, key): a field that is not there, for nobody read it yet, or at all. Upvalues: what
 // messages call it, its content, the tables, the part's number.
 int first_read(lua_State* state) {
@@ -27,78 +25,6 @@ int first_read(lua_State* state) {
 }
 
 }  // namespace
-
-const std::array<SnapshotTables::Field, 36> SnapshotTables::fields{{
-    {Kind::joint, Type::number, "position_rad",
-     [](const Snapshot& s, std::size_t i) -> double { return s.joints.joints[i].position_rad; }},
-    {Kind::joint, Type::number, "velocity_rad_s",
-     [](const Snapshot& s, std::size_t i) -> double { return s.joints.joints[i].velocity_rad_s; }},
-    {Kind::joint, Type::number, "effort_Nm",
-     [](const Snapshot& s, std::size_t i) -> double { return s.joints.joints[i].effort_Nm; }},
-    {Kind::base, Type::number, "roll_rad",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.base.roll_rad; }},
-    {Kind::base, Type::number, "pitch_rad",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.base.pitch_rad; }},
-    {Kind::base, Type::number, "yaw_rad",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.base.yaw_rad; }},
-    {Kind::base, Type::number, "tilt_rad",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.base.tilt_rad; }},
-    {Kind::base, Type::number, "height_m",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.base.height_m; }},
-    {Kind::rate, Type::number, "x",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.base.angular_velocity_rad_s[0]; }},
-    {Kind::rate, Type::number, "y",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.base.angular_velocity_rad_s[1]; }},
-    {Kind::rate, Type::number, "z",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.base.angular_velocity_rad_s[2]; }},
-    {Kind::foot, Type::boolean, "contact",
-     [](const Snapshot& s, std::size_t i) -> double { return s.status.feet[i].contact; }},
-    {Kind::foot, Type::number, "force_N",
-     [](const Snapshot& s, std::size_t i) -> double { return s.status.feet[i].force_N; }},
-    {Kind::foot, Type::number, "cop_x_m",
-     [](const Snapshot& s, std::size_t i) -> double { return s.status.feet[i].cop_x_m; }},
-    {Kind::foot, Type::number, "cop_y_m",
-     [](const Snapshot& s, std::size_t i) -> double { return s.status.feet[i].cop_y_m; }},
-    {Kind::support, Type::number, "force_N",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.support.force_N; }},
-    {Kind::support, Type::number, "cop_x_m",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.support.cop_x_m; }},
-    {Kind::support, Type::number, "cop_y_m",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.support.cop_y_m; }},
-    {Kind::safety, Type::level, "level",
-     [](const Snapshot& s, std::size_t) -> double { return static_cast<int>(s.status.safety.level); }},
-    {Kind::safety, Type::number, "faults",
-     [](const Snapshot& s, std::size_t) -> double { return s.status.safety.fault_count; }},
-    {Kind::safety, Type::number, "first_fault",
-     [](const Snapshot& s, std::size_t) -> double { return static_cast<int>(s.status.safety.first_fault.code); }},
-    {Kind::joystick, Type::number, "x", [](const Snapshot& s, std::size_t) -> double { return s.joystick.axes[0]; }},
-    {Kind::joystick, Type::number, "y", [](const Snapshot& s, std::size_t) -> double { return s.joystick.axes[1]; }},
-    {Kind::joystick, Type::number, "twist",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.axes[2]; }},
-    {Kind::joystick, Type::number, "throttle",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.axes[3]; }},
-    {Kind::joystick, Type::boolean, "button_1",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[0]; }},
-    {Kind::joystick, Type::boolean, "button_2",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[1]; }},
-    {Kind::joystick, Type::boolean, "button_3",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[2]; }},
-    {Kind::joystick, Type::boolean, "button_4",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[3]; }},
-    {Kind::joystick, Type::boolean, "button_5",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[4]; }},
-    {Kind::joystick, Type::boolean, "button_6",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[5]; }},
-    {Kind::joystick, Type::boolean, "button_7",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[6]; }},
-    {Kind::joystick, Type::boolean, "button_8",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.buttons[7]; }},
-    {Kind::joystick, Type::boolean, "connected",
-     [](const Snapshot& s, std::size_t) -> double { return s.joystick.connected; }},
-    {Kind::root, Type::number, "tick",
-     [](const Snapshot& s, std::size_t) -> double { return static_cast<double>(s.tick); }},
-    {Kind::root, Type::time, "time_s", nullptr},
-}};
 
 // [-0 +1] An empty table, content of a part.
 void SnapshotTables::push_part(lua_State* state, Kind kind, std::size_t index) {
@@ -153,12 +79,13 @@ void SnapshotTables::push_joints(lua_State* state, const RobotModel& model) {
   make_read_only(state, "s.joints");
 }
 
-int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet,
+int SnapshotTables::open(lua_State* state, const Catalog& catalog, const std::vector<std::string>& feet,
                          bool on_demand) {
   on_demand_ = on_demand;
+  fields_ = status_fields(catalog.sensors);
   push_names(state);
   push_part(state, Kind::root, 0);
-  push_joints(state, model);
+  push_joints(state, *catalog.model);
   lua_setfield(state, -2, "joints");
   push_part(state, Kind::base, 0);
   const std::size_t base = parts_.size() - 1;
@@ -179,25 +106,32 @@ int SnapshotTables::open(lua_State* state, const RobotModel& model, const std::v
   lua_setfield(state, -2, "safety");
   push_whole_part(state, Kind::joystick, 0, "s.joystick");
   lua_setfield(state, -2, "joystick");
+  push_whole_part(state, Kind::sensors, 0, "s.sensors");
+  lua_setfield(state, -2, "sensors");
   finish_part(state, 0, "s");
-  read_.reserve(parts_.size() * fields_a_part_max);
+  read_.reserve(parts_.size() * 5 + fields_.size());
   for (std::size_t i = 0; !on_demand && i < parts_.size(); ++i) read_whole(state, i);
   return luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
+// [-0 +0] The names of a choice's values, as a registry reference.
+int SnapshotTables::push_choices(lua_State* state, const StatusField& field) {
+  lua_createtable(state, static_cast<int>(field.choices), 0);
+  for (std::size_t value = 0; value < field.choices; ++value) {
+    lua_pushstring(state, field.choice(value));
+    lua_rawseti(state, -2, static_cast<int>(value) + 1);
+  }
+  return luaL_ref(state, LUA_REGISTRYINDEX);
+}
+
 void SnapshotTables::push_names(lua_State* state) {
-  lua_createtable(state, static_cast<int>(fields.size()), 0);
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    lua_pushstring(state, fields[i].name);
+  lua_createtable(state, static_cast<int>(fields_.size()), 0);
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    lua_pushstring(state, fields_[i].name);
     lua_rawseti(state, -2, static_cast<int>(i) + 1);
+    choices_.push_back(fields_[i].type == Type::choice ? push_choices(state, fields_[i]) : LUA_NOREF);
   }
   keys_ = luaL_ref(state, LUA_REGISTRYINDEX);
-  lua_createtable(state, 8, 0);
-  for (int i = 0; i <= static_cast<int>(SafetyLevel::off); ++i) {
-    lua_pushstring(state, name(static_cast<SafetyLevel>(i)));
-    lua_rawseti(state, -2, i + 1);
-  }
-  levels_ = luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
 KADANS_TICK_CODE void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
@@ -215,18 +149,18 @@ KADANS_TICK_CODE void SnapshotTables::fill(lua_State* state, Read read, int keys
   const Part& part = parts_[read.part];
   lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
   lua_rawgeti(state, keys, read.field + 1);
-  push_value(state, fields[read.field], part.index);
+  push_value(state, read.field, part.index);
   lua_rawset(state, -3);
   lua_pop(state, 1);
 }
 
 // [-0 +1]
-KADANS_TICK_CODE void SnapshotTables::push_value(lua_State* state, const Field& field, std::size_t index) const {
-  if (field.type == Type::time) return lua_pushnumber(state, static_cast<double>(now_ns_) / 1e9);
-  const double value = field.value(*snapshot_, index);
+KADANS_TICK_CODE void SnapshotTables::push_value(lua_State* state, std::size_t at, std::size_t index) const {
+  const StatusField& field = fields_[at];
+  const double value = field.at == nullptr ? static_cast<double>(now_ns_) / 1e9 : field.value(*snapshot_, index);
   if (field.type == Type::number) return lua_pushnumber(state, value);
-  if (field.type == Type::boolean) return lua_pushboolean(state, value != 0 ? 1 : 0);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, levels_);
+  if (field.type == Type::flag) return lua_pushboolean(state, value != 0 ? 1 : 0);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, choices_[at]);
   lua_rawgeti(state, -1, static_cast<int>(value) + 1);
   lua_remove(state, -2);
 }
@@ -243,27 +177,26 @@ KADANS_TICK_CODE void SnapshotTables::warm_up() const noexcept {
 bool SnapshotTables::read_first(lua_State* state, std::size_t part, int key) {
   if (lua_type(state, key) != LUA_TSTRING) return false;
   const std::string_view name = lua_tostring(state, key);
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (fields[i].kind == parts_[part].kind && fields[i].name == name) return read_field(state, part, i), true;
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    if (fields_[i].part == parts_[part].kind && fields_[i].name == name) return read_field(state, part, i), true;
   }
   return false;
 }
 
 void SnapshotTables::read_whole(lua_State* state, std::size_t part) {
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (fields[i].kind == parts_[part].kind) read_field(state, part, i);
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    if (fields_[i].part == parts_[part].kind) read_field(state, part, i);
   }
 }
 
 void SnapshotTables::read_field(lua_State* state, std::size_t part, std::size_t field) {
-  const std::uint64_t bit = std::uint64_t{1} << field;
-  if ((parts_[part].read & bit) != 0) return;
+  if (parts_[part].read[field]) return;
   luaL_checkstack(state, 8, "snapshot");
   const Read read{static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(field)};
   lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
   fill(state, read, lua_gettop(state));
   lua_pop(state, 1);
-  parts_[part].read |= bit;
+  parts_[part].read[field] = true;
   read_.insert(std::ranges::upper_bound(read_, read.part, {}, &Read::part), read);
 }
 

@@ -2,7 +2,7 @@
 // those that this script has ever read: the first read of a field fills it, and does so in each tick from then on.
 #pragma once
 
-#include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,8 +11,8 @@
 
 #include <lua.hpp>
 
-#include "kadans/model/robot_model.h"
-#include "kadans/signal/status.h"
+#include "kadans/control/catalog.h"
+#include "kadans/signal/status_fields.h"
 #include "warm_up.h"
 
 namespace kadans {
@@ -21,7 +21,7 @@ class SnapshotTables {
  public:
   // Makes the tables; `feet` names the feet in their order. On demand: this must outlive the state, and stay where it
   // is; else every field is refilled always. Returns the registry reference of `s`. Raises.
-  int open(lua_State* state, const RobotModel& model, const std::vector<std::string>& feet, bool on_demand = false);
+  int open(lua_State* state, const Catalog& catalog, const std::vector<std::string>& feet, bool on_demand = false);
   // The snapshot must live as long as functions of this tick run. Raises only when out of memory; fields that exist are
   // replaced without allocation.
   void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
@@ -33,33 +33,27 @@ class SnapshotTables {
   void warm_up() const noexcept;
 
  private:
-  enum class Kind : std::uint8_t { root, joint, base, rate, foot, support, safety, joystick };
+  using Kind = StatusField::Part;
+  using Type = StatusField::Type;
   struct Part {
     Kind kind;
     std::uint32_t index;
     int content;                          // registry reference
-    std::uint64_t read = 0;               // bits: its fields that were read
+    std::bitset<128> read{};              // its fields that were read
     std::span<const std::byte> memory{};  // its tables
-  };
-  enum class Type : std::uint8_t { number, boolean, level, time };
-  struct Field {
-    Kind kind;
-    Type type;
-    const char* name;
-    double (*value)(const Snapshot& snapshot, std::size_t index);
   };
   struct Read {
     std::uint16_t part, field;
   };
-  static const std::array<Field, 36> fields;
 
   void push_names(lua_State* state);
+  static int push_choices(lua_State* state, const StatusField& field);
   void push_part(lua_State* state, Kind kind, std::size_t index);
   void finish_part(lua_State* state, std::size_t number, const char* shown);
   void push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown);
   void push_joints(lua_State* state, const RobotModel& model);
   void read_field(lua_State* state, std::size_t part, std::size_t field);
-  void push_value(lua_State* state, const Field& field, std::size_t index) const;
+  void push_value(lua_State* state, std::size_t field, std::size_t index) const;
   void fill(lua_State* state, Read read, int keys) const;
 
   bool on_demand_ = true;
@@ -69,7 +63,9 @@ class SnapshotTables {
   const Snapshot* snapshot_ = &nothing_;
   std::int64_t now_ns_ = 0;
   std::span<const std::byte> joints_;  // the table that names them
-  int keys_ = 0, levels_ = 0;
+  std::vector<StatusField> fields_;
+  std::vector<int> choices_;  // registry references, by field
+  int keys_ = 0;
 };
 
 }  // namespace kadans

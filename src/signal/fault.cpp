@@ -50,6 +50,16 @@ constexpr std::array<CodeText, fault_codes> texts{{
     {overruns, "overruns", "safety.overruns_in_a_row_max"},
     {joints_lost, "joints_lost", "safety.joints_lost_max"},
     {emergency_stop, "emergency_stop", ""},
+    {drive_fault, "drive_fault", "safety.reactions"},
+    {drive_not_enabled, "drive_not_enabled", "safety.drives.enable_s"},
+    {drive_hot, "drive_hot", "safety.drives.hot_C"},
+    {sample_old, "sample_old", "safety.drives.sample_age_max_s"},
+    {supply_low, "supply_low", "safety.supply.lowest_V"},
+    {supply_high, "supply_high", "safety.supply.highest_V"},
+    {emergency_input, "emergency_input", ""},
+    {channel_silent, "channel_silent", "safety.silent_ticks_max"},
+    {channel_range, "channel_range", "sensors"},
+    {channel_not_finite, "channel_not_finite", "safety.reactions"},
 }};
 
 constexpr bool in_order() {
@@ -83,6 +93,40 @@ std::string fault_detail(const Fault& fault) {
   char numbers[64];
   std::snprintf(numbers, sizeof numbers, "%g, limit %g", fault.value, fault.limit);
   return numbers;
+}
+
+const char* name(DriveState state) noexcept {
+  switch (state) {
+    case DriveState::off:
+      return "off";
+    case DriveState::ready:
+      return "ready";
+    case DriveState::enabled:
+      return "enabled";
+    case DriveState::homing:
+      return "homing";
+    case DriveState::fault:
+      return "fault";
+  }
+  return "unknown";
+}
+
+const char* name(Posture posture) noexcept {
+  switch (posture) {
+    case Posture::upright:
+      return "upright";
+    case Posture::prone:
+      return "prone";
+    case Posture::supine:
+      return "supine";
+    case Posture::left:
+      return "left";
+    case Posture::right:
+      return "right";
+    case Posture::falling:
+      return "falling";
+  }
+  return "unknown";
 }
 
 const char* name(SafetyLevel level) noexcept {

@@ -27,6 +27,12 @@ SignalId SignalTable::add(Signal signal, const bool* source) {
   return id;
 }
 
+SignalId SignalTable::add(Signal signal, const std::uint8_t* source) {
+  const SignalId id = add_info(std::move(signal));
+  choices_.push_back({id, source});
+  return id;
+}
+
 SignalId SignalTable::add(Signal signal, const std::uint32_t* source) {
   const SignalId id = add_info(std::move(signal));
   counts_.push_back({id, source});
@@ -43,6 +49,7 @@ void SignalTable::gather(std::span<double> row) const noexcept {
   assert(row.size() == infos_.size());
   for (const auto& [id, value] : doubles_) row[id] = *value;
   for (const auto& [id, value] : bools_) row[id] = *value ? 1.0 : 0.0;
+  for (const auto& [id, value] : choices_) row[id] = static_cast<double>(*value);
   for (const auto& [id, value] : counts_) row[id] = static_cast<double>(*value);
   for (const auto& [id, value] : shared_) row[id] = static_cast<double>(value->load(std::memory_order_relaxed));
 }

@@ -60,19 +60,21 @@ void OneJointPlant::read(SensorFrame& sensors) noexcept {
 
 void OneJointPlant::write(const ActuationFrame& actuation) noexcept {
   const JointActuation& asked = actuation.joints[0];
-  const bool finite =
-      std::isfinite(asked.effort_Nm) && std::isfinite(asked.position_rad) && std::isfinite(asked.velocity_rad_s);
+  const bool finite = is_finite(asked);
   written_[ticks_ % written_.size()] = finite && actuation.joint_count > 0 ? asked : JointActuation{};
 }
 
 double OneJointPlant::drive_Nm(const JointActuation& asked) const noexcept {
   if (asked.mode == ActuationMode::off) return 0;
   double torque_Nm = asked.effort_Nm;
+  const bool by_asked = asked.mode == ActuationMode::impedance;
   if (asked.mode != ActuationMode::effort) {
-    torque_Nm += config_.velocity_gain_Nms_per_rad * (asked.velocity_rad_s - state_.motor_velocity_rad_s);
+    torque_Nm += (by_asked ? asked.damping_Nms_per_rad : config_.velocity_gain_Nms_per_rad) *
+                 (asked.velocity_rad_s - state_.motor_velocity_rad_s);
   }
-  if (asked.mode == ActuationMode::position) {
-    torque_Nm += config_.position_gain_Nm_per_rad * (asked.position_rad - state_.motor_position_rad);
+  if (has_position(asked.mode)) {
+    torque_Nm += (by_asked ? asked.stiffness_Nm_per_rad : config_.position_gain_Nm_per_rad) *
+                 (asked.position_rad - state_.motor_position_rad);
   }
   return torque_Nm;
 }

@@ -55,10 +55,6 @@ ObjectBench tuned(const Type& type) {
   return bench;
 }
 
-bool finite(const JointActuation& a) {
-  return std::isfinite(a.effort_Nm) && std::isfinite(a.position_rad) && std::isfinite(a.velocity_rad_s);
-}
-
 // What drove the hip before: a load held, or a motion at constant velocity, in one of the modes.
 void drive_before(ObjectBench& bench, ActuationMode mode, double velocity_rad_s) {
   JointState& joint = bench.joints.joints[0];
@@ -68,6 +64,8 @@ void drive_before(ObjectBench& bench, ActuationMode mode, double velocity_rad_s)
     bench.written.joints[0] = {.effort_Nm = mode == ActuationMode::effort ? ObjectBench::load_Nm : 0,
                                .position_rad = there_rad,
                                .velocity_rad_s = velocity_rad_s,
+                               .stiffness_Nm_per_rad = 300,
+                               .damping_Nms_per_rad = 6,
                                .mode = mode};
     if (i < 299) ObjectBench::move(joint, bench.written.joints[0]);
   }
@@ -84,9 +82,10 @@ TEST_CASE("Every object refuses a passive joint") {
   }
 }
 
-TEST_CASE("Every object takes over from effort, position and velocity mode without a step in the drive's torque") {
+TEST_CASE("Every object takes over from each mode without a step in the drive's torque") {
   for (const Type& type : types) {
-    for (const ActuationMode mode : {ActuationMode::effort, ActuationMode::position, ActuationMode::velocity}) {
+    for (const ActuationMode mode :
+         {ActuationMode::effort, ActuationMode::position, ActuationMode::velocity, ActuationMode::impedance}) {
       for (const double velocity_rad_s : {0.0, 1.5}) {
         ObjectBench bench = tuned(type);
         drive_before(bench, mode, velocity_rad_s);
@@ -132,14 +131,14 @@ TEST_CASE(
     bench.joints.joints[0].velocity_rad_s = std::numeric_limits<double>::quiet_NaN();
     bench.compute();
     CAPTURE(type.name);
-    CHECK_FALSE(finite(bench.computed.joints[0]));
-    CHECK(finite(bench.computed.joints[1]));
+    CHECK_FALSE(is_finite(bench.computed.joints[0]));
+    CHECK(is_finite(bench.computed.joints[1]));
     bench.joints.joints[0] = good;
     bench.written.joints[0] = {};  // as the safety layer left it
     bench.compute();
-    CHECK(finite(bench.computed.joints[0]));
+    CHECK(is_finite(bench.computed.joints[0]));
     bench.run(300);
-    CHECK(finite(bench.computed.joints[0]));
+    CHECK(is_finite(bench.computed.joints[0]));
     CHECK(std::isfinite(bench.hip().position_rad));
   }
 }

@@ -1,5 +1,8 @@
 #include "kadans/control/joint_impedance.h"
 
+#include <map>
+#include <string>
+
 #include <doctest/doctest.h>
 
 #include "object_bench.h"
@@ -47,6 +50,29 @@ TEST_CASE("JointImpedance limits the torque and says so") {
   CHECK(bench.computed.joints[0].effort_Nm == 2);
   CHECK(bench.signal("hip.saturated") == 1);
   CHECK(bench.signal("knee.saturated") == 0);
+}
+
+TEST_CASE("JointImpedance whose loop is the drive's hands it spring, damper and reference, and bounds its own torque") {
+  ObjectBench bench([](const ObjectSetup& setup) {
+    ObjectSetup in_drive = setup;
+    in_drive.options = std::map<std::string, std::string>{{"loop", "drive"}};
+    return make_joint_impedance(in_drive);
+  });
+  bench.set("hip.stiffness_Nm_per_rad", 30);
+  bench.set("hip.damping_Nms_per_rad", 2);
+  bench.set("hip.effort_max_Nm", 2);
+  bench.start();
+  bench.set_point("hip.position_rad", 0.4, 0);
+  bench.set_point("hip.effort_Nm", 3, 0);
+  bench.compute();
+  const JointActuation& asked = bench.computed.joints[0];
+  CHECK(asked.mode == ActuationMode::impedance);
+  CHECK(asked.position_rad == doctest::Approx(0.4));
+  CHECK(asked.stiffness_Nm_per_rad == 30);
+  CHECK(asked.damping_Nms_per_rad == 2);
+  CHECK(asked.effort_Nm == 2);
+  const std::map<std::string, std::string> elsewhere{{"loop", "there"}};
+  CHECK_THROWS_AS(make_joint_impedance({bench.model, {0}, ObjectOptions(elsewhere)}), OptionError);
 }
 
 TEST_CASE("JointImpedance cancels position and torque each by itself") {

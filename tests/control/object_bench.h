@@ -48,9 +48,12 @@ class ObjectBench : public TestedObject {
 
   // The torque of the drive is left in the joint's measured effort.
   static void move(JointState& joint, const JointActuation& asked) noexcept {
-    const double kp = asked.mode == ActuationMode::position ? position_gain_Nm_per_rad : 0;
-    const double kd =
-        asked.mode == ActuationMode::effort || asked.mode == ActuationMode::off ? 0 : velocity_gain_Nms_per_rad;
+    const bool by_asked = asked.mode == ActuationMode::impedance;
+    const bool has_damping = asked.mode != ActuationMode::effort && asked.mode != ActuationMode::off;
+    const double own_kp = asked.mode == ActuationMode::position ? position_gain_Nm_per_rad : 0;
+    const double own_kd = has_damping ? velocity_gain_Nms_per_rad : 0;
+    const double kp = by_asked ? asked.stiffness_Nm_per_rad : own_kp;
+    const double kd = by_asked ? asked.damping_Nms_per_rad : own_kd;
     const double effort_Nm = asked.mode == ActuationMode::off ? 0 : asked.effort_Nm;
     const double pull_Nm = kp * (asked.position_rad - joint.position_rad) + kd * asked.velocity_rad_s + effort_Nm;
     const double before_rad_s = joint.velocity_rad_s;

@@ -46,12 +46,18 @@ JointActuation position(double position_rad) { return {.position_rad = position_
 JointActuation velocity(double velocity_rad_s) {
   return {.velocity_rad_s = velocity_rad_s, .mode = ActuationMode::velocity};
 }
+JointActuation impedance(double position_rad) {
+  return {.position_rad = position_rad,
+          .stiffness_Nm_per_rad = 90,
+          .damping_Nms_per_rad = 3,
+          .mode = ActuationMode::impedance};
+}
 
 }  // namespace
 
 TEST_CASE("Across all modes the first torque is the last one, and after 0.2 s it is the new law's own") {
-  const JointActuation laws[] = {effort(12),  effort(-60),   position(0.53), position(0.2),
-                                 position(5), velocity(0.7), velocity(-9),   JointActuation{}};
+  const JointActuation laws[] = {effort(12),    effort(-60),  position(0.53), position(0.2), position(5),
+                                 velocity(0.7), velocity(-9), impedance(0.6), impedance(9),  JointActuation{}};
   for (const JointActuation& before : laws) {
     for (const JointActuation& after : laws) {
       Bench bench;

@@ -140,3 +140,23 @@ TEST_CASE("One joint's cut-off can be changed while moving, within its range") {
   }
   CHECK(robot.joints.joints[3].velocity_rad_s > 1.5 * robot.joints.joints[4].velocity_rad_s);
 }
+
+TEST_CASE("A reading that says when it was taken gives the velocity by its own times") {
+  TulipFixture timed, untimed;
+  const std::size_t knee = joint_of("l_knee");
+  double worst_timed = 0, worst_untimed = 0;
+  for (int n = 1; n < 400; ++n) {
+    const std::int64_t time_ns = 1'000'000LL * n + (n * 7919 % 11 - 5) * 60'000LL;  // a bus that jitters by 0.3 ms
+    for (TulipFixture* robot : {&timed, &untimed}) {
+      JointSample& sample = robot->sensors.joints[knee];
+      sample.position_rad = 2e-9 * static_cast<double>(time_ns);
+      sample.time_ns = robot == &timed ? time_ns : 0;
+      robot->advance();
+    }
+    if (n < 100) continue;
+    worst_timed = std::max(worst_timed, std::abs(timed.joints.joints[knee].velocity_rad_s - 2));
+    worst_untimed = std::max(worst_untimed, std::abs(untimed.joints.joints[knee].velocity_rad_s - 2));
+  }
+  CHECK(worst_timed < 1e-9);
+  CHECK(worst_untimed > 0.05);
+}

@@ -24,7 +24,10 @@ const FieldInfo* field(const FieldInfo& in, const std::string& name) {
 }
 
 // What follows from the emergency stop is no matter of taste.
-bool is_configured(std::size_t code) { return static_cast<FaultCode>(code) != FaultCode::emergency_stop; }
+bool is_configured(std::size_t code) {
+  const auto fault = static_cast<FaultCode>(code);
+  return fault != FaultCode::emergency_stop && fault != FaultCode::emergency_input;
+}
 
 }  // namespace
 

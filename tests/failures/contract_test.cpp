@@ -257,6 +257,32 @@ TEST_CASE("found in time, the robot goes on, limited and flagged" *
   }
 }
 
+TEST_CASE("found in time, the robot goes on, limited and flagged, and the fault names the sensor" *
+          description("a sensor that the configuration names is silent, out of its range or not finite")) {
+  struct Row {
+    SensorFaultKind kind;
+    FaultCode code;
+    int period_ticks;  // until a reading shows it
+  };
+  for (const auto& [kind, code, period_ticks] : {Row{SensorFaultKind::silent, FaultCode::channel_silent, 20},
+                                                 {SensorFaultKind::offset, FaultCode::channel_range, 20},
+                                                 {SensorFaultKind::not_finite, FaultCode::channel_not_finite, 20}}) {
+    LightRobot robot(7);
+    robot.run(210);
+    CHECK(robot.faults.empty());
+    CHECK(robot.control.state().status.channels[0] == 1.5);
+    const std::int64_t onset = robot.ticks();
+    robot.spoil(kind, SensorPlace::channel, 0, 10);
+    robot.run(100);
+    CHECK(robot.first(code) >= onset);
+    CHECK(robot.first(code) < onset + period_ticks + static_cast<std::int64_t>(robot.limits().silent_ticks_max) + 1);
+    CHECK(robot.faults.size() == 1);
+    CHECK(fault_detail(robot.faults.front()) == "front");
+    CHECK(robot.safety.robot_level() == SafetyLevel::limited);
+    CHECK(std::isfinite(robot.control.state().status.channels[0]));
+  }
+}
+
 TEST_CASE("never written, the joint damps, latched until cleared" * description("the actuation is not finite")) {
   for (const double wrong : {not_a_number, std::numeric_limits<double>::infinity()}) {
     LightRobot robot(8);

@@ -106,12 +106,13 @@ void Injection::flood() {
 
 // One field of what a control object computes, in one of the modes, is not finite or far beyond every limit.
 void Injection::actuation() {
-  constexpr std::array modes{ActuationMode::effort, ActuationMode::position, ActuationMode::velocity};
-  constexpr std::array<const char*, 3> names{"effort", "position", "velocity"};
+  constexpr std::array modes{ActuationMode::effort, ActuationMode::position, ActuationMode::velocity,
+                             ActuationMode::impedance};
+  constexpr std::array<const char*, 4> names{"effort", "position", "velocity", "impedance"};
   const std::size_t joint = pick(joints), mode = pick(modes.size());
   const bool finite = pick(3) == 0;
   // A field that its mode does not use does no harm while it is finite.
-  const std::size_t field = !finite || mode == 1 ? pick(3) : mode == 2 ? 2 * pick(2) : 0;
+  const std::size_t field = !finite || mode == 1 || mode == 3 ? pick(3) : mode == 2 ? 2 * pick(2) : 0;
   const double value = finite ? sign() * std::pow(10, random_.uniform(2, 300)) : not_finite();
   JointActuation wrong{.position_rad = robot_.position_rad(joint), .mode = modes[mode]};
   (field == 0 ? wrong.effort_Nm : field == 1 ? wrong.position_rad : wrong.velocity_rad_s) = value;

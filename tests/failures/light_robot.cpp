@@ -28,16 +28,24 @@ RobotModel make_model() {
   return model;
 }
 
+// A distance ahead, read in every 20th tick.
+std::vector<SensorChannel> channels() {
+  return {
+      {.name = "front", .unit = "m", .doc = "Distance ahead.", .min = 0.1, .max = 4, .period_s = 0.02, .value = 1.5}};
+}
+
 PlantSettings plant_settings() {
   PlantSettings settings;
   settings.drives.assign(joints, {.torque_max_Nm = effort_max_Nm, .rotor_inertia_kg_m2 = 0.1});
   settings.encoders.resize(joints);
   settings.position_rad = {0.1, -0.2, 0.3, -0.1};
+  settings.channels = channels();
   return settings;
 }
 
 EstimateSettings estimate_settings() {
   EstimateSettings settings;
+  settings.channels = channels();
   for (const char* link : {"l_ankle_link", "r_ankle_link"}) {
     settings.feet.push_back({link, {{{-0.1, -0.05, 0}, {-0.1, 0.05, 0}, {0.1, -0.05, 0}, {0.1, 0.05, 0}}}});
   }
@@ -51,15 +59,21 @@ SafetySettings safety_settings(const Reactions& reactions) {
   settings.joints[1].effort_rate_max_Nm_s = 4000;
   settings.joints[2].power_max_W = 150;
   settings.foot_joints = {1, 3};
+  settings.channels = channels();
+  settings.supply = {.lowest_V = 20, .highest_V = 30};
+  settings.drive_words = [](std::uint32_t code) noexcept { return std::string_view(code == 18 ? "undervoltage" : ""); };
   settings.reactions = reactions;
   return settings;
 }
 
 double servo_Nm(const JointActuation& asked, double position_rad, double velocity_rad_s) {
   constexpr double position_gain_Nm_per_rad = 100, velocity_gain_Nms_per_rad = 6;
-  double effort_Nm = asked.effort_Nm + velocity_gain_Nms_per_rad * (asked.velocity_rad_s - velocity_rad_s);
-  if (asked.mode == ActuationMode::position) {
-    effort_Nm += position_gain_Nm_per_rad * (asked.position_rad - position_rad);
+  const bool by_asked = asked.mode == ActuationMode::impedance;
+  double effort_Nm = asked.effort_Nm + (by_asked ? asked.damping_Nms_per_rad : velocity_gain_Nms_per_rad) *
+                                           (asked.velocity_rad_s - velocity_rad_s);
+  if (has_position(asked.mode)) {
+    effort_Nm +=
+        (by_asked ? asked.stiffness_Nm_per_rad : position_gain_Nm_per_rad) * (asked.position_rad - position_rad);
   }
   return std::clamp(effort_Nm, -effort_max_Nm, effort_max_Nm);
 }
@@ -69,6 +83,7 @@ double servo_Nm(const JointActuation& asked, double position_rad, double velocit
 void NoisyPlant::read(SensorFrame& sensors) noexcept {
   ideal_.read(sensors);
   sensors.foot_count = 2;
+  sensors.supply_V = 24;
   for (double& rate_rad_s : sensors.imu.angular_velocity_rad_s) rate_rad_s += random_.uniform(-0.01, 0.01);
   for (std::size_t foot = 0; foot < 2; ++foot) {
     for (double& force_N : sensors.feet[foot].force_N) force_N = 20 + random_.uniform(-0.5, 0.5);
@@ -81,7 +96,7 @@ void NoisyPlant::write(const ActuationFrame& actuation) noexcept {
   ActuationFrame torques = actuation;
   for (std::size_t i = 0; i < joints; ++i) {
     JointActuation& asked = torques.joints[i];
-    if (asked.mode != ActuationMode::position && asked.mode != ActuationMode::velocity) continue;
+    if (asked.mode == ActuationMode::effort || asked.mode == ActuationMode::off) continue;
     const double effort_Nm = servo_Nm(asked, truth().position_rad[i], truth().velocity_rad_s[i]);
     asked = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};
   }

@@ -59,12 +59,12 @@ void require_same_again(Bytes datagram) {
     SensorFrame frame;
     const SensorsOnWire more = wire().sensors_in(datagram, frame);
     require(frame.joint_count == 2 && frame.foot_count == 1, "a sample is this robot's");
-    if (std::to_integer<int>(datagram[wire_head_bytes + 8]) <= 1) again = wire().sensors(head, more, frame, into);
+    again = wire().sensors(head, more, frame, into);
   } else if (head.kind == WireKind::actuation) {
     ActuationFrame frame;
     wire().actuation_in(datagram, frame);
     for (std::size_t i = 0; i < frame.joint_count; ++i)
-      require(frame.joints[i].mode <= ActuationMode::velocity, "an actuation has a mode");
+      require(frame.joints[i].mode <= last_actuation_mode, "an actuation has a mode");
     again = wire().actuation(head, frame, into);
   } else if (head.kind == WireKind::bye) {
     again = wire().bye(head, into);

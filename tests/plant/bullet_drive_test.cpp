@@ -95,6 +95,26 @@ TEST_CASE("A position drive's gain is in Nm/rad: it gives way by load / gain") {
   CHECK(std::abs(at_rad) == doctest::Approx(1 * g * 0.1 * std::cos(at_rad) / 50).epsilon(1e-4));
 }
 
+TEST_CASE("In impedance mode stiffness and damping are those that are asked, whatever the drive's own gains") {
+  for (const double stiffness_Nm_per_rad : {20.0, 5000.0}) {
+    Robot robot = driven_arm({.torque_max_Nm = 20,
+                              .rotor_inertia_kg_m2 = 0.02,
+                              .position_gain_Nm_per_rad = 300,
+                              .velocity_gain_Nms_per_rad = 7});
+    robot.settings.gravity_m_s2 = {g, 0, 0};
+    BulletWorld plant(robot.model, robot.settings, 1);
+    plant.write(impedance(0, stiffness_Nm_per_rad, 2));
+    double largest_Nm = 0;
+    for (int i = 0; i < 4000; ++i) {
+      plant.step(ms);
+      largest_Nm = std::max(largest_Nm, std::abs(plant.truth().drive_torque_Nm[0]));
+    }
+    const double at_rad = plant.truth().position_rad[0];
+    CHECK(std::abs(at_rad) == doctest::Approx(1 * g * 0.1 * std::cos(at_rad) / stiffness_Nm_per_rad).epsilon(1e-3));
+    CHECK(largest_Nm <= 20 + 1e-9);
+  }
+}
+
 TEST_CASE("A velocity drive cannot be asked beyond its no-load speed") {
   Robot robot = driven_arm({.torque_max_Nm = 5,
                             .velocity_max_rad_s = 6,

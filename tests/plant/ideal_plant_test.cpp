@@ -37,6 +37,19 @@ TEST_CASE("The ideal plant obeys position and velocity at once, within the joint
   CHECK(plant.truth().velocity_rad_s[0] == 0);
 }
 
+TEST_CASE("The ideal plant's joint swings on the spring that impedance mode asks for, and comes to rest at its end") {
+  Robot robot = pendulum(1, 0.1, 0.02);
+  robot.drive().rotor_inertia_kg_m2 = 0.5;
+  IdealWorld plant(robot.model, robot.settings);
+  plant.write(impedance(0.4, 50, 0));
+  run(plant, 157);  // a quarter of the period, 2 pi sqrt(J / k)
+  CHECK(plant.truth().position_rad[0] == doctest::Approx(0.4).epsilon(0.02));
+  CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(0.4 * std::sqrt(50 / 0.5)).epsilon(0.05));
+  plant.write(impedance(0.4, 50, 10));
+  run(plant, 2000);
+  CHECK(plant.truth().position_rad[0] == doctest::Approx(0.4).epsilon(1e-3));
+}
+
 TEST_CASE("The ideal plant's sensors count up, show its state and stand upright") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.settings.position_rad = {0.3};

@@ -96,6 +96,12 @@ ActuationFrame position(double position_rad) {
 ActuationFrame velocity(double velocity_rad_s) {
   return one_joint({.velocity_rad_s = velocity_rad_s, .mode = ActuationMode::velocity});
 }
+ActuationFrame impedance(double position_rad, double stiffness_Nm_per_rad, double damping_Nms_per_rad) {
+  return one_joint({.position_rad = position_rad,
+                    .stiffness_Nm_per_rad = stiffness_Nm_per_rad,
+                    .damping_Nms_per_rad = damping_Nms_per_rad,
+                    .mode = ActuationMode::impedance});
+}
 
 void run(World& plant, int steps, std::int64_t dt_ns) {
   for (int i = 0; i < steps; ++i) plant.step(dt_ns);

@@ -31,6 +31,7 @@ Robot tumbling_chain();
 ActuationFrame effort(double effort_Nm);
 ActuationFrame position(double position_rad);
 ActuationFrame velocity(double velocity_rad_s);
+ActuationFrame impedance(double position_rad, double stiffness_Nm_per_rad, double damping_Nms_per_rad);
 
 void run(World& plant, int steps, std::int64_t dt_ns = ms);
 std::uint64_t state_hash(const World& plant);

@@ -46,7 +46,17 @@ SensorFrame any_sensors(std::uint32_t joints, std::uint32_t feet, RandomStream& 
   frame.joint_count = joints;
   frame.foot_count = feet;
   for (std::size_t i = 0; i < joints; ++i)
-    frame.joints[i] = {number(random), number(random), number(random), static_cast<std::uint32_t>(random.next())};
+    frame.joints[i] = {number(random),
+                       number(random),
+                       number(random),
+                       static_cast<std::uint32_t>(random.next()),
+                       static_cast<std::uint32_t>(random.next()),
+                       static_cast<std::int64_t>(random.next()),
+                       static_cast<float>(number(random)),
+                       static_cast<DriveState>(random.next() % 5),
+                       random.next() % 2 == 0};
+  frame.supply_V = number(random);
+  frame.emergency = random.next() % 2 == 0;
   fill(frame.imu.angular_velocity_rad_s, random);
   fill(frame.imu.acceleration_m_s2, random);
   frame.imu.sequence = static_cast<std::uint32_t>(random.next());
@@ -100,10 +110,18 @@ TEST_CASE("A sample comes off the wire as it went on, bit for bit") {
       CHECK(same(frame.joints[i].motor_position_rad, sent.joints[i].motor_position_rad));
       CHECK(same(frame.joints[i].motor_effort_Nm, sent.joints[i].motor_effort_Nm));
       CHECK(frame.joints[i].sequence == sent.joints[i].sequence);
+      CHECK(frame.joints[i].code == sent.joints[i].code);
+      CHECK(frame.joints[i].time_ns == sent.joints[i].time_ns);
+      CHECK(
+          same(static_cast<double>(frame.joints[i].temperature_C), static_cast<double>(sent.joints[i].temperature_C)));
+      CHECK(frame.joints[i].drive == sent.joints[i].drive);
+      CHECK(frame.joints[i].homed == sent.joints[i].homed);
     }
     CHECK(same(frame.imu.angular_velocity_rad_s, sent.imu.angular_velocity_rad_s));
     CHECK(same(frame.imu.acceleration_m_s2, sent.imu.acceleration_m_s2));
     CHECK(frame.imu.sequence == sent.imu.sequence);
+    CHECK(same(frame.supply_V, sent.supply_V));
+    CHECK(frame.emergency == sent.emergency);
     for (std::size_t i = 0; i < feet; ++i) {
       CHECK(same(frame.feet[i].force_N, sent.feet[i].force_N));
       CHECK(frame.feet[i].sequence == sent.feet[i].sequence);
@@ -117,7 +135,8 @@ TEST_CASE("An actuation comes off the wire as it went on, and joints that it lea
   ActuationFrame sent;
   sent.joint_count = 4;
   for (std::size_t i = 0; i < 4; ++i)
-    sent.joints[i] = {number(random), number(random), number(random), static_cast<ActuationMode>(i)};
+    sent.joints[i] = {number(random), number(random), number(random),
+                      number(random), number(random), static_cast<ActuationMode>(i + 1)};
   Datagram datagram{};
   const Bytes bytes = wire.actuation({.kind = WireKind::actuation}, sent, datagram);
   WireHead head;
@@ -129,9 +148,33 @@ TEST_CASE("An actuation comes off the wire as it went on, and joints that it lea
     CHECK(same(got.joints[i].effort_Nm, sent.joints[i].effort_Nm));
     CHECK(same(got.joints[i].position_rad, sent.joints[i].position_rad));
     CHECK(same(got.joints[i].velocity_rad_s, sent.joints[i].velocity_rad_s));
+    CHECK(same(got.joints[i].stiffness_Nm_per_rad, sent.joints[i].stiffness_Nm_per_rad));
+    CHECK(same(got.joints[i].damping_Nms_per_rad, sent.joints[i].damping_Nms_per_rad));
     CHECK(got.joints[i].mode == sent.joints[i].mode);
   }
   CHECK(got.joints[4].mode == ActuationMode::off);
+}
+
+TEST_CASE("Sensors by name come off the wire, and a robot that names others is another robot") {
+  PlantLayout layout = robot(2, 1);
+  layout.sensors = {"front", "lid"};
+  const PlantWire wire(layout);
+  SensorFrame sent;
+  sent.joint_count = 2;
+  sent.channel_count = 2;
+  sent.channels[0] = {1.25, 7};
+  sent.channels[1] = {-3, 9};
+  Datagram datagram{};
+  const Bytes bytes = wire.sensors({.kind = WireKind::sensors}, {}, sent, datagram);
+  WireHead head;
+  REQUIRE(wire.check(bytes, head) == Check::good);
+  SensorFrame got;
+  (void)wire.sensors_in(bytes, got);
+  CHECK(got.channel_count == 2);
+  CHECK(got.channels[0].value == 1.25);
+  CHECK(got.channels[1].sequence == 9);
+  layout.sensors[1] = "door";
+  CHECK(PlantWire(layout).check(bytes, head) == Check::other_layout);
 }
 
 TEST_CASE("The bytes on the wire are those of the description") {
@@ -142,7 +185,7 @@ TEST_CASE("The bytes on the wire are those of the description") {
   Datagram datagram{};
   const WireHead head{.kind = WireKind::actuation, .session = 0x0102030405060708, .sequence = 9, .time_ns = 10};
   const Bytes bytes = wire.actuation(head, frame, datagram);
-  CHECK(bytes.size() == 40 + 25 + 4);
+  CHECK(bytes.size() == 40 + 41 + 4);
   const auto at = [&](std::size_t index) { return std::to_integer<int>(bytes[index]); };
   CHECK(std::memcmp(bytes.data(), "KDNP", 4) == 0);
   CHECK(at(4) == wire_version);
@@ -152,7 +195,7 @@ TEST_CASE("The bytes on the wire are those of the description") {
   CHECK(at(24) == 9);
   CHECK(at(32) == 10);
   CHECK(at(47) == 0x3f);  // 1.0 is 3f f0 00 ...
-  CHECK(at(40 + 24) == 1);
+  CHECK(at(40 + 40) == 1);
 }
 
 TEST_CASE("No datagram that is cut, longer or changed in a bit passes") {
@@ -195,9 +238,21 @@ TEST_CASE("What is whole but not ours is told apart") {
   Datagram datagram{};
   WireHead head;
   std::vector<std::byte> mode = copy(wire.actuation({.kind = WireKind::actuation}, {}, datagram));
-  mode[40 + 24] = std::byte{4};  // there is no such mode
+  mode[40 + 40] = std::byte{5};  // there is no such mode
   seal(mode);
   CHECK(wire.check(mode, head) == Check::garbage);
+  const std::vector<std::byte> sample = copy(wire.sensors({.kind = WireKind::sensors}, {}, {}, datagram));
+  struct Wrong {
+    std::size_t at;
+    int value;
+  };
+  // No drive has such a state; neither yes nor no: released, emergency, the second joint's homed.
+  for (const auto& [at, value] : {Wrong{40 + 70 + 44, 5}, {40 + 8, 2}, {40 + 69, 2}, {40 + 70 + 46 + 45, 2}}) {
+    std::vector<std::byte> wrong = sample;
+    wrong[at] = static_cast<std::byte>(value);
+    seal(wrong);
+    CHECK(wire.check(wrong, head) == Check::garbage);
+  }
   std::vector<std::byte> kind = copy(wire.bye({.kind = WireKind::bye}, datagram));
   kind[6] = std::byte{77};
   seal(kind);

@@ -220,6 +220,27 @@ TEST_CASE("In position and velocity mode the set-point stays within the limits")
   CHECK(bench.check().velocity_rad_s == 8);
 }
 
+TEST_CASE("In impedance mode the set-point stays within the limits, and no spring or damper pushes") {
+  Bench bench;
+  bench.asked.joints[0] = {.effort_Nm = 30,
+                           .position_rad = 2.5,
+                           .velocity_rad_s = -9,
+                           .stiffness_Nm_per_rad = -40,
+                           .damping_Nms_per_rad = -2,
+                           .mode = ActuationMode::impedance};
+  bench.check();
+  const JointActuation& asked = bench.check();
+  CHECK(asked.mode == ActuationMode::impedance);
+  CHECK(asked.position_rad == 2.0);
+  CHECK(asked.velocity_rad_s == -8);
+  CHECK(asked.effort_Nm == 25);
+  CHECK(asked.stiffness_Nm_per_rad == 0);
+  CHECK(asked.damping_Nms_per_rad == 0);
+  bench.asked.joints[0] = {.stiffness_Nm_per_rad = not_a_number, .mode = ActuationMode::impedance};
+  CHECK(bench.check().mode == ActuationMode::effort);  // it damps
+  CHECK(bench.codes().ends_with("actuation_not_finite"));
+}
+
 TEST_CASE("A fault of a set-point tells what was asked, and what it may be") {
   Bench bench;
   bench.asked.joints[0] = {.position_rad = 2.5, .velocity_rad_s = -9, .mode = ActuationMode::position};

@@ -67,12 +67,13 @@ TEST_CASE("A latched rung stays until it is cleared, and its fault is told once"
   CHECK(f.ladder.idle());
 }
 
-TEST_CASE("Every fault has a name and, but for none and the emergency stop, a key of the configuration") {
+TEST_CASE("Every fault has a name and, but for none and the emergency stops, a key of the configuration") {
   std::set<std::string> names;
   for (std::size_t i = 0; i < fault_codes; ++i) {
     const auto code = static_cast<FaultCode>(i);
     names.insert(name(code));
-    const bool no_key = code == FaultCode::none || code == FaultCode::emergency_stop;
+    const bool no_key =
+        code == FaultCode::none || code == FaultCode::emergency_stop || code == FaultCode::emergency_input;
     CHECK(std::string(configuration_key(code)).empty() == no_key);
   }
   CHECK(names.size() == fault_codes);

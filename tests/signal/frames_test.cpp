@@ -21,13 +21,13 @@ static_assert(crosses<SensorFrame> && crosses<JointStates> && crosses<ActuationF
 static_assert(crosses<Snapshot> && crosses<Command> && crosses<Fault>);
 
 TEST_CASE("the frames have the same layout on every machine") {
-  CHECK(sizeof(SensorFrame) == 2280);
+  CHECK(sizeof(SensorFrame) == 3832);
   CHECK(offsetof(SensorFrame, joints) == 16);
-  CHECK(offsetof(SensorFrame, imu) == 2064);
-  CHECK(offsetof(SensorFrame, feet) == 2120);
+  CHECK(offsetof(SensorFrame, imu) == 3088);
+  CHECK(offsetof(SensorFrame, feet) == 3144);
   CHECK(sizeof(JointStates) == 1544);
-  CHECK(sizeof(ActuationFrame) == 2056);
-  CHECK(offsetof(JointActuation, mode) == 24);
+  CHECK(sizeof(ActuationFrame) == 3080);
+  CHECK(offsetof(JointActuation, mode) == 40);
   CHECK(sizeof(Command) == 56);
   CHECK(offsetof(Command, value) == 24);
   CHECK(offsetof(Snapshot, status) == 1576);
@@ -57,7 +57,7 @@ TEST_CASE("what is used of a frame is copied, what is not stays") {
 
   ActuationFrame actuation;
   actuation.joint_count = 2;
-  for (JointActuation& joint : actuation.joints) joint = {1, 2, 3, ActuationMode::velocity};
+  for (JointActuation& joint : actuation.joints) joint = {1, 2, 3, 4, 5, ActuationMode::velocity};
   ActuationFrame written;
   copy_used(actuation, written);
   CHECK(written.joint_count == 2);

@@ -21,6 +21,12 @@ struct ScenarioFault {
     drive_stuck,
     drive_offset,
     drive_late,
+    drive_tripped,
+    drive_disabled,
+    drive_hot,
+    drive_old,
+    supply,
+    emergency_button,
     behaviors_silent,
     commands_lost,
     commands_late,
@@ -28,13 +34,15 @@ struct ScenarioFault {
     clock_missed,
   };
   Kind kind = Kind::sensor_silent;
-  PlacedName of;  // a joint; of sensors also a foot's link, or "imu"; "" with behaviors, commands and clock
+  PlacedName
+      of;  // a joint; of sensors also a foot's link, or "imu"; "" with supply, button, behaviors, commands and clock
   double from_s = 0;
   double until_s = std::numeric_limits<double>::infinity();  // not included
   double size = 0;                                           // see the fields' docs
 
   bool of_sensor() const noexcept { return kind <= Kind::sensor_not_finite; }
-  bool of_drive() const noexcept { return kind >= Kind::drive_dead && kind <= Kind::drive_late; }
+  bool of_drive() const noexcept { return kind >= Kind::drive_dead && kind <= Kind::drive_old; }
+  bool of_supply() const noexcept { return kind == Kind::supply || kind == Kind::emergency_button; }
 };
 
 void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems);

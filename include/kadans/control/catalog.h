@@ -11,6 +11,7 @@
 #include "kadans/control/switchover.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/parameter.h"
+#include "kadans/signal/sensor_channel.h"
 #include "kadans/signal/setpoint.h"
 #include "kadans/signal/signal.h"
 #include "kadans/signal/status.h"
@@ -76,6 +77,7 @@ struct Catalog {
   SwitchSettings switching;
   std::vector<UnheldLaw> unheld;  // one a joint; empty: off
   std::vector<BehaviorValue> behavior_values;
+  std::vector<SensorChannel> sensors;  // beside joints, IMU and feet, in the order of the frames
 };
 
 }  // namespace kadans

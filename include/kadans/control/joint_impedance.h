@@ -1,4 +1,4 @@
-// A spring and a damper between each joint and its reference, with a torque of its own beside them, in effort mode:
+// A spring and a damper between each joint and its reference, with a torque of its own beside them:
 // type "joint_impedance" (Hogan 1985, Impedance Control, J. Dyn. Sys. Meas. Control 107; part I, without shaping the
 // inertia).
 //
@@ -6,6 +6,7 @@
 //
 // No integral: what pushes the joint meets the spring, however long it pushes. The load is carried by effort_ref.
 //
+// Option      loop: "here", unless it is said, or "drive": the drive computes it (impedance mode).
 // Set-points  <joint>.position_rad and <joint>.effort_Nm, each reached along a minimum-jerk curve in the time given.
 // Start       the reference goes on with the joint's velocity and comes to rest; effort_ref is the torque that there
 //             was, and stays until it is set.
@@ -24,6 +25,7 @@ class ImpedanceLaw : public PositionReference {
 
   explicit ImpedanceLaw(const JointAxis& axis) : PositionReference(axis) {}
   void declare(AxisTables& tables);
+  void compute_in_drive(bool in_drive) noexcept { law_.compute_in_drive(in_drive); }
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
   void set_point(std::uint32_t which, double value, double duration_s) noexcept;

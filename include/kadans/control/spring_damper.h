@@ -2,6 +2,9 @@
 //
 //   u = limit(effort + K (q_ref - q) + D (v_ref - v), +-effort_max)
 //
+// Computed here, once a tick, or by the drive (impedance mode), at its own rate and without the way there and back;
+// then the bound is that of the torque that is given, and the drive's own limit that of the sum.
+//
 // One owner, the control thread; step() neither allocates, locks nor throws.
 #pragma once
 
@@ -31,6 +34,7 @@ class SpringDamper {
   };
 
   void declare(AxisTables& tables, const Names& names);
+  void compute_in_drive(bool in_drive) noexcept { in_drive_ = in_drive; }  // before the loop
   void start(double effort_Nm) noexcept;
   JointActuation step(double reference_rad, double reference_velocity_rad_s, double effort_Nm,
                       const JointState& joint) noexcept;
@@ -38,6 +42,7 @@ class SpringDamper {
  private:
   Config config_;
   State state_;
+  bool in_drive_ = false;
 };
 
 }  // namespace kadans

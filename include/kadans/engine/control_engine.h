@@ -60,6 +60,7 @@ class ControlEngine {
 
  private:
   const ActuationFrame& drive(std::int64_t time_ns, double dt_s) noexcept;
+  void tell_drives() noexcept;
   void publish(std::int64_t time_ns) noexcept;
   void declare_signals(Catalog& catalog);
   void declare_joystick(SignalTable& table) const;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "kadans/signal/frames.h"
+#include "kadans/signal/status.h"
 
 namespace kadans {
 
@@ -40,5 +40,8 @@ struct Attitude {
   double roll_rad = 0, pitch_rad = 0, yaw_rad = 0, tilt_rad = 0;
 };
 Attitude attitude(const Axes& axes) noexcept;
+
+// By the way up in the base frame, of length 1. A trunk that leans by more than 53 degrees lies.
+Posture posture_of(const Vec3& up) noexcept;
 
 }  // namespace kadans

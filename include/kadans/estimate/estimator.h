@@ -54,6 +54,7 @@ class Estimator {
   struct JointTrack {
     VelocityFilter velocity;
     double spring_Nm_per_rad = 0;
+    std::int64_t last_time_ns = 0;  // of the last reading, where the bus tells
     std::uint32_t last_sequence = 0;
     double elapsed_s = 0;  // since the last position that was used
     JointState state;
@@ -70,12 +71,15 @@ class Estimator {
   void update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept;
   Axes update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept;
   void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
+  void update_channels(const SensorFrame& sensors, RobotStatus& status) noexcept;
   void update_support(const JointStates& joints, const Axes& base, RobotStatus& status) noexcept;
 
   EstimateSettings settings_;
   OrientationFilter orientation_;
   std::vector<JointTrack> joints_;
   std::vector<FootTrack> feet_;
+  std::array<std::uint32_t, max_channels> last_channel_sequences_{};
+  std::array<double, max_channels> channels_{};  // the last finite readings
   SensorHealth health_;
   double dt_s_;
   bool started_ = false;

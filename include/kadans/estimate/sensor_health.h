@@ -21,6 +21,8 @@ struct SensorHealth {
   std::array<SensorState, max_joints> joints{};
   SensorState imu;
   std::array<SensorState, max_feet> feet{};
+  std::uint32_t channel_count = 0;
+  std::array<SensorState, max_channels> channels{};
 };
 
 }  // namespace kadans

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kadans/signal/frames.h"
+#include "kadans/signal/sensor_channel.h"
 
 namespace kadans {
 
@@ -24,6 +25,7 @@ struct EstimateSettings {
   double gravity_tolerance = 0.2;                // | |a| / g - 1 | where the accelerometer loses its say
   double contact_on_N = 8, contact_off_N = 4;    // hysteresis of foot contact
   std::vector<EstimateFoot> feet;
+  std::vector<SensorChannel> channels;
   std::vector<double> spring_Nm_per_rad;      // one a joint; 0: no spring, the motor's effort is the joint's torque
   std::vector<std::uint32_t> sample_divisor;  // one a joint: sampled every n-th tick; empty: all every tick
 };

@@ -2,6 +2,7 @@
 // are obeyed at once. The base stands still and upright.
 #pragma once
 
+#include "kadans/plant/modelled_channels.h"
 #include "kadans/plant/settings.h"
 #include "kadans/plant/world.h"
 
@@ -10,7 +11,7 @@ namespace kadans {
 class IdealWorld final : public OneRobotWorld {
  public:
   // settings.position_rad is where the joints start. Each joint's inertia is its rotor's, or 1 kg m2 where that is 0.
-  IdealWorld(const RobotModel& model, const PlantSettings& settings);
+  IdealWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed = 1);  // of the sensors' noise
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
@@ -24,6 +25,8 @@ class IdealWorld final : public OneRobotWorld {
   std::array<double, max_joints> lower_rad_{}, upper_rad_{};
   ActuationFrame actuation_;
   PlantTruth truth_;
+  ModelledChannels modelled_;
+  SensorFrame channels_;  // as of the last step; nothing else of it is used
   std::int64_t time_ns_ = 0;
   std::uint32_t sequence_ = 0;
 };

@@ -19,6 +19,7 @@
 
 #include "kadans/plant/settings.h"
 #include "kadans/plant/world.h"
+#include "kadans/signal/fault.h"
 
 namespace kadans {
 
@@ -41,7 +42,7 @@ class PlantFields {
 // What both ends of a bus must agree on.
 struct PlantLayout {
   std::string robot;
-  std::vector<std::string> joints, feet;  // names, in the order of the frames
+  std::vector<std::string> joints, feet, sensors;  // names, in the order of the frames
   std::int64_t period_ns = 1'000'000;
 };
 
@@ -109,6 +110,9 @@ class PlantType {
 
   // Not a model: make_plant makes what drives are reached through; not open yet. Throws InputError.
   virtual std::unique_ptr<Plant> make_plant(const PlantSite& site) const;
+
+  // What the maker calls the codes that its drives tell; none: they are told as numbers.
+  virtual DriveWords drive_words() const noexcept { return nullptr; }
 
   // Speaks a protocol: make_emulator serves a world to it, at the place where it listens. Throws InputError.
   virtual bool is_protocol() const noexcept { return false; }

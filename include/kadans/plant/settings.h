@@ -8,6 +8,7 @@
 
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/world_settings.h"
+#include "kadans/signal/sensor_channel.h"
 
 namespace kadans {
 
@@ -62,6 +63,7 @@ struct PlantSettings {
   std::vector<EncoderSettings> encoders;  // one a joint
   ImuSettings imu;
   std::vector<FootSettings> feet;
+  std::vector<SensorChannel> channels;    // beside joints, IMU and feet
   std::vector<SurfaceSettings> surfaces;  // links not named have friction 0.5
   double ground_friction = 1.0;           // a contact's friction is the product
   Vec3 gravity_m_s2{0, 0, -9.81};

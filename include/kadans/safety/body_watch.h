@@ -1,4 +1,5 @@
-// What is wrong with the sensors of the robot as a whole: the inertial measurement unit and the feet.
+// What is wrong with the sensors of the robot as a whole: the inertial measurement unit, the feet, and those that its
+// configuration names.
 //
 // A sensor that is alive has noise. One that never repeated itself for a while, and then does for some readings, is
 // stuck; a model without noise, which always repeats itself, is not. A sensor is not missed that the robot does not
@@ -55,6 +56,24 @@ class ImuWatch {
   Vec3 gyro_rad_s_{}, acceleration_m_s2_{};  // the last reading
   double jump_ = 0, jump_max_ = 0;
   RepeatWatch repeats_;
+};
+
+class ChannelWatch {
+ public:
+  ChannelWatch() = default;
+  ChannelWatch(const SafetySettings& settings, const SensorChannel& channel) noexcept
+      : min_(channel.min),
+        max_(channel.max),
+        name_(fault_words(channel.name)),
+        silent_ticks_max_(settings.silent_ticks_max) {}
+
+  FaultMask look(const ChannelSample& sample, const SensorState& health) noexcept;
+  void describe(const ChannelSample& sample, Fault& fault) const noexcept;
+
+ private:
+  double min_ = 0, max_ = 0;
+  FaultWords name_{};
+  std::uint32_t silent_ticks_max_ = 0;
 };
 
 class FootWatch {

@@ -2,9 +2,9 @@
 // no further beyond the speed limit, within its power, and no faster than its rate.
 //
 // The limits are an interval that the torque is cut to, so the order in which they come does not matter; the rate comes
-// first, so that none of them waits for it. In position and velocity mode the drive makes the torque and keeps its own
-// limit; here the position asked stays within the position limits, the speed asked within the speed limit and, into a
-// soft stop, fades as torque does, and the torque added is cut as above.
+// first, so that none of them waits for it. In the drive's own modes (position, velocity, impedance) it makes the
+// torque and keeps its own limit; here the position asked stays within the position limits, the speed asked within the
+// speed limit and, into a soft stop, fades as torque does, and the torque added is cut as above.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once

@@ -53,7 +53,7 @@ class JointWatch {
   bool stuck(const Input& input) noexcept;
   // What the motor was told, as one number that a joint follows: torque, or else the position.
   static double demand(const Input& input) noexcept {
-    return input.asked.mode == ActuationMode::position ? input.asked.position_rad : input.written_Nm;
+    return has_position(input.asked.mode) ? input.asked.position_rad : input.written_Nm;
   }
   // Where the joint is as its motor tells it: before the spring, but for what its torque deflects that.
   double by_motor_rad(const Input& input) noexcept {
@@ -89,9 +89,7 @@ class JointWatch {
 inline FaultMask JointWatch::look(const Input& in) noexcept {
   using enum FaultCode;
   since_s_ += in.dt_s;
-  // 0 * NaN and 0 * infinity are NaN.
-  const bool finite = 0 * in.asked.effort_Nm + 0 * in.asked.position_rad + 0 * in.asked.velocity_rad_s == 0;
-  FaultMask found = bit_if(!in.health.finite, sensor_not_finite) | bit_if(!finite, actuation_not_finite) |
+  FaultMask found = bit_if(!in.health.finite, sensor_not_finite) | bit_if(!is_finite(in.asked), actuation_not_finite) |
                     bit_if(in.health.silent_ticks > silent_ticks_max_ + in.health.period_ticks - 1, sensor_silent);
   if (in.health.silent_ticks == 0 && in.health.finite) found |= look_at_reading(in);
   if (passive_) return found;  // nothing to take away

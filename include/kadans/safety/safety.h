@@ -1,11 +1,10 @@
 // The safety layer: between what control objects computed and what the plant is told. It looks at the sensors, the
 // state and the actuation of the last tick and lets the robot do less, rung by rung: normal, limited, hold, damp, off.
 //
-// Watches find what is wrong (joint_watch.h, body_watch.h, fall_watch.h, engine_watch.h), how soon stands in
-// detection.h. Reactions say which rung follows (reaction.h), ladders keep it until it may be left (ladder.h). Somebody
-// may want it down, too (emergency_stop.h). What is
-// asked of a joint that still works is cut to its limits (joint_limiter.h); an actuation that is not finite is never
-// written, whatever the configuration says.
+// Watches find what is wrong (joint_watch.h, drive_watch.h, body_watch.h, fall_watch.h, engine_watch.h), how soon
+// stands in detection.h. Reactions say which rung follows (reaction.h), ladders keep it until it may be left
+// (ladder.h). Somebody may want it down, too (emergency_stop.h). What is asked of a joint that still works is cut to
+// its limits (joint_limiter.h); an actuation that is not finite is never written, whatever the configuration says.
 //
 // A joint that comes back from damp or off, by itself or because faults were cleared, gets its torque back over
 // recover_s; came_back() says so in that tick, and whoever computes set-points starts anew from the measured state, as
@@ -22,6 +21,7 @@
 #include "kadans/exchange/ring.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/safety/body_watch.h"
+#include "kadans/safety/drive_watch.h"
 #include "kadans/safety/emergency_stop.h"
 #include "kadans/safety/engine_watch.h"
 #include "kadans/safety/fall_watch.h"
@@ -86,10 +86,12 @@ class Safety {
   }
   double temperature_C(std::size_t joint) const noexcept { return joints_[joint].watch.thermal().temperature_C(); }
   FallWatch::Phase fall_phase() const noexcept { return fall_.phase(); }
+  bool falls() const noexcept { return fall_.phase() == FallWatch::Phase::falling; }
 
  private:
   struct JointGuard {
     JointWatch watch;
+    DriveWatch drive;
     JointLimiter limiter;
     Ladder ladder;
     bool finite = true;     // what was asked for in this tick
@@ -102,6 +104,7 @@ class Safety {
 
   FaultMask watch_body(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_feet(const SafetyInput& input, double dt_s) noexcept;
+  FaultMask watch_channels(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_joints(const SafetyInput& input, const ActuationFrame& actuation, double dt_s) noexcept;
   void judge_robot(const SafetyInput& input, FaultMask body, FaultMask others, double dt_s) noexcept;
   FaultMask take_stop(bool& lift) noexcept;
@@ -116,9 +119,12 @@ class Safety {
   std::array<JointGuard, max_joints> joints_{};
   std::array<FootWatch, max_feet> feet_{};
   std::array<Ladder, max_feet> foot_ladders_{};  // only to report each foot's faults once
+  std::array<ChannelWatch, max_channels> channels_{};
+  std::array<Ladder, max_channels> channel_ladders_{};  // likewise
   ImuWatch imu_;
   FallWatch fall_;
   EngineWatch engine_;
+  SupplyWatch supply_;
   Ladder robot_;
   FaultMask escalating_ = 0;  // codes whose reaction escalates
   FaultMask pending_ = 0;     // raised by others since the last check

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "kadans/safety/reaction.h"
+#include "kadans/signal/fault.h"
+#include "kadans/signal/sensor_channel.h"
 
 namespace kadans {
 
@@ -48,6 +50,18 @@ struct SensorWatchSettings {
   double foot_force_max_N = 20000;  // what one sensor can measure; below the negative of a hundredth is wrong too
 };
 
+// What the drives say of themselves.
+struct DriveWatchSettings {
+  double enable_s = 0.5;            // that one may take until it is enabled, once it is asked for torque
+  double hot_C = 90;                // too hot, by its own sensor
+  double sample_age_max_s = 0.025;  // of what it measured, when the sensor frame is made
+};
+
+struct SupplySettings {
+  double lowest_V = 0, highest_V = 0;  // of the drives' supply; 0: not watched
+  double time_s = 0.05;                // that it must last: a start of many motors is no fault
+};
+
 struct FallSettings {
   double roll_max_rad = 1.0472;  // falling: beyond roll, pitch or rate for time_s
   double pitch_max_rad = 0.7854;
@@ -75,8 +89,12 @@ struct SafetySettings {
   SoftStopSettings soft_stop;
   ThermalSettings thermal;
   SensorWatchSettings sensors;
+  DriveWatchSettings drives;
+  SupplySettings supply;
   FallSettings fall;
+  DriveWords drive_words = nullptr;  // of the plant; none: codes are told as numbers
   Reactions reactions = default_reactions();
+  std::vector<SensorChannel> channels{};
   std::vector<std::uint16_t> foot_joints{};  // the joint that carries each foot, for messages; may be empty
 };
 

@@ -21,15 +21,16 @@ enum class SensorFaultKind : std::uint8_t {
   jump,        // `size` added to one reading
   not_finite,  // NaN
 };
-enum class SensorPlace : std::uint8_t { joint, imu, foot };
+enum class SensorPlace : std::uint8_t { joint, imu, foot, channel };
 
 struct SensorFault {
   SensorFaultKind kind = SensorFaultKind::silent;
   SensorPlace place = SensorPlace::joint;
-  std::size_t index = 0;  // of the joint or foot
+  std::size_t index = 0;  // of the joint, foot or channel
   std::int64_t from_ns = 0;
   std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
-  double size = 0;  // joint: rad of the joint's position; IMU: rad/s about x; foot: N on the first sensor
+  double size = 0;  // joint: rad of the joint's position; IMU: rad/s about x; foot: N on the first sensor;
+                    // channel: its own unit
 };
 
 enum class ActuatorFaultKind : std::uint8_t {
@@ -38,6 +39,11 @@ enum class ActuatorFaultKind : std::uint8_t {
   stuck,   // goes on with what was written last before
   offset,  // `size` added to the effort, Nm
   late,    // what was written `size` ticks before
+  // What the drive says of itself:
+  tripped,   // something is wrong, by the maker's code `size`; no torque
+  disabled,  // it is ready, and not enabled; no torque
+  hot,       // it is `size` C
+  old,       // its readings are `size` s old
 };
 
 struct ActuatorFault {
@@ -46,6 +52,13 @@ struct ActuatorFault {
   std::int64_t from_ns = 0;
   std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
   double size = 0;
+};
+
+struct SupplyFault {
+  bool button = false;  // somebody presses the emergency stop; else the supply has `supply_V`
+  double supply_V = 0;
+  std::int64_t from_ns = 0;
+  std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
 };
 
 class FaultyPlant final : public OneRobotWorld {
@@ -57,8 +70,14 @@ class FaultyPlant final : public OneRobotWorld {
   static constexpr std::size_t late_ticks_max = 255;
 
   void add(const SensorFault& fault) { faults_.push_back({fault, {}, false}); }
-  void clear() { faults_.clear(); }  // all sensors are sound again
   void add(const ActuatorFault& fault);
+  void add(const SupplyFault& fault) { supply_faults_.push_back(fault); }
+  // Sensors, drives and supply are sound again.
+  void clear() noexcept {
+    faults_.clear();
+    actuator_faults_.clear();
+    supply_faults_.clear();
+  }
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
@@ -87,6 +106,7 @@ class FaultyPlant final : public OneRobotWorld {
   RandomStream random_;
   std::vector<Planned> faults_;
   std::vector<PlannedActuator> actuator_faults_;
+  std::vector<SupplyFault> supply_faults_;
   std::int64_t time_ns_ = 0;             // of the last read
   std::vector<ActuationFrame> written_;  // the last ones, a ring; empty when nothing is ever late
   std::size_t newest_ = 0;

@@ -17,7 +17,7 @@ struct ApiEntry {
   const char* type;   // of a field, or what a function returns
   const char* doc;    // one sentence, with the unit
 };
-std::span<const ApiEntry> script_api() noexcept;
+std::span<const ApiEntry> script_api();
 
 // A ---@meta file for lua-language-server: the table, and this robot's objects, set-points, presets, poses and joints.
 std::string lua_stubs(const Catalog& catalog);

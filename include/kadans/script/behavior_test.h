@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "kadans/control/catalog.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/status.h"
 
@@ -23,7 +24,7 @@ class TestStage {
   virtual ~TestStage() = default;
   virtual void advance(double seconds) = 0;  // throws std::runtime_error when the plant fails
   virtual const Snapshot& snapshot() const = 0;
-  virtual const RobotModel& model() const = 0;
+  virtual const Catalog& catalog() const = 0;
   virtual std::string state() const = 0;
   virtual std::string outcome() const = 0;
   virtual std::string error() const = 0;
@@ -34,7 +35,7 @@ class TestStage {
   virtual bool emit(const std::string& event) = 0;
   virtual bool set_parameter(const std::string& name, double value) = 0;
   // What the behavior sees from now on: "base.pitch_rad", "joints.l_knee.position_rad", "feet.left.contact",
-  // "safety.level" (its number).
+  // "sensors.front_m", "safety.level" (its number).
   virtual bool set_sensor(const std::string& name, double value) = 0;
 };
 

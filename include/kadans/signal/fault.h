@@ -51,8 +51,21 @@ enum class FaultCode : std::uint16_t {
   overruns,        // too many late ticks in a row
   joints_lost,     // too many joints damp or are off
   emergency_stop,  // somebody asked for it
+  // Of a drive.
+  drive_fault,        // says that something is wrong with it
+  drive_not_enabled,  // is asked for torque, and is off, ready or homing
+  drive_hot,          // says so
+  sample_old,         // what it says was measured too long ago
+  // Of what the drives have in common.
+  supply_low,
+  supply_high,
+  emergency_input,  // somebody presses the button
+  // Of a sensor that the configuration names.
+  channel_silent,
+  channel_range,  // outside what it may read
+  channel_not_finite,
 };
-inline constexpr std::size_t fault_codes = 33;
+inline constexpr std::size_t fault_codes = 43;
 
 const char* name(FaultCode code) noexcept;
 // The key of the robot's configuration that decides when this is a fault; "" for none.
@@ -60,9 +73,12 @@ const char* configuration_key(FaultCode code) noexcept;
 
 inline constexpr std::uint16_t no_joint = 0xffff;
 
-// What a fault's numbers cannot say: who asked for it. Ends with a zero.
+// What a fault's numbers cannot say: who asked for it, what the drive's maker calls it. Ends with a zero.
 using FaultWords = std::array<char, 40>;
 FaultWords fault_words(std::string_view text) noexcept;  // cut where it is longer
+
+// What the maker of a drive calls its code; "" for one that is none of its. Any thread, at any time.
+using DriveWords = std::string_view (*)(std::uint32_t code) noexcept;
 
 struct Fault {
   FaultCode code = FaultCode::none;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "kadans/signal/capacity.h"
@@ -18,12 +19,28 @@ namespace kadans {
 using Vec3 = std::array<double, 3>;  // x, y, z
 using Quat = std::array<double, 4>;  // w, x, y, z; rotates body coordinates into world coordinates
 
-// What one joint's sensors say. `sequence` grows by one with each new reading, so silence can be told from standstill.
+// Between two times that somebody else tells, who may tell anything.
+inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
+  return 1e-9 * static_cast<double>(
+                    static_cast<std::int64_t>(static_cast<std::uint64_t>(to_ns) - static_cast<std::uint64_t>(from_ns)));
+}
+
+// What a drive says of itself. Only one that is enabled does what it is asked.
+enum class DriveState : std::uint8_t { off, ready, enabled, homing, fault };
+const char* name(DriveState state) noexcept;
+
+// What one joint's sensors and its drive say. `sequence` grows by one with each new reading, so silence can be told
+// from standstill.
 struct alignas(8) JointSample {
   double position_rad = 0;        // at the joint, behind the gear and the spring
   double motor_position_rad = 0;  // before the spring, reflected to the joint
   double motor_effort_Nm = 0;     // from the motor's current, reflected to the joint
   std::uint32_t sequence = 0;
+  std::uint32_t code = 0;    // the maker's own, of what is wrong with the drive; 0: nothing
+  std::int64_t time_ns = 0;  // of the reading, on the frame's clock; 0: the frame's time
+  float temperature_C = std::numeric_limits<float>::quiet_NaN();  // of the drive or its motor; NaN: it does not say
+  DriveState drive = DriveState::enabled;
+  bool homed = true;  // its position counts from where the joint's does
 };
 
 struct alignas(8) ImuSample {
@@ -37,6 +54,12 @@ struct alignas(8) FootSample {
   std::uint32_t sequence = 0;
 };
 
+// Of a sensor that the robot's configuration names (sensor_channel.h).
+struct alignas(8) ChannelSample {
+  double value = 0;
+  std::uint32_t sequence = 0;
+};
+
 // Filled by Plant::read.
 struct alignas(8) SensorFrame {
   std::int64_t time_ns = 0;  // of the sampling, on the engine's clock
@@ -45,6 +68,10 @@ struct alignas(8) SensorFrame {
   std::array<JointSample, max_joints> joints{};
   ImuSample imu;
   std::array<FootSample, max_feet> feet{};
+  double supply_V = std::numeric_limits<double>::quiet_NaN();  // of the drives; NaN: nothing measures it
+  bool emergency = false;                                      // somebody presses the emergency stop's own button
+  std::uint32_t channel_count = 0;
+  std::array<ChannelSample, max_channels> channels{};  // in the order of the configuration
 };
 
 // Estimated from the sensors, each tick.
@@ -59,19 +86,34 @@ struct alignas(8) JointStates {
   std::array<JointState, max_joints> joints{};
 };
 
-enum class ActuationMode : std::uint8_t { off, effort, position, velocity };
+enum class ActuationMode : std::uint8_t { off, effort, position, velocity, impedance };
+inline constexpr ActuationMode last_actuation_mode = ActuationMode::impedance;
+// Modes in which position_rad counts: the drive leads the joint there itself.
+constexpr bool has_position(ActuationMode mode) noexcept {
+  return mode == ActuationMode::position || mode == ActuationMode::impedance;
+}
 
 // What a drive is asked for. Which fields count is the mode's matter:
 //   off       no torque
 //   effort    effort_Nm
 //   position  position_rad, velocity_rad_s as feed-forward, effort_Nm added
 //   velocity  velocity_rad_s, effort_Nm added
+//   impedance stiffness (position_rad - q) + damping (velocity_rad_s - dq/dt) + effort_Nm, a loop in the drive
 struct alignas(8) JointActuation {
   double effort_Nm = 0;
   double position_rad = 0;
   double velocity_rad_s = 0;
+  double stiffness_Nm_per_rad = 0;
+  double damping_Nms_per_rad = 0;
   ActuationMode mode = ActuationMode::off;
 };
+
+inline bool is_finite(const JointActuation& a) noexcept {
+  // 0 * NaN and 0 * infinity are NaN.
+  return 0 * a.effort_Nm + 0 * a.position_rad + 0 * a.velocity_rad_s + 0 * a.stiffness_Nm_per_rad +
+             0 * a.damping_Nms_per_rad ==
+         0;
+}
 
 // Taken by Plant::write.
 struct alignas(8) ActuationFrame {
@@ -92,6 +134,10 @@ inline void copy_used(const SensorFrame& from, SensorFrame& to) noexcept {
   copy_first(from.joints, from.joint_count, to.joints);
   to.imu = from.imu;
   copy_first(from.feet, from.foot_count, to.feet);
+  to.supply_V = from.supply_V;
+  to.emergency = from.emergency;
+  to.channel_count = from.channel_count;
+  copy_first(from.channels, from.channel_count, to.channels);
 }
 
 inline void copy_used(const JointStates& from, JointStates& to) noexcept {
@@ -106,12 +152,12 @@ inline void copy_used(const ActuationFrame& from, ActuationFrame& to) noexcept {
 
 static_assert(std::is_trivially_copyable_v<SensorFrame> && std::is_trivially_copyable_v<JointStates> &&
               std::is_trivially_copyable_v<ActuationFrame>);
-static_assert(sizeof(JointSample) == 32 && sizeof(ImuSample) == 56 && sizeof(FootSample) == 40);
-static_assert(sizeof(SensorFrame) == 16 + 32 * max_joints + 56 + 40 * max_feet && offsetof(SensorFrame, joints) == 16 &&
-              offsetof(SensorFrame, feet) == 72 + 32 * max_joints);
+static_assert(sizeof(JointSample) == 48 && sizeof(ImuSample) == 56 && sizeof(FootSample) == 40);
+static_assert(sizeof(SensorFrame) == 16 + 48 * max_joints + 56 + 40 * max_feet + 16 + 16 * max_channels &&
+              offsetof(SensorFrame, joints) == 16 && offsetof(SensorFrame, feet) == 72 + 48 * max_joints);
 static_assert(sizeof(JointState) == 24 && sizeof(JointStates) == 8 + 24 * max_joints &&
               offsetof(JointStates, joints) == 8);
-static_assert(sizeof(JointActuation) == 32 && offsetof(JointActuation, mode) == 24 &&
-              sizeof(ActuationFrame) == 8 + 32 * max_joints && offsetof(ActuationFrame, joints) == 8);
+static_assert(sizeof(JointActuation) == 48 && offsetof(JointActuation, mode) == 40 &&
+              sizeof(ActuationFrame) == 8 + 48 * max_joints && offsetof(ActuationFrame, joints) == 8);
 
 }  // namespace kadans

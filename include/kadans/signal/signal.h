@@ -27,6 +27,7 @@ class SignalTable {
   // Throws std::invalid_argument on a name taken.
   SignalId add(Signal signal, const double* source);
   SignalId add(Signal signal, const bool* source);
+  SignalId add(Signal signal, const std::uint8_t* source);
   SignalId add(Signal signal, const std::uint32_t* source);
   SignalId add(Signal signal, const std::atomic<std::uint32_t>* source);  // written by another thread
 
@@ -52,6 +53,7 @@ class SignalTable {
   std::unordered_map<std::string, SignalId> ids_;
   std::vector<Source<double>> doubles_;
   std::vector<Source<bool>> bools_;
+  std::vector<Source<std::uint8_t>> choices_;
   std::vector<Source<std::uint32_t>> counts_;
   std::vector<Source<std::atomic<std::uint32_t>>> shared_;
 };

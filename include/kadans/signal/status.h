@@ -17,7 +17,13 @@ namespace kadans {
 
 // The degradation ladder: each rung lets the robot do less. Order matters: worse is larger.
 enum class SafetyLevel : std::uint8_t { normal, limited, hold, damp, off };
+inline constexpr std::size_t safety_levels = 5;
 const char* name(SafetyLevel level) noexcept;
+
+// How the trunk is: it lies, or does not; falling is upright still, but on the way down.
+enum class Posture : std::uint8_t { upright, prone, supine, left, right, falling };
+inline constexpr std::size_t posture_count = 6;
+const char* name(Posture posture) noexcept;
 
 struct alignas(8) BaseStatus {
   Quat orientation{1, 0, 0, 0};
@@ -25,6 +31,7 @@ struct alignas(8) BaseStatus {
   double tilt_rad = 0;            // between the base's z axis and up; >= 0
   Vec3 angular_velocity_rad_s{};  // in the base frame
   double height_m = 0;            // of the base frame over the lowest sole, through the legs; holds when no foot bears
+  Posture posture = Posture::upright;
 };
 
 struct alignas(8) FootStatus {
@@ -54,6 +61,23 @@ struct alignas(8) RobotStatus {
   std::array<FootStatus, max_feet> feet{};
   SafetyStatus safety;
   SupportStatus support;
+  std::uint32_t channel_count = 0;
+  std::array<double, max_channels> channels{};  // the last finite readings; NaN before the first
+};
+
+// What the drives and their supply say of themselves; as in the sensor frame.
+struct DriveStatus {
+  float temperature_C = std::numeric_limits<float>::quiet_NaN();
+  std::uint32_t code = 0;
+  DriveState state = DriveState::enabled;
+  bool homed = true;
+  std::uint16_t reserved = 0;
+};
+
+struct alignas(8) PowerStatus {
+  double supply_V = std::numeric_limits<double>::quiet_NaN();
+  bool emergency = false;
+  std::array<DriveStatus, max_joints> drives{};  // by joint
 };
 
 // What control objects tell of themselves to the behaviors.
@@ -88,7 +112,18 @@ struct alignas(8) Snapshot {
   std::array<SetpointStatus, max_setpoints_shown> setpoints{};  // by SetpointId
   std::array<Refusal, refusals_shown> refusals{};               // the newest ones, by count modulo their number
   JoystickState joystick;
+  PowerStatus power;
 };
+
+inline void copy_used(const RobotStatus& from, RobotStatus& to) noexcept {
+  to.base = from.base;
+  to.foot_count = from.foot_count;
+  copy_first(from.feet, from.foot_count, to.feet);
+  to.safety = from.safety;
+  to.support = from.support;
+  to.channel_count = from.channel_count;
+  copy_first(from.channels, from.channel_count, to.channels);
+}
 
 inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
   to.tick = from.tick;
@@ -98,19 +133,23 @@ inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
   to.control_sets = from.control_sets;
   to.transactions_refused = from.transactions_refused;
   copy_used(from.joints, to.joints);
-  to.status = from.status;
+  copy_used(from.status, to.status);
   to.object_count = from.object_count;
   to.setpoint_count = from.setpoint_count;
   copy_first(from.objects, from.object_count, to.objects);
   copy_first(from.setpoints, from.setpoint_count, to.setpoints);
   to.refusals = from.refusals;
   to.joystick = from.joystick;
+  to.power.supply_V = from.power.supply_V;
+  to.power.emergency = from.power.emergency;
+  copy_first(from.power.drives, from.joints.count, to.power.drives);
 }
 
 static_assert(std::is_trivially_copyable_v<Snapshot>);
-static_assert(sizeof(BaseStatus) == 96 && sizeof(FootStatus) == 32 && sizeof(SafetyStatus) == 80 &&
+static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 && sizeof(SafetyStatus) == 80 &&
               sizeof(ObjectStatus) == 16 && alignof(SafetyStatus) == 8);
-static_assert(offsetof(RobotStatus, feet) == 104 && offsetof(Snapshot, joints) == 32);
-static_assert(sizeof(Snapshot) == 4720);  // whoever adds to it adds to copy_used()
+static_assert(offsetof(RobotStatus, feet) == 112 && offsetof(Snapshot, joints) == 32);
+static_assert(sizeof(DriveStatus) == 12 && sizeof(PowerStatus) == 16 + 12 * max_joints);
+static_assert(sizeof(Snapshot) == 5776);  // whoever adds to it adds to copy_used()
 
 }  // namespace kadans

@@ -25,11 +25,6 @@ ContactWorld::Options world_options(const PlantSettings& settings) {
           to_bullet(ground_pose(settings.world)), settings.solver};
 }
 
-bool finite(const JointActuation& actuation) noexcept {
-  return std::isfinite(actuation.effort_Nm) && std::isfinite(actuation.position_rad) &&
-         std::isfinite(actuation.velocity_rad_s);
-}
-
 bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
 }  // namespace
@@ -58,7 +53,7 @@ class BulletWorld::Inside {
 
   void write(const ActuationFrame& actuation) noexcept {
     for (std::size_t i = 0; i < drives_.size(); ++i) {
-      const bool usable = i < actuation.joint_count && finite(actuation.joints[i]);
+      const bool usable = i < actuation.joint_count && is_finite(actuation.joints[i]);
       drives_[i].ask(usable ? actuation.joints[i] : JointActuation{});
     }
   }

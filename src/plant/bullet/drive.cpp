@@ -38,8 +38,10 @@ TorqueLaw Drive::law(double position_rad, double velocity_rad_s, double dt_s) co
     const double slope = torque_max / (no_load - knee);  // of the speed-torque line, followed implicitly
     return {direction * slope * no_load, slope, std::min(torque, 0.0), std::max(torque, 0.0)};
   }
-  const double kp = asked.mode == ActuationMode::position ? settings_.position_gain_Nm_per_rad : 0;
-  const double kd = settings_.velocity_gain_Nms_per_rad;
+  const bool by_asked = asked.mode == ActuationMode::impedance;
+  const double own_kp = asked.mode == ActuationMode::position ? settings_.position_gain_Nm_per_rad : 0;
+  const double kp = by_asked ? asked.stiffness_Nm_per_rad : own_kp;
+  const double kd = by_asked ? asked.damping_Nms_per_rad : settings_.velocity_gain_Nms_per_rad;
   return {kp * (asked.position_rad - position_rad) + kd * asked.velocity_rad_s + asked.effort_Nm, kd + dt_s * kp,
           -available_Nm(-1, velocity_rad_s), available_Nm(1, velocity_rad_s)};
 }

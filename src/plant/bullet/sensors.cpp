@@ -29,7 +29,8 @@ Sensors::Sensors(const RobotModel& model, const PlantSettings& settings, std::ui
       feet_(settings.feet),
       imu_to_base_(to_bullet(settings.imu.pose.orientation)),
       gravity_m_s2_(to_bullet(settings.gravity_m_s2)),
-      imu_noise_(seed, "plant/imu") {
+      imu_noise_(seed, "plant/imu"),
+      channels_(settings.channels, seed) {
   RandomStream bias(seed, "plant/imu_bias");
   gyro_bias_rad_s_ = normal_vector(bias, imu_.gyro_bias_rad_s);
   accelerometer_bias_m_s2_ = normal_vector(bias, imu_.accelerometer_bias_m_s2);
@@ -47,6 +48,7 @@ void Sensors::sample(std::int64_t time_ns, double dt_s, const std::vector<Drive>
   }
   sample_imu(dt_s, imu);
   for (std::size_t i = 0; i < feet.size(); ++i) sample_foot(i, feet[i]);
+  channels_.sample(time_ns, frame_);
 }
 
 void Sensors::sample_joint(std::size_t index, const Drive& drive, double position_rad) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "kadans/plant/modelled_channels.h"
 #include "kadans/signal/random.h"
 #include "truth.h"
 
@@ -49,6 +50,7 @@ class Sensors {
   btVector3 last_velocity_m_s_{0, 0, 0};
   std::vector<RandomStream> joint_noise_, foot_noise_;
   RandomStream imu_noise_;
+  ModelledChannels channels_;
   SensorFrame frame_;
 };
 

@@ -13,14 +13,21 @@ void require(bool good, const std::string& what) {
   if (!good) throw std::invalid_argument("ideal plant: " + what);
 }
 
-bool finite(const JointActuation& actuation) noexcept {
-  return std::isfinite(actuation.effort_Nm) && std::isfinite(actuation.position_rad) &&
-         std::isfinite(actuation.velocity_rad_s);
+// What a drive that has no limits puts on a free inertia; its own loop is implicit in time.
+double torque_Nm(const JointActuation& asked, double position_rad, double velocity_rad_s, double inertia_kg_m2,
+                 double dt_s) noexcept {
+  if (asked.mode == ActuationMode::effort) return asked.effort_Nm;
+  if (asked.mode != ActuationMode::impedance) return 0;
+  const double slope = asked.damping_Nms_per_rad + dt_s * asked.stiffness_Nm_per_rad;
+  const double now_Nm = asked.stiffness_Nm_per_rad * (asked.position_rad - position_rad) - slope * velocity_rad_s +
+                        asked.damping_Nms_per_rad * asked.velocity_rad_s + asked.effort_Nm;
+  return now_Nm / (1 + slope * dt_s / inertia_kg_m2);
 }
 
 }  // namespace
 
-IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings) {
+IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
+    : modelled_(settings.channels, seed) {
   const std::size_t joints = model.joints.size();
   require(joints <= max_joints, "at most " + std::to_string(max_joints) + " joints");
   require(settings.position_rad.size() == joints, "position_rad must have one entry a joint");
@@ -37,6 +44,7 @@ IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings) {
     upper_rad_[i] = limited ? joint.upper_rad : std::numeric_limits<double>::infinity();
     truth_.position_rad[i] = settings.position_rad[i];
   }
+  modelled_.sample(time_ns_, channels_);
 }
 
 void IdealWorld::read(SensorFrame& sensors) noexcept {
@@ -48,13 +56,17 @@ void IdealWorld::read(SensorFrame& sensors) noexcept {
     sensors.joints[i] = {truth_.position_rad[i], truth_.position_rad[i], effort_Nm, sequence_ + 1};
   }
   sensors.imu = {{0, 0, 0}, {0, 0, 9.81}, sequence_ + 1};
+  sensors.supply_V = std::numeric_limits<double>::quiet_NaN();
+  sensors.emergency = false;
+  sensors.channel_count = channels_.channel_count;
+  copy_first(channels_.channels, channels_.channel_count, sensors.channels);
 }
 
 void IdealWorld::write(const ActuationFrame& actuation) noexcept {
   actuation_ = actuation;
   actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
-    if (i >= actuation_.joint_count || !finite(actuation_.joints[i])) actuation_.joints[i] = {};
+    if (i >= actuation_.joint_count || !is_finite(actuation_.joints[i])) actuation_.joints[i] = {};
   }
 }
 
@@ -66,7 +78,7 @@ void IdealWorld::step(std::int64_t dt_ns) {
     double& position = truth_.position_rad[i];
     double& velocity = truth_.velocity_rad_s[i];
     const double before = position;
-    truth_.drive_torque_Nm[i] = asked.mode == ActuationMode::effort ? asked.effort_Nm : 0;
+    truth_.drive_torque_Nm[i] = torque_Nm(asked, position, velocity, inertia_kg_m2_[i], dt_s);
     truth_.motor_torque_Nm[i] = truth_.drive_torque_Nm[i];
     velocity += dt_s * truth_.drive_torque_Nm[i] / inertia_kg_m2_[i];
     if (asked.mode == ActuationMode::velocity) velocity = asked.velocity_rad_s;
@@ -78,6 +90,7 @@ void IdealWorld::step(std::int64_t dt_ns) {
   }
   time_ns_ += dt_ns;
   ++sequence_;
+  modelled_.sample(time_ns_, channels_);
 }
 
 void IdealWorld::hash(StateHash& hash) const noexcept {

@@ -10,7 +10,7 @@ class IdealType final : public PlantType {
   std::string_view doc() const noexcept override { return "joints that obey at once, on a base that stands still"; }
   bool is_model() const noexcept override { return true; }
   std::unique_ptr<World> make_world(const WorldSite& site) const override {
-    return std::make_unique<IdealWorld>(site.model, site.settings);
+    return std::make_unique<IdealWorld>(site.model, site.settings, site.seed);
   }
 };
 

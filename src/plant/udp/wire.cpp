@@ -15,8 +15,11 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 
 constexpr std::uint32_t magic = 0x504e444bU;  // "KDNP"
 constexpr std::size_t sum_bytes = 4, greeting_bytes = 8 + 4 + 4 + wire_robot_bytes;
-constexpr std::size_t joint_actuation_bytes = 25, joint_sample_bytes = 28, imu_bytes = 52, foot_bytes = 36;
-constexpr std::size_t actuation_mode_at = 24;
+constexpr std::size_t joint_actuation_bytes = 41, joint_sample_bytes = 46, foot_bytes = 36, sensor_bytes = 12;
+constexpr std::size_t before_joints_bytes =
+    9 + 52 + 9;  // of sensors: what was answered, IMU, what drives have in common
+constexpr std::size_t actuation_mode_at = 40, released_at = 8, emergency_at = 69;
+constexpr std::size_t sample_drive_at = before_joints_bytes + 44, sample_homed_at = before_joints_bytes + 45;
 
 template <typename T>
 void put(std::byte*& at, const T& value) noexcept {
@@ -28,6 +31,12 @@ template <typename T>
 void take(const std::byte*& at, T& value) noexcept {
   std::memcpy(&value, at, sizeof value);
   at += sizeof value;
+}
+
+bool take_bool(const std::byte*& at) noexcept {
+  std::uint8_t value = 0;
+  take(at, value);
+  return value != 0;
 }
 
 const std::byte* payload(Bytes datagram) noexcept { return datagram.data() + wire_head_bytes; }
@@ -47,16 +56,18 @@ bool is_greeting(WireKind kind) noexcept {
 }  // namespace
 
 PlantWire::PlantWire(const PlantLayout& layout) {
-  if (layout.joints.size() > max_joints || layout.feet.size() > max_feet)
-    throw std::invalid_argument("a plant over the network has at most " + std::to_string(max_joints) + " joints and " +
-                                std::to_string(max_feet) + " feet");
+  if (layout.joints.size() > max_joints || layout.feet.size() > max_feet || layout.sensors.size() > max_channels)
+    throw std::invalid_argument("a plant over the network has at most " + std::to_string(max_joints) + " joints, " +
+                                std::to_string(max_feet) + " feet and " + std::to_string(max_channels) + " sensors");
   StateHash hash;
   add_names(hash, layout.joints);
   add_names(hash, layout.feet);
+  if (!layout.sensors.empty()) add_names(hash, layout.sensors);
   layout_ = hash.value();
   greeting_.period_ns = layout.period_ns;
   greeting_.joints = static_cast<std::uint32_t>(layout.joints.size());
   greeting_.feet = static_cast<std::uint32_t>(layout.feet.size());
+  sensors_ = static_cast<std::uint32_t>(layout.sensors.size());
   std::copy_n(layout.robot.begin(), std::min(layout.robot.size(), wire_robot_bytes - 1), greeting_.robot.begin());
 }
 
@@ -70,7 +81,8 @@ std::size_t PlantWire::length(WireKind kind) const noexcept {
     case WireKind::actuation:
       return around + joint_actuation_bytes * greeting_.joints;
     case WireKind::sensors:
-      return around + 9 + imu_bytes + joint_sample_bytes * greeting_.joints + foot_bytes * greeting_.feet;
+      return around + before_joints_bytes + joint_sample_bytes * greeting_.joints + foot_bytes * greeting_.feet +
+             sensor_bytes * sensors_;
     case WireKind::bye:
       return around;
     case WireKind::none:
@@ -117,6 +129,8 @@ Bytes PlantWire::actuation(const WireHead& head, const ActuationFrame& frame, Da
     put(at, joint.effort_Nm);
     put(at, joint.position_rad);
     put(at, joint.velocity_rad_s);
+    put(at, joint.stiffness_Nm_per_rad);
+    put(at, joint.damping_Nms_per_rad);
     put(at, joint.mode);
   }
   return seal(into, at);
@@ -130,16 +144,27 @@ Bytes PlantWire::sensors(const WireHead& head, const SensorsOnWire& more, const 
   put(at, frame.imu.angular_velocity_rad_s);
   put(at, frame.imu.acceleration_m_s2);
   put(at, frame.imu.sequence);
+  put(at, frame.supply_V);
+  put(at, static_cast<std::uint8_t>(frame.emergency));
   for (std::size_t i = 0; i < greeting_.joints; ++i) {
     const JointSample& joint = frame.joints[i];
     put(at, joint.position_rad);
     put(at, joint.motor_position_rad);
     put(at, joint.motor_effort_Nm);
     put(at, joint.sequence);
+    put(at, joint.code);
+    put(at, joint.time_ns);
+    put(at, joint.temperature_C);
+    put(at, joint.drive);
+    put(at, static_cast<std::uint8_t>(joint.homed));
   }
   for (std::size_t i = 0; i < greeting_.feet; ++i) {
     put(at, frame.feet[i].force_N);
     put(at, frame.feet[i].sequence);
+  }
+  for (std::size_t i = 0; i < sensors_; ++i) {
+    put(at, frame.channels[i].value);
+    put(at, frame.channels[i].sequence);
   }
   return seal(into, at);
 }
@@ -165,12 +190,21 @@ PlantWire::Check PlantWire::check(Bytes datagram, WireHead& head) const noexcept
   if (version != wire_version) return is_greeting(head.kind) ? Check::other_version : Check::garbage;
   if (head.layout != layout_) return Check::other_layout;
   if (datagram.size() != length(head.kind)) return Check::garbage;
-  if (head.kind != WireKind::actuation) return Check::good;
-  for (std::size_t i = 0; i < greeting_.joints; ++i) {
-    const std::byte mode = payload(datagram)[i * joint_actuation_bytes + actuation_mode_at];
-    if (mode > static_cast<std::byte>(ActuationMode::velocity)) return Check::garbage;
+  // Whether each joint's byte is one of a few.
+  const auto all_below = [&](std::size_t first, std::size_t step, auto last_good) {
+    for (std::size_t i = 0; i < greeting_.joints; ++i) {
+      if (payload(datagram)[first + i * step] > static_cast<std::byte>(last_good)) return false;
+    }
+    return true;
+  };
+  bool good = true;
+  if (head.kind == WireKind::actuation) good = all_below(actuation_mode_at, joint_actuation_bytes, last_actuation_mode);
+  if (head.kind == WireKind::sensors) {
+    good = payload(datagram)[released_at] <= std::byte{1} && payload(datagram)[emergency_at] <= std::byte{1} &&
+           all_below(sample_drive_at, joint_sample_bytes, DriveState::fault) &&
+           all_below(sample_homed_at, joint_sample_bytes, 1);
   }
-  return Check::good;
+  return good ? Check::good : Check::garbage;
 }
 
 WireGreeting PlantWire::greeting_in(Bytes datagram) noexcept {
@@ -195,6 +229,8 @@ void PlantWire::actuation_in(Bytes datagram, ActuationFrame& frame) const noexce
     take(at, joint.effort_Nm);
     take(at, joint.position_rad);
     take(at, joint.velocity_rad_s);
+    take(at, joint.stiffness_Nm_per_rad);
+    take(at, joint.damping_Nms_per_rad);
     take(at, joint.mode);
   }
 }
@@ -202,25 +238,35 @@ void PlantWire::actuation_in(Bytes datagram, ActuationFrame& frame) const noexce
 SensorsOnWire PlantWire::sensors_in(Bytes datagram, SensorFrame& frame) const noexcept {
   const std::byte* at = payload(datagram);
   SensorsOnWire more;
-  std::uint8_t released = 0;
   take(at, more.answered);
-  take(at, released);
-  more.released = released != 0;
+  more.released = take_bool(at);
   frame.joint_count = greeting_.joints;
   frame.foot_count = greeting_.feet;
   take(at, frame.imu.angular_velocity_rad_s);
   take(at, frame.imu.acceleration_m_s2);
   take(at, frame.imu.sequence);
+  take(at, frame.supply_V);
+  frame.emergency = take_bool(at);
   for (std::size_t i = 0; i < greeting_.joints; ++i) {
     JointSample& joint = frame.joints[i];
     take(at, joint.position_rad);
     take(at, joint.motor_position_rad);
     take(at, joint.motor_effort_Nm);
     take(at, joint.sequence);
+    take(at, joint.code);
+    take(at, joint.time_ns);
+    take(at, joint.temperature_C);
+    take(at, joint.drive);
+    joint.homed = take_bool(at);
   }
   for (std::size_t i = 0; i < greeting_.feet; ++i) {
     take(at, frame.feet[i].force_N);
     take(at, frame.feet[i].sequence);
+  }
+  frame.channel_count = sensors_;
+  for (std::size_t i = 0; i < sensors_; ++i) {
+    take(at, frame.channels[i].value);
+    take(at, frame.channels[i].sequence);
   }
   return more;
 }

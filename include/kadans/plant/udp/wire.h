@@ -9,15 +9,19 @@
 //   hello      control   greeting: i64 period_ns, u32 joints, u32 feet, 32 characters of the robot's name
 //   welcome    plant     greeting
 //   refusal    plant     greeting; the head says why
-//   actuation  control   a joint: f64 effort_Nm, f64 position_rad, f64 velocity_rad_s, u8 mode
-//   sensors    plant     u64 answered; u8 released; imu: 6 f64, u32; a joint: 3 f64, u32; a foot: 4 f64, u32
+//   actuation  control   a joint: f64 effort_Nm, position_rad, velocity_rad_s, stiffness_Nm_per_rad,
+//   damping_Nms_per_rad,
+//                        u8 mode
+//   sensors    plant     u64 answered; u8 released; imu: 6 f64, u32; f64 supply_V; u8 emergency; a joint: 3 f64, u32
+//                        sequence, u32 code, i64 time_ns, f32 temperature_C, u8 drive, u8 homed; a foot: 4 f64, u32; a
+//                        sensor: f64, u32
 //   bye        control   none
 //
-// `layout` is a hash of the joints' and feet's names in their order, so that robots that differ refuse each other.
-// `session` is drawn by the control side for each run: what is left of an earlier one is refused. `sequence` counts the
-// datagrams of one side from 1. `time_ns` is the plant's clock on both sides: of the sampling, and of the newest sample
-// that the control side had when it sent an actuation. `answered` is the newest actuation that the sample was made
-// under. A greeting looks the same in every version.
+// `layout` is a hash of the names of joints, feet and sensors in their order, so that robots that differ refuse each
+// other. `session` is drawn by the control side for each run: what is left of an earlier one is refused. `sequence`
+// counts the datagrams of one side from 1. `time_ns` is the plant's clock on both sides: of the sampling, and of the
+// newest sample that the control side had when it sent an actuation. `answered` is the newest actuation that the sample
+// was made under. A greeting looks the same in every version.
 //
 // Encoding and decoding allocate nothing and throw nothing; what comes from outside is believed only after check().
 #pragma once
@@ -34,10 +38,11 @@
 
 namespace kadans {
 
-inline constexpr std::uint16_t wire_version = 1;
+inline constexpr std::uint16_t wire_version = 2;
 inline constexpr std::size_t wire_head_bytes = 40, wire_robot_bytes = 32;
 // No datagram of ours is longer.
-inline constexpr std::size_t wire_bytes_max = wire_head_bytes + 9 + 52 + 28 * max_joints + 36 * max_feet + 4;
+inline constexpr std::size_t wire_bytes_max =
+    wire_head_bytes + 9 + 52 + 9 + 46 * max_joints + 36 * max_feet + 12 * max_channels + 4;
 
 enum class WireKind : std::uint8_t { none, hello, welcome, refusal, actuation, sensors, bye };
 enum class WireRefusal : std::uint8_t { none, other_version, layout, period, busy };
@@ -80,7 +85,7 @@ class PlantWire {
   Bytes sensors(const WireHead& head, const SensorsOnWire& more, const SensorFrame& frame,
                 Datagram& into) const noexcept;
 
-  // Garbage has the wrong magic, length or sum, or a kind or mode that is none.
+  // Garbage has the wrong magic, length or sum, or a kind, mode or state that is none.
   enum class Check : std::uint8_t { good, garbage, other_version, other_layout };
   Check check(Bytes datagram, WireHead& head) const noexcept;
   // Of a datagram that was good (a greeting: that was no garbage).
@@ -95,6 +100,7 @@ class PlantWire {
 
   std::uint64_t layout_ = 0;
   WireGreeting greeting_;
+  std::uint32_t sensors_ = 0;  // as `layout_` says
 };
 
 }  // namespace kadans

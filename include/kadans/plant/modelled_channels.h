@@ -1,0 +1,32 @@
+// The sensors that a robot's configuration names, as a model has them: each reads its value with noise, and again after
+// its period. What else they should read, scenarios set: they are no part of a model's physics.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kadans/signal/frames.h"
+#include "kadans/signal/random.h"
+#include "kadans/signal/sensor_channel.h"
+
+namespace kadans {
+
+class ModelledChannels {
+ public:
+  // Each noise comes from a stream of its own.
+  ModelledChannels(const std::vector<SensorChannel>& channels, std::uint64_t seed);
+
+  // Between ticks.
+  void sample(std::int64_t time_ns, SensorFrame& frame);
+
+ private:
+  struct Channel {
+    double value, noise;
+    std::int64_t period_ns;
+    RandomStream stream;
+    std::int64_t due_ns = 0;
+  };
+  std::vector<Channel> channels_;
+};
+
+}  // namespace kadans

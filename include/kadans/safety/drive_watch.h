@@ -1,0 +1,65 @@
+// What the drives say of themselves: a fault of their own, that they are not enabled, how hot they are, how old their
+// samples; and what they have in common, the supply and the emergency stop's own button. It only finds; what follows is
+// the ladder's matter. What is not told (not a number, no time) is no fault, but for a supply that has limits.
+//
+// One owner, the control thread; nothing here allocates or throws.
+#pragma once
+
+#include <cstdint>
+
+#include "kadans/safety/fault_mask.h"
+#include "kadans/safety/settings.h"
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+class DriveWatch {
+ public:
+  struct Input {
+    const JointSample& sample;
+    bool asked;             // for torque, in the last tick
+    std::int64_t frame_ns;  // of the sensor frame
+    double dt_s;
+  };
+
+  DriveWatch() = default;
+  explicit DriveWatch(const SafetySettings& settings) noexcept
+      : settings_(settings.drives), words_(settings.drive_words), hot_C_(static_cast<float>(settings.drives.hot_C)) {}
+
+  FaultMask look(const Input& in) noexcept {
+    using enum FaultCode;
+    const JointSample& sample = in.sample;
+    const bool calm = sample.drive == DriveState::enabled && sample.time_ns == 0 && !(sample.temperature_C >= hot_C_);
+    if (calm && idle_s_ == 0) return 0;
+    const bool idle = in.asked && sample.drive != DriveState::enabled && sample.drive != DriveState::fault;
+    idle_s_ = idle ? idle_s_ + in.dt_s : 0;
+    return bit_if(sample.drive == DriveState::fault, drive_fault) |
+           bit_if(idle_s_ > settings_.enable_s, drive_not_enabled) | bit_if(sample.temperature_C >= hot_C_, drive_hot) |
+           bit_if(sample.time_ns != 0 && age_s(in) > settings_.sample_age_max_s, sample_old);
+  }
+  // Value, limit and the maker's words of a fault that look() has just found; others are left alone.
+  void describe(const Input& in, Fault& fault) const noexcept;
+
+ private:
+  static double age_s(const Input& in) noexcept { return seconds_between(in.sample.time_ns, in.frame_ns); }
+
+  DriveWatchSettings settings_;
+  DriveWords words_ = nullptr;
+  float hot_C_ = 0;
+  double idle_s_ = 0;
+};
+
+class SupplyWatch {
+ public:
+  explicit SupplyWatch(const SafetySettings& settings) noexcept : settings_(settings.supply) {}
+
+  FaultMask look(const SensorFrame& sensors, double dt_s) noexcept;
+  void describe(Fault& fault) const noexcept;
+
+ private:
+  SupplySettings settings_;
+  double supply_V_ = 0;            // of the last frame
+  double low_s_ = 0, high_s_ = 0;  // for so long
+};
+
+}  // namespace kadans

@@ -1,0 +1,74 @@
+// The fields of the snapshot that have a name: one table, from which records and checks have their signals, behaviors
+// their `s`, the reference its text, and tests of behaviors what they may set.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kadans/signal/sensor_channel.h"
+#include "kadans/signal/signal.h"
+#include "kadans/signal/status.h"
+
+namespace kadans {
+
+// Where a field stands, of one of a few types; a number to whoever reads or writes it.
+class StatusPlace {
+ public:
+  StatusPlace(double& at) noexcept : number_(&at) {}  // NOLINT(google-explicit-constructor): a field's own type
+  StatusPlace(bool& at) noexcept : flag_(&at) {}      // NOLINT(google-explicit-constructor)
+  template <typename Choice>
+  requires(sizeof(Choice) == 1) StatusPlace(Choice& at)
+  noexcept  // NOLINT(google-explicit-constructor)
+      : choice_(reinterpret_cast<std::uint8_t*>(&at)) {}
+  StatusPlace(std::uint32_t& at) noexcept : count_(&at) {}  // NOLINT(google-explicit-constructor)
+  StatusPlace(FaultCode& at) noexcept : code_(&at) {}       // NOLINT(google-explicit-constructor)
+  StatusPlace(std::uint64_t& at) noexcept : tick_(&at) {}   // NOLINT(google-explicit-constructor)
+
+  double value() const noexcept;
+  void set(double value) const noexcept;  // within the field's range
+  // A signal that gathers it. Of numbers, flags and counts alone.
+  void declare(SignalTable& table, Signal signal) const;
+
+ private:
+  double* number_ = nullptr;
+  bool* flag_ = nullptr;
+  std::uint8_t* choice_ = nullptr;
+  std::uint32_t* count_ = nullptr;
+  FaultCode* code_ = nullptr;
+  std::uint64_t* tick_ = nullptr;
+};
+
+struct StatusField {
+  enum class Part : std::uint8_t { root, joint, base, rate, foot, support, safety, joystick, sensors };
+  enum class Type : std::uint8_t { number, flag, choice };
+
+  Part part;
+  Type type;
+  const char* name;  // in `s`: "roll_rad"
+  const char* unit;
+  const char* doc;                                           // without its unit and a full stop
+  StatusPlace (*at)(Snapshot& snapshot, std::size_t index);  // nullptr: time_s, which is the reader's own
+  const char* signal = nullptr;                              // in records, where it has another name than in `s`
+  // Of a choice: the name of each value; how many there are.
+  const char* (*choice)(std::size_t value) = nullptr;
+  std::size_t choices = 0;
+
+  double value(const Snapshot& snapshot, std::size_t index) const noexcept {
+    return at(const_cast<Snapshot&>(snapshot), index).value();  // which is not written
+  }
+};
+
+// Part by part, in the order in which records have them.
+std::span<const StatusField> status_fields() noexcept;
+// And those of the sensors that a robot's configuration names, which must outlive them.
+std::vector<StatusField> status_fields(const std::vector<SensorChannel>& sensors);
+
+// Declares the fields of a part as signals "topic.name". The snapshot must outlive the table's use. Throws
+// std::invalid_argument on a name taken.
+void declare_part(SignalTable& table, StatusField::Part part, const std::string& topic, const Snapshot& snapshot,
+                  std::size_t index = 0);
+
+}  // namespace kadans

@@ -1,0 +1,159 @@
+#include "kadans/signal/status_fields.h"
+
+#include <array>
+#include <iterator>
+#include <string>
+#include <utility>
+
+namespace kadans {
+namespace {
+
+using enum StatusField::Part;
+using enum StatusField::Type;
+using Place = StatusPlace;
+
+const char* level_name(std::size_t value) { return name(static_cast<SafetyLevel>(value)); }
+const char* posture_name(std::size_t value) { return name(static_cast<Posture>(value)); }
+
+template <std::size_t axis>
+Place rate_at(Snapshot& s, std::size_t) {
+  return s.status.base.angular_velocity_rad_s[axis];
+}
+template <std::size_t axis>
+Place axis_at(Snapshot& s, std::size_t) {
+  return s.joystick.axes[axis];
+}
+template <std::size_t button>
+Place button_at(Snapshot& s, std::size_t) {
+  return s.joystick.buttons[button];
+}
+
+template <std::size_t channel>
+Place channel_at(Snapshot& s, std::size_t) {
+  return s.status.channels[channel];
+}
+template <std::size_t... channel>
+constexpr auto channel_places(std::index_sequence<channel...>) {
+  return std::array{&channel_at<channel>...};
+}
+
+constexpr StatusField fields[] = {
+    {joint, number, "position_rad", "rad", "Position, as measured",
+     [](Snapshot& s, std::size_t i) -> Place { return s.joints.joints[i].position_rad; }},
+    {joint, number, "velocity_rad_s", "rad/s", "Velocity, filtered",
+     [](Snapshot& s, std::size_t i) -> Place { return s.joints.joints[i].velocity_rad_s; }},
+    {joint, number, "effort_Nm", "Nm", "Torque at the joint, from its spring or its motor",
+     [](Snapshot& s, std::size_t i) -> Place { return s.joints.joints[i].effort_Nm; }},
+
+    {base, number, "roll_rad", "rad", "Roll", [](Snapshot& s, std::size_t) -> Place { return s.status.base.roll_rad; }},
+    {base, number, "pitch_rad", "rad", "Pitch; positive leans forward",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.base.pitch_rad; }},
+    {base, number, "yaw_rad", "rad", "Yaw since the start; it drifts",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.base.yaw_rad; }},
+    {base, number, "tilt_rad", "rad", "Angle from upright, >= 0",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.base.tilt_rad; }},
+    {base, number, "height_m", "m", "Height over the lowest sole that bears; holds when no foot does",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.base.height_m; }},
+    {rate, number, "x", "rad/s", "Turning about the base's x axis", rate_at<0>, "rate_x_rad_s"},
+    {rate, number, "y", "rad/s", "Turning about the base's y axis", rate_at<1>, "rate_y_rad_s"},
+    {rate, number, "z", "rad/s", "Turning about the base's z axis", rate_at<2>, "rate_z_rad_s"},
+    {base, choice, "posture", "", "How the trunk is: it lies on its front, its back or a side, or it does not lie",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.base.posture; }, nullptr, posture_name, posture_count},
+
+    {foot, number, "force_N", "N", "Sum of its pressure sensors",
+     [](Snapshot& s, std::size_t i) -> Place { return s.status.feet[i].force_N; }},
+    {foot, flag, "contact", "", "Whether it bears",
+     [](Snapshot& s, std::size_t i) -> Place { return s.status.feet[i].contact; }},
+    {foot, number, "cop_x_m", "m", "Centre of pressure, forward in the foot's frame; holds without contact",
+     [](Snapshot& s, std::size_t i) -> Place { return s.status.feet[i].cop_x_m; }},
+    {foot, number, "cop_y_m", "m", "Centre of pressure, to the left in the foot's frame; holds without contact",
+     [](Snapshot& s, std::size_t i) -> Place { return s.status.feet[i].cop_y_m; }},
+
+    {support, number, "force_N", "N", "Sum of the forces under the feet that bear",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.support.force_N; }},
+    {support, number, "cop_x_m", "m", "Centre of pressure of all feet, ahead of the trunk; holds without contact",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.support.cop_x_m; }},
+    {support, number, "cop_y_m", "m", "Centre of pressure of all feet, left of the trunk; holds without contact",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.support.cop_y_m; }},
+
+    {safety, choice, "level", "", "Rung of the degradation ladder",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.safety.level; }, nullptr, level_name, safety_levels},
+    {safety, number, "faults", "", "Faults since the last clearing",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.safety.fault_count; }},
+    {safety, number, "first_fault", "", "Code of the first fault; 0: none",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.safety.first_fault.code; }},
+
+    {joystick, number, "x", "", "To the right, -1..1; 0 within the dead zone", axis_at<0>},
+    {joystick, number, "y", "", "Away from the hand, -1..1", axis_at<1>},
+    {joystick, number, "twist", "", "Clockwise from above, -1..1", axis_at<2>},
+    {joystick, number, "throttle", "", "Forward, -1..1", axis_at<3>},
+    {joystick, flag, "button_1", "", "Whether it is held", button_at<0>},
+    {joystick, flag, "button_2", "", "Whether it is held", button_at<1>},
+    {joystick, flag, "button_3", "", "Whether it is held", button_at<2>},
+    {joystick, flag, "button_4", "", "Whether it is held", button_at<3>},
+    {joystick, flag, "button_5", "", "Whether it is held", button_at<4>},
+    {joystick, flag, "button_6", "", "Whether it is held", button_at<5>},
+    {joystick, flag, "button_7", "", "Whether it is held", button_at<6>},
+    {joystick, flag, "button_8", "", "Whether it is held", button_at<7>},
+    {joystick, flag, "connected", "", "Whether there is one",
+     [](Snapshot& s, std::size_t) -> Place { return s.joystick.connected; }},
+
+    {root, number, "time_s", "s", "Time on the engine's clock", nullptr},
+    {root, number, "tick", "", "Ticks of the control engine", [](Snapshot& s, std::size_t) -> Place { return s.tick; }},
+};
+
+}  // namespace
+
+double StatusPlace::value() const noexcept {
+  if (number_ != nullptr) return *number_;
+  if (flag_ != nullptr) return *flag_ ? 1 : 0;
+  if (choice_ != nullptr) return *choice_;
+  if (count_ != nullptr) return *count_;
+  if (code_ != nullptr) return static_cast<double>(*code_);
+  return static_cast<double>(*tick_);
+}
+
+void StatusPlace::set(double value) const noexcept {
+  if (number_ != nullptr) *number_ = value;
+  if (flag_ != nullptr) *flag_ = value != 0;
+  if (choice_ != nullptr) *choice_ = static_cast<std::uint8_t>(value);
+  if (count_ != nullptr) *count_ = static_cast<std::uint32_t>(value);
+  if (code_ != nullptr) *code_ = static_cast<FaultCode>(value);
+  if (tick_ != nullptr) *tick_ = static_cast<std::uint64_t>(value);
+}
+
+void StatusPlace::declare(SignalTable& table, Signal signal) const {
+  if (number_ != nullptr) table.add(std::move(signal), number_);
+  if (flag_ != nullptr) table.add(std::move(signal), flag_);
+  if (choice_ != nullptr) table.add(std::move(signal), choice_);
+  if (count_ != nullptr) table.add(std::move(signal), count_);
+}
+
+std::span<const StatusField> status_fields() noexcept { return fields; }
+
+std::vector<StatusField> status_fields(const std::vector<SensorChannel>& channels) {
+  static constexpr auto places = channel_places(std::make_index_sequence<max_channels>{});
+  std::vector<StatusField> all(std::begin(fields), std::end(fields));
+  for (std::size_t i = 0; i < channels.size() && i < max_channels; ++i) {
+    const SensorChannel& one = channels[i];
+    all.push_back({sensors, number, one.name.c_str(), one.unit.c_str(), one.doc.c_str(), places[i]});
+  }
+  return all;
+}
+
+void declare_part(SignalTable& table, StatusField::Part part, const std::string& topic, const Snapshot& snapshot,
+                  std::size_t index) {
+  for (const StatusField& field : fields) {
+    if (field.part != part) continue;
+    const std::string name = topic + "." + (field.signal != nullptr ? field.signal : field.name);
+    std::string doc = field.doc;
+    if (field.type == choice) {
+      for (std::size_t i = 0; i < field.choices; ++i)
+        doc += (i == 0 ? ": " : ", ") + std::to_string(i) + " " + field.choice(i);
+    }
+    // The table reads it and writes nothing.
+    field.at(const_cast<Snapshot&>(snapshot), index).declare(table, {name, field.unit, doc + "."});
+  }
+}
+
+}  // namespace kadans
