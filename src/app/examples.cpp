@@ -92,6 +92,7 @@ constexpr Examples all_examples[] = {
      "  kadans ctl watch joint.l_knee.position_rad safety.level\n"
      "  kadans ctl set posture.l_knee.kp_Nm_per_rad 250\n"},
     {"ctl status", "  kadans ctl status --json\n"},
+    {"ctl drives", "  kadans ctl drives --json\n"},
     {"ctl list",
      "  kadans ctl list behaviors\n"
      "  kadans ctl list parameters --names\n"},
@@ -107,6 +108,7 @@ constexpr Examples all_examples[] = {
     {"ctl stop", "  kadans ctl stop\n"},
     {"ctl estop", "  kadans ctl estop\n"},
     {"ctl switch", "  kadans ctl switch posture\n"},
+    {"ctl lead", "  kadans ctl lead gaze.x_m=1.2,gaze.y_m=0.3 --time 0.5\n"},
     {"ctl fault", "  kadans ctl fault list\n"},
     {"ctl fault list", "  kadans ctl fault list --json\n"},
     {"ctl fault clear", "  kadans ctl fault clear\n"},

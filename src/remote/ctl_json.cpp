@@ -104,6 +104,21 @@ Json behaviors_json(const Answer& report) {
   return all;
 }
 
+Json drives_json(const PowerStatus& power, const RobotModel& model) {
+  const auto told = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  Json drives = Json::array();
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    if (model.joints[i].passive()) continue;
+    const DriveStatus& drive = power.drives[i];
+    drives.push_back({{"joint", model.joints[i].name},
+                      {"state", name(drive.state)},
+                      {"code", drive.code},
+                      {"temperature_C", told(static_cast<double>(drive.temperature_C))},
+                      {"homed", drive.homed}});
+  }
+  return {{"ok", true}, {"supply_V", told(power.supply_V)}, {"emergency", power.emergency}, {"drives", drives}};
+}
+
 Json fault_json(const Fault& fault, const RobotModel& model) {
   Json json{{"code", name(fault.code)}, {"tick", fault.tick}, {"text", fault_text(fault, model)}};
   put_finite(json, "value", fault.value);

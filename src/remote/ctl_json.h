@@ -16,6 +16,8 @@ std::string refusal(const std::string& why);
 
 Json behaviors_json(const Answer& report);
 Json status_json(const Instance& instance, const InstanceStatus& status);
+// {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; what is not told is null.
+Json drives_json(const PowerStatus& power, const RobotModel& model);
 Json fault_json(const Fault& fault, const RobotModel& model);
 
 // Everything of a kind: "behaviors", "sets", "objects", "parameters", "signals". The report counts for behaviors and

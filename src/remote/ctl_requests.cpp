@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "ctl_json.h"
-#include "ctl_verbs.h"
 #include "kadans/config/problems.h"
+#include "order_request.h"
 
 namespace kadans {
 namespace {
@@ -29,33 +29,32 @@ CtlRequests::~CtlRequests() = default;
 
 std::string CtlRequests::take(CtlSession& session, const std::string& line) {
   try {
-    const CtlRequest request = read_request(line, session.role());
-    if (session.leaves && std::string_view(request.verb->name) != "estop")
-      return refusal("orders expire with their client");
+    const OrderRequest request = read_request(line, session.role());
+    if (session.leaves && !request.is("estop")) return refusal("orders expire with their client");
     if (known_here(request)) return told(session, request, {});
-    return request.verb->order ? send(session, request) : at_once(session, request);
+    return request.info->kind ? send(session, request) : at_once(session, request);
   } catch (const std::exception& error) {
     return refusal(error.what());
   }
 }
 
 // What the behavior thread need not be asked for.
-bool CtlRequests::known_here(const CtlRequest& request) const {
-  const std::string verb = request.verb->name, name = request.text("name"), what = request.text("what");
+bool CtlRequests::known_here(const OrderRequest& request) const {
+  const std::string name = request.text("name"), what = request.text("what");
   const Catalog& catalog = instance_.catalog();
-  if (verb == "get") return catalog.signals.find(name) || catalog.parameters.find(name);
-  return verb == "list" && what != "behaviors" && what != "parameters";
+  if (request.is("get")) return catalog.signals.find(name) || catalog.parameters.find(name);
+  return request.is("list") && what != "behaviors" && what != "parameters";
 }
 
 bool CtlRequests::reports(const CtlSession& session) const {
-  return *asked_.at(session.number()).verb->order == Order::Kind::report;
+  return *asked_.at(session.number()).info->kind == Order::Kind::report;
 }
 
-std::string CtlRequests::at_once(CtlSession& session, const CtlRequest& request) {
-  const std::string verb = request.verb->name;
-  if (verb == "watch") return watch(session, request);
-  if (verb == "faults") return faults();
-  if (verb == "unwatch") {
+std::string CtlRequests::at_once(CtlSession& session, const OrderRequest& request) {
+  if (request.is("watch")) return watch(session, request);
+  if (request.is("faults")) return faults();
+  if (request.is("drives")) return json_text(drives_json(port_.status().power, *instance_.catalog().model));
+  if (request.is("unwatch")) {
     session.watched.clear();
   } else {  // estop
     instance_.stop_now(session.who());
@@ -63,13 +62,8 @@ std::string CtlRequests::at_once(CtlSession& session, const CtlRequest& request)
   return json_text({{"ok", true}});
 }
 
-std::string CtlRequests::send(CtlSession& session, const CtlRequest& request) {
-  Order order{.kind = *request.verb->order, .who = session.who(), .client = session.number()};
-  if (request.flag("replace")) order.kind = Order::Kind::replace;
-  for (const char* field : {"list", "set", "file", "name", "text"}) {
-    if (request.json.contains(field)) order.text = request.text(field);
-  }
-  order.value = request.number("value", 0);
+std::string CtlRequests::send(CtlSession& session, const OrderRequest& request) {
+  Order order = request.order(session.who(), session.number());
   session.has_console = session.has_console || order.kind == Order::Kind::line || order.kind == Order::Kind::complete;
   session.order = port_.send(std::move(order));
   if (session.order == 0) return refusal("too many orders wait for their answers; try again");
@@ -78,7 +72,7 @@ std::string CtlRequests::send(CtlSession& session, const CtlRequest& request) {
 }
 
 std::string CtlRequests::answered(CtlSession& session, const Answer* answer) {
-  const CtlRequest request = asked_.at(session.number());
+  const OrderRequest request = asked_.at(session.number());
   const std::uint64_t order = std::exchange(session.order, 0);
   try {
     if (answer == nullptr) port_.withdraw(order);
@@ -86,7 +80,7 @@ std::string CtlRequests::answered(CtlSession& session, const Answer* answer) {
       return refusal("the behavior thread does not answer; estop works without it");
     if (answer == nullptr) {
       const Answer none;
-      return std::string_view(request.verb->name) == "status" ? status(nullptr) : told(session, request, none);
+      return request.is("status") ? status(nullptr) : told(session, request, none);
     }
     if (!answer->done && answer->text.empty() && !answer->incomplete) return refusal("refused");
     if (!answer->done && !answer->incomplete) return refusal(answer->text);
@@ -96,23 +90,22 @@ std::string CtlRequests::answered(CtlSession& session, const Answer* answer) {
   }
 }
 
-std::string CtlRequests::told(const CtlSession& session, const CtlRequest& request, const Answer& answer) {
-  const std::string verb = request.verb->name;
+std::string CtlRequests::told(const CtlSession& session, const OrderRequest& request, const Answer& answer) {
   Json json{{"ok", true}};
-  if (verb == "status") {
+  if (request.is("status")) {
     return status(&answer);
-  } else if (verb == "list") {
+  } else if (request.is("list")) {
     json["items"] = list_json(request.text("what"), instance_, port_.status(), answer);
-  } else if (verb == "get") {
+  } else if (request.is("get")) {
     return get(request.text("name"), answer);
-  } else if (verb == "save") {
+  } else if (request.is("save")) {
     return save(session, request.text("preset"), answer);
-  } else if (verb == "set" || verb == "undo") {
+  } else if (request.is("set") || request.is("undo")) {
     json.update(change_json(answer.changes.at(0)));
-  } else if (verb == "complete") {
+  } else if (request.is("complete")) {
     json["begin"] = answer.begin;
     json["words"] = answer.words;
-  } else if (verb == "line") {
+  } else if (request.is("line")) {
     json.update({{"text", answer.text},
                  {"incomplete", answer.incomplete},
                  {"writes", answer.writes},
@@ -158,25 +151,21 @@ std::string CtlRequests::get(const std::string& name, const Answer& report) {
   throw InputError({.message = unknown_name("parameter or signal", name, names)});
 }
 
-// The file is written here, not on the behavior thread, which is told then.
 std::string CtlRequests::save(const CtlSession& session, const std::string& preset, const Answer& answer) {
   Json json{{"ok", true}, {"file", instance_.configuration().file().string()}, {"saved", Json::array()}};
   if (answer.changes.empty() && preset.empty()) return json_text(json);
-  const std::vector<PresetOverride> overridden =
-      instance_.configuration().save(answer.changes, instance_.catalog(), {.preset = preset, .values = answer.set});
+  const std::vector<PresetOverride> overridden = save_changes(instance_, port_, answer, session.who(), preset);
   for (const ParameterChange& change : answer.changes) json["saved"].push_back(change_json(change));
   if (!preset.empty()) json["preset"] = preset;
   json["overridden"] = Json::array();
   for (const PresetOverride& one : overridden)
     json["overridden"].push_back({{"name", one.name}, {"preset", one.preset}, {"value", one.value}});
-  (void)port_.send({.kind = Order::Kind::saved, .who = session.who(), .changes = answer.changes});
   return json_text(json);
 }
 
-std::string CtlRequests::watch(CtlSession& session, const CtlRequest& request) {
+std::string CtlRequests::watch(CtlSession& session, const OrderRequest& request) {
   const SignalTable& table = instance_.catalog().signals;
   const double rate_hz = request.number("rate_hz", rate_usual_hz);
-  if (!(rate_hz > 0 && rate_hz <= 1000)) throw InputError({.message = "\"rate_hz\" must be more than 0, at most 1000"});
   std::vector<SignalId> ids;
   Json signals = Json::array();
   for (const Json& name : request.json["signals"]) {

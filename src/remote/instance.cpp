@@ -45,7 +45,8 @@ InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) n
           .safety = snapshot.status.safety,
           .control_sets = snapshot.control_sets,
           .commands_refused = snapshot.commands_refused,
-          .record = record};
+          .record = record,
+          .power = snapshot.power};
 }
 
 void Instance::publish(const InstanceStatus& status) noexcept {

@@ -9,6 +9,7 @@
 #include "kadans/config/foreign_json.h"
 #include "kadans/signal/input_error.h"
 #include "live_protocol.h"
+#include "order_request.h"
 
 namespace kadans {
 namespace {
@@ -198,36 +199,33 @@ void LiveClient::call_service(std::span<const std::byte> bytes) {
   if (!call || call->service != command_service) return complain("a service call that this server does not know");
   if (!writes_) return say(service_failure(call->call, "orders need the token that the server printed"));
   try {
-    const Json json = parse_foreign_json(call->request);
-    command(call->call, json.at("verb"), json.value("text", ""), json.value("value", 0.0));
+    command(call->call, read_brief_request(parse_foreign_json(call->request), hub_.can_pace()));
   } catch (const InputError& error) {
-    say(service_failure(call->call, std::string("not understood: ") + error.what()));
-  } catch (const nlohmann::json::exception& error) {
     say(service_failure(call->call, std::string("not understood: ") + error.what()));
   }
 }
 
-void LiveClient::command(std::uint32_t service_call, const std::string& verb, const std::string& text, double value) {
-  const std::optional<Order::Kind> kind = order_of(verb);
-  if (!kind) {
-    if (hub_.act(verb, text, value, who_)) return answer_service(service_call, true, "");
-    return say(service_failure(service_call, "'" + verb + "' is no order; there are " + verbs_text(hub_.can_pace())));
+void LiveClient::command(std::uint32_t service_call, const OrderRequest& request) {
+  if (!request.info->kind) {
+    hub_.act(request, who_);
+    return answer_service(service_call, true, "");
   }
   const std::uint32_t call = ++next_call_;
-  if (calls_.size() >= calls_max || !hub_.send({.kind = *kind, .text = text, .value = value, .who = who_}, id_, call))
+  if (calls_.size() >= calls_max || !hub_.send(request.order(who_), id_, call))
     return say(service_failure(service_call, "too many orders wait"));
-  calls_[call] = {.service = true, .save = *kind == Order::Kind::changes, .service_call = service_call};
+  calls_[call] = {
+      .service = true, .save = request.is("save"), .preset = request.text("preset"), .service_call = service_call};
 }
 
 void LiveClient::answer_service(std::uint32_t service_call, bool done, const std::string& text) {
   put({true, service_response(service_call, json_text(Json{{"done", done}, {"text", text}}))});
 }
 
-void LiveClient::save(std::uint32_t service_call, const Answer& answer) {
+void LiveClient::save(const Call& call, const Answer& answer) {
   try {
-    answer_service(service_call, true, hub_.save(answer.changes));
+    answer_service(call.service_call, true, hub_.save(answer, who_, call.preset));
   } catch (const std::exception& error) {
-    answer_service(service_call, false, error.what());
+    answer_service(call.service_call, false, error.what());
   }
 }
 
@@ -242,7 +240,7 @@ void LiveClient::take(std::uint32_t number, const Answer& answer) noexcept {
 }
 
 void LiveClient::answer_call(const Call& call, const Answer& answer) {
-  if (call.save) return save(call.service_call, answer);
+  if (call.save) return save(call, answer);
   if (call.service) return answer_service(call.service_call, answer.done, answer.text);
   if (!answer.done) complain(answer.text);
   if (answer.done) hub_.settled(call.parameter, call.value);

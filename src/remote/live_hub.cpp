@@ -8,13 +8,14 @@
 #include "kadans/config/foreign_json.h"
 #include "kadans/remote/live_client.h"
 #include "live_protocol.h"
+#include "order_request.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::uint64_t report_every = 70, timing_every = 140, parameters_every = 14;  // beats
 constexpr std::uint64_t own = 0;                                                       // the hub's orders
-constexpr std::uint32_t report_call = 1, saved_call = 2, describe_call = 3;
+constexpr std::uint32_t report_call = 1, describe_call = 2;
 
 }  // namespace
 
@@ -27,21 +28,12 @@ bool LivePace::push(const std::string& what) {
   return true;
 }
 
-bool LivePace::obey(const std::string& verb, const std::string& text, double value) {
-  if (verb == "hold") {
-    held = true;
-  } else if (verb == "go") {
-    held = false;
-  } else if (verb == "step") {
-    steps += 1;
-  } else if (verb == "push") {
-    return push(text);
-  } else if (verb == "speed" && value >= 0.01 && value <= 100) {
-    speed = value;
-  } else {
-    return false;
-  }
-  return true;
+void LivePace::obey(const OrderRequest& request) {
+  if (request.is("hold")) held = true;
+  if (request.is("go")) held = false;
+  if (request.is("step")) steps += 1;
+  if (request.is("speed")) speed = request.number("times", 1);
+  if (request.is("push") && !push(request.text("push"))) throw InputError({.message = "too many pushes wait"});
 }
 
 std::vector<std::string> LivePace::take_pushes() {
@@ -95,7 +87,7 @@ const std::string& LiveHub::introduction(bool writes) {
   metadata["mode"] = facts.mode;
   metadata["robot"] = facts.name;
   metadata["writes"] = writes ? "yes" : "no";
-  metadata["verbs"] = verbs_text(can_pace());
+  metadata["verbs"] = brief_verbs(can_pace());
   metadata["plays"] = plays;
   return text = json_text({{"op", "serverInfo"},
                            {"name", "kadans " + facts.version + ": " + facts.name},
@@ -213,21 +205,15 @@ void LiveHub::take_parameters() {
   for (const LiveParameter& p : behaviors_now_) note(p.name, p.value);
 }
 
-std::string LiveHub::save(const std::vector<ParameterChange>& changes) {
-  ConfigurationText& configuration = p_.instance.configuration();
-  const auto overridden = configuration.save(changes, p_.instance.catalog());
-  (void)send({.kind = Order::Kind::saved, .changes = changes}, own, saved_call);
-  return configuration.told(changes.size(), overridden);
+std::string LiveHub::save(const Answer& answer, const std::string& who, const std::string& preset) {
+  const auto overridden = save_changes(p_.instance, p_.port, answer, who, preset);
+  return p_.instance.configuration().told(answer.changes.size(), overridden);
 }
 
-bool LiveHub::act(const std::string& verb, const std::string& text, double value, const std::string& who) {
-  if (verb == "estop") {
-    p_.instance.stop_now(who);
-    return true;
-  }
-  if (p_.pace == nullptr || !p_.pace->obey(verb, text, value)) return false;
+void LiveHub::act(const OrderRequest& request, const std::string& who) {
+  if (request.is("estop")) return p_.instance.stop_now(who);
+  p_.pace->obey(request);
   tell_state();
-  return true;
 }
 
 void LiveHub::tell_state() {

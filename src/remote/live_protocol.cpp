@@ -1,32 +1,11 @@
 #include "live_protocol.h"
 
-#include <algorithm>
-#include <array>
-#include <utility>
-
 #include <unistd.h>
 
 #include "kadans/config/foreign_json.h"
 
 namespace kadans {
 namespace {
-
-constexpr std::array orders{
-    std::pair{std::string_view("play"), Order::Kind::play},
-    std::pair{std::string_view("replace"), Order::Kind::replace},
-    std::pair{std::string_view("pause"), Order::Kind::pause},
-    std::pair{std::string_view("resume"), Order::Kind::resume},
-    std::pair{std::string_view("stop"), Order::Kind::stop},
-    std::pair{std::string_view("reload"), Order::Kind::reload},
-    std::pair{std::string_view("switch_set"), Order::Kind::switch_set},
-    std::pair{std::string_view("set_point"), Order::Kind::set_point},
-    std::pair{std::string_view("undo"), Order::Kind::undo},
-    std::pair{std::string_view("save"), Order::Kind::changes},  // then they are written
-    std::pair{std::string_view("clear_faults"), Order::Kind::clear_faults},
-    std::pair{std::string_view("record_start"), Order::Kind::record_start},
-    std::pair{std::string_view("record_stop"), Order::Kind::record_stop},
-    std::pair{std::string_view("record_dump"), Order::Kind::record_dump},
-};
 
 std::vector<std::byte> taken(const ByteWriter& writer) {
   const std::span<const std::byte> bytes = writer.bytes();
@@ -62,18 +41,6 @@ Json command_in_json() {
 }  // namespace
 
 std::string session_id() { return std::to_string(getpid()); }
-
-std::string verbs_text(bool paced) {
-  std::string text = "estop";
-  for (const auto& [verb, kind] : orders) text += " " + std::string(verb);
-  return text + (paced ? " hold go step speed push" : "");
-}
-
-std::optional<Order::Kind> order_of(std::string_view verb) {
-  const auto found = std::ranges::find(orders, verb, &std::pair<std::string_view, Order::Kind>::first);
-  if (found == orders.end()) return std::nullopt;
-  return found->second;
-}
 
 const std::string& service_advertisement() {
   static const std::string text =

@@ -27,9 +27,6 @@ struct ServiceCall {
 };
 
 std::string session_id();  // of this process
-std::string verbs_text(bool paced);
-// The order that a verb means: "play", "stop", "clear_faults" ...
-std::optional<Order::Kind> order_of(std::string_view verb);
 
 const std::string& service_advertisement();  // the same to all clients
 Json service_failure(std::uint32_t call, const std::string& why);

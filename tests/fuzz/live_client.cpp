@@ -11,6 +11,7 @@
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
 #include "kadans/config/foreign_json.h"
+#include "kadans/remote/order_table.h"
 
 namespace {
 
@@ -87,7 +88,8 @@ bool may_change(bool binary, std::string_view message) {
   if (!json || !json->is_object()) return false;
   if (!call) return json->value("op", Json()) == "setParameters";
   const Json verb = json->value("verb", Json());
-  return verb.is_string() && verbs_text(true).find(verb.get_ref<const std::string&>()) != std::string::npos;
+  const OrderInfo* order = verb.is_string() ? find_order(verb.get_ref<const std::string&>()) : nullptr;
+  return order != nullptr && order->is_brief();
 }
 
 }  // namespace

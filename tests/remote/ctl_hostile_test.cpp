@@ -126,7 +126,7 @@ TEST_CASE("rubbish gets an answer that says what is wrong") {
           "unknown field 'nmae' of get, did you mean 'name'?");
     CHECK(error("{\"verb\":\"watch\",\"signals\":[]}") == "watch what? \"signals\" is empty");
     CHECK(error("{\"verb\":\"watch\",\"signals\":[\"safety.level\"],\"rate_hz\":-1}") ==
-          "\"rate_hz\" must be more than 0, at most 1000");
+          "\"rate_hz\" = -1 must be 0.01..1000");
     CHECK(error("{\"verb\":\"play\",\"list\":\"\xff\"}").size() > 5);
     CHECK(error("{\"verb\":\"line\",\"text\":\"while true do end\"}").find("budget") != std::string::npos);
   });

@@ -66,6 +66,17 @@ TEST_CASE("get gives parameters and signals, and knows what was meant") {
             .find("did you mean '" + std::string(kp)) != std::string::npos);
 }
 
+TEST_CASE("ctl tells what the drives say of themselves") {
+  LiveInstance live;
+  (void)live.ask_until({{"verb", "status"}}, [](const Json& a) { return a["tick"] > 0; });
+  const Json answer = live.ask({{"verb", "drives"}});
+  CHECK(answer["supply_V"].is_null());  // a model without one
+  CHECK(answer["emergency"] == false);
+  REQUIRE(answer["drives"].size() == 2);
+  CHECK(answer["drives"][0] ==
+        Json{{"joint", "hip"}, {"state", "enabled"}, {"code", 0}, {"temperature_C", nullptr}, {"homed", true}});
+}
+
 TEST_CASE("behaviors play, are paused, tuned, replaced and stopped, and status says so") {
   LiveInstance live;
   live.start();

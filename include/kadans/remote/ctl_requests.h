@@ -13,7 +13,7 @@
 
 namespace kadans {
 
-struct CtlRequest;
+struct OrderRequest;
 
 class CtlRequests {
  public:
@@ -41,21 +41,21 @@ class CtlRequests {
     Fault last;
   };
 
-  bool known_here(const CtlRequest& request) const;
-  std::string at_once(CtlSession& session, const CtlRequest& request);
-  std::string send(CtlSession& session, const CtlRequest& request);
+  bool known_here(const OrderRequest& request) const;
+  std::string at_once(CtlSession& session, const OrderRequest& request);
+  std::string send(CtlSession& session, const OrderRequest& request);
   std::string status(const Answer* report);
-  std::string watch(CtlSession& session, const CtlRequest& request);
+  std::string watch(CtlSession& session, const OrderRequest& request);
   std::string faults();
-  std::string told(const CtlSession& session, const CtlRequest& request, const Answer& answer);
+  std::string told(const CtlSession& session, const OrderRequest& request, const Answer& answer);
   std::string get(const std::string& name, const Answer& report);
   std::string save(const CtlSession& session, const std::string& preset, const Answer& answer);
 
   Instance& instance_;
   InstancePort& port_;
   const CtlCounts& counts_;
-  std::map<std::uint64_t, CtlRequest> asked_;  // by session
-  std::vector<std::uint64_t> leaving_;         // whose consoles are to be closed
+  std::map<std::uint64_t, OrderRequest> asked_;  // by session
+  std::vector<std::uint64_t> leaving_;           // whose consoles are to be closed
   std::map<std::pair<FaultCode, std::uint16_t>, Seen> faults_;
 };
 

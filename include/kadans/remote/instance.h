@@ -52,6 +52,7 @@ struct InstanceStatus {
   SetMask control_sets = 0;
   std::uint32_t commands_refused = 0;
   RecordStatus record;
+  PowerStatus power;
 };
 InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) noexcept;
 

@@ -62,6 +62,7 @@ class LiveClient {
   };
   struct Call {
     bool service = false, save = false;
+    std::string preset{};  // of a save
     std::uint32_t service_call = 0;
     std::string parameter{}, parameter_request{};  // its name; the client's id
     double value = 0;
@@ -88,8 +89,8 @@ class LiveClient {
   void fetch_asset(const Json& json);
   void answer_call(const Call& call, const Answer& answer);
   void call_service(std::span<const std::byte> bytes);
-  void command(std::uint32_t service_call, const std::string& verb, const std::string& text, double value);
-  void save(std::uint32_t service_call, const Answer& answer);
+  void command(std::uint32_t service_call, const OrderRequest& request);
+  void save(const Call& call, const Answer& answer);
   void answer_service(std::uint32_t service_call, bool done, const std::string& text);
   void put_message(std::uint32_t subscription, const LiveMessage& message, Outgoing& out) const;
 

@@ -18,6 +18,8 @@
 
 namespace kadans {
 
+struct OrderRequest;
+
 // What clients ask of a simulation, from the server's thread to its own. Null where there is none.
 struct LivePace {
   static constexpr std::size_t pushes_max = 8;
@@ -29,8 +31,8 @@ struct LivePace {
 
   // Server's thread. False: too many wait. Throws what check_push throws.
   [[nodiscard]] bool push(const std::string& what);
-  // hold, go, step, speed, push. False: `verb` is no such thing, or it cannot be done. Throws as push().
-  [[nodiscard]] bool obey(const std::string& verb, const std::string& text, double value);
+  // An order whose face is `paced`. Throws as push(), or when too many wait.
+  void obey(const OrderRequest& request);
   // The simulation's: "torso=0,2,0", an impulse in Ns; none wait mostly, and then this is one load.
   std::vector<std::string> take_pushes();
 
@@ -82,7 +84,7 @@ class LiveHub {
   const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // in the last beat
   const std::string& state() const noexcept { return state_; }                     // JSON: paused, held, speed
   // Writes parameters that were tuned into the robot's configuration. Throws InputError, std::system_error.
-  std::string save(const std::vector<ParameterChange>& changes);
+  std::string save(const Answer& answer, const std::string& who, const std::string& preset);
   std::uint64_t state_count() const noexcept { return state_count_; }
 
   void enter(std::uint64_t id, LiveClient& client) { clients_[id] = &client; }
@@ -94,8 +96,8 @@ class LiveHub {
   [[nodiscard]] bool send(Order order, std::uint64_t client, std::uint32_t call);
   // An order has set this parameter.
   void settled(const std::string& name, double value);
-  // What needs no order: the emergency stop and the pace. False: `verb` is no such thing.
-  [[nodiscard]] bool act(const std::string& verb, const std::string& text, double value, const std::string& who);
+  // What no thread is asked for: the emergency stop and the pace. Throws InputError.
+  void act(const OrderRequest& request, const std::string& who);
   bool can_pace() const noexcept { return p_.pace != nullptr; }
 
  private:

@@ -1,10 +1,13 @@
 // `kadans completion`: what shells need to complete the command line. The commands and options come from the program
 // itself; names of parameters, signals and behaviors from the instance that runs, when somebody asks for them.
 #include <cstdio>
+#include <sstream>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
 #include "ctl/ctl_command.h"
+#include "kadans/remote/order_table.h"
 
 namespace kadans {
 namespace {
@@ -35,21 +38,18 @@ void add_cases(const CLI::App& app, const std::string& path, bool options, std::
 
 // In zsh `path` is PATH. The part that both shells understand. "$1" is the commands typed so far, then come options for
 // ctl.
-constexpr const char* names_function = R"sh(
-_kadans_names() {
-  local at=$1
-  shift
-  case $at in
-    'ctl set') kadans ctl "$@" list parameters --names;;
-    'ctl get') kadans ctl "$@" list parameters --names; kadans ctl "$@" list signals --names;;
-    'ctl watch') kadans ctl "$@" list signals --names;;
-    'ctl switch') kadans ctl "$@" list sets --names;;
-    'ctl play'|'ctl reload') kadans ctl "$@" list behaviors --names;;
-    'ctl list') echo 'behaviors sets objects parameters signals';;
-    'completion') echo 'bash zsh';;
-  esac 2>/dev/null
+std::string names_function() {
+  std::string text = "\n_kadans_names() {\n  local at=$1\n  shift\n  case $at in\n";
+  for (const OrderInfo& order : order_table()) {
+    std::istringstream lists(order.arguments[0].lists);
+    std::string lines;
+    for (std::string what; lists >> what;) lines += " kadans ctl \"$@\" list " + what + " --names;";
+    if (!lines.empty()) text += "    'ctl " + std::string(order.words) + "')" + lines + ";\n";
+  }
+  return text +
+         "    'ctl list') echo 'behaviors sets objects parameters signals';;\n    'completion') echo 'bash zsh';;\n"
+         "  esac 2>/dev/null\n}\n";
 }
-)sh";
 
 // Goes through the words before the one that is completed; leaves the commands and the options that lead to the
 // instance.
@@ -98,7 +98,7 @@ int run_completion(const CLI::App& app, const CompletionOptions& options) {
   text += "  esac\n}\n\n_kadans_options() {\n  case $1 in\n";
   add_cases(app, "", true, text);
   text += "  esac\n}\n";
-  text += names_function;
+  text += names_function();
   text += bash ? "\n_kadans() {\n  local current=${COMP_WORDS[COMP_CWORD]}\n"
                  "  local -a typed=(\"${COMP_WORDS[@]:1:COMP_CWORD-1}\")"
                : "\n_kadans() {\n  local current=${words[CURRENT]}\n"

@@ -1,8 +1,10 @@
 // `kadans ctl`: talks to a running instance.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -14,16 +16,9 @@ namespace kadans {
 struct CtlOptions {
   std::string socket;  // "" = where an instance may be
   bool json = false;
-  bool names = false;  // of a list: nothing but
-  std::string what;    // of list
-  std::string name;    // of a parameter, signal, behavior, control set, record
-  double value = 0;
-  std::string preset;  // "" = none
-  std::string list;    // to be played
-  bool replace = false;
-  std::vector<std::string> signals;
-  double rate_hz = 10;
-  std::optional<long> count;  // of samples; without: until Ctrl-C
+  bool names = false;                                                               // of a list: nothing but
+  std::optional<long> count;                                                        // of samples; without: until Ctrl-C
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
 };
 
 void add_ctl(CLI::App& app, CtlOptions& options);

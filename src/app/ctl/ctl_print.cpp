@@ -121,6 +121,19 @@ std::string fault_list(const Json& answer) {
   return text;
 }
 
+std::string drives_text(const Json& answer) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Json& drive : answer.at("drives")) {
+    const bool warm = drive.at("temperature_C").is_number();
+    const auto code = drive.at("code").get<std::uint32_t>();
+    rows.push_back({drive.at("joint"), drive.at("state"), warm ? number(drive.at("temperature_C")) + " C" : "",
+                    drive.at("homed").get<bool>() ? "" : "not homed", code == 0 ? "" : "code " + std::to_string(code)});
+  }
+  std::string text = table(rows);
+  if (answer.at("supply_V").is_number()) text += "supply " + number(answer.at("supply_V")) + " V\n";
+  return text + (answer.at("emergency").get<bool>() ? "the emergency stop's button is pressed\n" : "");
+}
+
 // What presets give other values to, and how to change that.
 std::string overridden_text(const Json& overridden) {
   std::string text, last;
@@ -153,6 +166,7 @@ std::string answer_text(const std::string& words, const Json& answer) {
   if (words == "set" || words == "undo") return change_text(answer);
   if (words == "save") return save_text(answer);
   if (words == "fault list") return fault_list(answer);
+  if (words == "drives") return drives_text(answer);
   const std::string text = answer.value("text", std::string());
   return text.empty() ? "" : text + "\n";
 }

@@ -4,7 +4,7 @@
 
 #include "kadans/config/foreign_json.h"
 #include "kadans/signal/input_error.h"
-#include "live_protocol.h"
+#include "order_request.h"
 
 namespace kadans {
 namespace {
@@ -38,35 +38,28 @@ std::optional<std::string> TextCommands::take(std::string_view text) {
     const Json json = parse_foreign_json(text);
     if (!json.is_object()) return answer_text("", "", false, "this is no JSON object");
     asked.id = id_of(json);
-    const std::string verb = json.at("verb");
-    if (verb.size() > verb_max_bytes) return answer_text(asked.id, "", false, "there is no verb as long as this");
-    asked.verb = verb;
-    return obey(asked, json.value("text", ""), json.value("value", 0.0));
+    const auto verb = json.find("verb");
+    if (verb != json.end() && verb->is_string() && verb->get_ref<const std::string&>().size() <= verb_max_bytes)
+      asked.verb = *verb;
+    if (!p_.allowed) return answer_text(asked.id, asked.verb, false, p_.refusal);
+    return obey(asked, read_brief_request(json, p_.pace != nullptr));
   } catch (const InputError& error) {
-    return answer_text(asked.id, asked.verb, false, std::string("not understood: ") + error.what());
-  } catch (const nlohmann::json::exception& error) {  // a field is missing or of another type
     return answer_text(asked.id, asked.verb, false, std::string("not understood: ") + error.what());
   }
 }
 
-std::optional<std::string> TextCommands::obey(const Asked& asked, const std::string& text, double value) {
-  const auto refused = [&](const std::string& why) { return answer_text(asked.id, asked.verb, false, why); };
-  if (!p_.allowed) return refused(p_.refusal);
-  if (asked.verb == "estop") {
-    p_.instance.stop_now(p_.who);
+std::optional<std::string> TextCommands::obey(Asked& asked, const OrderRequest& request) {
+  if (!request.info->kind) {
+    if (request.is("estop")) p_.instance.stop_now(p_.who);
+    if (!request.is("estop")) p_.pace->obey(request);
     return answer_text(asked.id, asked.verb, true, "");
   }
-  const std::optional<Order::Kind> kind = order_of(asked.verb);
-  if (!kind) {
-    if (p_.pace != nullptr && p_.pace->obey(asked.verb, text, value))
-      return answer_text(asked.id, asked.verb, true, "");
-    return refused("'" + asked.verb + "' is no order; there are " + verbs_text(p_.pace != nullptr));
-  }
-  const std::uint64_t number = p_.port.send({.kind = *kind, .text = text, .value = value, .who = p_.who});
-  if (number == 0) return refused("too many orders wait");
+  const std::uint64_t number = p_.port.send(request.order(p_.who));
+  if (number == 0) return answer_text(asked.id, asked.verb, false, "too many orders wait");
+  asked.save = request.is("save");
+  asked.preset = request.text("preset");
+  asked.asked_ns = clock_.now_ns();
   waiting_[number] = asked;
-  waiting_[number].save = *kind == Order::Kind::changes;
-  waiting_[number].asked_ns = clock_.now_ns();
   return std::nullopt;
 }
 
@@ -82,18 +75,16 @@ std::optional<std::string> TextCommands::next() {
     waiting_.erase(found);
     bool done = answer.done;
     std::string text = answer.text;
-    if (asked.save && done) save(answer, done, text);
+    if (asked.save && done) save(asked.preset, answer, done, text);
     return answer_text(asked.id, asked.verb, done, text);
   }
   return std::nullopt;
 }
 
-void TextCommands::save(const Answer& answer, bool& done, std::string& text) {
+void TextCommands::save(const std::string& preset, const Answer& answer, bool& done, std::string& text) {
   try {
-    ConfigurationText& configuration = p_.instance.configuration();
-    const auto overridden = configuration.save(answer.changes, p_.instance.catalog());
-    (void)p_.port.send({.kind = Order::Kind::saved, .changes = answer.changes});
-    text = configuration.told(answer.changes.size(), overridden);
+    const auto overridden = save_changes(p_.instance, p_.port, answer, p_.who, preset);
+    text = p_.instance.configuration().told(answer.changes.size(), overridden);
   } catch (const std::exception& error) {
     done = false;
     text = error.what();

@@ -21,6 +21,8 @@
 
 namespace kadans {
 
+struct OrderRequest;
+
 class TextCommands {
  public:
   static constexpr std::size_t text_max_bytes = 16 * 1024;
@@ -46,10 +48,11 @@ class TextCommands {
     std::string id;  // JSON; "": none
     std::string verb;
     bool save = false;
+    std::string preset;
     std::int64_t asked_ns = 0;
   };
-  std::optional<std::string> obey(const Asked& asked, const std::string& text, double value);
-  void save(const Answer& answer, bool& done, std::string& text);
+  std::optional<std::string> obey(Asked& asked, const OrderRequest& request);
+  void save(const std::string& preset, const Answer& answer, bool& done, std::string& text);
 
   Parts p_;
   WallClock clock_;
