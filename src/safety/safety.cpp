@@ -103,8 +103,7 @@ FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actu
                                  .written_Nm = joint.last_Nm,
                                  .follows = !joint.gave_way,
                                  .dt_s = dt_s};
-    const DriveWatch::Input drive{look.sample, !joint.limiter.passive() && look.asked.mode != ActuationMode::off,
-                                  in.sensors.time_ns, dt_s};
+    const DriveWatch::Input drive{look.sample, joint.driven, in.sensors.time_ns, dt_s};
     const FaultMask found = joint.watch.look(look) | joint.drive.look(drive);
     joint.finite = (found & bit(FaultCode::actuation_not_finite)) == 0;
     if ((found | joint.cut) == 0 && joint.ladder.idle()) continue;
@@ -152,7 +151,7 @@ FaultMask Safety::take_stop(bool& lift) noexcept {
 // From hold to damp after hold_s, from damp to off after damp_s: because a fault lasts, or somebody wants it. Who wants
 // it does not wait in hold.
 void Safety::go_down(FaultMask faults, double dt_s) noexcept {
-  const bool wanted = stopped_ || stop_.leaving() || (faults & bit(FaultCode::emergency_input)) != 0;
+  const bool wanted = stopped_ || stop_.leaving();
   if (wanted) lasting_s_ = std::max(lasting_s_, settings_.hold_s);
   if (wanted) robot_.latch(SafetyLevel::damp);
   if (wanted || (faults & escalating_) != 0) {
@@ -190,6 +189,7 @@ bool Safety::passes(const SafetyInput& in, std::size_t index, const JointActuati
   const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, change_s_};
   if (!calm || joint.limiter.passive() || !joint.limiter.free(limits, actuation.effort_Nm)) return false;
   joint.last_Nm = actuation.effort_Nm;
+  joint.driven = true;
   joint.level_number = 0;
   return true;
 }
@@ -227,6 +227,7 @@ void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, 
     cut_joint(in, index, actuation);
   }
   joint.last_Nm = actuation.effort_Nm;
+  joint.driven = actuation.mode != ActuationMode::off;
   joint.level_number = static_cast<std::uint32_t>(joint_level(index));
 }
 
@@ -239,6 +240,10 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   came_back_ = false;
   bool lift = false;
   const FaultMask stop = take_stop(lift);
+  if (in.sensors.emergency) {  // the button is an emergency stop like any other
+    stopped_ = true;
+    lift = false;
+  }
   const FaultMask joints = watch_joints(in, actuation, dt_s);
   const FaultMask feet = watch_feet(in, dt_s) | watch_channels(in, dt_s);
   const FaultMask body =

@@ -146,7 +146,7 @@ TEST_CASE("after supply.time_s the robot damps, latched" * description("the driv
 }
 
 TEST_CASE(
-    "in that tick the robot damps, after damp_s it is off, and clearing does nothing while the button is pressed" *
+    "in that tick the robot damps, after damp_s it is off, until the button is let go and somebody outside lifts it" *
     description("somebody presses the emergency stop's button, an input of the plant")) {
   LightRobot robot(27);
   robot.run(100);
@@ -160,13 +160,27 @@ TEST_CASE(
   CHECK(robot.safety.robot_level() == SafetyLevel::damp);
   robot.run(ticks(robot.limits().damp_s) + 5);
   CHECK(robot.safety.robot_level() == SafetyLevel::off);
-  robot.clear_faults();
+  robot.safety.emergency_stop().lift();
   robot.run(20);
   CHECK(robot.safety.robot_level() >= SafetyLevel::damp);
   robot.faulty.clear();
+  robot.clear_faults();  // of a behavior
   robot.run(20);
   CHECK(robot.safety.robot_level() >= SafetyLevel::damp);
-  robot.clear_faults();
+  robot.safety.emergency_stop().lift();
   robot.run(50);
   CHECK(robot.safety.robot_level() == SafetyLevel::normal);
+}
+
+TEST_SUITE_END();
+
+TEST_CASE("A drive that is asked for nothing need not be enabled") {
+  LightRobot robot(28);
+  robot.run(100);
+  robot.safety.emergency_stop().ask("the test");
+  robot.run(ticks(robot.limits().damp_s) + 10);
+  REQUIRE(robot.safety.robot_level() == SafetyLevel::off);
+  spoil(robot, ActuatorFaultKind::disabled);
+  robot.run(2 * ticks(robot.limits().drives.enable_s));
+  CHECK(robot.first(FaultCode::drive_not_enabled) < 0);
 }

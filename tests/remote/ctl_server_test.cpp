@@ -68,6 +68,7 @@ TEST_CASE("get gives parameters and signals, and knows what was meant") {
 
 TEST_CASE("ctl tells what the drives say of themselves") {
   LiveInstance live;
+  live.start();
   (void)live.ask_until({{"verb", "status"}}, [](const Json& a) { return a["tick"] > 0; });
   const Json answer = live.ask({{"verb", "drives"}});
   CHECK(answer["supply_V"].is_null());  // a model without one

@@ -17,7 +17,7 @@ class DriveWatch {
  public:
   struct Input {
     const JointSample& sample;
-    bool asked;             // for torque, in the last tick
+    bool asked;             // for anything but off, by what was written in the last tick
     std::int64_t frame_ns;  // of the sensor frame
     double dt_s;
   };

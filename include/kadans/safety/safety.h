@@ -70,7 +70,7 @@ class Safety {
   EmergencyStop& emergency_stop() noexcept { return stop_; }
   // Lifts all latches: the next check judges anew. Nothing while the emergency stop holds: that one is lifted first.
   void clear() noexcept;
-  bool stopped() const noexcept { return stopped_; }  // by the emergency stop
+  bool stopped() const noexcept { return stopped_; }  // by the emergency stop, or its button
   // In the last check, or by clearing since: joints that damped or were off follow again what is asked of them. What is
   // computed for the next tick must start from the measured state.
   bool came_back() const noexcept { return came_back_; }
@@ -99,6 +99,7 @@ class Safety {
     double authority = 1;   // share of the torque limit; grows after damp and off
     bool gave_way = false;  // in the last tick it damped or was off, whatever was asked
     double last_Nm = 0;     // written in the last tick
+    bool driven = false;    // in the last tick something but off was written
     std::uint32_t level_number = 0;
   };
 
