@@ -62,6 +62,7 @@ class Sensors final : public SnapshotFilter {
   std::optional<std::size_t> index_in(const std::string& name, const StatusField& field) const {
     using enum StatusField::Part;
     const auto is = [&](const std::string& path) { return name == path + "." + field.name; };
+    const auto only = [&](const char* path) { return is(path) ? std::optional<std::size_t>(0) : std::nullopt; };
     const auto one_of = [&](const char* part, const std::vector<std::string>& names) -> std::optional<std::size_t> {
       for (std::size_t i = 0; i < names.size(); ++i) {
         if (is(std::string(part) + "." + names[i])) return i;
@@ -74,17 +75,17 @@ class Sensors final : public SnapshotFilter {
       case foot:
         return one_of("feet", {"left", "right"});
       case base:
-        return is("base") ? std::optional<std::size_t>(0) : std::nullopt;
+        return only("base");
       case rate:
-        return is("base.angular_velocity_rad_s") ? std::optional<std::size_t>(0) : std::nullopt;
+        return only("base.angular_velocity_rad_s");
       case support:
-        return is("support") ? std::optional<std::size_t>(0) : std::nullopt;
+        return only("support");
       case safety:
-        return is("safety") ? std::optional<std::size_t>(0) : std::nullopt;
+        return only("safety");
       case joystick:
-        return is("joystick") ? std::optional<std::size_t>(0) : std::nullopt;
+        return only("joystick");
       case sensors:
-        return is("sensors") ? std::optional<std::size_t>(0) : std::nullopt;
+        return only("sensors");
       case root:
         break;
     }

@@ -1,5 +1,8 @@
 #include "kadans/config/name_pattern.h"
 
+#include <algorithm>
+#include <cctype>
+
 namespace kadans {
 
 // Greedy with one way back, to the last '*': linear for each '*'.
@@ -29,6 +32,10 @@ std::vector<std::size_t> matching(std::string_view pattern, std::span<const std:
     if (matches(pattern, names[i])) found.push_back(i);
   }
   return found;
+}
+
+bool is_word(std::string_view name) noexcept {
+  return !name.empty() && std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
 }  // namespace kadans

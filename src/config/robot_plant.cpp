@@ -163,13 +163,12 @@ void RobotReader::sensor(Fields& entry) {
   entry.number("value", channel.value, {-most, most, ""}, "that a model reads; scenarios set sensor.NAME.value");
   entry.number("noise", channel.noise, {0, most, ""}, "of a model: standard deviation");
   if (!entry.reading()) return;
-  const auto is_part = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  };
-  if (channel.name.size() > 32 || channel.name.empty() || !std::ranges::all_of(channel.name, is_part) ||
-      (channel.name[0] >= '0' && channel.name[0] <= '9'))
-    problems_.add(entry.key_place(),
-                  "'" + channel.name + "' is no name of a sensor: letters, digits and _, at most 32");
+  constexpr std::size_t longest = 32;
+  const bool begins_well = !channel.name.empty() && (channel.name[0] < '0' || channel.name[0] > '9');
+  if (!begins_well || channel.name.size() > longest || !is_word(channel.name))
+    problems_.add(entry.key_place(), "'" + channel.name +
+                                         "' is no name of a sensor: letters, digits and '_', at most " +
+                                         std::to_string(longest) + ", no digit first");
   if (!(channel.min <= channel.max))
     problems_.add(entry.place("max"), entry.path("max") + " is " + number_text(channel.max) +
                                           ", must be at least min, " + number_text(channel.min));

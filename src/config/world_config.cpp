@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <initializer_list>
 
+#include "kadans/config/name_pattern.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/nearest_name.h"
 
@@ -140,10 +140,6 @@ class EntryReader {
   Problems& problems_;
   bool all_ = false;
 };
-
-bool is_word(const std::string& name) {
-  return !name.empty() && std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-}
 
 // What the fields alone cannot say.
 void verify(const Fields& f, const Entry& entry, Problems& problems) {

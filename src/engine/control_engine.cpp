@@ -30,7 +30,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
                  .base = snapshot_.status.base,
                  .health = estimator_.health()},
                 actuation_, snapshot_.status.safety);
-  if (safety_.falls() && snapshot_.status.base.posture == Posture::upright)
+  if (safety_.fall_phase() == FallWatch::Phase::falling && snapshot_.status.base.posture == Posture::upright)
     snapshot_.status.base.posture = Posture::falling;
   plant_.write(drive(time_ns, dt_s));
   copy_used(actuation_, written_);

@@ -120,16 +120,12 @@ OrderRequest read_brief_request(const Json& json, bool paced) {
   OrderRequest request{info};
   for (const auto& [kind, field] : {std::pair{text, "text"}, {number, "value"}}) {
     const auto given = json.find(field);
-    if (given == json.end()) continue;
-    if (!fits(*given, kind)) fail("\"" + std::string(field) + "\" must be " + kind_text(kind));
+    if (given != json.end() && !fits(*given, kind)) fail("\"" + std::string(field) + "\" must be " + kind_text(kind));
     const OrderArgument* const argument = info->argument(kind);
-    if (argument == nullptr || (kind == text && given->get_ref<const std::string&>().empty())) continue;
-    request.json[argument->name] = *given;
+    if (argument == nullptr) continue;
+    const bool said = given != json.end() && !(kind == text && given->get_ref<const std::string&>().empty());
+    if (said) request.json[argument->name] = *given;
     check_argument(*info, *argument, field, request.json);
-  }
-  for (const auto& [kind, field] : {std::pair{text, "text"}, {number, "value"}}) {
-    const OrderArgument* const argument = info->argument(kind);
-    if (argument != nullptr) check_argument(*info, *argument, field, request.json);
   }
   return request;
 }

@@ -23,24 +23,24 @@ FaultWords words_of(std::uint32_t code, DriveWords words) noexcept {
 
 }  // namespace
 
-void DriveWatch::describe(const Input& in, Fault& fault) const noexcept {
+void DriveWatch::describe(const SafetySettings& settings, const Input& in, Fault& fault) const noexcept {
   switch (fault.code) {
     case FaultCode::drive_fault:
       fault.value = in.sample.code;
-      fault.words = words_of(in.sample.code, words_);
+      fault.words = words_of(in.sample.code, settings.drive_words);
       break;
     case FaultCode::drive_not_enabled:
       fault.value = idle_s_;
-      fault.limit = settings_.enable_s;
+      fault.limit = settings.drives.enable_s;
       fault.words = fault_words(name(in.sample.drive));
       break;
     case FaultCode::drive_hot:
       fault.value = static_cast<double>(in.sample.temperature_C);
-      fault.limit = settings_.hot_C;
+      fault.limit = settings.drives.hot_C;
       break;
     case FaultCode::sample_old:
       fault.value = age_s(in);
-      fault.limit = settings_.sample_age_max_s;
+      fault.limit = settings.drives.sample_age_max_s;
       break;
     default:
       break;

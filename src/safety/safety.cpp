@@ -104,14 +104,14 @@ FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actu
                                  .follows = !joint.gave_way,
                                  .dt_s = dt_s};
     const DriveWatch::Input drive{look.sample, joint.driven, in.sensors.time_ns, dt_s};
-    const FaultMask found = joint.watch.look(look) | joint.drive.look(drive);
+    const FaultMask found = joint.watch.look(look) | joint.drive.look(settings_.drives, drive);
     joint.finite = (found & bit(FaultCode::actuation_not_finite)) == 0;
     if ((found | joint.cut) == 0 && joint.ladder.idle()) continue;
     FaultMask fresh = joint.ladder.update(found | joint.cut, dt_s, settings_.reactions, &Reaction::joint) & found;
     for (; fresh != 0; fresh &= fresh - 1) {
       Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(i), .tick = in.tick};
       joint.watch.describe(look, fault);
-      joint.drive.describe(drive, fault);
+      joint.drive.describe(settings_, drive, fault);
       raise(fault);
     }
     all |= found;

@@ -48,7 +48,6 @@ Safety::Safety(const SafetySettings& settings, const RobotModel& model)
   for (std::size_t i = 0; i < joint_count_; ++i) {
     check_limits(settings_.joints[i], model.joints[i]);
     joints_[i].watch = JointWatch(settings_, settings_.joints[i]);
-    joints_[i].drive = DriveWatch(settings_);
     joints_[i].limiter = JointLimiter(settings_, settings_.joints[i]);
   }
   feet_.fill(FootWatch(settings_));

@@ -109,7 +109,10 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, const std::ve
   push_whole_part(state, Kind::sensors, 0, "s.sensors");
   lua_setfield(state, -2, "sensors");
   finish_part(state, 0, "s");
-  read_.reserve(parts_.size() * 5 + fields_.size());
+  std::size_t all = 0;
+  for (const Part& part : parts_)
+    all += static_cast<std::size_t>(std::ranges::count(fields_, part.kind, &StatusField::part));
+  read_.reserve(all);
   for (std::size_t i = 0; !on_demand && i < parts_.size(); ++i) read_whole(state, i);
   return luaL_ref(state, LUA_REGISTRYINDEX);
 }

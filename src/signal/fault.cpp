@@ -70,6 +70,12 @@ constexpr bool in_order() {
 }
 static_assert(in_order());
 
+// Of an enumeration's value that may have come from anywhere.
+template <std::size_t count>
+const char* named(const std::array<const char*, count>& names, std::size_t value) noexcept {
+  return value < count ? names[value] : "unknown";
+}
+
 }  // namespace
 
 const char* name(FaultCode code) noexcept {
@@ -96,53 +102,16 @@ std::string fault_detail(const Fault& fault) {
 }
 
 const char* name(DriveState state) noexcept {
-  switch (state) {
-    case DriveState::off:
-      return "off";
-    case DriveState::ready:
-      return "ready";
-    case DriveState::enabled:
-      return "enabled";
-    case DriveState::homing:
-      return "homing";
-    case DriveState::fault:
-      return "fault";
-  }
-  return "unknown";
+  return named(std::array{"off", "ready", "enabled", "homing", "fault"}, static_cast<std::size_t>(state));
 }
 
 const char* name(Posture posture) noexcept {
-  switch (posture) {
-    case Posture::upright:
-      return "upright";
-    case Posture::prone:
-      return "prone";
-    case Posture::supine:
-      return "supine";
-    case Posture::left:
-      return "left";
-    case Posture::right:
-      return "right";
-    case Posture::falling:
-      return "falling";
-  }
-  return "unknown";
+  return named<posture_count>({"upright", "prone", "supine", "left", "right", "falling"},
+                              static_cast<std::size_t>(posture));
 }
 
 const char* name(SafetyLevel level) noexcept {
-  switch (level) {
-    case SafetyLevel::normal:
-      return "normal";
-    case SafetyLevel::limited:
-      return "limited";
-    case SafetyLevel::hold:
-      return "hold";
-    case SafetyLevel::damp:
-      return "damp";
-    case SafetyLevel::off:
-      return "off";
-  }
-  return "unknown";
+  return named<safety_levels>({"normal", "limited", "hold", "damp", "off"}, static_cast<std::size_t>(level));
 }
 
 }  // namespace kadans

@@ -34,8 +34,8 @@ struct ScenarioFault {
     clock_missed,
   };
   Kind kind = Kind::sensor_silent;
-  PlacedName
-      of;  // a joint; of sensors also a foot's link, or "imu"; "" with supply, button, behaviors, commands and clock
+  // A joint; of sensors also a foot's link, a sensor's name, or "imu"; "" of what is the robot's as a whole.
+  PlacedName of;
   double from_s = 0;
   double until_s = std::numeric_limits<double>::infinity();  // not included
   double size = 0;                                           // see the fields' docs

@@ -25,8 +25,7 @@ class IdealWorld final : public OneRobotWorld {
   std::array<double, max_joints> lower_rad_{}, upper_rad_{};
   ActuationFrame actuation_;
   PlantTruth truth_;
-  ModelledChannels modelled_;
-  SensorFrame channels_;  // as of the last step; nothing else of it is used
+  ModelledChannels channels_;
   std::int64_t time_ns_ = 0;
   std::uint32_t sequence_ = 0;
 };

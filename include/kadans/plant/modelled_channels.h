@@ -17,7 +17,8 @@ class ModelledChannels {
   ModelledChannels(const std::vector<SensorChannel>& channels, std::uint64_t seed);
 
   // Between ticks.
-  void sample(std::int64_t time_ns, SensorFrame& frame);
+  void sample(std::int64_t time_ns);
+  void fill(SensorFrame& frame) const noexcept;
 
  private:
   struct Channel {
@@ -25,6 +26,7 @@ class ModelledChannels {
     std::int64_t period_ns;
     RandomStream stream;
     std::int64_t due_ns = 0;
+    ChannelSample sample{};
   };
   std::vector<Channel> channels_;
 };

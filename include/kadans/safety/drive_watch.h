@@ -22,31 +22,23 @@ class DriveWatch {
     double dt_s;
   };
 
-  DriveWatch() = default;
-  explicit DriveWatch(const SafetySettings& settings) noexcept
-      : settings_(settings.drives), words_(settings.drive_words), hot_C_(static_cast<float>(settings.drives.hot_C)) {}
-
-  FaultMask look(const Input& in) noexcept {
+  FaultMask look(const DriveWatchSettings& settings, const Input& in) noexcept {
     using enum FaultCode;
     const JointSample& sample = in.sample;
-    const bool calm = sample.drive == DriveState::enabled && sample.time_ns == 0 && !(sample.temperature_C >= hot_C_);
-    if (calm && idle_s_ == 0) return 0;
     const bool idle = in.asked && sample.drive != DriveState::enabled && sample.drive != DriveState::fault;
     idle_s_ = idle ? idle_s_ + in.dt_s : 0;
     return bit_if(sample.drive == DriveState::fault, drive_fault) |
-           bit_if(idle_s_ > settings_.enable_s, drive_not_enabled) | bit_if(sample.temperature_C >= hot_C_, drive_hot) |
-           bit_if(sample.time_ns != 0 && age_s(in) > settings_.sample_age_max_s, sample_old);
+           bit_if(idle_s_ > settings.enable_s, drive_not_enabled) |
+           bit_if(sample.temperature_C >= settings.hot_C, drive_hot) |
+           bit_if(sample.time_ns != 0 && age_s(in) > settings.sample_age_max_s, sample_old);
   }
   // Value, limit and the maker's words of a fault that look() has just found; others are left alone.
-  void describe(const Input& in, Fault& fault) const noexcept;
+  void describe(const SafetySettings& settings, const Input& in, Fault& fault) const noexcept;
 
  private:
   static double age_s(const Input& in) noexcept { return seconds_between(in.sample.time_ns, in.frame_ns); }
 
-  DriveWatchSettings settings_;
-  DriveWords words_ = nullptr;
-  float hot_C_ = 0;
-  double idle_s_ = 0;
+  double idle_s_ = 0;  // asked for torque, and not enabled
 };
 
 class SupplyWatch {

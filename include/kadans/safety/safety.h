@@ -86,7 +86,6 @@ class Safety {
   }
   double temperature_C(std::size_t joint) const noexcept { return joints_[joint].watch.thermal().temperature_C(); }
   FallWatch::Phase fall_phase() const noexcept { return fall_.phase(); }
-  bool falls() const noexcept { return fall_.phase() == FallWatch::Phase::falling; }
 
  private:
   struct JointGuard {

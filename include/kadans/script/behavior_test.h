@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "kadans/control/catalog.h"
-#include "kadans/model/robot_model.h"
 #include "kadans/signal/status.h"
 
 namespace kadans {

@@ -128,22 +128,25 @@ CLI::App* add_group(CLI::App& ctl, const std::string& group) {
   return to->require_subcommand(1)->fallthrough();
 }
 
-// "record start" under record.
-CLI::App* add(CLI::App& ctl, const OrderInfo& order, CtlOptions& options) {
+// "record start" is start under record; of a single word the group is "".
+std::pair<std::string, std::string> group_of(const OrderInfo& order) {
   const std::string words = order.words;
   const std::size_t blank = words.find(' ');
+  if (blank == std::string::npos) return {"", words};
+  return {words.substr(0, blank), words.substr(blank + 1)};
+}
+
+void add(CLI::App& ctl, const OrderInfo& order, CtlOptions& options) {
+  const auto [group, word] = group_of(order);
   CLI::App* to = &ctl;
-  if (blank != std::string::npos) {
-    const std::string group = words.substr(0, blank);
+  if (!group.empty()) {
     const auto there = ctl.get_subcommands([&](const CLI::App* one) { return one->get_name() == group; });
     to = there.empty() ? add_group(ctl, group) : there.front();
   }
-  CLI::App* added = to->add_subcommand(blank == std::string::npos ? words : words.substr(blank + 1), order.doc);
-  added->fallthrough();
+  CLI::App* added = to->add_subcommand(word, order.doc)->fallthrough();
   for (const OrderArgument& argument : order.arguments) {
     if (argument.shown[0] != '\0') add_argument(*added, order, argument, options);
   }
-  return added;
 }
 
 }  // namespace
@@ -172,12 +175,10 @@ int run_ctl(const CLI::App& app, const CtlOptions& options) {
   const CLI::App* ctl = app.get_subcommand("ctl");
   if (ctl->got_subcommand(console)) return talk_to_console(options);
   for (const OrderInfo& order : order_table()) {
-    const std::string words = order.words;
-    const std::size_t blank = words.find(' ');
-    const std::string first = words.substr(0, blank);
-    if (words.empty() || !ctl->got_subcommand(first)) continue;
-    if (blank == std::string::npos || ctl->get_subcommand(first)->got_subcommand(words.substr(blank + 1)))
-      return talk(order, options);
+    const auto [group, word] = group_of(order);
+    const bool grouped = !group.empty() && ctl->got_subcommand(group);
+    if (word.empty() || (!group.empty() && !grouped)) continue;
+    if ((grouped ? ctl->get_subcommand(group) : ctl)->got_subcommand(word)) return talk(order, options);
   }
   return exit_usage;
 }

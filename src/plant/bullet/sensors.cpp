@@ -48,7 +48,8 @@ void Sensors::sample(std::int64_t time_ns, double dt_s, const std::vector<Drive>
   }
   sample_imu(dt_s, imu);
   for (std::size_t i = 0; i < feet.size(); ++i) sample_foot(i, feet[i]);
-  channels_.sample(time_ns, frame_);
+  channels_.sample(time_ns);
+  channels_.fill(frame_);
 }
 
 void Sensors::sample_joint(std::size_t index, const Drive& drive, double position_rad) {

@@ -27,7 +27,7 @@ double torque_Nm(const JointActuation& asked, double position_rad, double veloci
 }  // namespace
 
 IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
-    : modelled_(settings.channels, seed) {
+    : channels_(settings.channels, seed) {
   const std::size_t joints = model.joints.size();
   require(joints <= max_joints, "at most " + std::to_string(max_joints) + " joints");
   require(settings.position_rad.size() == joints, "position_rad must have one entry a joint");
@@ -44,7 +44,7 @@ IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings, s
     upper_rad_[i] = limited ? joint.upper_rad : std::numeric_limits<double>::infinity();
     truth_.position_rad[i] = settings.position_rad[i];
   }
-  modelled_.sample(time_ns_, channels_);
+  channels_.sample(time_ns_);
 }
 
 void IdealWorld::read(SensorFrame& sensors) noexcept {
@@ -58,8 +58,7 @@ void IdealWorld::read(SensorFrame& sensors) noexcept {
   sensors.imu = {{0, 0, 0}, {0, 0, 9.81}, sequence_ + 1};
   sensors.supply_V = std::numeric_limits<double>::quiet_NaN();
   sensors.emergency = false;
-  sensors.channel_count = channels_.channel_count;
-  copy_first(channels_.channels, channels_.channel_count, sensors.channels);
+  channels_.fill(sensors);
 }
 
 void IdealWorld::write(const ActuationFrame& actuation) noexcept {
@@ -90,7 +89,7 @@ void IdealWorld::step(std::int64_t dt_ns) {
   }
   time_ns_ += dt_ns;
   ++sequence_;
-  modelled_.sample(time_ns_, channels_);
+  channels_.sample(time_ns_);
 }
 
 void IdealWorld::hash(StateHash& hash) const noexcept {

@@ -62,7 +62,7 @@ PlantWire::PlantWire(const PlantLayout& layout) {
   StateHash hash;
   add_names(hash, layout.joints);
   add_names(hash, layout.feet);
-  if (!layout.sensors.empty()) add_names(hash, layout.sensors);
+  add_names(hash, layout.sensors);
   layout_ = hash.value();
   greeting_.period_ns = layout.period_ns;
   greeting_.joints = static_cast<std::uint32_t>(layout.joints.size());
