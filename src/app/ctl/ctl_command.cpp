@@ -140,7 +140,8 @@ void add(CLI::App& ctl, const OrderInfo& order, CtlOptions& options) {
   const auto [group, word] = group_of(order);
   CLI::App* to = &ctl;
   if (!group.empty()) {
-    const auto there = ctl.get_subcommands([&](const CLI::App* one) { return one->get_name() == group; });
+    const auto there =
+        ctl.get_subcommands([&wanted = group](const CLI::App* one) { return one->get_name() == wanted; });
     to = there.empty() ? add_group(ctl, group) : there.front();
   }
   CLI::App* added = to->add_subcommand(word, order.doc)->fallthrough();
