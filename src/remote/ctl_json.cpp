@@ -128,7 +128,7 @@ Json drives_json(const PowerStatus& power, const RobotModel& model) {
                       {"homed", drive.homed},
                       {"braked", drive.braked}});
   }
-  return {{"ok", true}, {"supply_V", told(power.supply_V)}, {"emergency", power.emergency}, {"drives", drives}};
+  return {{"supply_V", told(power.supply_V)}, {"emergency", power.emergency}, {"drives", drives}};
 }
 
 Json fault_json(const Fault& fault, const RobotModel& model) {

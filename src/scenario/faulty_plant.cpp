@@ -117,7 +117,7 @@ void FaultyPlant::PlannedActuator::heed(const DriveRequest& request, std::int64_
 
 void FaultyPlant::add(const ActuatorFault& fault) {
   if (fault.kind == ActuatorFaultKind::late && written_.empty()) written_.resize(late_ticks_max + 1);
-  actuator_faults_.push_back({.fault = fault, .held = {}});
+  actuator_faults_.push_back({.fault = fault, .held = {}, .order_seen = asked_[fault.joint].number});
 }
 
 void FaultyPlant::spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept {
@@ -162,6 +162,7 @@ void FaultyPlant::write(const ActuationFrame& actuation) noexcept {
     planned.heed(actuation.drives[planned.fault.joint], time_ns_);
     spoil(planned, spoiled.joints[planned.fault.joint]);
   }
+  asked_ = actuation.drives;
   plant_.write(spoiled);
 }
 

@@ -115,6 +115,7 @@ class FaultyPlant final : public OneRobotWorld {
   std::vector<PlannedActuator> actuator_faults_;
   std::vector<SupplyFault> supply_faults_;
   std::int64_t time_ns_ = 0;             // of the last read
+  DriveRequests asked_{};                // in the last write
   std::vector<ActuationFrame> written_;  // the last ones, a ring; empty when nothing is ever late
   std::size_t newest_ = 0;
 };
