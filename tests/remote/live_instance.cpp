@@ -86,8 +86,8 @@ std::string Project::read(const std::string& file) const {
 bool Supervisor::beat(const Beat&) {
   instance.publish(status_of(exchange.snapshot.newest(1), record.status()));
   for (Fault fault; safety.log().try_pop(fault);) {
-    instance.tell(fault);
     record.tell(fault);
+    instance.tell(fault);  // who hears of it finds it in the record
   }
   return true;
 }
