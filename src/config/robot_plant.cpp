@@ -30,6 +30,10 @@ void drive_fields(Fields& f, DriveSettings& d) {
   f.number("parallel_rest_rad", d.parallel_rest_rad, {-10, 10, "rad"}, "where that spring is at rest");
   f.number("parallel_damping_Nms_per_rad", d.parallel_damping_Nms_per_rad, {0, 1e3, "Nms/rad"},
            "passive damper parallel to the joint");
+  f.boolean("enabled", d.enabled, "whether a modelled drive is enabled at the start; else somebody asks for it");
+  f.number("enable_s", d.enable_s, {0, 60, "s"}, "a modelled drive takes so long from the order until it is enabled");
+  f.number("brake_Nm", d.brake_Nm, {0, 1e4, "Nm"},
+           "dry friction of the brake that holds the joint while its drive is not enabled; 0: none");
 }
 
 constexpr NumberRange anywhere_m{-10, 10, "m"};

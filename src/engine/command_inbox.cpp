@@ -13,6 +13,12 @@ bool clears(const Command& command, const Safety& safety) noexcept {
   return command.kind == CommandKind::clear_faults && !safety.stopped();
 }
 
+// Orders after which a joint stays where it is, or lets go no more than it does.
+bool keeps_still(const Command& command) noexcept {
+  const auto order = static_cast<DriveOrder>(command.count);
+  return order == DriveOrder::disable || order == DriveOrder::reset || order == DriveOrder::brake;
+}
+
 }  // namespace
 
 CommandInbox::CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& sets,
@@ -57,6 +63,10 @@ RefusalReason CommandInbox::judge(const Command& command) const noexcept {
     case CommandKind::via_point:
       if (of_setpoint() != none) return of_setpoint();
       return SetpointMotions::acceptable(command, catalog_.setpoints) ? none : motion;
+    case CommandKind::order_drive: {
+      const bool is_order = command.count >= 1 && command.count <= static_cast<std::uint32_t>(last_drive_order);
+      return is_order ? known(catalog_.model->joints.size(), true) : malformed;
+    }
   }
   return malformed;
 }
@@ -64,6 +74,8 @@ RefusalReason CommandInbox::judge(const Command& command) const noexcept {
 RefusalReason CommandInbox::held(const Command& command, const Safety& safety, SetMask active,
                                  std::uint16_t& joint) const noexcept {
   if (clears(command, safety) || command.kind == CommandKind::cancel_motion) return RefusalReason::none;
+  if (command.kind == CommandKind::order_drive)
+    return safety.stopped() && !keeps_still(command) ? RefusalReason::robot_held : RefusalReason::none;
   if (safety.robot_level() >= SafetyLevel::hold) return RefusalReason::robot_held;
   const auto joint_held = [&](std::size_t at) {
     if (safety.joint_level(at) != SafetyLevel::hold) return false;
@@ -160,6 +172,10 @@ void CommandInbox::execute(const Command& command, const ControlInput& input, Sa
     case CommandKind::trapezoid:
     case CommandKind::via_point:
       motions_.begin(command);
+      break;
+    case CommandKind::order_drive:
+      drives_[command.index].order = static_cast<DriveOrder>(command.count);
+      ++drives_[command.index].number;
       break;
   }
 }

@@ -37,6 +37,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
   const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
   if (safety_.came_back()) sets_.restart(input);
   inbox_.apply(tick_, input, safety_);
+  copy_first(inbox_.drives(), actuation_.joint_count, actuation_.drives);
   inbox_.motions().step(dt_s);
   sets_.step(tick_, input, actuation_);
   publish(time_ns);
@@ -95,7 +96,7 @@ void ControlEngine::tell_drives() noexcept {
   power.emergency = sensors_.emergency;
   for (std::size_t i = 0; i < snapshot_.joints.count; ++i) {
     const JointSample& said = sensors_.joints[i];
-    power.drives[i] = {said.temperature_C, said.code, said.drive, said.homed};
+    power.drives[i] = {said.temperature_C, said.code, said.drive, said.homed, said.braked};
   }
 }
 

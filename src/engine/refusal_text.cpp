@@ -23,6 +23,9 @@ std::string target(const Refusal& refusal, const Catalog& catalog) {
       return refusal.index < catalog.setpoints.size() ? catalog.setpoints[refusal.index].name : "";
     case CommandKind::switch_set:
       return refusal.index < catalog.sets.size() ? "control set " + catalog.sets[refusal.index].name : "";
+    case CommandKind::order_drive:
+      return refusal.index < catalog.model->joints.size() ? "drive of " + catalog.model->joints[refusal.index].name
+                                                          : "";
     default:
       return "";
   }

@@ -12,7 +12,41 @@
 namespace kadans {
 namespace {
 
-constexpr std::int64_t control_answers_in_ns = 1'000'000'000;
+constexpr std::int64_t control_answers_in_ns = 1'000'000'000, drives_answer_in_ns = 5'000'000'000;
+
+// Whether a drive says that it has done what it was asked for.
+bool has_done(DriveOrder order, const DriveStatus& drive) noexcept {
+  switch (order) {
+    case DriveOrder::enable:
+      return drive.state == DriveState::enabled;
+    case DriveOrder::disable:
+      return drive.state != DriveState::enabled && drive.state != DriveState::homing;
+    case DriveOrder::reset:
+      return drive.state != DriveState::fault;
+    case DriveOrder::home:  // which may take its time
+      return drive.homed || drive.state == DriveState::homing;
+    case DriveOrder::brake:
+      return drive.braked;
+    case DriveOrder::release:
+      return !drive.braked;
+    case DriveOrder::none:
+      break;
+  }
+  return true;
+}
+
+// "l_knee is ready", of those that have not; "": all have.
+std::string undone_text(DriveOrder order, JointMask joints, const PowerStatus& power, const RobotModel& model) {
+  std::string text;
+  each_bit(joints, [&](std::uint32_t i) {
+    const DriveStatus& drive = power.drives[i];
+    if (has_done(order, drive)) return;
+    text += (text.empty() ? "" : ", ") + model.joints[i].name + " is " + name(drive.state);
+    if (drive.code != 0) text += " (code " + std::to_string(drive.code) + ")";
+    if (order == DriveOrder::brake || order == DriveOrder::release) text += drive.braked ? ", braked" : ", not braked";
+  });
+  return text;
+}
 
 bool names_transaction(const Snapshot& snapshot, std::uint32_t sequence, Refusal& refusal) {
   const auto found = std::ranges::find(snapshot.refusals, sequence, &Refusal::sequence);
@@ -119,7 +153,7 @@ void BehaviorSide::begin(Pending& pending) {
       (void)console_of(order);
       return;  // evaluated when there is a row of signals
     default:
-      return give(order);
+      return drive_order_of(order.kind) == DriveOrder::none ? give(order) : order_drives(pending);
   }
 }
 
@@ -175,7 +209,15 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
     answer.text = refusal_text(refusal, p_.instance.catalog());
     return true;
   }
-  if (snapshot.transactions_applied >= pending.sequence) {
+  const bool taken = snapshot.transactions_applied >= pending.sequence;
+  if (const DriveOrder asked = drive_order_of(order.kind); taken && asked != DriveOrder::none) {
+    const std::string undone = undone_text(asked, pending.joints, snapshot.power, *p_.instance.catalog().model);
+    if (undone.empty()) finish(pending);
+    const bool given_up = time_ns - pending.asked_ns > drives_answer_in_ns;
+    if (given_up) answer.text = undone + ", 5 s after it was asked to " + name(asked);
+    return undone.empty() || given_up;
+  }
+  if (taken) {
     finish(pending);
     return true;
   }
@@ -189,6 +231,10 @@ void BehaviorSide::finish(Pending& pending) {
   Answer& answer = pending.order->answer;
   answer.done = true;
   const ParameterChange& change = pending.change;
+  if (const DriveOrder asked = drive_order_of(order.kind); asked != DriveOrder::none) {
+    const std::string joints = order.text.empty() ? "all" : order.text;
+    return say(time_ns_, order.who, std::string("asked drives to ") + name(asked) + ": " + joints);
+  }
   switch (order.kind) {
     case Order::Kind::switch_set:
       return say(time_ns_, order.who, "switched to control set " + order.text);

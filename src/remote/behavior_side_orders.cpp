@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "kadans/config/fields.h"
+#include "kadans/config/name_pattern.h"
 #include "kadans/remote/behavior_side.h"
 #include "kadans/remote/run_description.h"
 #include "kadans/signal/number_text.h"
@@ -125,6 +126,32 @@ void BehaviorSide::send(Pending& pending, std::span<const Command> commands) {
   for (const Command& command : commands) (void)sender.add(command);
   pending.sequence = sender.commit();
   if (pending.sequence == 0) throw InputError({.message = "the command queue is full"});
+}
+
+// Those with a drive. Throws where there is none.
+JointMask BehaviorSide::joints_of(const Order& order) const {
+  const RobotModel& model = *p_.instance.catalog().model;
+  const std::vector<std::string> names = model.joint_names();
+  JointMask joints = 0;
+  for (const std::size_t i : matching(order.text.empty() ? "*" : order.text, names)) {
+    if (!model.joints[i].passive()) joints |= joint_bit(i);
+  }
+  if (joints != 0) return joints;
+  if (const auto i = model.find_joint(order.text))
+    throw InputError({.message = "joint '" + order.text + "' is passive: it has no drive"});
+  throw InputError({.message = unknown_name("joint", order.text, names)});
+}
+
+void BehaviorSide::order_drives(Pending& pending) {
+  const Order& order = pending.order->order;
+  pending.joints = joints_of(order);
+  std::vector<Command> commands;
+  each_bit(pending.joints, [&](std::uint32_t joint) {
+    commands.push_back({.kind = CommandKind::order_drive,
+                        .index = joint,
+                        .count = static_cast<std::uint32_t>(drive_order_of(order.kind))});
+  });
+  send(pending, commands);
 }
 
 // All are known and within their ranges.

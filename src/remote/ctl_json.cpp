@@ -69,6 +69,17 @@ Json sets_json(const Catalog& catalog, SetMask active) {
   return all;
 }
 
+Json joints_json(const RobotModel& model) {
+  Json all = Json::array();
+  for (const Joint& joint : model.joints) {
+    Json one{{"name", joint.name}, {"unit", "rad"}, {"doc", joint.passive() ? "passive" : "driven"}};
+    put_finite(one, "min", joint.lower_rad);
+    put_finite(one, "max", joint.upper_rad);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 // What could be played, then what plays.
 Json all_behaviors_json(const Instance& instance, const Answer& report) {
   Json all = behaviors_json(report);
@@ -114,9 +125,10 @@ Json drives_json(const PowerStatus& power, const RobotModel& model) {
                       {"state", name(drive.state)},
                       {"code", drive.code},
                       {"temperature_C", told(static_cast<double>(drive.temperature_C))},
-                      {"homed", drive.homed}});
+                      {"homed", drive.homed},
+                      {"braked", drive.braked}});
   }
-  return {{"ok", true}, {"supply_V", told(power.supply_V)}, {"emergency", power.emergency}, {"drives", drives}};
+  return {{"supply_V", told(power.supply_V)}, {"emergency", power.emergency}, {"drives", drives}};
 }
 
 Json fault_json(const Fault& fault, const RobotModel& model) {
@@ -159,7 +171,8 @@ Json list_json(const std::string& what, const Instance& instance, const Instance
   if (what == "signals") return signals_json(catalog.signals);
   if (what == "objects") return objects_json(catalog);
   if (what == "sets") return sets_json(catalog, status.control_sets);
-  const std::vector<std::string> kinds{"behaviors", "sets", "objects", "parameters", "signals"};
+  if (what == "joints") return joints_json(*catalog.model);
+  const std::vector<std::string> kinds{"behaviors", "sets", "objects", "parameters", "signals", "joints"};
   throw InputError({.message = unknown_name("kind of list", what, kinds)});
 }
 

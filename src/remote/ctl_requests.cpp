@@ -53,7 +53,11 @@ bool CtlRequests::reports(const CtlSession& session) const {
 std::string CtlRequests::at_once(CtlSession& session, const OrderRequest& request) {
   if (request.is("watch")) return watch(session, request);
   if (request.is("faults")) return faults();
-  if (request.is("drives")) return json_text(drives_json(port_.status().power, *instance_.catalog().model));
+  if (request.is("drives")) {
+    Json drives = drives_json(port_.status().power, *instance_.catalog().model);
+    drives["ok"] = true;
+    return json_text(drives);
+  }
   if (request.is("unwatch")) {
     session.watched.clear();
   } else {  // estop

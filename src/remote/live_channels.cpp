@@ -1,6 +1,7 @@
 #include "kadans/remote/live_channels.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,8 @@ namespace kadans {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* drives_schema = R"({"title": "kadans.Drives", "type": "object"})";
 
 std::vector<std::byte> copy_of(std::span<const std::byte> bytes) { return {bytes.begin(), bytes.end()}; }
 
@@ -49,6 +52,7 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
   transitions_ = add_json("/transitions", "kadans.Transition", transition_schema, true);
   faults_ = add_json("/faults", "kadans.Fault", fault_schema, true);
   timing_ = add_json("/timing", "kadans.Timing", timing_schema, false);
+  drives_ = add_json("/drives", "kadans.Drives", drives_schema, false);
   described_ = add_json("/description", "kadans.Description", description_schema, false);
   put_json(described_, 0, texts.description);
   write_robot_description(texts.urdf, message_);
@@ -111,6 +115,10 @@ void LiveChannels::take_behaviors(const std::string& json) {
   description["behaviors"] = parse_foreign_json(json);
   description_ = json_text(description);
   put_json(described_, 0, description_);
+}
+
+void LiveChannels::take_drives(const std::string& json, std::int64_t time_ns) {
+  if (std::exchange(drives_told_, json) != json) put_json(drives_, time_ns, json);
 }
 
 void LiveChannels::take_timing(const std::string& json, std::int64_t time_ns) { put_json(timing_, time_ns, json); }

@@ -13,8 +13,8 @@
 namespace kadans {
 namespace {
 
-constexpr std::uint64_t report_every = 70, timing_every = 140, parameters_every = 14;  // beats
-constexpr std::uint64_t own = 0;                                                       // the hub's orders
+constexpr std::uint64_t report_every = 70, timing_every = 140, parameters_every = 14, drives_every = 28;  // beats
+constexpr std::uint64_t own = 0;  // the hub's orders
 constexpr std::uint32_t report_call = 1, describe_call = 2;
 
 }  // namespace
@@ -58,7 +58,8 @@ void LiveHub::beat() {
     p_.port.want_signals(wanted_ ? static_cast<std::uint32_t>(std::max(1.0, std::floor(ticks))) : 0);
   }
   for (Event event; p_.port.next(event);) channels_.take(event);
-  const std::int64_t time_ns = p_.port.status().time_ns;
+  const InstanceStatus status = p_.port.status();
+  const std::int64_t time_ns = status.time_ns;
   for (Fault fault; p_.port.next(fault);) channels_.take(fault, time_ns);
   changed_.clear();
   take_answers();
@@ -69,6 +70,8 @@ void LiveHub::beat() {
     channels_.take(*row);
   }
   if (beats_ % parameters_every == 0) take_parameters();
+  if (beats_ % drives_every == 0)
+    channels_.take_drives(json_text(drives_json(status.power, *p_.instance.catalog().model)), time_ns);
   if (beats_ % timing_every == 0 && !p_.timing.empty()) channels_.take_timing(timing_json(p_.timing), time_ns);
   if (beats_++ % report_every == 0 && !report_waits_)
     report_waits_ = send({.kind = Order::Kind::report}, own, report_call);

@@ -71,7 +71,7 @@ void FaultyPlant::read(SensorFrame& sensors) noexcept {
   }
   for (const PlannedActuator& planned : actuator_faults_) {
     const ActuatorFault& fault = planned.fault;
-    if (is_now(fault, sensors.time_ns)) tell(fault, sensors.time_ns, sensors.joints[fault.joint]);
+    if (planned.is_now(sensors.time_ns)) tell(fault, sensors.time_ns, sensors.joints[fault.joint]);
   }
   for (const SupplyFault& fault : supply_faults_) {
     if (!is_now(fault, sensors.time_ns)) continue;
@@ -107,14 +107,22 @@ void FaultyPlant::spoil(Planned& planned, SensorFrame& sensors) noexcept {
   }
 }
 
+// A drive that has tripped is reset, then enabled.
+void FaultyPlant::PlannedActuator::heed(const DriveRequest& request, std::int64_t time_ns) noexcept {
+  if (!request.is_new(order_seen) || !is_now(time_ns)) return;
+  if (fault.kind == ActuatorFaultKind::disabled && request.order == DriveOrder::enable) over = true;
+  if (fault.kind == ActuatorFaultKind::tripped && request.order == DriveOrder::reset)
+    fault.kind = ActuatorFaultKind::disabled;
+}
+
 void FaultyPlant::add(const ActuatorFault& fault) {
   if (fault.kind == ActuatorFaultKind::late && written_.empty()) written_.resize(late_ticks_max + 1);
-  actuator_faults_.push_back({fault, {}});
+  actuator_faults_.push_back({.fault = fault, .held = {}, .order_seen = asked_[fault.joint].number});
 }
 
 void FaultyPlant::spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept {
   const ActuatorFault& fault = planned.fault;
-  if (!is_now(fault, time_ns_)) {
+  if (!planned.is_now(time_ns_)) {
     planned.held = actuation;
     return;
   }
@@ -150,7 +158,11 @@ void FaultyPlant::write(const ActuationFrame& actuation) noexcept {
     newest_ = (newest_ + 1) % written_.size();
     written_[newest_] = actuation;
   }
-  for (PlannedActuator& planned : actuator_faults_) spoil(planned, spoiled.joints[planned.fault.joint]);
+  for (PlannedActuator& planned : actuator_faults_) {
+    planned.heed(actuation.drives[planned.fault.joint], time_ns_);
+    spoil(planned, spoiled.joints[planned.fault.joint]);
+  }
+  asked_ = actuation.drives;
   plant_.write(spoiled);
 }
 

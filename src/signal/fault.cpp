@@ -105,6 +105,11 @@ const char* name(DriveState state) noexcept {
   return named(std::array{"off", "ready", "enabled", "homing", "fault"}, static_cast<std::size_t>(state));
 }
 
+const char* name(DriveOrder order) noexcept {
+  return named(std::array{"none", "enable", "disable", "reset", "home", "brake", "release"},
+               static_cast<std::size_t>(order));
+}
+
 const char* name(Posture posture) noexcept {
   return named<posture_count>({"upright", "prone", "supine", "left", "right", "falling"},
                               static_cast<std::size_t>(posture));

@@ -77,6 +77,33 @@ TEST_CASE("after drives.enable_s the joint alone is off, latched" *
   check_alone(robot, SafetyLevel::off);
 }
 
+TEST_CASE("it is reset, enabled, and follows again when the faults are cleared, without a jump" *
+          description("a drive that has tripped is brought back by orders")) {
+  LightRobot robot(29);
+  const auto order = [&](DriveOrder what) {
+    robot.send({.kind = CommandKind::order_drive, .index = 0, .count = static_cast<std::uint32_t>(what)});
+    robot.run(12);
+  };
+  robot.run(100);
+  order(DriveOrder::enable);  // which it is
+  spoil(robot, ActuatorFaultKind::tripped, 18);
+  robot.run(3);
+  order(DriveOrder::enable);  // not before it is reset
+  CHECK(robot.control.state().power.drives[0].state == DriveState::fault);
+  order(DriveOrder::reset);
+  CHECK(robot.control.state().power.drives[0].state == DriveState::ready);
+  robot.clear_faults();
+  robot.run(ticks(robot.limits().drives.enable_s) + 5);
+  CHECK(robot.first(FaultCode::drive_not_enabled) > 0);
+  order(DriveOrder::enable);
+  CHECK(robot.control.state().power.drives[0].state == DriveState::enabled);
+  CHECK(robot.safety.joint_level(0) == SafetyLevel::off);
+  robot.clear_faults();
+  robot.run(ticks(robot.limits().recover_s) + 50);
+  CHECK(robot.safety.joint_level(0) == SafetyLevel::normal);
+  CHECK(robot.broken_promise().empty());
+}
+
 TEST_CASE("in that tick the joint alone damps, latched" * description("a drive says that it is too hot")) {
   LightRobot robot(23);
   robot.run(100);

@@ -54,6 +54,7 @@ SensorFrame any_sensors(std::uint32_t joints, std::uint32_t feet, RandomStream& 
                        static_cast<std::int64_t>(random.next()),
                        static_cast<float>(number(random)),
                        static_cast<DriveState>(random.next() % 5),
+                       random.next() % 2 == 0,
                        random.next() % 2 == 0};
   frame.supply_V = number(random);
   frame.emergency = random.next() % 2 == 0;

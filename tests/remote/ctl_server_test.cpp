@@ -74,8 +74,45 @@ TEST_CASE("ctl tells what the drives say of themselves") {
   CHECK(answer["supply_V"].is_null());  // a model without one
   CHECK(answer["emergency"] == false);
   REQUIRE(answer["drives"].size() == 2);
-  CHECK(answer["drives"][0] ==
-        Json{{"joint", "hip"}, {"state", "enabled"}, {"code", 0}, {"temperature_C", nullptr}, {"homed", true}});
+  CHECK(answer["drives"][0] == Json{{"joint", "hip"},
+                                    {"state", "enabled"},
+                                    {"code", 0},
+                                    {"temperature_C", nullptr},
+                                    {"homed", true},
+                                    {"braked", false}});
+}
+
+TEST_CASE("drives are disabled and enabled by ctl, which answers when they are, and other joints are none") {
+  LiveInstance live;
+  live.start();
+  CHECK(live.ask({{"verb", "disable_drives"}, {"joints", "h*"}})["ok"] == true);
+  const Json disabled =
+      live.ask_until({{"verb", "drives"}}, [](const Json& a) { return a["drives"][0]["state"] == "ready"; });
+  CHECK(disabled["drives"][1]["state"] == "enabled");
+  CHECK(live.ask({{"verb", "enable_drives"}})["ok"] == true);
+  (void)live.ask_until({{"verb", "drives"}}, [](const Json& a) { return a["drives"][0]["state"] == "enabled"; });
+  CHECK(live.ask({{"verb", "reset_drives"}})["ok"] == true);
+  CHECK(live.ask({{"verb", "home_drives"}, {"joints", "knee"}})["ok"] == true);
+  CHECK(says(live.ask({{"verb", "enable_drives"}, {"joints", "kne"}}), "did you mean 'knee'"));
+  CHECK(error_of(live.ask({{"verb", "release_drives"}})) == "release_drives needs \"joints\"");
+  CHECK(item(live.ask({{"verb", "list"}, {"what", "joints"}}), "knee")["unit"] == "rad");
+}
+
+TEST_CASE("a drive that does not do what it is asked for is named, with what it says") {
+  LiveInstance live;
+  live.start();
+  CHECK(error_of(live.ask({{"verb", "brake_drives"}, {"joints", "hip"}})) ==
+        "hip is enabled, not braked, 5 s after it was asked to brake");
+}
+
+TEST_CASE("under the emergency stop no drive is enabled and no brake released; disabling goes on") {
+  LiveInstance live;
+  live.start();
+  CHECK(live.ask({{"verb", "estop"}})["ok"] == true);
+  (void)live.ask_until({{"verb", "status"}}, [](const Json& a) { return a["safety"]["stopped"] == true; });
+  CHECK(error_of(live.ask({{"verb", "enable_drives"}})) == "drive of hip: the robot is held");
+  CHECK(error_of(live.ask({{"verb", "release_drives"}, {"joints", "*"}})) == "drive of hip: the robot is held");
+  CHECK(live.ask({{"verb", "disable_drives"}})["ok"] == true);
 }
 
 TEST_CASE("behaviors play, are paused, tuned, replaced and stopped, and status says so") {

@@ -6,7 +6,8 @@
 // change them are refused, unless the same transaction clears the faults first. A motion under way goes on to its end.
 // So it is for a joint that is held alone: refused are its set-points, set-points without a joint and parameters of the
 // objects that drive it, and a switch of control sets that concerns it. A joint that damps or is off refuses nothing,
-// so that the others can go on; when it comes back, it starts from where it is.
+// so that the others can go on; when it comes back, it starts from where it is. Orders to drives pass while the robot
+// is held, since they are the way out; under the emergency stop none that lets a joint move.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +38,7 @@ class CommandInbox {
   // Which transactions were refused, into the snapshot.
   void fill(Snapshot& snapshot) const noexcept;
   SetpointMotions& motions() noexcept { return motions_; }
+  const DriveRequests& drives() const noexcept { return drives_; }
 
  private:
   RefusalReason judge(const Command& command) const noexcept;
@@ -54,6 +56,7 @@ class CommandInbox {
   std::uint32_t commands_per_tick_max_;
   std::int64_t age_max_ns_;
   SetpointMotions motions_;
+  DriveRequests drives_{};
   State state_;
   std::uint32_t transactions_refused_ = 0;
   std::array<Refusal, refusals_shown> refusals_{};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kadans/plant/modelled_channels.h"
+#include "kadans/plant/modelled_drives.h"
 #include "kadans/plant/settings.h"
 #include "kadans/plant/world.h"
 
@@ -25,6 +26,7 @@ class IdealWorld final : public OneRobotWorld {
   std::array<double, max_joints> lower_rad_{}, upper_rad_{};
   ActuationFrame actuation_;
   PlantTruth truth_;
+  ModelledDrives drives_;
   ModelledChannels channels_;
   std::int64_t time_ns_ = 0;
   std::uint32_t sequence_ = 0;

@@ -29,6 +29,10 @@ struct DriveSettings {
   double parallel_spring_Nm_per_rad = 0;
   double parallel_rest_rad = 0;
   double parallel_damping_Nms_per_rad = 0;
+  // Its electronics.
+  bool enabled = true;  // at the start
+  double enable_s = 0;  // from the order until it is enabled
+  double brake_Nm = 0;  // holds the joint while the drive is not enabled; 0: there is no brake
 };
 
 struct EncoderSettings {

@@ -52,6 +52,7 @@ class BehaviorSide final : public BesideTick {
     ParameterChange change{};    // of set_parameter and undo
     bool lasting = false;
     std::uint16_t lifts = 0;  // of clear_faults: SafetyStatus::lifts before
+    JointMask joints = 0;     // of orders to drives
   };
 
   void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
@@ -73,6 +74,8 @@ class BehaviorSide final : public BesideTick {
   ParameterChange change_of(const Order& order) const;
   void send(Pending& pending, std::span<const Command> commands);
   std::vector<Command> set_points_of(const Order& order) const;
+  JointMask joints_of(const Order& order) const;
+  void order_drives(Pending& pending);
   std::string told(const Order& order, bool& done);  // by lines_
 
   // behavior_side_console.cpp

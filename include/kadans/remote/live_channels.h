@@ -55,6 +55,7 @@ class LiveChannels {
   void take(const Fault& fault, std::int64_t time_ns);
   void take_behaviors(const std::string& json);  // behaviors_description, in place of those before
   void take_timing(const std::string& json, std::int64_t time_ns);
+  void take_drives(const std::string& json, std::int64_t time_ns);  // nothing when it is as before
 
  private:
   std::size_t add(LiveChannel channel);
@@ -67,8 +68,8 @@ class LiveChannels {
   std::vector<LiveChannel> channels_;
   std::map<std::string, std::string> signals_;
   ViewerMessages viewers_;
-  std::size_t first_viewer_, log_, transitions_, faults_, timing_, described_;
-  std::string description_;
+  std::size_t first_viewer_, log_, transitions_, faults_, timing_, drives_, described_;
+  std::string description_, drives_told_;
   ByteWriter message_;
   std::vector<std::byte> payload_;
   std::vector<double> values_;

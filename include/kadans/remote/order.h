@@ -8,6 +8,7 @@
 
 #include "kadans/remote/order_queue.h"
 #include "kadans/script/script_parameter.h"
+#include "kadans/signal/frames.h"
 #include "kadans/signal/parameter.h"
 
 namespace kadans {
@@ -36,6 +37,13 @@ struct Order {
     changes,        // Answer::changes: what set_parameter changed since the start or the last `saved`
     saved,          // `changes` stand in the configuration now
     clear_faults,
+    // `text` = joints by a pattern, "" = all; as the orders to drives (frames.h).
+    enable_drives,
+    disable_drives,
+    reset_drives,
+    home_drives,
+    brake_drives,
+    release_drives,
     line,           // `text` for the console of this client
     complete,       // `text` = the beginning of a line
     leave_console,  // the client is gone
@@ -51,6 +59,16 @@ struct Order {
   std::uint64_t client = 0;  // whose console
   std::vector<ParameterChange> changes{};
 };
+
+// What an order asks of drives; none: it is about something else.
+constexpr DriveOrder drive_order_of(Order::Kind kind) noexcept {
+  using enum Order::Kind;
+  if (kind < enable_drives || kind > release_drives) return DriveOrder::none;
+  return static_cast<DriveOrder>(1 + static_cast<std::uint8_t>(kind) - static_cast<std::uint8_t>(enable_drives));
+}
+static_assert(drive_order_of(Order::Kind::enable_drives) == DriveOrder::enable &&
+              drive_order_of(Order::Kind::home_drives) == DriveOrder::home &&
+              drive_order_of(Order::Kind::release_drives) == last_drive_order);
 
 struct BehaviorReport {
   std::string name, state, outcome, error;

@@ -40,8 +40,8 @@ enum class ActuatorFaultKind : std::uint8_t {
   offset,  // `size` added to the effort, Nm
   late,    // what was written `size` ticks before
   // What the drive says of itself:
-  tripped,   // something is wrong, by the maker's code `size`; no torque
-  disabled,  // it is ready, and not enabled; no torque
+  tripped,   // something is wrong, by the maker's code `size`; no torque; a reset makes it `disabled`
+  disabled,  // it is ready, and not enabled; no torque; whoever enables it ends the fault
   hot,       // it is `size` C
   old,       // its readings are `size` s old
 };
@@ -96,7 +96,14 @@ class FaultyPlant final : public OneRobotWorld {
   };
   struct PlannedActuator {
     ActuatorFault fault;
-    JointActuation held;  // what was written before it began
+    JointActuation held;          // what was written before it began
+    std::uint8_t order_seen = 0;  // by its drive
+    bool over = false;            // by an order
+
+    bool is_now(std::int64_t time_ns) const noexcept {
+      return !over && time_ns >= fault.from_ns && time_ns < fault.until_ns;
+    }
+    void heed(const DriveRequest& request, std::int64_t time_ns) noexcept;
   };
   void spoil(Planned& planned, SensorFrame& sensors) noexcept;
   void spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept;
@@ -108,6 +115,7 @@ class FaultyPlant final : public OneRobotWorld {
   std::vector<PlannedActuator> actuator_faults_;
   std::vector<SupplyFault> supply_faults_;
   std::int64_t time_ns_ = 0;             // of the last read
+  DriveRequests asked_{};                // in the last write
   std::vector<ActuationFrame> written_;  // the last ones, a ring; empty when nothing is ever late
   std::size_t newest_ = 0;
 };

@@ -21,6 +21,7 @@ enum class CommandKind : std::uint8_t {
   trapezoid,  // index = SetpointId, value to be reached in duration_s (0 = as soon as may be), velocity, acceleration:
               // limits
   via_point,  // index = SetpointId, value to be passed duration_s after the point before; count = its number, 0 begins
+  order_drive,  // index = joint, count = DriveOrder; of persons alone
 };
 
 struct Command {

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "kadans/signal/capacity.h"
 
@@ -40,7 +41,8 @@ struct alignas(8) JointSample {
   std::int64_t time_ns = 0;  // of the reading, on the frame's clock; 0: the frame's time
   float temperature_C = std::numeric_limits<float>::quiet_NaN();  // of the drive or its motor; NaN: it does not say
   DriveState drive = DriveState::enabled;
-  bool homed = true;  // its position counts from where the joint's does
+  bool homed = true;    // its position counts from where the joint's does
+  bool braked = false;  // its brake holds the joint
 };
 
 struct alignas(8) ImuSample {
@@ -115,10 +117,30 @@ inline bool is_finite(const JointActuation& a) noexcept {
          0;
 }
 
-// Taken by Plant::write.
+// What somebody asks of a drive beside torque. An enabled drive holds the joint, so its brake opens; one that is not
+// lets the brake hold. `brake` and `release` move the brake by hand, until the drive is enabled or disabled again.
+enum class DriveOrder : std::uint8_t { none, enable, disable, reset, home, brake, release };
+inline constexpr DriveOrder last_drive_order = DriveOrder::release;
+const char* name(DriveOrder order) noexcept;
+
+// The newest order stands in every frame, since a bus may lose some. The drive carries it out once, when its number has
+// changed.
+struct DriveRequest {
+  DriveOrder order = DriveOrder::none;
+  std::uint8_t number = 0;
+
+  // Whether it is an order that was not seen before; `seen` is the number of the last one.
+  bool is_new(std::uint8_t& seen) const noexcept {
+    return std::exchange(seen, number) != number && order != DriveOrder::none;
+  }
+};
+using DriveRequests = std::array<DriveRequest, max_joints>;
+
+// Taken by Plant::write. The control engine alone writes `drives`.
 struct alignas(8) ActuationFrame {
   std::uint32_t joint_count = 0;
   std::array<JointActuation, max_joints> joints{};
+  DriveRequests drives{};
 };
 
 // The first `count` entries, or all that there are.
@@ -148,6 +170,7 @@ inline void copy_used(const JointStates& from, JointStates& to) noexcept {
 inline void copy_used(const ActuationFrame& from, ActuationFrame& to) noexcept {
   to.joint_count = from.joint_count;
   copy_first(from.joints, from.joint_count, to.joints);
+  copy_first(from.drives, from.joint_count, to.drives);
 }
 
 static_assert(std::is_trivially_copyable_v<SensorFrame> && std::is_trivially_copyable_v<JointStates> &&
@@ -157,7 +180,7 @@ static_assert(sizeof(SensorFrame) == 16 + 48 * max_joints + 56 + 40 * max_feet +
               offsetof(SensorFrame, joints) == 16 && offsetof(SensorFrame, feet) == 72 + 48 * max_joints);
 static_assert(sizeof(JointState) == 24 && sizeof(JointStates) == 8 + 24 * max_joints &&
               offsetof(JointStates, joints) == 8);
-static_assert(sizeof(JointActuation) == 48 && offsetof(JointActuation, mode) == 40 &&
-              sizeof(ActuationFrame) == 8 + 48 * max_joints && offsetof(ActuationFrame, joints) == 8);
+static_assert(sizeof(JointActuation) == 48 && offsetof(JointActuation, mode) == 40 && sizeof(DriveRequest) == 2 &&
+              sizeof(ActuationFrame) == 8 + 50 * max_joints && offsetof(ActuationFrame, joints) == 8);
 
 }  // namespace kadans

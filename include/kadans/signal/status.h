@@ -70,8 +70,8 @@ struct DriveStatus {
   float temperature_C = std::numeric_limits<float>::quiet_NaN();
   std::uint32_t code = 0;
   DriveState state = DriveState::enabled;
-  bool homed = true;
-  std::uint16_t reserved = 0;
+  bool homed = true, braked = false;
+  std::uint8_t reserved = 0;
 };
 
 struct alignas(8) PowerStatus {

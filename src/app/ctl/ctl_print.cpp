@@ -127,7 +127,8 @@ std::string drives_text(const Json& answer) {
     const bool warm = drive.at("temperature_C").is_number();
     const auto code = drive.at("code").get<std::uint32_t>();
     rows.push_back({drive.at("joint"), drive.at("state"), warm ? number(drive.at("temperature_C")) + " C" : "",
-                    drive.at("homed").get<bool>() ? "" : "not homed", code == 0 ? "" : "code " + std::to_string(code)});
+                    drive.at("homed").get<bool>() ? "" : "not homed", drive.at("braked").get<bool>() ? "braked" : "",
+                    code == 0 ? "" : "code " + std::to_string(code)});
   }
   std::string text = table(rows);
   if (answer.at("supply_V").is_number()) text += "supply " + number(answer.at("supply_V")) + " V\n";

@@ -6,6 +6,7 @@
 
 #include "convert.h"
 #include "joint_rows.h"
+#include "kadans/plant/modelled_drives.h"
 #include "plant_settings_check.h"
 #include "sensors.h"
 
@@ -36,6 +37,7 @@ class BulletWorld::Inside {
         joint_names_(model.joint_names()),
         mask_(make_pair_mask(model, settings)),
         body_(model, settings),
+        electronics_(settings.drives, model.joints.size()),
         sensors_(model, settings, seed),
         truth_(body_, model.joints.size()),
         objects_(settings.world),
@@ -52,6 +54,7 @@ class BulletWorld::Inside {
   }
 
   void write(const ActuationFrame& actuation) noexcept {
+    electronics_.write(actuation);
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       const bool usable = i < actuation.joint_count && is_finite(actuation.joints[i]);
       drives_[i].ask(usable ? actuation.joints[i] : JointActuation{});
@@ -62,8 +65,11 @@ class BulletWorld::Inside {
     if (dt_ns <= 0) return;
     const double dt_s = static_cast<double>(dt_ns) * 1e-9;
     btMultiBody& multibody = body_.multibody();
+    electronics_.step(dt_ns);
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       const int joint = static_cast<int>(i);
+      if (!electronics_.enabled(i)) drives_[i].ask({});
+      drives_[i].brake(electronics_.braked(i));
       multibody.addJointTorque(joint,
                                drives_[i].begin_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s));
     }
@@ -97,12 +103,16 @@ class BulletWorld::Inside {
     for (int i = 0; i < 6 + multibody.getNumDofs(); ++i) hash.add(multibody.getVelocityVector()[i]);
     for (std::size_t i = 0; i < drives_.size(); ++i) hash.add(multibody.getJointPos(static_cast<int>(i)));
     for (const Drive& drive : drives_) drive.hash(hash);
+    electronics_.hash(hash);
     objects_.hash(hash);
     hash_contacts(hash);
     hash_sensors(hash);
   }
 
-  const SensorFrame& sensors() const noexcept { return sensors_.frame(); }
+  void read(SensorFrame& sensors) const noexcept {
+    copy_used(sensors_.frame(), sensors);
+    electronics_.fill(sensors);
+  }
   const PlantTruth& truth() const noexcept { return truth_.truth(); }
 
  private:
@@ -179,6 +189,7 @@ class BulletWorld::Inside {
   Body body_;
   std::vector<std::unique_ptr<JointRows>> rows_;
   std::vector<Drive> drives_;
+  ModelledDrives electronics_;
   std::vector<FootLoad> feet_;
   Sensors sensors_;
   TruthReader truth_;
@@ -192,7 +203,7 @@ BulletWorld::BulletWorld(const RobotModel& model, const PlantSettings& settings,
 
 BulletWorld::~BulletWorld() = default;
 
-void BulletWorld::read(SensorFrame& sensors) noexcept { copy_used(inside_->sensors(), sensors); }
+void BulletWorld::read(SensorFrame& sensors) noexcept { inside_->read(sensors); }
 
 void BulletWorld::write(const ActuationFrame& actuation) noexcept { inside_->write(actuation); }
 

@@ -58,7 +58,7 @@ double Drive::begin_rigid(double position_rad, double velocity_rad_s, double dt_
   const double damping = settings_.viscous_Nms_per_rad + settings_.parallel_damping_Nms_per_rad;
   rows_->set_linear(inertia * velocity_rad_s + dt_s * spring * (settings_.parallel_rest_rad - position_rad),
                     inertia + dt_s * damping + dt_s * dt_s * spring);
-  rows_->set_friction(dt_s * settings_.coulomb_Nm);
+  rows_->set_friction(dt_s * dry_Nm());
   const TorqueLaw motor = law(position_rad, velocity_rad_s, dt_s);
   if (motor.slope_Nms_per_rad == 0) {
     state_.motor_torque_Nm = std::clamp(motor.at_rest_Nm, motor.lower_Nm, motor.upper_Nm);
@@ -105,7 +105,7 @@ double Drive::step_rotor(double position_rad, double velocity_rad_s, double dt_s
     resistance = inertia + dt_s * viscous;
     velocity = (momentum + dt_s * state_.motor_torque_Nm) / resistance;
   }
-  const double stop = dt_s * settings_.coulomb_Nm / resistance;  // what dry friction can take off in this step
+  const double stop = dt_s * dry_Nm() / resistance;  // what dry friction can take off in this step
   velocity -= std::clamp(velocity, -stop, stop);
   rotor_velocity = velocity;
   state_.rotor_rad += dt_s * velocity;

@@ -41,6 +41,7 @@ class Drive {
   Drive(const DriveSettings& settings, const Joint& joint, JointRows& rows, double position_rad);
 
   void ask(const JointActuation& actuation) noexcept { actuation_ = actuation; }
+  void brake(bool braked) noexcept { braked_ = braked; }
   // Returns the torque to put on the joint in this step, beside the rows it sets.
   double begin_step(double position_rad, double velocity_rad_s, double dt_s);
   void end_step(double position_rad, double velocity_rad_s, double dt_s);
@@ -56,12 +57,14 @@ class Drive {
   double step_rotor(double position_rad, double velocity_rad_s, double dt_s);
   double available_Nm(double direction, double velocity_rad_s) const;
   double most_Nm(double before_rad_s, double after_rad_s) const;
+  double dry_Nm() const noexcept { return settings_.coulomb_Nm + (braked_ ? settings_.brake_Nm : 0); }
 
   DriveSettings settings_;
   JointRows* rows_;
   JointActuation actuation_;
   State state_;
   double velocity_before_rad_s_ = 0;
+  bool braked_ = false;
 };
 
 }  // namespace kadans::bullet

@@ -27,7 +27,7 @@ double torque_Nm(const JointActuation& asked, double position_rad, double veloci
 }  // namespace
 
 IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
-    : channels_(settings.channels, seed) {
+    : drives_(settings.drives, model.joints.size()), channels_(settings.channels, seed) {
   const std::size_t joints = model.joints.size();
   require(joints <= max_joints, "at most " + std::to_string(max_joints) + " joints");
   require(settings.position_rad.size() == joints, "position_rad must have one entry a joint");
@@ -55,6 +55,7 @@ void IdealWorld::read(SensorFrame& sensors) noexcept {
     const double effort_Nm = truth_.drive_torque_Nm[i];
     sensors.joints[i] = {truth_.position_rad[i], truth_.position_rad[i], effort_Nm, sequence_ + 1};
   }
+  drives_.fill(sensors);
   sensors.imu = {{0, 0, 0}, {0, 0, 9.81}, sequence_ + 1};
   sensors.supply_V = std::numeric_limits<double>::quiet_NaN();
   sensors.emergency = false;
@@ -62,6 +63,7 @@ void IdealWorld::read(SensorFrame& sensors) noexcept {
 }
 
 void IdealWorld::write(const ActuationFrame& actuation) noexcept {
+  drives_.write(actuation);
   actuation_ = actuation;
   actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
@@ -73,7 +75,7 @@ void IdealWorld::step(std::int64_t dt_ns) {
   if (dt_ns <= 0) return;
   const double dt_s = static_cast<double>(dt_ns) * 1e-9;
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
-    const JointActuation& asked = actuation_.joints[i];
+    const JointActuation asked = drives_.enabled(i) ? actuation_.joints[i] : JointActuation{};
     double& position = truth_.position_rad[i];
     double& velocity = truth_.velocity_rad_s[i];
     const double before = position;
@@ -82,11 +84,16 @@ void IdealWorld::step(std::int64_t dt_ns) {
     velocity += dt_s * truth_.drive_torque_Nm[i] / inertia_kg_m2_[i];
     if (asked.mode == ActuationMode::velocity) velocity = asked.velocity_rad_s;
     position = asked.mode == ActuationMode::position ? asked.position_rad : position + dt_s * velocity;
+    if (drives_.braked(i)) {
+      position = before;
+      velocity = 0;
+    }
     const double free = position;
     position = std::clamp(position, lower_rad_[i], upper_rad_[i]);
     if (asked.mode == ActuationMode::position) velocity = (position - before) / dt_s;
     if (position != free) velocity = 0;
   }
+  drives_.step(dt_ns);
   time_ns_ += dt_ns;
   ++sequence_;
   channels_.sample(time_ns_);
@@ -97,6 +104,7 @@ void IdealWorld::hash(StateHash& hash) const noexcept {
     hash.add(truth_.position_rad[i]);
     hash.add(truth_.velocity_rad_s[i]);
   }
+  drives_.hash(hash);
   hash.add(static_cast<std::uint64_t>(time_ns_));
 }
 

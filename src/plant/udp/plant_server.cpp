@@ -93,6 +93,7 @@ void PlantServer::take_all() noexcept {
 // What a drive does without its bus: torque against the motion, within the drive's limit.
 const ActuationFrame& PlantServer::damping(const PlantTruth& truth) noexcept {
   damping_.joint_count = truth.joint_count;
+  damping_.drives = actuation_.drives;  // the same orders, not new ones
   for (std::size_t i = 0; i < truth.joint_count; ++i) {
     const double effort_Nm = -settings_.damping_Nms_per_rad * truth.velocity_rad_s[i];
     damping_.joints[i] = {.effort_Nm = std::isfinite(effort_Nm) ? effort_Nm : 0, .mode = ActuationMode::effort};

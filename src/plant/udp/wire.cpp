@@ -15,11 +15,12 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 
 constexpr std::uint32_t magic = 0x504e444bU;  // "KDNP"
 constexpr std::size_t sum_bytes = 4, greeting_bytes = 8 + 4 + 4 + wire_robot_bytes;
-constexpr std::size_t joint_actuation_bytes = 41, joint_sample_bytes = 46, foot_bytes = 36, sensor_bytes = 12;
+constexpr std::size_t joint_actuation_bytes = 43, joint_sample_bytes = 47, foot_bytes = 36, sensor_bytes = 12;
 constexpr std::size_t before_joints_bytes =
     9 + 52 + 9;  // of sensors: what was answered, IMU, what drives have in common
-constexpr std::size_t actuation_mode_at = 40, released_at = 8, emergency_at = 69;
-constexpr std::size_t sample_drive_at = before_joints_bytes + 44, sample_homed_at = before_joints_bytes + 45;
+constexpr std::size_t actuation_mode_at = 40, actuation_order_at = 41, released_at = 8, emergency_at = 69;
+constexpr std::size_t sample_drive_at = before_joints_bytes + 44, sample_homed_at = before_joints_bytes + 45,
+                      sample_braked_at = before_joints_bytes + 46;
 
 template <typename T>
 void put(std::byte*& at, const T& value) noexcept {
@@ -132,6 +133,9 @@ Bytes PlantWire::actuation(const WireHead& head, const ActuationFrame& frame, Da
     put(at, joint.stiffness_Nm_per_rad);
     put(at, joint.damping_Nms_per_rad);
     put(at, joint.mode);
+    const DriveRequest request = i < frame.joint_count ? frame.drives[i] : DriveRequest{};
+    put(at, request.order);
+    put(at, request.number);
   }
   return seal(into, at);
 }
@@ -157,6 +161,7 @@ Bytes PlantWire::sensors(const WireHead& head, const SensorsOnWire& more, const 
     put(at, joint.temperature_C);
     put(at, joint.drive);
     put(at, static_cast<std::uint8_t>(joint.homed));
+    put(at, static_cast<std::uint8_t>(joint.braked));
   }
   for (std::size_t i = 0; i < greeting_.feet; ++i) {
     put(at, frame.feet[i].force_N);
@@ -198,11 +203,14 @@ PlantWire::Check PlantWire::check(Bytes datagram, WireHead& head) const noexcept
     return true;
   };
   bool good = true;
-  if (head.kind == WireKind::actuation) good = all_below(actuation_mode_at, joint_actuation_bytes, last_actuation_mode);
+  if (head.kind == WireKind::actuation) {
+    good = all_below(actuation_mode_at, joint_actuation_bytes, last_actuation_mode) &&
+           all_below(actuation_order_at, joint_actuation_bytes, last_drive_order);
+  }
   if (head.kind == WireKind::sensors) {
     good = payload(datagram)[released_at] <= std::byte{1} && payload(datagram)[emergency_at] <= std::byte{1} &&
            all_below(sample_drive_at, joint_sample_bytes, DriveState::fault) &&
-           all_below(sample_homed_at, joint_sample_bytes, 1);
+           all_below(sample_homed_at, joint_sample_bytes, 1) && all_below(sample_braked_at, joint_sample_bytes, 1);
   }
   return good ? Check::good : Check::garbage;
 }
@@ -232,6 +240,8 @@ void PlantWire::actuation_in(Bytes datagram, ActuationFrame& frame) const noexce
     take(at, joint.stiffness_Nm_per_rad);
     take(at, joint.damping_Nms_per_rad);
     take(at, joint.mode);
+    take(at, frame.drives[i].order);
+    take(at, frame.drives[i].number);
   }
 }
 
@@ -258,6 +268,7 @@ SensorsOnWire PlantWire::sensors_in(Bytes datagram, SensorFrame& frame) const no
     take(at, joint.temperature_C);
     take(at, joint.drive);
     joint.homed = take_bool(at);
+    joint.braked = take_bool(at);
   }
   for (std::size_t i = 0; i < greeting_.feet; ++i) {
     take(at, frame.feet[i].force_N);

@@ -79,6 +79,9 @@ bool ChildAnswer::take_commands(BehaviorLink& link) {
     const bool whole =
         commands_[at].kind == CommandKind::transaction && count > 0 && count < max_transaction && count < waiting - at;
     if (!whole) return false;
+    for (std::size_t i = 1; i <= count; ++i) {
+      if (commands_[at + i].kind == CommandKind::order_drive) return false;  // drives are no behavior's to order
+    }
   }
   return true;
 }

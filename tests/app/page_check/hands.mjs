@@ -71,6 +71,12 @@ export async function check_keyboard(page) {
   await until('the robot damps or is off', () => page.evaluate(() => globalThis.kadans.value('safety.level') >= 3));
   await page.waitForSelector('.rung.on:text-matches("damp|off")');
   check(true, 'by keyboard alone a behavior is played and stopped, and the robot too');
+  const disable = page.locator('[aria-label^="Disable "]').first();
+  const joint = (await disable.getAttribute('aria-label')).slice('Disable '.length);
+  await disable.click();
+  await page.click(`[aria-label="Enable ${joint}"]`);
+  await until('the run refuses to enable a drive while it is stopped', () => logged(`drive of ${joint}: the robot is held`));
+  check(true, 'a drive is disabled by its button, and enabled by none under the emergency stop');
 }
 
 // As the system hands a file over when it is let go above the page.

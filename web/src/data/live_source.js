@@ -5,7 +5,7 @@ import { is_single, read_numbers } from './numbers.js';
 
 const text_of = new TextDecoder();
 const bytes_of = new TextEncoder();
-const wanted_texts = new Set(['/log', '/transitions', '/faults', '/timing', '/description', '/robot_description']);
+const wanted_texts = new Set(['/log', '/transitions', '/faults', '/timing', '/drives', '/description', '/robot_description']);
 const again_ms = 500;
 
 class Remote {

@@ -3,7 +3,7 @@
 import { Topic } from './topic.js';
 
 const events_max = 5000;
-const json_topics = new Set(['/description', '/transitions', '/log', '/faults', '/timing', '/parameters']);
+const json_topics = new Set(['/description', '/transitions', '/log', '/faults', '/timing', '/drives', '/parameters']);
 const text_of = new TextDecoder();
 
 const seconds = (stamp) => stamp.sec + stamp.nsec * 1e-9;
@@ -26,6 +26,7 @@ export class Session {
     this.log = [];
     this.faults = [];
     this.timing = null;
+    this.drives = null; // of a live run: what they said last
     this.description = null;
     this.urdf = null;
     this.parameters = new Map(); // name -> value now
@@ -109,6 +110,8 @@ export class Session {
       keep(this.faults, { t: seconds(json.timestamp), ...json });
     } else if (topic === '/timing') {
       this.timing = json;
+    } else if (topic === '/drives') {
+      this.drives = json;
     } else if (topic === '/parameters') {
       for (const { name, value } of json.parameters) this.parameters.set(name, value);
     }

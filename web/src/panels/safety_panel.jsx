@@ -1,4 +1,4 @@
-// The ladder of safety, rung by rung, for the robot and each joint, and the faults that led there.
+// The ladder of safety, rung by rung, for the robot and each joint, the faults that led there, and what the drives say.
 import { clock, number, useSession } from '../watching.js';
 
 export const rungs = ['normal', 'limited', 'hold', 'damp', 'off'];
@@ -30,6 +30,38 @@ function Joints({ session }) {
         })}
       </tbody>
     </table>
+  );
+}
+
+// What may be asked of a drive in each of its states.
+const orders = { off: ['enable_drives', 'Enable'], ready: ['enable_drives', 'Enable'], enabled: ['disable_drives', 'Disable'], fault: ['reset_drives', 'Reset'] };
+
+function Drive({ session, drive }) {
+  const [verb, word] = orders[drive.state] ?? [];
+  const remarks = [drive.code !== 0 && `code ${drive.code}`, !drive.homed && 'not homed', drive.braked && 'braked'];
+  return (
+    <tr>
+      <td>{drive.joint}</td>
+      <td><span class={`chip drive_${drive.state}`}>{drive.state}</span></td>
+      <td>{drive.temperature_C === null ? '' : `${drive.temperature_C.toFixed(1)} °C`}</td>
+      <td>{remarks.filter(Boolean).join(', ')}</td>
+      <td>{verb && <button disabled={!session.remote?.writes} aria-label={`${word} ${drive.joint}`} onClick={() => session.remote.command(verb, { text: drive.joint })}>{word}</button>}</td>
+    </tr>
+  );
+}
+
+// Of a run; a record does not hold it.
+function Drives({ session }) {
+  const { drives, supply_V, emergency } = session.drives;
+  return (
+    <>
+      <h3>Drives</h3>
+      {(supply_V !== null || emergency) && <p>{supply_V !== null && `Supply ${supply_V.toFixed(1)} V. `}{emergency && 'The emergency stop is pressed.'}</p>}
+      <table class="joints">
+        <thead><tr><th>Joint</th><th>State</th><th>Drive</th><th /><th /></tr></thead>
+        <tbody>{drives.map((drive) => <Drive key={drive.joint} session={session} drive={drive} />)}</tbody>
+      </table>
+    </>
   );
 }
 
@@ -73,6 +105,7 @@ export function SafetyPanel({ session }) {
       )}
       <h3>Joints</h3>
       <Joints session={session} />
+      {session.drives && <Drives session={session} />}
     </div>
   );
 }

@@ -10,11 +10,10 @@
 //   welcome    plant     greeting
 //   refusal    plant     greeting; the head says why
 //   actuation  control   a joint: f64 effort_Nm, position_rad, velocity_rad_s, stiffness_Nm_per_rad,
-//   damping_Nms_per_rad,
-//                        u8 mode
+//                        damping_Nms_per_rad, u8 mode, u8 order to its drive, u8 number of the order
 //   sensors    plant     u64 answered; u8 released; imu: 6 f64, u32; f64 supply_V; u8 emergency; a joint: 3 f64, u32
-//                        sequence, u32 code, i64 time_ns, f32 temperature_C, u8 drive, u8 homed; a foot: 4 f64, u32; a
-//                        sensor: f64, u32
+//                        sequence, u32 code, i64 time_ns, f32 temperature_C, u8 drive, u8 homed, u8 braked; a foot: 4
+//                        f64, u32; a sensor: f64, u32
 //   bye        control   none
 //
 // `layout` is a hash of the names of joints, feet and sensors in their order, so that robots that differ refuse each
@@ -42,7 +41,7 @@ inline constexpr std::uint16_t wire_version = 2;
 inline constexpr std::size_t wire_head_bytes = 40, wire_robot_bytes = 32;
 // No datagram of ours is longer.
 inline constexpr std::size_t wire_bytes_max =
-    wire_head_bytes + 9 + 52 + 9 + 46 * max_joints + 36 * max_feet + 12 * max_channels + 4;
+    wire_head_bytes + 9 + 52 + 9 + 47 * max_joints + 36 * max_feet + 12 * max_channels + 4;
 
 enum class WireKind : std::uint8_t { none, hello, welcome, refusal, actuation, sensors, bye };
 enum class WireRefusal : std::uint8_t { none, other_version, layout, period, busy };

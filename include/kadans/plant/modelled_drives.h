@@ -1,0 +1,46 @@
+// The electronics of modelled drives: their states, the orders that they take, their brakes. What an enabled drive
+// makes of its actuation is the model's own matter.
+//
+// Homing takes no time, since a model's encoders are absolute.
+//
+// One owner at a time: write() and fill() in the tick, step() between ticks; nothing allocates after the construction.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kadans/plant/settings.h"
+#include "kadans/signal/frames.h"
+#include "kadans/signal/state_hash.h"
+
+namespace kadans {
+
+class ModelledDrives {
+ public:
+  // One a joint; joints without settings have a drive that is enabled.
+  ModelledDrives(const std::vector<DriveSettings>& settings, std::size_t joints);
+
+  // Carries out the orders that are new.
+  void write(const ActuationFrame& actuation) noexcept;
+  void step(std::int64_t dt_ns) noexcept;
+  void fill(SensorFrame& frame) const noexcept;
+
+  bool enabled(std::size_t joint) const noexcept { return drives_[joint].state == DriveState::enabled; }
+  bool braked(std::size_t joint) const noexcept { return drives_[joint].braked; }
+  // Adds nothing while all are enabled and no brake holds.
+  void hash(StateHash& hash) const noexcept;
+
+ private:
+  struct Drive {
+    std::int64_t enable_ns = 0, waits_ns = 0;  // what enabling takes, and what is left of it; 0: nobody asked
+    DriveState state = DriveState::enabled;
+    std::uint8_t order_seen = 0;
+    bool has_brake = false, braked = false;
+
+    void carry_out(DriveOrder order) noexcept;
+    void become(DriveState next) noexcept;
+  };
+  std::vector<Drive> drives_;
+};
+
+}  // namespace kadans
