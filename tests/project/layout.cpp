@@ -72,11 +72,10 @@ std::string check_layer(std::string_view own, std::string_view header, const std
   const std::string other = layer_of(header, layers);
   if (other.empty()) return "includes kadans/" + std::string(header) + ", which belongs to no layer";
   if (rank(other, layers) <= rank(own, layers)) return "";
-  return std::string(own) + " includes kadans/" + std::string(header) + ", but " + other + " stands below " +
-         std::string(own);
+  return std::string(own) + " includes " + std::string(header) + ", but " + other + " stands below " + std::string(own);
 }
 
-// `path` is the including file's. A quoted header without kadans/ in front is the layer's own.
+// `path` is the including file's.
 std::string check_fences(std::string_view path, const Include& include) {
   for (const Fence& fence : fences()) {
     const auto begins = [&include](std::string_view prefix) { return include.header.starts_with(prefix); };
@@ -145,10 +144,23 @@ Findings check_includes(std::string_view path, std::string_view text, const std:
     const auto include = include_in(line);
     if (!include) continue;
     std::string wrong = check_fences(path, *include);
-    if (include->header.starts_with("kadans/"))
-      wrong = check_layer(own, std::string_view(include->header).substr(7), layers);
+    const bool is_public = include->header.starts_with("kadans/");
+    const std::string_view header = std::string_view(include->header).substr(is_public ? 7 : 0);
+    if (is_public || (include->quoted && !layer_of(header, layers).empty())) wrong = check_layer(own, header, layers);
     if (include->header.find("..") != std::string::npos) wrong = "includes " + include->header + ", a path that climbs";
     if (!wrong.empty()) findings.push_back(place(path, number) + wrong);
+  }
+  return findings;
+}
+
+Findings check_public(std::string_view path, std::string_view text) {
+  Findings findings;
+  std::size_t number = 0;
+  for (const std::string& line : lines(text)) {
+    ++number;
+    const auto include = include_in(line);
+    if (include && include->quoted && !include->header.starts_with("kadans/"))
+      findings.push_back(place(path, number) + "includes " + include->header + ", which is not installed");
   }
   return findings;
 }

@@ -23,6 +23,8 @@ std::string layer_of(std::string_view path, const std::vector<std::string>& laye
 
 // `path` is the file's, below src/ or include/kadans/: its first folder is its layer.
 Findings check_includes(std::string_view path, std::string_view text, const std::vector<std::string>& layers);
+// A header that is installed may include others that are, and libraries.
+Findings check_public(std::string_view path, std::string_view text);
 // A CMakeLists.txt below src/: the targets kadans_<layer> that it names.
 Findings check_links(std::string_view path, std::string_view cmake_text, const std::vector<std::string>& layers);
 Findings check_length(std::string_view path, std::string_view text);

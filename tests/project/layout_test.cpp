@@ -62,6 +62,29 @@ TEST_CASE("no file of a layer includes a layer below it or a library fenced off 
   CHECK(checked > 20);
 }
 
+TEST_CASE("what is installed includes nothing that is not") {
+  std::size_t checked = 0;
+  for (const fs::path& file : files_below(root / "include/kadans")) {
+    report(check_public(fs::relative(file, root / "include").generic_string(), read(file)));
+    ++checked;
+  }
+  CHECK(checked > 20);
+  CHECK(check_public("kadans/a.h", "#include <vector>\n#include \"kadans/b.h\"\n").empty());
+  CHECK(check_public("kadans/a.h", "\n#include \"engine/b.h\"\n") ==
+        Findings{"kadans/a.h:2: includes engine/b.h, which is not installed"});
+}
+
+TEST_CASE("no folder has more than 25 files") {
+  std::map<fs::path, std::size_t> count;
+  for (const char* folder : {"src", "include"}) {
+    for (const fs::path& file : files_below(root / folder)) ++count[fs::relative(file.parent_path(), root)];
+  }
+  for (const auto& [folder, files] : count) {
+    CAPTURE(folder.string());
+    CHECK(files <= 25);
+  }
+}
+
 TEST_CASE("no layer's CMakeLists.txt links a layer below it") {
   std::size_t checked = 0;
   for (const fs::path& file : files_below(root / "src")) {
@@ -168,7 +191,7 @@ TEST_CASE("the checker finds an include of a layer below, with its line") {
   const Findings findings =
       check_includes("signal/fault.cpp", "#include <array>\n#include \"kadans/plant/plant.h\"\n", abc);
   REQUIRE(findings.size() == 1);
-  CHECK(findings[0] == "signal/fault.cpp:2: signal includes kadans/plant/plant.h, but plant stands below signal");
+  CHECK(findings[0] == "signal/fault.cpp:2: signal includes plant/plant.h, but plant stands below signal");
   CHECK(check_includes("engine/tick.h", "  #  include  <kadans/script/state.h>\n", abc).size() == 1);
 }
 
