@@ -6,7 +6,6 @@ find_package(nlohmann_json REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tinyxml2 REQUIRED)
-pkg_check_modules(urdfdom REQUIRED IMPORTED_TARGET urdfdom)
 pkg_check_modules(orocos_kdl REQUIRED IMPORTED_TARGET orocos-kdl)
 pkg_check_modules(bullet REQUIRED IMPORTED_TARGET bullet-float64)  # double precision
 pkg_check_modules(luajit REQUIRED IMPORTED_TARGET luajit)

@@ -20,13 +20,16 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string check_urdf(const std::string& file) {
-  const RobotModel model = read_urdf(file, {.mesh_hulls = true});
+  std::vector<InputProblem> warnings;
+  const RobotModel model = read_urdf(file, {.mesh_hulls = true}, &warnings);
   std::size_t motors = 0;
   for (const Joint& joint : model.joints) motors += joint.passive() ? 0 : 1;
   char text[128];
   std::snprintf(text, sizeof text, "robot description: %zu links, %zu joints, %zu motors, %.3f kg", model.links.size(),
                 model.joints.size(), motors, model.mass_kg());
-  return text;
+  std::string what = text;
+  for (const InputProblem& warning : warnings) what += "\nwarning: " + warning.text();
+  return what;
 }
 
 // Whether the behaviors that the robot gives parameters take them.

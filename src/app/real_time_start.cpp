@@ -20,25 +20,11 @@ namespace {
 constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{2} << 20U;
 
 // What works before the loop and in other commands: files, terminals, streams, exceptions; then the model's.
-constexpr std::array<std::string_view, 18> unused{"libddsc.",
-                                                  "libiceoryx_",
-                                                  "libssl.",
-                                                  "libcrypto.",
-                                                  "libacl.",
-                                                  "libstdc++.",
-                                                  "libsqlite3.",
-                                                  "libedit.",
-                                                  "libtinfo.",
-                                                  "libbsd.",
-                                                  "libmd.",
-                                                  "liburdfdom_",
-                                                  "libtinyxml",
-                                                  "libconsole_bridge.",
-                                                  "libBulletDynamics",
-                                                  "libBulletCollision",
-                                                  "libLinearMath",
-                                                  "libzstd."};
-constexpr std::size_t unused_with_model = 14;
+constexpr std::array<std::string_view, 16> unused{
+    "libddsc.",          "libiceoryx_",        "libssl.",       "libcrypto.", "libacl.", "libstdc++.",
+    "libsqlite3.",       "libedit.",           "libtinfo.",     "libbsd.",    "libmd.",  "libtinyxml",
+    "libBulletDynamics", "libBulletCollision", "libLinearMath", "libzstd."};
+constexpr std::size_t unused_with_model = 12;
 
 }  // namespace
 

@@ -35,6 +35,6 @@ std::optional<TextProblem> find_non_text(std::string_view text);
 
 // For a message: without control characters, cut after 40 characters.
 std::string shown(std::string_view text);
-inline std::string quoted(const std::string& name) { return "'" + shown(name) + "'"; }
+inline std::string shown_quoted(std::string_view name) { return "'" + shown(name) + "'"; }
 
 }  // namespace kadans

@@ -18,38 +18,32 @@ class UrdfDocument {
   // Throws InputError when this is not text, not XML or unreasonably large. Keeps views of the text.
   UrdfDocument(std::string_view text, std::string file);
 
-  const tinyxml2::XMLElement& robot() const { return *xml_.RootElement(); }
+  const tinyxml2::XMLElement& root() const { return *xml_.RootElement(); }
   const std::string& file() const noexcept { return file_; }
-  int line(const tinyxml2::XMLElement& element) const;
+  static const XmlTag& tag(const tinyxml2::XMLElement& element);
+  std::string in_line(std::size_t at) const { return "line " + std::to_string(source_.place(at).line); }
 
-  // Notes a mistake at an element, at the name or at the value of one of its attributes (at the element when it has no
-  // such attribute), or at the text inside it. The last that fits into the list throws.
-  void refuse(const tinyxml2::XMLElement& element, std::string message);
-  void refuse_name(const tinyxml2::XMLElement& element, std::string_view attribute, std::string message);
-  void refuse_value(const tinyxml2::XMLElement& element, std::string_view attribute, std::string message);
-  bool has_text(const tinyxml2::XMLElement& element) const;
-  void refuse_text(const tinyxml2::XMLElement& element, std::string message);
+  // Notes at a byte of the text what keeps it from being a model. The last that fits into the list throws.
+  void refuse(std::size_t at, std::string message);
+  // The same, where it makes no sense to read on.
+  [[noreturn]] void stop(std::size_t at, std::string message);
+  // Notes what is odd, but leaves the model what the text says.
+  void warn(std::size_t at, std::string message);
 
-  bool refused() const noexcept { return !problems_.empty(); }
-  void throw_if_refused();  // InputError with all mistakes, sorted by place
-
-  // The text without comments, foreign elements and stray blanks: what urdfdom gets to see.
-  std::string reprinted() const;
+  void throw_if_refused();                     // InputError with all that is refused, sorted by place
+  std::vector<InputProblem> warnings() const;  // sorted by place
 
  private:
-  const XmlTag& tag(const tinyxml2::XMLElement& element) const;
-  const XmlAttribute* attribute(const tinyxml2::XMLElement& element, std::string_view name) const;
   void link_tags();
-  void refuse_at(std::size_t at, std::string message);
+  [[noreturn]] void throw_refused();
+  InputProblem problem(std::size_t at, std::string message) const;
 
   std::string file_;
   SourceText source_;
   XmlScan scan_;
   tinyxml2::XMLDocument xml_;
-  std::vector<InputProblem> problems_;
+  std::vector<InputProblem> refused_, warnings_;
+  std::size_t warnings_left_out_ = 0;
 };
-
-// "" when the element has no such attribute.
-std::string attribute_or_empty(const tinyxml2::XMLElement& element, const char* name);
 
 }  // namespace kadans

@@ -1,8 +1,10 @@
 #include "urdf_value.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "source_text.h"
@@ -38,8 +40,7 @@ std::errc parse(std::string_view text, double& value) {
   return end != text.data() + text.size() ? std::errc::invalid_argument : error;
 }
 
-Defect number_defect(std::string_view text) {
-  double value = 0;
+Defect read_number(std::string_view text, double& value) {
   const std::errc error = parse(text, value);
   if (text.empty()) return "is empty, a number was expected";
   if (error == std::errc::invalid_argument) {
@@ -54,37 +55,32 @@ Defect number_defect(std::string_view text) {
   return std::nullopt;
 }
 
-std::string spaced(std::string_view text) {
-  std::string result(text);
-  std::replace_if(
-      result.begin(), result.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-  std::string single;
-  for (const std::string_view piece : pieces(result)) single += (single.empty() ? "" : " ") + std::string(piece);
-  return single;
-}
-
-Defect numbers_defect(std::string_view text, std::size_t count);
+Defect read_numbers(std::string_view text, std::span<double> values);
 
 // ", did you mean '0 1 0'?" when commas or semicolons between the numbers were all that is wrong.
 std::string spaces_meant(std::string_view text, std::size_t count) {
   if (text.size() > 4 * longest_number || text.find_first_of(",;") == std::string_view::npos) return {};
-  const std::string better = spaced(text);
-  return numbers_defect(better, count) ? "" : ", did you mean '" + better + "'?";
+  std::string spaced(text), better;
+  std::replace_if(
+      spaced.begin(), spaced.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+  for (const std::string_view piece : pieces(spaced)) better += (better.empty() ? "" : " ") + std::string(piece);
+  std::vector<double> values(count);
+  return read_numbers(better, values) ? "" : ", did you mean '" + better + "'?";
 }
 
-Defect numbers_defect(std::string_view text, std::size_t count) {
+Defect read_numbers(std::string_view text, std::span<double> values) {
   const std::vector<std::string_view> parts = pieces(text);
-  if (parts.size() != count) {
-    const std::string hint = spaces_meant(text, count);
-    if (!hint.empty()) return "is not separated by spaces" + hint;
-    return "has " + std::to_string(parts.size()) + (parts.size() == 1 ? " number, " : " numbers, ") +
-           std::to_string(count) + " were expected";
+  const auto or_spaces = [&](const std::string& defect) {
+    const std::string hint = spaces_meant(text, values.size());
+    return hint.empty() ? defect : "is not separated by spaces" + hint;
+  };
+  if (parts.size() != values.size()) {
+    return or_spaces("has " + std::to_string(parts.size()) + (parts.size() == 1 ? " number, " : " numbers, ") +
+                     std::to_string(values.size()) + " were expected");
   }
-  for (const std::string_view part : parts) {
-    if (const Defect defect = number_defect(part)) {
-      const std::string hint = spaces_meant(text, count);
-      return hint.empty() ? "has a part '" + shown(part) + "' that " + *defect : "is not separated by spaces" + hint;
-    }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (const Defect defect = read_number(parts[i], values[i]))
+      return or_spaces("has a part '" + shown(parts[i]) + "' that " + *defect);
   }
   return std::nullopt;
 }
@@ -98,59 +94,42 @@ Defect name_defect(std::string_view text) {
   return std::nullopt;
 }
 
-double number(std::string_view text) {
-  double value = 0;
-  return parse(text, value) == std::errc() ? value : std::nan("");
-}
+struct NumberRule {
+  std::size_t count;
+  bool (*fits)(double);
+  const char* otherwise;
+};
 
-template <typename Fits>
-Defect all_fit(std::string_view text, const char* message, Fits fits) {
-  for (const std::string_view piece : pieces(text)) {
-    if (!fits(number(piece))) return message;
-  }
-  return std::nullopt;
-}
+constexpr bool is_any(double) { return true; }
+constexpr bool is_positive(double v) { return v > 0; }
+constexpr bool is_not_negative(double v) { return v >= 0; }
+constexpr bool is_not_zero(double v) { return v != 0; }
+constexpr bool is_fraction(double v) { return v >= 0 && v <= 1; }
+
+constexpr NumberRule rules[] = {
+    // in the order of UrdfValue, from `number`
+    {1, is_any, ""},
+    {1, is_positive, "must be > 0"},
+    {1, is_not_negative, "must be >= 0"},
+    {3, is_any, ""},
+    {3, is_positive, "must be > 0 in every direction"},
+    {3, is_not_zero, "must not be 0 in any direction"},
+    {4, is_fraction, "must be red, green, blue and opacity in 0..1"},
+};
 
 }  // namespace
 
-std::optional<std::string> value_defect(UrdfValue kind, std::string_view text) {
-  const auto positive = [](double v) { return v > 0; };
-  const auto checked = [&](Defect first, const char* message, auto fits) {
-    return first ? first : all_fit(text, message, fits);
-  };
-  switch (kind) {
-    case UrdfValue::name:
-      return name_defect(text);
-    case UrdfValue::number:
-      return number_defect(trimmed(text));
-    case UrdfValue::positive:
-      return checked(number_defect(trimmed(text)), "must be > 0", positive);
-    case UrdfValue::not_negative:
-      return checked(number_defect(trimmed(text)), "must be >= 0", [](double v) { return v >= 0; });
-    case UrdfValue::vector:
-      return numbers_defect(text, 3);
-    case UrdfValue::positive_vector:
-      return checked(numbers_defect(text, 3), "must be > 0 in every direction", positive);
-    case UrdfValue::scale:
-      return checked(numbers_defect(text, 3), "must not be 0 in any direction", [](double v) { return v != 0; });
-    case UrdfValue::color:
-      return checked(numbers_defect(text, 4), "must be red, green, blue and opacity in 0..1",
-                     [](double v) { return v >= 0 && v <= 1; });
-    case UrdfValue::text:
-      break;
-  }
+std::optional<std::string> read_value(UrdfValue kind, std::string_view text, double* numbers) {
+  if (kind == UrdfValue::text) return std::nullopt;
+  if (kind == UrdfValue::name) return name_defect(text);
+  const NumberRule& rule = rules[static_cast<std::size_t>(kind) - static_cast<std::size_t>(UrdfValue::number)];
+  std::array<double, 4> room{};
+  const std::span<double> values(room.data(), rule.count);
+  if (Defect defect = rule.count == 1 ? read_number(trimmed(text), values[0]) : read_numbers(text, values))
+    return defect;
+  if (!std::all_of(values.begin(), values.end(), rule.fits)) return rule.otherwise;
+  if (numbers != nullptr) std::copy(values.begin(), values.end(), numbers);
   return std::nullopt;
-}
-
-std::optional<double> read_number(std::string_view text) {
-  if (number_defect(trimmed(text))) return std::nullopt;
-  return number(trimmed(text));
-}
-
-std::optional<std::array<double, 3>> read_vector(std::string_view text) {
-  if (numbers_defect(text, 3)) return std::nullopt;
-  const std::vector<std::string_view> parts = pieces(text);
-  return std::array<double, 3>{number(parts[0]), number(parts[1]), number(parts[2])};
 }
 
 }  // namespace kadans

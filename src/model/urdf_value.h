@@ -1,7 +1,6 @@
 // The values that URDF's attributes can have, read strictly: a whole number is the whole text, finite, with a point.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,8 +9,8 @@
 namespace kadans {
 
 enum class UrdfValue : std::uint8_t {
-  name,             // not empty, at most 128 characters, no blanks around it
   text,             // anything
+  name,             // not empty, at most 128 characters, no blanks around it
   number,           // finite, magnitude at most 1e9
   positive,         // > 0
   not_negative,     // >= 0
@@ -21,11 +20,8 @@ enum class UrdfValue : std::uint8_t {
   color,            // four numbers in 0..1
 };
 
-// What is wrong with the text as such a value ("is not a number, did you mean '2.5'?"); nothing when it is right.
-std::optional<std::string> value_defect(UrdfValue kind, std::string_view text);
-
-// Nothing where value_defect finds something.
-std::optional<double> read_number(std::string_view text);
-std::optional<std::array<double, 3>> read_vector(std::string_view text);
+// What is wrong with the text as such a value ("is not a number, did you mean '2.5'?"). Nothing when it is right; then
+// its numbers are in `numbers`, which has room for them or is null.
+std::optional<std::string> read_value(UrdfValue kind, std::string_view text, double* numbers);
 
 }  // namespace kadans

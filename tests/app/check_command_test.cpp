@@ -28,6 +28,15 @@ TEST_CASE("check reports each broken file with its place, goes on with the other
   CHECK(outcome.out.empty());
 }
 
+TEST_CASE("check tells what is odd in a URDF and passes it") {
+  const auto project = project_copy("check_odd");
+  REQUIRE(edit(project / "models/jiwiy/jiwiy.urdf", "<material name=\"glass\"/>",
+               "<material name=\"glass\"><color rgba=\"1 0 0 1\"/></material>"));
+  const Outcome outcome = run("check models/jiwiy/jiwiy.urdf", project);
+  CHECK(outcome.exit_code == 0);
+  CHECK(has(outcome.out, "\nwarning: models/jiwiy/jiwiy.urdf:63:7: material 'glass' had another color before"));
+}
+
 TEST_CASE("check names the parameter of a behavior that a robot's file has wrong") {
   const auto project = project_copy("check_behavior_value");
   REQUIRE(edit(project / "config/tulip/soft.json", "\"roll_way\":", "\"roll_wya\":"));

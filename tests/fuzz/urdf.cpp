@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fuzz_input.h"
+#include "kadans/model/urdf_frames.h"
 
 namespace {
 
@@ -53,7 +54,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   for (const bool hulls : {false, true}) {
     try {
-      require_right(read_urdf_text(text, "it.urdf", {.mesh_hulls = hulls}));
+      std::vector<InputProblem> warnings;
+      const RobotModel model = read_urdf_text(text, "it.urdf", {.mesh_hulls = hulls}, &warnings);
+      require_right(model);
+      for (std::size_t i = 0; i < warnings.size(); ++i)
+        require(warnings[i].line > 0 || i == 25, "a warning has a place, but for the number of those left out");
+      const std::vector<UrdfFrame> frames = urdf_frames(model, text);
+      require(frames.size() >= model.joints.size(), "each joint has a frame");
+      for (const UrdfFrame& frame : frames) require_finite(frame.origin);
     } catch (const InputError& error) {
       fuzz::require_told(error, "it.urdf", size > 0 ? fuzz::Placed::line : fuzz::Placed::nowhere);
     }

@@ -97,6 +97,30 @@ TEST_CASE("All mistakes of a file come in one error, by line, with places for ma
   }
 }
 
+TEST_CASE("What is odd is told beside the model, by place, and bounded") {
+  std::string text =
+      duo_with("<material name=\"orange\"/>", "<material name=\"orange\"><color rgba=\"0 0 1 1\"/></material>");
+  text.replace(text.find("\"elbow\" type=\"revolute\""), 23, "\"elbow\" type=\"continuous\"");
+  std::vector<InputProblem> warnings;
+  const RobotModel model = read_urdf_text(text, "duo.urdf", {}, &warnings);
+  REQUIRE(warnings.size() == 2);
+  CHECK(warnings[0].text() == "duo.urdf:8:56: material 'orange' had another color before, which counts");
+  CHECK(warnings[1].text() == "duo.urdf:25:5: joint 'elbow' is continuous: its 'lower' and 'upper' are not used");
+  CHECK(model.links[0].visuals.at(0).color[0] == 1);
+  CHECK(model.joints[1].type == JointType::continuous);
+
+  const std::string visual =
+      "<visual><geometry><sphere radius=\"1\"/></geometry><material name=\"orange\">"
+      "<color rgba=\"0 0 1 1\"/></material></visual>";
+  std::string visuals;
+  for (int i = 0; i < 30; ++i) visuals += visual;
+  (void)read_urdf_text(duo_with("<collision>", visuals + "<collision>"), "duo.urdf", {}, &warnings);
+  REQUIRE(warnings.size() == 26);
+  CHECK(warnings.back().text() == "duo.urdf: and 5 more");
+  (void)read_urdf_text(duo_urdf, "duo.urdf", {}, &warnings);
+  CHECK(warnings.empty());
+}
+
 TEST_CASE("Mesh files are found beside the URDF, and in a package's folder above it") {
   const Folder folder;
   folder.write("duo/meshes/shell.stl", "solid");

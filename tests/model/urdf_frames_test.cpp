@@ -18,7 +18,7 @@ constexpr const char* arm = R"(<robot name="arm">
   <link name="upper"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <link name="slide"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <joint name="stand" type="fixed"><parent link="table"/><child link="post"/><origin xyz="0 0 0.5"/></joint>
-  <joint name="shoulder" type="revolute"><parent link="post"/><child link="upper"/><origin xyz="0.1 0 0"/>
+  <joint name="shoulder" type="revolute"><parent link="post"/><child link="upper"/><origin xyz=" 0.1	0 0"/>
     <axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
   <joint name="rail" type="prismatic"><parent link="upper"/><child link="slide"/><origin xyz="0 0 0.2"/>
     <axis xyz="1 0 0"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>

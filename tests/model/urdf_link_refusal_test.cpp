@@ -54,6 +54,8 @@ TEST_CASE("A link that is wrong is refused with its place, what is wrong and wha
        "duo.urdf:8:23: unknown geometry <spere>, did you mean 'sphere'?"},
       {"geometry empty", R"(<sphere radius="0.1"/>)", "",
        "duo.urdf:8:13: <geometry> is empty: <box>, <sphere>, <cylinder> or <mesh> was expected"},
+      {"geometry with nothing but an element of others", R"(<sphere radius="0.1"/>)", R"(<drake:capsule/>)",
+       "duo.urdf:8:13: <geometry> is empty: <box>, <sphere>, <cylinder> or <mesh> was expected"},
       {"two shapes in a geometry", R"(<sphere radius="0.1"/>)", R"(<sphere radius="0.1"/><sphere radius="0.2"/>)",
        "duo.urdf:8:45: a second shape in one <geometry>"},
       {"no geometry", R"(<visual><geometry><sphere radius="0.1"/></geometry>)", "<visual>",

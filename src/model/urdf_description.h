@@ -1,0 +1,72 @@
+// What a URDF says: its links and joints in the order of the file, those of fixed joints too, and the places (bytes of
+// the text) that the checks of the whole speak of. Three steps lead from a URDF to a RobotModel: read_description takes
+// the elements one by one, check_description looks at how they fit together, read_urdf (urdf_model.cpp) merges fixed
+// joints.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kadans/model/robot_model.h"
+#include "kadans/model/urdf.h"
+#include "urdf_document.h"
+
+namespace kadans {
+
+struct UrdfMaterial {
+  std::string name;
+  std::optional<std::array<double, 4>> color;
+  std::size_t at = 0, name_at = 0;
+};
+
+struct UrdfGeometry {
+  Geometry geometry;  // in the link's frame
+  std::optional<UrdfMaterial> material;
+  std::size_t mesh_at = 0, file_at = 0;  // of a mesh
+};
+
+struct UrdfLink {
+  std::string name;
+  std::optional<Inertia> inertia;  // in the link's frame
+  std::vector<UrdfGeometry> collisions, visuals;
+  std::size_t at = 0, name_at = 0;
+};
+
+struct UrdfEnd {  // of a joint
+  std::string link;
+  std::size_t at = 0;
+};
+
+struct UrdfMimic {
+  std::string joint;
+  double multiplier = 1, offset = 0;
+  std::size_t at = 0, joint_at = 0;
+};
+
+struct UrdfJoint {
+  std::string name;
+  bool moves = true;
+  Joint joint;  // without its parent; its origin is in the parent link's frame
+  UrdfEnd parent, child;
+  std::optional<UrdfMimic> mimic;
+  std::size_t at = 0, name_at = 0;
+};
+
+struct UrdfDescription {
+  std::string name;
+  std::vector<UrdfLink> links;
+  std::vector<UrdfJoint> joints;
+};
+
+// At most 1000 links, 1000 joints and max_joints of these that move. Notes in the document what is wrong; throws when
+// it makes no sense to read on.
+UrdfDescription read_description(UrdfDocument& document);
+
+// Notes what does not fit together: names given twice or never defined, two parents, two roots, loops, bodies that move
+// but have no mass, mimics of joints that are missing, fixed, or mimic each other in a ring; meshes that may not
+// collide or are not there. The files of those that are there stand in the description afterwards.
+void check_description(UrdfDocument& document, UrdfDescription& robot, const UrdfOptions& options);
+
+}  // namespace kadans
