@@ -1,22 +1,20 @@
 #include "behavior_command.h"
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
-#include <unistd.h>
 
 #include "behavior_stage.h"
 #include "checked_files.h"
 #include "file_checks.h"
 #include "kadans/app/assembly.h"
-#include "kadans/campaign/durable_file.h"
 #include "kadans/config/project_root.h"
+#include "kadans/realtime/child_process.h"
 #include "kadans/scenario/run_log.h"
 #include "kadans/script/behavior.h"
 #include "kadans/script/chart_graph.h"
-#include "kadans/signal/shell_word.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -42,14 +40,18 @@ int run_checks(const BehaviorOptions& options) {
   return code;
 }
 
-// Graphviz lays the graph out; the text goes to it through a file, its picture to our stdout.
+// Graphviz lays the graph out.
 int draw_svg(const std::string& dot) {
-  const fs::path file = fs::temp_directory_path() / ("kadans-graph-" + std::to_string(::getpid()) + ".dot");
-  write_durably(file, dot);
-  const int status = std::system(("dot -Tsvg " + shell_quoted(file.string())).c_str());  // NOLINT: a program of its own
-  fs::remove(file);
-  if (status == 0) return exit_passed;
-  print_error("svg is drawn by Graphviz: install the package graphviz, or take --format dot or mermaid");
+  try {
+    const ProgramOutput drawn = run_program({"dot", "-Tsvg"}, dot);
+    std::fputs(drawn.out.c_str(), stdout);
+    std::fputs(drawn.err.c_str(), stderr);
+    if (drawn.exit_code == 0) return exit_passed;
+    print_error("dot, of Graphviz, failed: take --format dot or mermaid");
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::no_such_file_or_directory) throw;
+    print_error("svg is drawn by Graphviz: install the package graphviz, or take --format dot or mermaid");
+  }
   return exit_usage;
 }
 

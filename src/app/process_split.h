@@ -2,28 +2,27 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
+
+#include "kadans/realtime/child_process.h"
 
 namespace kadans {
 
 // What each new process prints is kept, and printed in their order.
 class ProcessSplit {
  public:
-  ProcessSplit();
-  ~ProcessSplit();
-  ProcessSplit(const ProcessSplit&) = delete;
-  ProcessSplit& operator=(const ProcessSplit&) = delete;
-
   // In the new process: true, and this object is of no more use there. Throws std::system_error.
   bool split(std::size_t at_once);
   // In the first process: waits for all, prints what they said, and gives the worst of their exit codes.
   int finish();
 
  private:
-  struct Child;
-  void wait_for_one();
-  std::vector<std::unique_ptr<Child>> children_;
+  struct Child {
+    ChildProcess process;
+    MemoryFile said;
+  };
+  void wait_until_run(std::size_t most);
+  std::vector<Child> children_;
 };
 
 }  // namespace kadans

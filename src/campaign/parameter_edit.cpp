@@ -15,7 +15,7 @@ std::size_t offset_of(const std::string& text, TextPlace place) {
   for (int line = 1; line < place.line; ++line) at = text.find('\n', at) + 1;
   for (int column = 1; column < place.column; ++column) {
     ++at;
-    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U) ++at;
+    while (at < text.size() && inside_character(text[at])) ++at;
   }
   return at;
 }

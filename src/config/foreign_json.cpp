@@ -25,11 +25,7 @@ std::size_t too_deep_at(std::string_view text) noexcept {
 }
 
 [[noreturn]] void refuse_at(std::string_view text, std::size_t at, const std::string& file, const std::string& what) {
-  TextPlace place{.line = 1, .column = 1};
-  for (const char c : text.substr(0, at)) {
-    const bool tail = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // of a character that was counted
-    place = c == '\n' ? TextPlace{place.line + 1, 1} : TextPlace{place.line, place.column + (tail ? 0 : 1)};
-  }
+  const TextPlace place = place_in(text, at);
   if (!file.empty()) refuse(file, place, what);
   throw InputError(
       {.message = what + " (line " + std::to_string(place.line) + ", column " + std::to_string(place.column) + ")"});

@@ -223,25 +223,6 @@ class JsonParser {
     return code;
   }
 
-  static void append_utf8(std::uint32_t code, std::string& text) {
-    const auto tail = [&](std::uint32_t shift) { text += static_cast<char>(0x80U | ((code >> shift) & 0x3FU)); };
-    if (code < 0x80U) {
-      text += static_cast<char>(code);
-    } else if (code < 0x800U) {
-      text += static_cast<char>(0xC0U | (code >> 6U));
-      tail(0);
-    } else if (code < 0x10000U) {
-      text += static_cast<char>(0xE0U | (code >> 12U));
-      tail(6);
-      tail(0);
-    } else {
-      text += static_cast<char>(0xF0U | (code >> 18U));
-      tail(12);
-      tail(6);
-      tail(0);
-    }
-  }
-
   void skip_digits(TextPlace start) {
     if (!is_digit(at_.peek()))
       fail(start, "this number is not complete, a digit must follow " + in_quotes(number_text()));
@@ -313,9 +294,7 @@ JsonValue parse_json(std::string_view text, const std::string& file) {
   if (text.size() > json_size_max_bytes) refuse(file, {}, "the file is larger than 16 MB");
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   if (const std::size_t bad = find_invalid_utf8(text); bad != std::string_view::npos) {
-    TextCursor at(text.substr(0, bad));
-    while (!at.at_end()) at.next();
-    refuse(file, at.place(), "this byte is not UTF-8; save the file as UTF-8");
+    refuse(file, place_in(text, bad), "this byte is not UTF-8; save the file as UTF-8");
   }
   return JsonParser(text, file).parse();
 }

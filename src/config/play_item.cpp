@@ -173,10 +173,8 @@ std::vector<std::string> playable_names(const PlayFolders& folders) {
 std::vector<PlayItem> read_play_items(std::string_view text, TextPlace start, const PlayFolders& folders,
                                       Problems& problems) {
   const auto place_of = [&](std::size_t at) {
-    const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; };  // a character
     return TextPlace{start.line,
-                     start.column + static_cast<int>(std::count_if(
-                                        text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), begins))};
+                     start.column + static_cast<int>(std::ranges::count(text.substr(0, at), false, inside_character))};
   };
   std::vector<PlayItem> items;
   try {

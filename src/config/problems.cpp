@@ -36,7 +36,7 @@ std::string in_quotes(std::string_view name) {
   for (const char c : shown) text += static_cast<unsigned char>(c) < 0x20U ? '?' : c;
   // A cut in the middle of a character would leave half of it.
   if (shown.size() < name.size()) {
-    while ((static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+    while (inside_character(text.back())) text.pop_back();
     if ((static_cast<unsigned char>(text.back()) & 0x80U) != 0) text.pop_back();
     text += "...";
   }

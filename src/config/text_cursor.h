@@ -19,12 +19,7 @@ class TextCursor {
   }
   char next() noexcept {
     const char c = text_[position_++];
-    if (c == '\n') {
-      ++place_.line;
-      place_.column = 1;
-    } else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) {  // not the inside of a UTF-8 character
-      ++place_.column;
-    }
+    place_.pass(c);
     return c;
   }
   std::size_t position() const noexcept { return position_; }

@@ -225,6 +225,4 @@ const WorldSettings& world_for(const WorldConfig& world, const RobotModel& model
   return world.settings;
 }
 
-std::vector<std::string> object_names(const WorldSettings& world) { return names_of(world.objects); }
-
 }  // namespace kadans

@@ -147,8 +147,4 @@ void Estimator::update_support(const JointStates& joints, const Axes& base, Robo
   status.support = support_;
 }
 
-bool Estimator::set_velocity_cutoff(std::size_t joint, double cutoff_Hz) noexcept {
-  return joint < joints_.size() && joints_[joint].velocity.set_cutoff(cutoff_Hz);
-}
-
 }  // namespace kadans

@@ -9,8 +9,6 @@
 namespace kadans {
 namespace {
 
-bool continues(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
-
 bool control(char c) noexcept {
   const auto byte = static_cast<unsigned char>(c);
   return (byte < 0x20U && c != '\t' && c != '\n' && c != '\r') || byte == 0x7FU;
@@ -35,8 +33,7 @@ TextPlace SourceText::place(std::size_t at) const noexcept {
   const auto next = std::upper_bound(lines_.begin(), lines_.end(), at);
   const std::size_t start = *(next - 1);
   const std::string_view before = text_.substr(start, at - start);
-  const auto characters = std::count_if(before.begin(), before.end(), [](char c) { return !continues(c); });
-  return {static_cast<int>(next - lines_.begin()), static_cast<int>(characters) + 1};
+  return {static_cast<int>(next - lines_.begin()), place_in(before, before.size()).column};
 }
 
 std::optional<TextProblem> find_non_text(std::string_view text) {
@@ -53,7 +50,7 @@ std::optional<TextProblem> find_non_text(std::string_view text) {
 std::string shown(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::size_t size = std::min(text.size(), longest);
-  while (size > 0 && size < text.size() && continues(text[size])) --size;
+  while (size > 0 && size < text.size() && inside_character(text[size])) --size;
   std::string result(text.substr(0, size));
   for (char& c : result) {
     if (control(c) || c == '\n' || c == '\r' || c == '\t') c = ' ';

@@ -1,10 +1,12 @@
 #include "kadans/realtime/jitter.h"
 
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
-#include <memory>
+#include <sstream>
+#include <system_error>
+#include <vector>
 
+#include "kadans/realtime/child_process.h"
 #include "kadans/realtime/posix_wait.h"
 #include "kadans/realtime/task_thread.h"
 
@@ -20,16 +22,18 @@ class Nothing final : public Task {
   std::uint64_t left_;
 };
 
-std::string cyclictest_command(const JitterSettings& settings) {
-  std::string command = "exec cyclictest -m -t 1 -v -N -a " + std::to_string(settings.cpu) + " -i " +
-                        std::to_string(settings.period_ns / 1000) + " -l " + std::to_string(settings.samples);
-  if (settings.priority > 0) command += " -p " + std::to_string(settings.priority);
-  return command + " 2>/dev/null";
+// What it says; "" when it is not there.
+std::string run_cyclictest(const JitterSettings& settings) {
+  std::vector<std::string> words{"cyclictest", "-m", "-t", "1", "-v", "-N"};
+  words.insert(words.end(), {"-a", std::to_string(settings.cpu), "-i", std::to_string(settings.period_ns / 1000)});
+  words.insert(words.end(), {"-l", std::to_string(settings.samples)});
+  if (settings.priority > 0) words.insert(words.end(), {"-p", std::to_string(settings.priority)});
+  try {
+    return run_program(std::move(words)).out;
+  } catch (const std::system_error&) {
+    return {};
+  }
 }
-
-struct CloseStream {
-  void operator()(FILE* stream) const noexcept { pclose(stream); }
-};
 
 }  // namespace
 
@@ -60,12 +64,10 @@ std::optional<std::int64_t> cyclictest_lateness_ns(const std::string& line) {
 }
 
 std::optional<YardstickSample> measure_cyclictest(const JitterSettings& settings) {
-  const std::unique_ptr<FILE, CloseStream> stream(popen(cyclictest_command(settings).c_str(), "r"));
-  if (!stream) return {};
+  std::istringstream lines(run_cyclictest(settings));
   YardstickSample sample;
   std::int64_t before_ns = 0;
-  char line[256];
-  while (std::fgets(line, sizeof line, stream.get()) != nullptr) {
+  for (std::string line; std::getline(lines, line);) {
     const auto lateness_ns = cyclictest_lateness_ns(line);
     if (!lateness_ns) continue;
     // When it wakes whole periods late it leaves as many out, as we do.

@@ -1,17 +1,13 @@
 #include "kadans/realtime/machine_load.h"
 
-#include <cerrno>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <system_error>
+#include <optional>
 #include <vector>
 
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace kadans {
@@ -48,8 +44,9 @@ void write_disk() {
 void switch_contexts() {
   int there[2], back[2];
   if (pipe(there) != 0 || pipe(back) != 0) return;
-  const bool first = fork() != 0;
-  if (!first) prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const std::optional<ChildProcess> other = ChildProcess::copy();
+  const bool first = other.has_value();
+  if (!first) die_with_parent();
   char token = 0;
   if (first) (void)!write(there[1], &token, 1);
   while (read(first ? back[0] : there[0], &token, 1) == 1) (void)!write(first ? there[1] : back[1], &token, 1);
@@ -64,37 +61,20 @@ void set_timers() {
 
 MachineLoad::MachineLoad() {
   const long cpus = sysconf(_SC_NPROCESSORS_ONLN);
-  try {
-    for (long i = 0; i < cpus; ++i) {
-      start(compute);
-      start(switch_contexts);
-      start(set_timers);
-    }
-    start(fill_memory);
-    start(write_disk);
-  } catch (...) {
-    end();
-    throw;
+  for (long i = 0; i < cpus; ++i) {
+    start(compute);
+    start(switch_contexts);
+    start(set_timers);
   }
+  start(fill_memory);
+  start(write_disk);
 }
-
-MachineLoad::~MachineLoad() { end(); }
 
 void MachineLoad::start(void (*work)()) {
-  const pid_t process = fork();
-  if (process < 0) throw std::system_error(errno, std::generic_category(), "no process to make load");
-  if (process == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    work();
-    _exit(0);
-  }
-  processes_.push_back(process);
-}
-
-void MachineLoad::end() noexcept {
-  for (const pid_t process : processes_) kill(process, SIGKILL);
-  for (const pid_t process : processes_) waitpid(process, nullptr, 0);
-  processes_.clear();
+  if (std::optional<ChildProcess> process = ChildProcess::copy()) return processes_.push_back(std::move(*process));
+  die_with_parent();
+  work();
+  _exit(0);
 }
 
 }  // namespace kadans

@@ -36,7 +36,6 @@ void ChartRunner::take_over(lua_State* state, const ChartRunner& old, const std:
   started_ = old.started_;
   filling_ = old.filling_;
   unhandled_ = old.unhandled_;
-  refused_ = old.refused_;
   for (StateIndex i = 0; i < old.chart_.size(); ++i) {
     if (map[i] != no_state) take_over_state(old, i, map[i]);
     if (map[i] != no_state && old.run_[i].entering) entering_ = run_[map[i]].entering = true;

@@ -30,7 +30,6 @@ void ChartRunner::keep(ByteWriter& bytes) const {
   bytes.put<std::uint8_t>(finished_);
   bytes.put<std::uint8_t>(filling_);
   bytes.put(unhandled_);
-  bytes.put(refused_);
   const auto told = [](const StateRun& run) { return run.active || run.entering || run.outcome != no_event; };
   bytes.put(static_cast<std::uint32_t>(std::ranges::count_if(run_, told)));
   for (StateIndex i = 0; i < chart_.size(); ++i) {
@@ -64,7 +63,6 @@ bool ChartRunner::restore(ByteReader& bytes) {
   finished_ = bytes.take<std::uint8_t>() != 0;
   filling_ = bytes.take<std::uint8_t>() != 0;
   unhandled_ = bytes.take<std::uint64_t>();
-  refused_ = bytes.take<std::uint64_t>();
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_state(bytes);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {

@@ -40,7 +40,7 @@ void ChartRunner::add_to(WarmUp& list) const noexcept {
 }
 
 bool ChartRunner::post(EventId event) noexcept {
-  if (event_count_ == events_.size()) return ++refused_, false;
+  if (event_count_ == events_.size()) return false;
   events_[(event_first_ + event_count_++) % events_.size()] = event;
   return true;
 }

@@ -44,22 +44,32 @@ std::size_t find_invalid_utf8(std::string_view text) noexcept {
   return std::string_view::npos;
 }
 
-std::string valid_utf8(std::string_view text) {
-  std::string valid;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = utf8_length(text, i);
-    valid += length == 0 ? replacement : text.substr(i, length);
-    i += length == 0 ? 1 : length;
+void append_utf8(std::uint32_t code, std::string& text) {
+  const auto tail = [&](std::uint32_t shift) { text += static_cast<char>(0x80U | ((code >> shift) & 0x3FU)); };
+  if (code < 0x80U) {
+    text += static_cast<char>(code);
+  } else if (code < 0x800U) {
+    text += static_cast<char>(0xC0U | (code >> 6U));
+    tail(0);
+  } else if (code < 0x10000U) {
+    text += static_cast<char>(0xE0U | (code >> 12U));
+    tail(6);
+    tail(0);
+  } else {
+    text += static_cast<char>(0xF0U | (code >> 18U));
+    tail(12);
+    tail(6);
+    tail(0);
   }
-  return valid;
 }
 
 std::string xml_characters(std::string_view text) {
-  const std::string valid = valid_utf8(text);
   std::string kept;
-  for (std::size_t i = 0; i < valid.size(); i += utf8_length(valid, i)) {
-    const std::string_view character = std::string_view(valid).substr(i, utf8_length(valid, i));
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text, i);
+    const std::string_view character = length == 0 ? replacement : text.substr(i, length);
     if (fits_xml(character)) kept += character;
+    i += length == 0 ? 1 : length;
   }
   return kept;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kadans/signal/utf8.h"
+
 namespace kadans {
 namespace {
 
@@ -24,18 +26,16 @@ class Canvas {
   std::vector<char> dots_;
 };
 
-std::string braille(const Canvas& canvas, std::size_t column, std::size_t row) {
+void append_braille(const Canvas& canvas, std::size_t column, std::size_t row, std::string& line) {
   // Unicode 2800: bits 0-2 and 6 are the left column from the top, bits 3-5 and 7 the right one.
   constexpr unsigned bit[2][4] = {{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}};
-  unsigned pattern = 0;
+  std::uint32_t pattern = 0;
   for (std::size_t x = 0; x < 2; ++x) {
     for (std::size_t y = 0; y < 4; ++y) {
       if (canvas.dot(2 * column + x, 4 * row + y)) pattern |= bit[x][y];
     }
   }
-  const unsigned code = 0x2800 + pattern;
-  return {static_cast<char>(0xe0 | (code >> 12)), static_cast<char>(0x80 | ((code >> 6) & 0x3f)),
-          static_cast<char>(0x80 | (code & 0x3f))};
+  append_utf8(0x2800U + pattern, line);
 }
 
 void draw(Canvas& canvas, std::span<const double> values, double bottom, double top) {
@@ -81,7 +81,11 @@ TextPlot text_plot(std::span<const double> values, std::size_t columns, std::siz
   for (std::size_t row = 0; row < rows; ++row) {
     std::string line;
     for (std::size_t column = 0; column < columns; ++column) {
-      line += unicode ? braille(canvas, column, row) : std::string(1, canvas.dot(column, row) ? '*' : ' ');
+      if (unicode) {
+        append_braille(canvas, column, row, line);
+      } else {
+        line += canvas.dot(column, row) ? '*' : ' ';
+      }
     }
     plot.lines.push_back(std::move(line));
   }

@@ -58,7 +58,7 @@ TEST_CASE("A world of every kind is read as it is written") {
   CHECK(world.slope_heading_rad == 1);
   CHECK(world.ground_motion.repeat);
   REQUIRE(world.objects.size() == 6);
-  CHECK(object_names(world)[3] == "wall");
+  CHECK(world.objects[3].name == "wall");
   const auto& crate = std::get<WorldBox>(world.objects[0].shape);
   CHECK(crate.size_m == Vec3{1, 2, 3});
   CHECK(crate.mass_kg == 7);

@@ -129,18 +129,6 @@ TEST_CASE("Joints that the frame does not have are silent from the start") {
   CHECK(robot.estimator.health().joints[10].silent_ticks == 5);
 }
 
-TEST_CASE("One joint's cut-off can be changed while moving, within its range") {
-  TulipFixture robot;
-  CHECK(robot.estimator.set_velocity_cutoff(3, 200));
-  CHECK_FALSE(robot.estimator.set_velocity_cutoff(3, 450));
-  CHECK_FALSE(robot.estimator.set_velocity_cutoff(14, 100));
-  for (int n = 0; n < 3; ++n) {
-    robot.sensors.joints[3].position_rad = robot.sensors.joints[4].position_rad = 0.001 * n;
-    robot.advance();
-  }
-  CHECK(robot.joints.joints[3].velocity_rad_s > 1.5 * robot.joints.joints[4].velocity_rad_s);
-}
-
 TEST_CASE("A reading that says when it was taken gives the velocity by its own times") {
   TulipFixture timed, untimed;
   const std::size_t knee = joint_of("l_knee");

@@ -1,29 +1,26 @@
-// One robot twice: with the plant's own solver and with Bullet's, both iterated to the end, with the same joint torques
-// by the same rule, and how far the two are apart.
+// One robot twice: with the plant's own solver, which takes Bullet's law of friction for it, and with Bullet's, both
+// iterated to the end, with the same joint torques by the same rule, and how far the two are apart.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact_row.h"
 #include "tulip_robot.h"
 
 namespace kadans::test {
 
 struct SolverPair {
   explicit SolverPair(Robot robot)
-      : tree(with(robot, ContactSolver::tree_square_friction)),
+      : tree(with(robot, ContactSolver::tree)),
         stock(with(robot, ContactSolver::stock)),
         tree_hold(robot),
         stock_hold(robot) {}
 
-  static Robot& prepared(Robot& robot, ContactSolver solver) {
+  static BulletWorld with(Robot robot, ContactSolver solver) {
     robot.settings.solver = solver;
     robot.settings.solver_iterations = 400;
-    return robot;
-  }
-  static BulletWorld with(Robot robot, ContactSolver solver) {
-    prepared(robot, solver);
-    return BulletWorld(robot.model, robot.settings, 1);
+    return BulletWorld(robot.model, robot.settings, 1, bullet::FrictionLaw::pyramid);
   }
 
   void tick() {

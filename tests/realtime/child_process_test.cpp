@@ -1,8 +1,11 @@
-// A program beside this one: the doorbell tells when it is gone, its memory cannot be taken away, its end is known.
+// Programs beside this one: what they get and what comes back, the doorbell tells when one is gone, its memory cannot
+// be taken away, its end is known.
 #include "kadans/realtime/child_process.h"
 
 #include <csignal>
 #include <cstring>
+#include <fstream>
+#include <optional>
 #include <system_error>
 
 #include <doctest/doctest.h>
@@ -13,7 +16,7 @@ using namespace kadans;
 
 namespace {
 
-ChildProcess shell(const std::string& command, const SharedMemory& memory) {
+PartnerProcess shell(const std::string& command, const SharedMemory& memory) {
   return {"/bin/sh", {"sh", "-c", command}, memory};
 }
 
@@ -24,7 +27,7 @@ TEST_CASE("the doorbell ends when the process does, and how it ended is known") 
   for (const auto& [command, end] :
        {std::pair{"exit 7", "exit code 7"}, std::pair{"kill -SEGV $$", "signal 11 (Segmentation fault)"},
         std::pair{"kill -STOP $$", "signal 9 (Killed)"}}) {
-    ChildProcess process(shell(command, memory));
+    PartnerProcess process(shell(command, memory));
     if (std::string(command).find("STOP") == std::string::npos) {
       CHECK(process.bell().wait(-1) == Doorbell::Heard::end);
     }
@@ -35,9 +38,9 @@ TEST_CASE("the doorbell ends when the process does, and how it ended is known") 
 TEST_CASE("a program finds its doorbell and its memory where they are promised, and no other file") {
   const SharedMemory memory(4096);
   const int other = fcntl(STDERR_FILENO, F_DUPFD, 20);
-  ChildProcess process(shell("printf hello >&4 && ! test -e /dev/fd/" + std::to_string(other) +
-                                 " && ! test -e /dev/fd/5 && printf x >&3 && exit 0; exit 1",
-                             memory));
+  PartnerProcess process(shell("printf hello >&4 && ! test -e /dev/fd/" + std::to_string(other) +
+                                   " && ! test -e /dev/fd/5 && printf x >&3 && exit 0; exit 1",
+                               memory));
   CHECK(process.bell().wait(-1) == Doorbell::Heard::ring);
   CHECK(process.end() == "exit code 0");
   CHECK(std::memcmp(memory.get(), "hello", 5) == 0);
@@ -46,9 +49,51 @@ TEST_CASE("a program finds its doorbell and its memory where they are promised, 
 
 TEST_CASE("signals that are for the whole group do not reach it") {
   const SharedMemory memory(4096);
-  ChildProcess process(shell("kill -TERM $$; kill -INT $$; kill -HUP $$; exit 5", memory));
+  PartnerProcess process(shell("kill -TERM $$; kill -INT $$; kill -HUP $$; exit 5", memory));
   CHECK(process.bell().wait(-1) == Doorbell::Heard::end);
   CHECK(process.end() == "exit code 5");
+}
+
+TEST_CASE("a program reads the text that it is given, and what it says and how it ends comes back") {
+  const ProgramOutput said = run_program({"sh", "-c", "tr a b; echo err >&2; test -e /dev/fd/3 || exit 3"}, "a\na");
+  CHECK(said.out == "b\nb");
+  CHECK(said.err == "err\n");
+  CHECK(said.exit_code == 3);
+  const std::string much(300'000, 'x');
+  CHECK(run_program({"cat"}, much).out == much);
+}
+
+TEST_CASE("what is stopped takes those of its group with it") {
+  const MemoryFile said;
+  ChildProcess process({.words = {"sh", "-c", "sleep 1000 & echo $!; wait"},
+                        .files = {no_file, said.descriptor(), no_file},
+                        .own_group = true});
+  while (said.text().find('\n') == std::string::npos) usleep(1000);
+  const pid_t grandchild = std::stoi(said.text());
+  process.stop();
+  CHECK(process.signal() == SIGKILL);
+  CHECK(process.exit_code() == -1);
+  bool gone = false;  // nobody's child, or nobody's yet
+  for (int i = 0; i < 1000 && !gone; ++i) {
+    std::ifstream status("/proc/" + std::to_string(grandchild) + "/stat");
+    std::string text;
+    gone = !std::getline(status, text) || text.find(") Z ") != std::string::npos;
+    usleep(1000);
+  }
+  CHECK(gone);
+}
+
+TEST_CASE("a copy of this process goes on by itself, and has no hold on those that were started before") {
+  std::optional<ChildProcess> sleeper(ChildProcess({.words = {"sleep", "1000"}}));
+  std::optional<ChildProcess> copied = ChildProcess::copy();
+  if (!copied) {
+    sleeper.reset();
+    _exit(7);
+  }
+  const ChildProcess* const both[] = {&*sleeper, &*copied};
+  while (!copied->ended()) ChildProcess::wait_for_one(both, -1);
+  CHECK(copied->exit_code() == 7);
+  CHECK_FALSE(sleeper->ended());
 }
 
 TEST_CASE("shared memory cannot be cut short, and one that is too small is refused") {
@@ -62,7 +107,8 @@ TEST_CASE("shared memory cannot be cut short, and one that is too small is refus
 
 TEST_CASE("a program that does not exist is told of, a doorbell without anybody rings in vain") {
   const SharedMemory memory(4096);
-  CHECK_THROWS_AS(ChildProcess("/no/such/program", {"x"}, memory), std::system_error);
+  CHECK_THROWS_AS(PartnerProcess("/no/such/program", {"x"}, memory), std::system_error);
+  CHECK_THROWS_AS(run_program({"no-such-program"}), std::system_error);
   auto [one, other] = Doorbell::make_pair();
   for (int i = 0; i < 100'000; ++i) one.ring();  // more than the system keeps
   CHECK(one.wait(0) == Doorbell::Heard::nothing);

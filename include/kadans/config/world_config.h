@@ -23,7 +23,4 @@ void world_fields(Fields& f, WorldConfig& world, Problems& problems);
 // The settings for this robot. Throws InputError when a payload's link is not one of its links.
 const WorldSettings& world_for(const WorldConfig& world, const RobotModel& model, const std::string& file);
 
-// Names of the objects, in the order of the plant's truth.
-std::vector<std::string> object_names(const WorldSettings& world);
-
 }  // namespace kadans

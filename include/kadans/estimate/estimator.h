@@ -47,9 +47,6 @@ class Estimator {
   const EstimateSettings& settings() const noexcept { return settings_; }
   const OrientationFilter::State& orientation() const noexcept { return orientation_.state(); }
 
-  // Of one joint's velocity filter. False, and nothing changes, for an unknown joint or outside (0, 0.45 / its period).
-  [[nodiscard]] bool set_velocity_cutoff(std::size_t joint, double cutoff_Hz) noexcept;
-
  private:
   struct JointTrack {
     VelocityFilter velocity;

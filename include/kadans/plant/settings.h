@@ -58,9 +58,8 @@ struct SurfaceSettings {
   double friction = 0.5;
 };
 
-// Of contacts and joint laws: our own, or the one that Bullet brings; or, to compare the two, our own with Bullet's
-// friction, a square along two fixed directions instead of a cone.
-enum class ContactSolver : std::uint8_t { tree, stock, tree_square_friction };
+// Of contacts and joint laws: our own, or the one that Bullet brings.
+enum class ContactSolver : std::uint8_t { tree, stock };
 
 struct PlantSettings {
   std::vector<DriveSettings> drives;      // one a joint

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include <sys/types.h>
+#include "kadans/realtime/child_process.h"
 
 namespace kadans {
 
@@ -14,15 +14,11 @@ class MachineLoad {
  public:
   // Before other threads are started. Throws std::system_error when there can be no process.
   MachineLoad();
-  ~MachineLoad();
-  MachineLoad(const MachineLoad&) = delete;
-  MachineLoad& operator=(const MachineLoad&) = delete;
 
  private:
   void start(void (*work)());
-  void end() noexcept;
 
-  std::vector<pid_t> processes_;
+  std::vector<ChildProcess> processes_;
 };
 
 }  // namespace kadans

@@ -68,7 +68,6 @@ class InstancePort {
   // Transitions and words of behaviors; false when none waits.
   [[nodiscard]] bool next(Event& event) { return events_.pop(INT64_MAX, event); }
   [[nodiscard]] bool next(Fault& fault) noexcept { return faults_.try_pop(fault); }
-  std::uint32_t events_lost() const noexcept { return events_.dropped(); }
 
   // The order's number, from 1; 0: refused, too many wait for their answers.
   std::uint64_t send(Order order);

@@ -89,7 +89,6 @@ class ChartRunner {
   StateIndex innermost() const noexcept;  // active, the first of several; 0 before the first tick
   double state_time_s(StateIndex state) const noexcept;
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }
-  std::uint64_t events_refused() const noexcept { return refused_; }
   // What runs now, for waiting: set by the bindings just before they yield.
   void wait_for(Motion* motion) noexcept { wait_motion_ = motion; }
   void wait_until(std::int64_t time_ns) noexcept { wait_ns_ = time_ns; }
@@ -165,7 +164,7 @@ class ChartRunner {
   std::vector<bool> remembered_;
   std::array<EventId, 32> events_{};
   std::uint32_t event_first_ = 0, event_count_ = 0;
-  std::uint64_t unhandled_ = 0, refused_ = 0;
+  std::uint64_t unhandled_ = 0;
   std::int64_t now_ns_ = 0;
   bool started_ = false, finished_ = false;
   bool entering_ = false;  // some state is marked to be entered

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -11,9 +12,12 @@ namespace kadans {
 std::size_t utf8_length(std::string_view text, std::size_t at) noexcept;
 // Where the text stops being UTF-8; npos when it is UTF-8 throughout.
 std::size_t find_invalid_utf8(std::string_view text) noexcept;
-// With U+FFFD for each byte that is none.
-std::string valid_utf8(std::string_view text);
-// The same, without the characters that XML cannot hold however they are written: all controls but tab and line ends.
+// In UTF-8, not where a character begins: what counts characters leaves it out.
+constexpr bool inside_character(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
+// The character of this code, which is one.
+void append_utf8(std::uint32_t code, std::string& text);
+// With U+FFFD for each byte that is none, and without the characters that XML cannot hold however they are written: all
+// controls but tab and line ends.
 std::string xml_characters(std::string_view text);
 
 }  // namespace kadans

@@ -1,19 +1,12 @@
 #include "live/chromium.h"
 
-#include <array>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <sstream>
 #include <system_error>
 #include <vector>
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
-
-extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX asks for it
 
 namespace kadans {
 namespace {
@@ -60,37 +53,18 @@ Chromium::Chromium(const std::string& program, const std::string& url, int width
   std::string pattern = (fs::temp_directory_path() / "kadans-page-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) throw std::system_error(errno, std::generic_category(), pattern);
   folder_ = pattern;
-  std::vector<std::string> texts = arguments(program, url, folder_, width, height);
-  std::vector<char*> list;
-  for (std::string& text : texts) list.push_back(text.data());
-  list.push_back(nullptr);
-
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  for (const int stream : {0, 1, 2}) posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_RDWR, 0);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  const int failed = posix_spawn(&process_, program.c_str(), &files, &attributes, list.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  if (failed == 0) return;
-  fs::remove_all(folder_);
-  throw std::system_error(failed, std::generic_category(), program);
-}
-
-bool Chromium::runs() noexcept {
-  if (process_ < 0) return false;
-  if (waitpid(process_, nullptr, WNOHANG) == 0) return true;
-  process_ = -1;
-  return false;
+  try {
+    process_.emplace(ProgramStart{.words = arguments(program, url, folder_, width, height),
+                                  .files = {no_file, no_file, no_file},
+                                  .own_group = true});
+  } catch (...) {
+    fs::remove_all(folder_);
+    throw;
+  }
 }
 
 Chromium::~Chromium() {
-  if (runs()) {
-    (void)kill(-process_, SIGKILL);  // it keeps nothing worth a farewell
-    (void)waitpid(process_, nullptr, 0);
-  }
+  process_->stop();  // it keeps nothing worth a farewell
   std::error_code ignored;
   for (int i = 0; i < 20 && !fs::remove_all(folder_, ignored) && ignored; ++i) usleep(50'000);  // its children end
 }

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
-#include <sys/types.h>
+#include "kadans/realtime/child_process.h"
 
 namespace kadans {
 
@@ -19,11 +20,11 @@ class Chromium {
   Chromium(const Chromium&) = delete;
   Chromium& operator=(const Chromium&) = delete;
 
-  bool runs() noexcept;
+  bool runs() noexcept { return !process_->ended(); }
 
  private:
-  pid_t process_ = -1;
   std::filesystem::path folder_;
+  std::optional<ChildProcess> process_;  // while the object lives
 };
 
 }  // namespace kadans

@@ -34,7 +34,6 @@ class Body {
   // As of the last step. Link 0 is the base; com_frame knows payloads too.
   btTransform com_frame(std::size_t link) const;
   btTransform link_frame(std::size_t link) const { return com_frame(link) * frames_[link].link_in_com; }
-  btVector3 com_offset(std::size_t link) const { return frames_[link].com_in_link.getOrigin(); }
 
   void push(std::size_t link, const btVector3& force_N, const btVector3& point_in_link_m);
 

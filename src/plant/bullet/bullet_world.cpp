@@ -21,9 +21,13 @@ PlantSettings checked(const RobotModel& model, const PlantSettings& settings) {
   return settings;
 }
 
-ContactWorld::Options world_options(const PlantSettings& settings) {
-  return {to_bullet(settings.gravity_m_s2), settings.solver_iterations, settings.ground_friction,
-          to_bullet(ground_pose(settings.world)), settings.solver};
+ContactWorld::Options world_options(const PlantSettings& settings, FrictionLaw friction) {
+  return {to_bullet(settings.gravity_m_s2),
+          settings.solver_iterations,
+          settings.ground_friction,
+          to_bullet(ground_pose(settings.world)),
+          settings.solver,
+          friction};
 }
 
 bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
@@ -32,7 +36,7 @@ bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v
 
 class BulletWorld::Inside {
  public:
-  Inside(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
+  Inside(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed, FrictionLaw friction)
       : settings_(checked(model, settings)),
         joint_names_(model.joint_names()),
         mask_(make_pair_mask(model, settings)),
@@ -41,7 +45,7 @@ class BulletWorld::Inside {
         sensors_(model, settings, seed),
         truth_(body_, model.joints.size()),
         objects_(settings.world),
-        world_(world_options(settings), mask_) {
+        world_(world_options(settings, friction), mask_) {
     body_.place(settings_);
     body_.add_to(world_);
     objects_.add_to(world_);
@@ -199,7 +203,11 @@ class BulletWorld::Inside {
 };
 
 BulletWorld::BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
-    : inside_(std::make_unique<Inside>(model, settings, seed)) {}
+    : BulletWorld(model, settings, seed, FrictionLaw::cone) {}
+
+BulletWorld::BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed,
+                         FrictionLaw friction)
+    : inside_(std::make_unique<Inside>(model, settings, seed, friction)) {}
 
 BulletWorld::~BulletWorld() = default;
 

@@ -123,8 +123,7 @@ ContactWorld::ContactWorld(const Options& options, PairMask& mask)
       object_contact_(
           *configuration_.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE)),
       dispatcher_(&configuration_),
-      tree_solver_({.friction = options.solver == ContactSolver::tree_square_friction ? FrictionLaw::pyramid
-                                                                                      : FrictionLaw::cone}) {
+      tree_solver_({.friction = options.friction}) {
   reserve_bullet_memory();
   ground_contact_.register_with(dispatcher_);
   object_contact_.register_with(dispatcher_);

@@ -44,6 +44,7 @@ class ContactWorld {
     double ground_friction = 1;
     btTransform ground = btTransform::getIdentity();  // of the plane: z is its normal
     ContactSolver solver = ContactSolver::tree;
+    FrictionLaw friction = FrictionLaw::cone;  // of our own solver
   };
 
   ContactWorld(const Options& options, PairMask& mask);  // keeps a reference to the mask

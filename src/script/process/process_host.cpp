@@ -28,7 +28,7 @@ struct ProcessHost::Incarnation {
 
   SharedMemory memory{sizeof(BehaviorLink)};
   BehaviorLink& link;
-  ChildProcess process;
+  PartnerProcess process;
   std::int64_t started_wall_ns = WallClock().now_ns();
 };
 

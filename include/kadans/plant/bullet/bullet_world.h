@@ -8,11 +8,16 @@
 #include "kadans/plant/world.h"
 
 namespace kadans {
+namespace bullet {
+enum class FrictionLaw : std::uint8_t;  // src/plant/bullet/solver/contact_row.h
+}
 
 class BulletWorld final : public OneRobotWorld {
  public:
   // `seed` feeds every noise. Throws std::invalid_argument naming what in the settings does not fit the model.
   BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed);
+  // With another law than the cone for the plant's own solver: how a test compares it with Bullet's.
+  BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed, bullet::FrictionLaw friction);
   ~BulletWorld() override;
 
   void read(SensorFrame& sensors) noexcept override;
