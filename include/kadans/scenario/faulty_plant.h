@@ -1,7 +1,7 @@
-// A world whose robot has sensors and drives that fail on time: a world around another one that spoils what is read
-// from its robot and what is written to it. Everything else passes through.
+// Injects faults into sensors, drives and supply at planned times. It is a world around another world: it changes what
+// is read from the robot and what is written to it. Everything else passes through.
 //
-// The thread that owns the model adds faults; read and write neither allocate nor throw.
+// Call add() and clear() on the thread that owns the model. read() and write() neither allocate nor throw.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@ namespace kadans {
 
 enum class SensorFaultKind : std::uint8_t {
   silent,      // no new reading
-  stuck,       // new readings, with the value of the first
-  offset,      // `size` added
-  noise,       // `size` added at random: half to all of it, of either sign, a draw a reading
-  jump,        // `size` added to one reading
+  stuck,       // new readings with the value that the sensor had when the fault began
+  offset,      // `size` is added
+  noise,       // a random value is added to each reading: half to all of `size`, of either sign
+  jump,        // `size` is added to one reading
   not_finite,  // NaN
 };
 enum class SensorPlace : std::uint8_t { joint, imu, foot, channel };
@@ -29,20 +29,20 @@ struct SensorFault {
   std::size_t index = 0;  // of the joint, foot or channel
   std::int64_t from_ns = 0;
   std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
-  double size = 0;  // joint: rad of the joint's position; IMU: rad/s about x; foot: N on the first sensor;
-                    // channel: its own unit
+  double size = 0;  // joint: rad, its position; IMU: rad/s about x; foot: N on the first sensor;
+                    // channel: in its own unit
 };
 
 enum class ActuatorFaultKind : std::uint8_t {
   dead,    // no torque
-  weak,    // efforts times `size`; in position and velocity mode nothing changes
-  stuck,   // goes on with what was written last before
-  offset,  // `size` added to the effort, Nm
-  late,    // what was written `size` ticks before
-  // What the drive says of itself:
-  tripped,   // something is wrong, by the maker's code `size`; no torque
-  disabled,  // it is ready, and not enabled; no torque
-  hot,       // it is `size` C
+  weak,    // the effort is multiplied by `size`; no effect in position and velocity mode
+  stuck,   // repeats what was written last before the fault
+  offset,  // `size` is added to the effort, Nm
+  late,    // applies what was written `size` ticks before
+  // What the drive reports of itself:
+  tripped,   // it is in fault, with the maker's code `size`; no torque
+  disabled,  // it is ready but not enabled; no torque
+  hot,       // its temperature is `size` C
   old,       // its readings are `size` s old
 };
 
@@ -55,7 +55,7 @@ struct ActuatorFault {
 };
 
 struct SupplyFault {
-  bool button = false;  // somebody presses the emergency stop; else the supply has `supply_V`
+  bool button = false;  // the emergency stop is pressed; else the supply voltage is `supply_V`
   double supply_V = 0;
   std::int64_t from_ns = 0;
   std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
@@ -63,7 +63,7 @@ struct SupplyFault {
 
 class FaultyPlant final : public OneRobotWorld {
  public:
-  // Keeps a reference. The seed is the run's.
+  // Keeps a reference to `world`. `seed` is the seed of the run.
   FaultyPlant(World& world, std::uint64_t seed) noexcept
       : world_(world), plant_(world.robot()), random_(seed, "sensor faults") {}
 
@@ -72,7 +72,7 @@ class FaultyPlant final : public OneRobotWorld {
   void add(const SensorFault& fault) { faults_.push_back({fault, {}, false}); }
   void add(const ActuatorFault& fault);
   void add(const SupplyFault& fault) { supply_faults_.push_back(fault); }
-  // Sensors, drives and supply are sound again.
+  // Removes all faults of sensors, drives and supply.
   void clear() noexcept {
     faults_.clear();
     actuator_faults_.clear();
@@ -91,12 +91,12 @@ class FaultyPlant final : public OneRobotWorld {
  private:
   struct Planned {
     SensorFault fault;
-    SensorFrame first;  // what was read when it began
+    SensorFrame first;  // what was read when the fault began
     bool begun;
   };
   struct PlannedActuator {
     ActuatorFault fault;
-    JointActuation held;  // what was written before it began
+    JointActuation held;  // what was written last before the fault began
   };
   void spoil(Planned& planned, SensorFrame& sensors) noexcept;
   void spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept;
@@ -108,7 +108,7 @@ class FaultyPlant final : public OneRobotWorld {
   std::vector<PlannedActuator> actuator_faults_;
   std::vector<SupplyFault> supply_faults_;
   std::int64_t time_ns_ = 0;             // of the last read
-  std::vector<ActuationFrame> written_;  // the last ones, a ring; empty when nothing is ever late
+  std::vector<ActuationFrame> written_;  // ring of the last frames; empty when no drive is late
   std::size_t newest_ = 0;
 };
 

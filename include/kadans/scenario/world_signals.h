@@ -1,4 +1,4 @@
-// What touches what, and where the objects of the world are, as signals:
+// Contacts and the positions of the world's objects, as signals:
 //
 //   plant.contact.other_links      links of the robot, other than feet, that press on the ground or an object
 //   plant.self_penetration_m       largest overlap of two links of the robot
@@ -15,7 +15,7 @@ namespace kadans {
 
 class WorldSignals {
  public:
-  // Declares the signals. `feet` are the links' numbers.
+  // Declares the signals. `feet` are the indices of the foot links.
   WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet);
 
   void update(const PlantTruth& truth) noexcept;
