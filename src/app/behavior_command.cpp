@@ -42,7 +42,7 @@ int run_checks(const BehaviorOptions& options) {
   return code;
 }
 
-// Graphviz lays the graph out; the text goes to it through a file, its picture to our stdout.
+// Graphviz draws the graph: it reads the text from a file and writes the picture to our stdout.
 int draw_svg(const std::string& dot) {
   const fs::path file = fs::temp_directory_path() / ("kadans-graph-" + std::to_string(::getpid()) + ".dot");
   write_durably(file, dot);
@@ -55,7 +55,7 @@ int draw_svg(const std::string& dot) {
 
 int run_graph(const BehaviorOptions& options) {
   const std::string& file = options.files.front();
-  (void)read_input_file(file);  // tells what is not there
+  (void)read_input_file(file);  // throws when it does not exist
   const Robot robot = read_robot(robot_for(file, options));
   const auto system = make_control_system(robot);
   RunLog log;

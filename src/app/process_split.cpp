@@ -49,7 +49,7 @@ bool ProcessSplit::split(std::size_t at_once) {
 void ProcessSplit::wait_for_one() {
   int status = 0;
   const pid_t pid = waitpid(-1, &status, 0);
-  if (pid < 0 && errno == EINTR) return;  // they got the signal too
+  if (pid < 0 && errno == EINTR) return;  // the children got the signal, too
   for (const auto& child : children_) {
     if (!child->running || (pid >= 0 && child->pid != pid)) continue;
     child->running = false;

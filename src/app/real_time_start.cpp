@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{2} << 20U;
 
-// What works before the loop and in other commands: files, terminals, streams, exceptions; then the model's.
+// Libraries that are used only before the loop or by other commands: files, terminals, streams, exceptions; the last
+// ones are the model's.
 constexpr std::array<std::string_view, 18> unused{"libddsc.",
                                                   "libiceoryx_",
                                                   "libssl.",
@@ -50,7 +51,7 @@ bool rights_suffice(int priority, bool soft) {
 }
 
 void bind_all_functions(char** argv) {
-  constexpr const char* variable = "LD_BIND_NOW";   // of ld.so; linking with -z now binds what a file itself calls
+  constexpr const char* variable = "LD_BIND_NOW";   // of ld.so; linking with -z now binds only what a file itself calls
   const char* const bound = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): before any thread is started
   if (bound != nullptr && *bound != '\0') return;
   (void)setenv(variable, "1", 1);  // NOLINT(concurrency-mt-unsafe)
