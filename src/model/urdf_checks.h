@@ -1,4 +1,4 @@
-// What is wrong with a URDF beyond its grammar. Each check notes all it finds in the document.
+// Checks of a URDF beyond its grammar. Each check notes all mistakes that it finds in the document.
 #pragma once
 
 #include "kadans/model/urdf.h"

@@ -1,4 +1,4 @@
-// A URDF text as XML, every element with its place, and the list of what is wrong with it.
+// A URDF text as XML, with the place of every element and a list of the mistakes.
 #pragma once
 
 #include <string>
@@ -22,8 +22,8 @@ class UrdfDocument {
   const std::string& file() const noexcept { return file_; }
   int line(const tinyxml2::XMLElement& element) const;
 
-  // Notes a mistake at an element, at the name or at the value of one of its attributes (at the element when it has no
-  // such attribute), or at the text inside it. The last that fits into the list throws.
+  // Each notes a mistake: at an element, at the name or the value of one of its attributes (at the element when it has
+  // no such attribute), or at the text inside it. The mistake that fills the list throws.
   void refuse(const tinyxml2::XMLElement& element, std::string message);
   void refuse_name(const tinyxml2::XMLElement& element, std::string_view attribute, std::string message);
   void refuse_value(const tinyxml2::XMLElement& element, std::string_view attribute, std::string message);
@@ -33,7 +33,7 @@ class UrdfDocument {
   bool refused() const noexcept { return !problems_.empty(); }
   void throw_if_refused();  // InputError with all mistakes, sorted by place
 
-  // The text without comments, foreign elements and stray blanks: what urdfdom gets to see.
+  // The text without comments, foreign elements and stray blanks, as urdfdom gets it.
   std::string reprinted() const;
 
  private:

@@ -1,4 +1,4 @@
-// urdfdom with its mouth watched: it logs mistakes where it should fail, so everything it says is collected.
+// urdfdom, with all its messages collected: it logs mistakes where it should fail.
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // URDF's elements in one table: which attributes and children each has, which values they take, how often they come.
 // check_grammar compares a document with it. What the table cannot say (trees, inertias, limits) is in urdf_checks.h.
-// At the top level elements of others (gazebo, transmission, ...) are left alone unless their name is nearly one of
-// URDF's; elements and attributes with a name space (drake:..., xml:...) are left alone everywhere.
+// At the top level foreign elements (gazebo, transmission, ...) are ignored, unless their name is almost one of URDF's.
+// Elements and attributes with a name space (drake:..., xml:...) are ignored everywhere.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// From urdfdom's links and joints to a RobotModel: fixed joints disappear, what hung on them moves into the parent.
+// Makes a RobotModel from urdfdom's links and joints. Fixed joints disappear; what hung on them moves into the parent.
 #pragma once
 
 #include <string>

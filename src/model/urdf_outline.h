@@ -1,4 +1,4 @@
-// The names in a URDF and who hangs on whom: what the checks of links, joints and tree look at.
+// The names in a URDF, and which link hangs on which: the checks of links, joints and tree look at this.
 #pragma once
 
 #include <string>

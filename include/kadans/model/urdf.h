@@ -12,7 +12,7 @@ struct UrdfOptions {
   bool mesh_hulls = false;  // meshes collide as their convex hulls; else a collision mesh is refused
 };
 
-// Throws InputError (signal/input_error.h) on anything wrong, all mistakes found in one message, one a line.
+// Throws InputError (signal/input_error.h) on any mistake: one message with all mistakes that were found, one per line.
 RobotModel read_urdf(const std::string& file, const UrdfOptions& options = {});
 // `file` only names the text in messages.
 RobotModel read_urdf_text(const std::string& text, const std::string& file, const UrdfOptions& options = {});
