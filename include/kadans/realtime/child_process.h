@@ -1,10 +1,12 @@
-// A program that this process runs beside itself, with which it shares memory and a doorbell.
+// A program that this process runs beside itself, and with which it shares memory and a doorbell.
 //
 // It is spawned, not forked: a fork of a running real-time process would copy the page tables of all its locked memory
 // and then cost each of its threads a page fault for every page that it writes. A spawn lends the memory until the new
-// program runs, and copies nothing. The program starts as a usual process, with no signal handled and those blocked
-// that are meant for this process (a terminal's Ctrl-C, a service manager's SIGTERM go to all of a group); priority and
-// CPU it takes itself, once it is ready. It has standard output and errors as this process, and no other open file.
+// program runs, and copies nothing.
+//
+// The program starts as a normal process. It has no signal handlers. Signals that are meant for this process are
+// blocked (a terminal's Ctrl-C and a service manager's SIGTERM go to the whole group). It sets its priority and CPU
+// itself, once it is ready. It has the standard output and standard error of this process, and no other open file.
 //
 // Threads: one at a time.
 #pragma once
@@ -20,7 +22,7 @@
 
 namespace kadans {
 
-// Where the program finds its ends.
+// The descriptors at which the program finds its ends.
 inline constexpr int child_doorbell_descriptor = 3, child_memory_descriptor = 4;
 
 class ChildProcess {
@@ -36,10 +38,10 @@ class ChildProcess {
   Doorbell& bell() noexcept { return bell_; }
 
   void kill() const noexcept;
-  // Lets go of the doorbell, waits a moment for a process that ends by itself, kills one that does not, reaps it; how
-  // it ended: "exit code 2", "signal 11 (Segmentation fault)".
+  // Closes the doorbell, waits a moment for the process to end by itself, kills it if it does not, and reaps it. Says
+  // how it ended: "exit code 2", "signal 11 (Segmentation fault)".
   std::string end() noexcept;
-  bool exited(int code) const noexcept;  // after end(): by itself, with this code
+  bool exited(int code) const noexcept;  // after end(): whether it ended by itself, with this code
 
  private:
   struct Started {
@@ -56,7 +58,7 @@ class ChildProcess {
   int status_ = 0;
 };
 
-// For the program: from now on it dies when the thread that started it does.
+// Called by the program itself: from now on it dies when the thread that started it dies.
 void die_with_parent() noexcept;
 
 }  // namespace kadans
