@@ -39,7 +39,7 @@ struct ObjectInfo {
 struct ControlSetInfo {
   std::string name;
   std::vector<std::uint32_t> objects;       // in the order of computing
-  std::vector<Composition> compositions{};  // one an object; empty: every object sets its joints
+  std::vector<Composition> compositions{};  // one per object; empty: every object sets its joints
 };
 
 // A named posture that a behavior can move to: positions for some joints.
@@ -74,9 +74,9 @@ struct Catalog {
   std::vector<PoseInfo> poses;
   SetMask initial_sets = 1;
   std::vector<std::uint32_t> at_drives;  // the actuator-level objects, which are in no set (control_sets.h)
-  std::vector<DriveLaw> drives;          // one a joint; empty: switching is not smoothed
+  std::vector<DriveLaw> drives;          // one per joint; empty: switching is not smoothed
   SwitchSettings switching;
-  std::vector<UnheldLaw> unheld;  // one a joint; empty: off
+  std::vector<UnheldLaw> unheld;  // one per joint; empty: off
   std::vector<BehaviorValue> behavior_values;
   std::vector<SensorChannel> sensors;  // other than joints, IMU and feet; in the order of the frames
 };

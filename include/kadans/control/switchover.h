@@ -44,7 +44,7 @@ struct SwitchSettings {
 
 class Switchover {
  public:
-  // One law a joint. Without laws (tests of single objects) nothing is smoothed.
+  // One law per joint. Without laws (tests of single objects) nothing is smoothed.
   explicit Switchover(std::vector<DriveLaw> drives, const SwitchSettings& settings = {});
 
   // Each tick, first: estimates the acceleration of the joints.
