@@ -50,7 +50,7 @@ class JointWatch {
   double derating() const noexcept { return derating_; }
 
  private:
-  static constexpr double swing_s = 0.05;  // a rotor of 0.04 kg m2 on 100 Nm/rad swings in 0.13 s
+  static constexpr double swing_s = 0.05;  // of the smoothing; a rotor of 0.04 kg m2 on 100 Nm/rad swings in 0.13 s
   FaultMask look_at_reading(const Input& input) noexcept;
   bool stuck(const Input& input) noexcept;
   // What was asked of the motor, as one number that the joint follows: the position in modes that have one, else
