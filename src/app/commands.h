@@ -26,7 +26,7 @@ struct SimOptions : RunRequest {
   bool realtime = false;
   bool watch = false;
   std::string metrics;  // plan whose metrics are reported; "": none
-  std::string record;   // "" = NAME.mcap in the working directory
+  std::string record;   // "": NAME.mcap in the working directory
   RecordOptions recording;
   std::vector<std::string> checkpoints;  // "2.5=crouched.mcap"
   std::string from;                      // a checkpoint; settings and plays then count from there
@@ -46,7 +46,7 @@ int run_sim(const SimOptions& options);
 struct TestOptions {
   std::vector<std::string> selectors;  // files, folders, tags, names
   std::string folder;                  // where scenarios are searched; "": config/scenarios of the project
-  unsigned jobs = 0;                   // 0 = one a core
+  unsigned jobs = 0;                   // 0: one for each core
   std::optional<std::uint32_t> repeat;
   std::optional<std::uint64_t> seed;
   bool fail_fast = false;
@@ -74,7 +74,7 @@ struct RunOptions {
   std::string plant = "bullet";
   std::string peer;      // address of the drives; "": the robot's own
   std::string play;      // a list; "": nothing plays, the robot holds
-  std::string joystick;  // a device or a recording; "" = the robot's own
+  std::string joystick;  // a device or a recording; "": the robot's own
   std::string record;    // "" = none
   RecordOptions recording;
   std::optional<double> duration_s;
@@ -122,14 +122,14 @@ struct JitterOptions {
   bool json = false;
   int cpu = -1;  // -1: the CPU that `kadans run` takes
   int priority = 90;
-  double spin_us = 0;  // 0: as `kadans run`
+  double spin_us = 0;  // 0: the default of `kadans run`
   std::string svg;     // "" = none
 };
 void add_jitter(CLI::App& app, JitterOptions& options);
 int run_jitter(const JitterOptions& options);
 
 struct DoctorOptions {
-  std::string root = "/";  // of the machine that is examined
+  std::string root = "/";  // root folder of the machine that is examined
   bool json = false;
 };
 void add_doctor(CLI::App& app, DoctorOptions& options);

@@ -1,11 +1,11 @@
 // The table of a motion's options. The bindings and `kadans behavior check` read it, and editor stubs and the reference
 // are made from it.
 //
-//   minimum_jerk  the control object's own: from the state it has to rest in time_s, peak 1.875 times the mean speed
-//   trapezoid     speeds up, cruises, slows down: as fast as limits of velocity and acceleration allow, all joints
-//                 arriving together; or in time_s, with a peak of about 1.3 times the mean speed
+//   minimum_jerk  the control object's own: from its present state to rest in time_s; peak 1.875 times the mean speed
+//   trapezoid     speeds up, cruises, slows down, as fast as the limits of velocity and acceleration allow; all joints
+//                 arrive together. Or in time_s, with a peak of about 1.3 times the mean speed
 //   spline        through points at given times (move_through)
-//   follow        a trapezoid without an end: the target may be another in every tick
+//   follow        a trapezoid without an end: the target may change in every tick
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ struct GoldenRun {
   std::vector<std::string> each_s;  // the first eight digits
 };
 
-// The file that goes with a folder of scenarios.
+// The golden file of a folder of scenarios.
 std::filesystem::path golden_file(const std::filesystem::path& folder);
 
 class GoldenHashes {

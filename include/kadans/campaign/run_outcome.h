@@ -25,7 +25,7 @@ struct RunOutcome {
   std::vector<std::string> hashes;  // one for each second, when the run was asked for them
   std::vector<CheckResult> checks;
   std::vector<EvidenceTrace> traces;     // signals around the moment at which checks failed
-  std::vector<std::string> transitions;  // the last ones, a line each
+  std::vector<std::string> transitions;  // the last ones, one line each
   std::vector<std::string> errors;       // messages of the run, of a behavior or of the process
   std::vector<QuantityValue> quantities;
   std::vector<MetricValue> metrics;

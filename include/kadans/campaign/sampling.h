@@ -1,4 +1,4 @@
-// The points of a sample: for each case the values of what varies.
+// The points of a sample: for each case the values of the varying quantities.
 //
 // For each case, every axis has a number u in [0, 1), and the axis's distribution turns u into a value. So random
 // draws, Latin hypercubes and grids differ only in how they choose u. Each axis has a random stream of its own, so its

@@ -24,7 +24,7 @@ std::string failure_report(const RunOutcome& run, const SuiteStyle& style);
 // The table at the end: failures first, then counts and times. `wall_s` is the time of the whole suite.
 std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, const SuiteStyle& style);
 
-// A <testsuites> document, one <testcase> a run, as CI servers read it.
+// A <testsuites> document with one <testcase> for each run, as CI servers read it.
 std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s);
 
 }  // namespace kadans

@@ -16,7 +16,7 @@ struct SweepSubject {
   std::string name;
   double wall_limit_s = 60;
   std::vector<Variation> randomise;
-  std::vector<std::string> quantities;  // that can be set
+  std::vector<std::string> quantities;  // quantities that can be set
   std::uint64_t content = 0;            // hash of everything that the run depends on, except seed and settings
 };
 
@@ -25,7 +25,7 @@ struct SweepCase {
   std::size_t subject = 0;
   std::uint64_t seed = 0;                 // below 2^53, so that every reader of JSON holds it
   std::vector<QuantityValue> settings;    // names may be patterns
-  std::vector<QuantityValue> quantities;  // the same in full
+  std::vector<QuantityValue> quantities;  // the same values by full names
   std::string id;                         // hash of contents, seed, settings, metrics and the program's version
 };
 

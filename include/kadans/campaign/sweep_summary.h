@@ -11,7 +11,7 @@ struct SweepCounts {
   std::size_t cases = 0;  // with a result
   std::size_t passed = 0;
   std::size_t first_try = 0;  // runs that passed and whose first_try metric is not 0
-  double median_s = 0;        // of the time metric over the runs that passed; NaN without one
+  double median_s = 0;        // median of the time metric over the runs that passed; NaN without one
 };
 SweepCounts counts(const MergedSweep& sweep);
 

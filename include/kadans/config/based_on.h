@@ -1,9 +1,9 @@
 // A file may say only what differs from another file, its base. The key "based_on" names the base by its path from the
 // project root.
 //
-//   an object      has the base's keys, and those of the file in place of or after them
-//   a list whose items all have a "name"    the same: items of the same name are merged, new ones come last
-//   anything else  replaces what the base says
+//   an object      keys of the file replace those of the base, new keys come last
+//   a list whose items all have a "name"    items of the same name are merged, new items come last
+//   anything else  the file's value replaces the base's
 // A base may have a base itself, up to based_on_depth_max. Values that come from a base get the place at which the file
 // names the base. So a reader of such files first reads the base alone, so that the base's own mistakes are reported at
 // their own places.

@@ -20,7 +20,7 @@ struct ExperimentScenario {
 // Quantities that vary, chosen by a pattern over their names.
 struct ExperimentAxis {
   Variation variation;
-  std::uint32_t steps = 5;  // of a grid, when the distribution is continuous
+  std::uint32_t steps = 5;  // points in a grid, when the distribution is continuous
 };
 
 struct ExperimentConfig {

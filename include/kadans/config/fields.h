@@ -62,7 +62,7 @@ struct TextEntry {
   TextPlace text_place;  // of the text
 };
 
-// What a field is, for the schema and the manual.
+// The description of a field, for the schema and the manual.
 struct FieldInfo {
   enum class Kind : std::uint8_t { boolean, integer, number, string, object, list, map };
   Kind kind = Kind::object;
@@ -137,7 +137,7 @@ class Fields {
 
   // False while the fields are only described and there is no file.
   bool reading() const noexcept { return value_ != nullptr; }
-  const std::string& key() const noexcept { return key_; }  // under which this object stands in its map
+  const std::string& key() const noexcept { return key_; }  // the key of this object in its map
   TextPlace key_place() const noexcept { return key_place_; }
   TextPlace place() const noexcept { return value_ == nullptr ? TextPlace{} : value_->place; }
   bool has(std::string_view name) const { return value_ != nullptr && value_->find(name) != nullptr; }

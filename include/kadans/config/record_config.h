@@ -1,8 +1,8 @@
 // Which signals a record holds and at what rate. Rates are given by patterns over the signals' names; later entries
 // override earlier ones. A robot's configuration sets them, and a run's command line may override them:
 //
-//   "record": {"signals": {"plant.*": 0, "control.*": 100}}     the rest in each tick
-//   --signals "joint.*, base.*@100"                             these and nothing else
+//   "record": {"signals": {"plant.*": 0, "control.*": 100}}     these rates, all other signals in each tick
+//   --signals "joint.*, base.*@100"                             only these signals
 //
 // The signals of a run are known only when they are declared, so patterns that fit no signal are found by
 // ticks_between().

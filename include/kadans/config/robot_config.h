@@ -39,7 +39,7 @@ struct ObjectConfig {
   std::uint32_t divisor = 1;             // the low level runs every n-th control tick
   std::uint32_t high_level_divisor = 1;  // the high level runs every n-th behavior tick
   std::vector<TextEntry> options;        // settings of its type other than parameters
-  std::vector<NumberEntry> parameters;   // key: pattern over the object's parameter names, without its own
+  std::vector<NumberEntry> parameters;   // key: pattern over the parameters' names without the object's name
   std::vector<PresetConfig> presets;
 };
 

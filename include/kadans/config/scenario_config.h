@@ -1,4 +1,4 @@
-// A scenario: a robot, a plant, the behaviors it plays and what must hold meanwhile, in one JSON file.
+// A scenario in one JSON file: a robot, a plant, the behaviors that play, and the checks that must hold.
 #pragma once
 
 #include <cstdint>

@@ -40,7 +40,7 @@ struct RecordStatus {
   std::uint32_t dropped = 0;
   std::array<char, 256> file{};
   std::uint32_t flights = 0;       // number of records that the flight recorder wrote
-  std::array<char, 256> flight{};  // the last of them
+  std::array<char, 256> flight{};  // file of the last one
 };
 
 // Published by the supervisor about twenty times a second.
@@ -153,7 +153,7 @@ class Instance {
   std::vector<std::unique_ptr<InstancePort>> ports_;
 };
 
-// "position_limit at l_knee: 2.1, limit 2"
+// "position_limit at l_knee: 2.1, limit 2": a fault as text.
 std::string fault_text(const Fault& fault, const RobotModel& model);
 
 }  // namespace kadans

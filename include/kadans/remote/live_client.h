@@ -52,7 +52,7 @@ class LiveClient {
   // True when the connection must be closed: the client does not read its replies, or an exception occurred.
   bool hopeless() const noexcept { return hopeless_; }
   std::size_t reply_bytes() const noexcept { return reply_bytes_; }
-  bool writes() const noexcept { return writes_; }  // it has the token
+  bool writes() const noexcept { return writes_; }  // the client has the token
   void give_up() noexcept;
 
  private:

@@ -58,7 +58,7 @@ class BasicOrderQueue {
   [[nodiscard]] bool ask(std::unique_ptr<Case> order) {
     if (on_their_way_.size() == orders_waiting_max) return false;
     on_their_way_.push_back(order.get());
-    if (asked_.try_push(order.get())) return order.release() != nullptr;  // now the ring's
+    if (asked_.try_push(order.get())) return order.release() != nullptr;  // the ring owns it now
     on_their_way_.pop_back();
     return false;
   }

@@ -70,7 +70,7 @@ class RecordSide final : public Task {
     if (Recorder* recorder = told_.load(std::memory_order_acquire); recorder != nullptr) recorder->fault(fault);
   }
   RecordStatus status() noexcept { return status_.newest(); }
-  // After the loop; nullptr: there was no record.
+  // Call after the loop; nullptr: there was no record.
   const Recorder* recorder() const noexcept { return recorder_.get(); }
 
  private:

@@ -6,7 +6,7 @@
 //   start.roll_rad, pitch_rad, yaw_rad   imu.gyro_noise_rad_s, gyro_bias_rad_s, accelerometer_noise_m_s2, ...
 //   sensor.<name>.value, noise
 //   foot.<link>.noise_N                  control.<object>.<parameter>, and <parameter>_scale
-//   actuation.delay_s                    between what the control engine writes and what the drives do
+//   actuation.delay_s                    delay from the control engine's write to the drives' reaction
 //
 // A quantity of the plant changes the plant alone, never the control side's model of it: the controller does not know
 // that a link is heavier. Names may be patterns ("joint.*_knee.torque_scale"). Use this before the run, not in the

@@ -1,18 +1,18 @@
 // The true state of a simulated robot as signals, for checks and pictures, never for control.
 //
-//   plant.base.height_m, x_m, y_m, tilt_rad, yaw_rad, speed_m_s     the base frame in the world
-//   plant.base.jump_m           its way in this step beyond what its speed explains: a teleport
-//   plant.foot.<link>.force_N, slip_m                                slip: way along the ground since the foot settled
-//   plant.limits.position_rad   how far the worst joint is inside its limits; negative beyond them
-//   plant.limits.motor_torque_share   the largest torque of a motor, as a share of its joint's limit. What the motor
-//                                     cannot give at its speed counts as used up: at most 1, or the plant cheats
-//   plant.limits.torque_share   the largest torque that a transmission puts on its joint, as a share of its limit. More
-//                               than 1 when a limb hits something: the rotor behind it must be stopped, too
-//   plant.limits.speed_share    the largest joint velocity, as a share of its limit. More than 1 when something turns
-//                               the joint faster than its motor could: no motor pushes on there
-//   plant.limits.overspeed_s    how long now, without a break, a joint has been so
-//   reference.base.height_m     where the base would be if every joint stood at its set-point
-//   reference.base.error_m      plant.base.height_m minus that
+//   plant.base.height_m, x_m, y_m, tilt_rad, yaw_rad, speed_m_s     of the base frame in the world
+//   plant.base.jump_m           distance that the base moved in this step beyond what its speed explains: a teleport
+//   plant.foot.<link>.force_N, slip_m   slip: horizontal distance from the place where the foot settled
+//   plant.limits.position_rad   distance of the worst joint from its limits; negative when it is beyond them
+//   plant.limits.motor_torque_share   the largest torque of a motor, as a share of its joint's limit. Torque that the
+//                                     motor cannot give at its speed counts as used. Above 1 the plant is wrong
+//   plant.limits.torque_share   the largest torque of a transmission on its joint, as a share of the limit. It is above
+//                               1 when a limb hits something, because the rotor behind it must be stopped, too
+//   plant.limits.speed_share    the largest joint velocity, as a share of its limit. It is above 1 when something turns
+//                               the joint faster than its motor could; no motor accelerates it any more then
+//   plant.limits.overspeed_s    for how long a joint has now been above its limit without a break
+//   reference.base.height_m     the height of the base if every joint were at its set-point
+//   reference.base.error_m      plant.base.height_m minus reference.base.height_m
 // It also declares the signals of world_signals.h, and those of gaze_truth.h for eyes that are watched.
 #pragma once
 

@@ -2,8 +2,9 @@
 //
 //   plant.contact.other_links      links of the robot, other than feet, that press on the ground or an object
 //   plant.self_penetration_m       largest overlap of two links of the robot
-//   world.<name>.force_N, links    of the robot on the object, and how many of its links press
-//   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    of an object that can move
+//   world.<name>.force_N, links    force of the robot on the object, and number of its links that press
+//   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    position, velocity and tilt of an object that can
+//   move
 #pragma once
 
 #include <span>

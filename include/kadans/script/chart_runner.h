@@ -38,7 +38,7 @@ class WarmUp;
 struct RunnerTables {
   struct Machine {
     int handle = Chart::no_function;   // m
-    int content = Chart::no_function;  // the table behind it
+    int content = Chart::no_function;  // the table behind m
   };
   std::vector<Machine> machines;
   int snapshot = Chart::no_function;  // s

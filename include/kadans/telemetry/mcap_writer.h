@@ -29,7 +29,7 @@ namespace kadans {
 struct McapSettings {
   std::int64_t chunk_period_ns = 500'000'000;  // of log time
   std::size_t chunk_bytes = 1U << 20U;         // before compression
-  int compression_level = 1;                   // of zstd, 1..19; 0 = not compressed
+  int compression_level = 1;                   // of zstd, 1..19; 0: not compressed
 };
 
 class McapWriter {

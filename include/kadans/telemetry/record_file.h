@@ -29,7 +29,7 @@ class RecordFile {
   bool is_open() const noexcept { return descriptor_ >= 0; }
   std::uint64_t size() const noexcept { return size_; }         // bytes of whole blocks
   std::uint32_t crc() const noexcept { return crc_.value(); }   // of all of them
-  const std::string& error() const noexcept { return error_; }  // "" while all is well; "PATH: why"
+  const std::string& error() const noexcept { return error_; }  // "PATH: why"; "" when there is no error
 
  private:
   bool fail(const char* what);

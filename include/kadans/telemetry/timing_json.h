@@ -1,4 +1,4 @@
-// Histograms of the durations of ticks and tasks, for viewers on /timing.
+// Histograms of the durations of ticks and tasks, which viewers read on /timing.
 #pragma once
 
 #include <string>

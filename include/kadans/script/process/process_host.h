@@ -40,7 +40,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
  public:
   struct Settings {
     std::string program;
-    std::vector<std::string> arguments;      // the program's name first
+    std::vector<std::string> arguments;      // the first is the program's name
     bool time_stands = false;                // virtual time: a tick waits for the process, also when it starts
     std::int64_t answer_ns = 5'000'000;      // how long a tick waits otherwise; this and the next two are wall time
     std::int64_t patience_ns = 300'000'000;  // limit for an answer
