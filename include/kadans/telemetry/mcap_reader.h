@@ -2,8 +2,8 @@
 //
 // A record of a run that was killed may end at any byte. The reader delivers the messages before that point; then
 // problem() says where and why it stopped. The reader trusts nothing in the file: a length must fit the bytes that
-// exist, a chunk is unpacked only up to max_chunk_bytes, and every CRC is checked. It knows the compressions none and
-// zstd. One thread at a time.
+// exist, a chunk is unpacked only up to max_chunk_bytes, and every CRC that is given is checked. It knows the
+// compressions none and zstd. One thread at a time.
 #pragma once
 
 #include <cstddef>
