@@ -14,7 +14,7 @@ pkg_check_modules(sqlite3 REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(sleef REQUIRED IMPORTED_TARGET sleef)
 find_package(Boost 1.74 REQUIRED)  # headers of Beast and Asio
-# ROS 2 without ROS (docs/ros2.md). Headers, and idlc for the messages; the library is loaded when it is asked for.
+# ROS 2 without ROS (docs/ros2.md). The build needs headers, and idlc for the messages; --ros2 loads the library.
 if(NOT KADANS_ROS2 STREQUAL "OFF")
   find_package(CycloneDDS QUIET)
   find_program(KADANS_IDLC idlc)

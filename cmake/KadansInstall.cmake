@@ -1,6 +1,6 @@
-# cmake --install: the program, the headers, the models, behaviors and configurations, and find_package(kadans), which
-# gives each layer as kadans::<layer> and all of them, but the testing kit, as kadans::kadans. Nothing in the installed
-# tree is absolute: it may be moved as a whole.
+# cmake --install installs the program, the headers, the models, behaviors and configurations, and find_package(kadans).
+# That gives each layer as kadans::<layer>, and all of them but the testing kit as kadans::kadans. The installed tree has
+# no absolute paths, so it may be moved as a whole.
 include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kadans")
 
@@ -31,7 +31,7 @@ install(FILES LICENSE third_party_notes.md DESTINATION "${CMAKE_INSTALL_DOCDIR}"
 
 if(TARGET kadans)
   install(TARGETS kadans)
-  # What shells need to complete its command line, by the program itself.
+  # The program itself writes what shells need to complete its command line.
   foreach(place IN ITEMS "bash|bash-completion/completions/kadans" "zsh|zsh/site-functions/_kadans")
     string(REPLACE "|" ";" place "${place}")
     list(GET place 0 shell)

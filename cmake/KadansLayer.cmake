@@ -1,5 +1,5 @@
-# The standard headers that half of the sources include: read once for all layers and once more, beside doctest, for all tests.
-# A third of the time of a build would go into reading them again for each file.
+# The standard headers that half of the sources include. They are read once for all layers, and once more, with doctest,
+# for all tests. Reading them again for each file would take a third of the time of a build.
 set(KADANS_STANDARD_HEADERS <algorithm> <array> <charconv> <cmath> <cstdint> <cstdio> <cstring> <filesystem> <fstream> <functional>
     <limits> <map> <memory> <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <system_error> <unordered_map>
     <utility> <variant> <vector>)
@@ -33,8 +33,8 @@ function(kadans_layer name)
 endfunction()
 
 # kadans_set_soft_apart(PROGRAM)
-# Puts the code and the constants of the layers that are SOFT into sections of their own, at the bounds of pages:
-# lock_memory leaves them out. The other layers are linked first, so that an inline function of both is theirs.
+# Puts the code and the constants of the layers that are SOFT into sections of their own that begin and end with pages;
+# lock_memory leaves these out. The other layers are linked first, so that an inline function of both goes to them.
 function(kadans_set_soft_apart program)
   get_property(hard GLOBAL PROPERTY KADANS_HARD_LAYERS)
   get_property(soft GLOBAL PROPERTY KADANS_SOFT_LAYERS)
@@ -52,8 +52,8 @@ function(kadans_set_soft_apart program)
 endfunction()
 
 # kadans_test(LAYER SOURCES file... [ALONE file...] [LINKS target...])
-# One program of doctest cases, each case a ctest test. ALONE names the sources that call something as a neighbour does,
-# and so cannot be compiled together with it.
+# Makes one program of doctest cases; each case is a ctest test. ALONE names sources that use the same name as another
+# source, and so cannot be compiled together with it.
 function(kadans_test name)
   cmake_parse_arguments(arg "" "" "SOURCES;ALONE;LINKS" ${ARGN})
   string(REPLACE "/" "_" target "${name}_test")

@@ -1,5 +1,5 @@
-# kadans_embed_page(DIST SOURCE): the built page as a source file that defines kadans::page_files(). Each file lies in DIST
-# twice, as it is and compressed by the page's own build (FILE.gz); the compressed ones go into the program.
+# kadans_embed_page(DIST SOURCE): the built page as a source file that defines kadans::page_files(). Each file is in DIST
+# twice: as it is, and compressed by the page's own build (FILE.gz). The compressed files go into the program.
 function(kadans_embed_page dist source)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE "${dist}" "${dist}/*.gz")
   set(arrays "")

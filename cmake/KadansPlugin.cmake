@@ -1,6 +1,6 @@
 # kadans_plugin(NAME SOURCES file... [LINKS target...]): a shared library NAME.so of control objects, to be named under
-# "plugins" in a robot's configuration. It brings its own copy of what it uses of Kadans and shows nothing but its entry,
-# so that it fits every program with the same version of the seam (kadans/control/plugin.h).
+# "plugins" in a robot's configuration. It has its own copy of what it uses of Kadans, and exports nothing but its entry.
+# So it fits every program with the same version of the seam (kadans/control/plugin.h).
 function(kadans_plugin name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
   add_library(${name} MODULE ${arg_SOURCES})

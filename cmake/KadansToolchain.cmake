@@ -23,31 +23,31 @@ endif()
 add_library(kadans_flags INTERFACE)
 add_library(kadans::flags ALIAS kadans_flags)
 set_target_properties(kadans_flags PROPERTIES EXPORT_NAME flags)
-# A fused multiply-add where the compiler finds one would make the same seed run differently on another compiler.
+# If a compiler fused multiplications with additions, the same seed would run differently with another compiler.
 target_compile_options(kadans_flags INTERFACE -ffp-contract=off)
-# The functions of src/signal/portable_math.cpp. A compiler that knew them would put its own result in place of a call with a
-# constant argument. Every program shows them to the libraries that it loads, plug-ins too.
+# The functions of src/signal/portable_math.cpp. A compiler that knew them would replace a call with a constant argument by
+# its own result. Every program exports them to the libraries that it loads, plug-ins too.
 set(KADANS_PORTABLE_MATH sin cos sincos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp exp2 expm1 log log2 log10
                          log1p pow cbrt hypot erf erfc tgamma lgamma)
 foreach(function IN LISTS KADANS_PORTABLE_MATH)
   target_compile_options(kadans_flags INTERFACE -fno-builtin-${function} -fno-builtin-${function}f)
   target_link_options(kadans_flags INTERFACE LINKER:--export-dynamic-symbol=${function},--export-dynamic-symbol=${function}f)
 endforeach()
-# Eigen cuts large products into sums by the sizes of the caches, unless it may not ask for them.
+# Eigen would split large products by the sizes of the caches; so it may not ask for these sizes.
 target_compile_definitions(kadans_flags INTERFACE EIGEN_NO_CPUID)
 target_compile_features(kadans_flags INTERFACE cxx_std_20)
 
-# With a sanitizer's calls between the lines gcc warns of what cannot be; there a warning is no error.
+# With a sanitizer's calls in the code, gcc gives false warnings; so there a warning is no error.
 if(KADANS_WERROR AND NOT KADANS_SANITIZE)
   set(warnings_are_errors -Werror)
 endif()
 
-# gcc counts what a designated initializer leaves out as missing; leaving out is its point.
+# gcc warns of fields that a designated initializer leaves out; but leaving fields out is its purpose.
 add_library(kadans_warnings INTERFACE)
 target_compile_options(kadans_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
                                                  -Wno-missing-field-initializers
                                                  ${warnings_are_errors})
-# To clang a name that a neighbour in the same compilation happens to use is shadowed; file by file it still tells.
+# In a unity build clang warns of names that another file of the same batch uses, too; file by file it still warns rightly.
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   target_compile_options(kadans_warnings INTERFACE -Wno-shadow)
 endif()

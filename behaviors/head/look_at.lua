@@ -1,5 +1,5 @@
--- Looks at the point that its parameters say, also while they change: from a scenario, `look_at{y_m=0.3}`, from
--- `kadans ctl set look_at.y_m 0.3`, or from the page.
+-- Looks at the point that its parameters give, also while they change. A scenario sets them with `look_at{y_m=0.3}`,
+-- a run with `kadans ctl set look_at.y_m 0.3` or from the page.
 local k = require "kadans"
 
 local P = k.params {

@@ -1,4 +1,4 @@
--- A target that swings from left to right and, less, up and down, 1 m away from the eyes.
+-- The target swings from left to right and, with a smaller amplitude, up and down, 1 m away from the eyes.
 local k = require "kadans"
 
 local P = k.params {

@@ -1,5 +1,5 @@
--- The joystick task of 2008: ten times a second the stick's x and y become the velocity of a target 1 m ahead, its twist
--- that of the distance. The first button brings the target back ahead. Let go, or pulled out, it stays where it is.
+-- The joystick task of 2008. Ten times a second the stick's x and y become the velocity of a target 1 m ahead, and its
+-- twist that of the distance. The first button brings the target back ahead. Let go or unplugged, it stays there.
 local k = require "kadans"
 
 local P = k.params {

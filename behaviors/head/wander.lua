@@ -1,5 +1,5 @@
--- Targets that the head cannot look at, or hardly: under its back, behind it, above it, beside it along the eyes' axis,
--- very near. It goes as near as it comes, and ends looking ahead again.
+-- Targets that the head cannot look at, or only just: under its back, behind it, above it, beside it along the eyes'
+-- axis, very near. The head goes as near to each as it can, and ends looking ahead again.
 local k = require "kadans"
 
 local P = k.params {

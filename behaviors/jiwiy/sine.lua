@@ -1,5 +1,5 @@
--- Leads both joints along a sine and measures how well they follow: amplitude and phase, by correlation with the sine
--- over whole periods. Ten times a second it gives the points of the next 0.8 s, the control engine draws the curve.
+-- Moves both joints along a sine, and measures how well they follow: amplitude and phase, by correlation over whole
+-- periods. Ten times a second it gives the points of the next 0.8 s; the control engine draws the curve through them.
 local k = require "kadans"
 
 local P = k.params {

@@ -1,5 +1,5 @@
--- JIWIY by joystick: the first three buttons choose what the stick is, a pose, a rate or a path, and with it the control
--- set, also while the camera moves.
+-- JIWIY follows a joystick. The first three buttons choose whether the stick means a pose, a rate or a path. With it
+-- they choose the control set, also while the camera moves.
 local k = require "kadans"
 
 local function poses(s) return s.joystick.button_1 end

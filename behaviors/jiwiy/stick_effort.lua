@@ -1,5 +1,5 @@
--- The stick leads along a path: ten times a second its x and y say how the path goes on for the next 0.8 s, and the loop
--- that follows it is here, by torques. Its rate changes gently, and begins with that of the joints. Let go, it comes to rest.
+-- The stick leads along a path. Ten times a second its x and y say how the path goes on for the next 0.8 s; a control
+-- object follows it by torques. The rate changes gently, and begins with that of the joints. Let go, it comes to rest.
 local k = require "kadans"
 
 local P = k.params {

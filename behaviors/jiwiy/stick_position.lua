@@ -1,5 +1,5 @@
--- The stick is a pose: ten times a second its x and y become where pan and tilt shall be, along the profile's limits. Let
--- go, the camera looks ahead.
+-- The stick means a pose. Ten times a second its x and y become the positions of pan and tilt, reached within the
+-- profile's limits. When the stick is let go, the camera looks ahead.
 local k = require "kadans"
 
 local P = k.params {

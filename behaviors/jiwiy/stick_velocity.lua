@@ -1,5 +1,5 @@
--- The joystick task of 2008: ten times a second the stick's x and y become the rates of pan and tilt. Right turns to the
--- right, away from the hand looks up. Let go, or pulled out, it comes to rest.
+-- The joystick task of 2008. Ten times a second the stick's x and y become the rates of pan and tilt. Stick right turns
+-- the camera right; stick away from the hand turns it up. Let go or unplugged, the camera comes to rest.
 local k = require "kadans"
 
 local P = k.params {

@@ -1,12 +1,12 @@
--- How TULip moves on the floor: how it lies, and the key frames that roll it over and bring it up.
+-- How TULip moves on the floor: how to tell how it lies, and the key frames that roll it over and bring it up.
 --
--- The way up needs little speed and no momentum at its end. Lying on its face it pulls its legs in until it stands folded
--- on feet and head, thighs beside the waist; the arms, which came round over the back, lift the head; the feet hop in until
--- they stand under the centre of mass. From there the torso rises with the centre of mass over the soles all the way: the
--- ankle of each point of `rise` was solved for that. From its back it first rolls over one side: the leg of the other
--- side pushes off.
+-- The way up needs little speed, and no momentum at its end. Lying on its face, the robot pulls its legs in until it is
+-- folded on feet and head, with the thighs beside the waist. The arms, which came round over the back, lift the head.
+-- The feet hop in until they are under the centre of mass. From there the torso rises with the centre of mass over the
+-- soles all the way: the ankle angle of each point of `rise` was solved for that. From its back the robot first rolls
+-- over one side: the leg of the other side pushes off.
 --
--- Found under the URDF's limits by CMA-ES over random friction, gains, torque, masses, delay and noise.
+-- Found within the URDF's limits by CMA-ES over random friction, gains, torque, masses, delay and noise.
 local poses = require "poses"
 
 local floor = {}

@@ -1,4 +1,4 @@
--- Key frames: a motion as a list of poses with times, each left when its motion has arrived, or earlier when its own
+-- Key frames: a motion as a list of poses with times. A frame ends when its motion has arrived, or earlier when its own
 -- exit condition says so. For the `run` of a state:
 --
 --   run = function(m)

@@ -1,5 +1,5 @@
 -- Leg postures by inverse kinematics, for legs that bend in one plane: hip pitch, knee, ankle pitch. Positive angles
--- turn about y: a bent knee is positive, a hip that lifts the thigh forward negative.
+-- turn about y: a bent knee is positive, and a hip that lifts the thigh forward is negative.
 local legs = {}
 
 -- The angles that put the ankle `distance_m` straight below the hip, the foot parallel to the torso.

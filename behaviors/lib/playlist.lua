@@ -2,7 +2,7 @@
 --
 --   playlist.state("show", { k.call "squat", k.call "wave" })
 --
--- goes where any state goes; its transitions are added behind the list: { on = "done", to = "up" }.
+-- can stand wherever a state can. Add its transitions behind the list: { on = "done", to = "up" }.
 local k = require "kadans"
 
 local playlist = {}

@@ -1,4 +1,4 @@
--- Small memories over time, fed with the engine's clock (s.time_s): a timer, and decisions that do not flicker.
+-- Timing with the engine's clock (s.time_s): how long a condition has held, a timer, and decisions with hysteresis.
 local timing = {}
 
 -- How long a condition has held without a break: local held = timing.held(); held(s.time_s, condition) -> seconds.

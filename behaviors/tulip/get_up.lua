@@ -1,7 +1,7 @@
--- Gets up from wherever it lies: waits until it lies still, looks how, rolls onto its face if need be, folds onto hands and
--- feet, rises. Whatever goes wrong on the way it lies down again and begins anew, a few times.
+-- Gets up from any position: waits until the robot lies still, finds out how it lies, rolls onto the face if needed,
+-- folds onto hands and feet, and rises. When something goes wrong, it lies down again and begins anew, a few times.
 --
--- When the first try did it, it passes through "at_once" on its way to "up": sweeps count that state, number 1.
+-- When the first try succeeds, it passes through "at_once" on its way to "up": sweeps count that state, number 1.
 local k = require "kadans"
 local floor = require "floor"
 

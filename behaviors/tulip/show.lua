@@ -1,4 +1,4 @@
--- Squats, then waves: a behavior made of others.
+-- Squats, then waves: a behavior made of other behaviors.
 local k = require "kadans"
 local playlist = require "playlist"
 

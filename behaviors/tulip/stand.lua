@@ -1,4 +1,4 @@
--- Stands still, stiff, until it is told otherwise.
+-- Stands still and stiff until it is told otherwise.
 local k = require "kadans"
 
 local P = k.params {

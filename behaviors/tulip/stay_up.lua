@@ -1,4 +1,4 @@
--- Stands its ground: keeps its balance when it is pushed; when it falls all the same it falls soft, and gets up again.
+-- Keeps its balance when it is pushed. When the robot falls nevertheless, it falls softly and gets up again.
 local k = require "kadans"
 local floor = require "floor"
 

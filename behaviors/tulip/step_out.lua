@@ -1,7 +1,7 @@
--- Stands its ground with one foot ahead, as stay_up does by forces, and catches a push forward that standing does not
--- hold by stepping. It rests nearer to the foot ahead: on that foot it stands while it steps. What the step leaves the
--- legs bear by force again, apart and in the middle. When it falls all the same it gets up, and stands its ground on
--- parallel feet.
+-- Keeps its balance with one foot ahead, by forces, as stay_up does. A push forward that standing does not hold is
+-- caught by a step. The robot rests nearer to the foot ahead, because it stands on that foot while it steps. After the
+-- step the legs carry by forces again, apart and in the middle. When the robot falls nevertheless, it gets up, and
+-- keeps its balance on parallel feet.
 local k = require "kadans"
 local floor = require "floor"
 

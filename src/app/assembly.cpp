@@ -22,7 +22,7 @@ std::vector<TruthSignals::Foot> feet_of(const PlantSettings& plant) {
   return feet;
 }
 
-// The eyes of a gaze object; it has been made, so its options are there.
+// The eyes of a gaze object. The object has been made before, so its options exist.
 GazeTruth::Eyes eyes_of(const ObjectConfig& object) {
   GazeTruth::Eyes eyes{.object = object.name, .left = {}, .right = {}};
   for (const TextEntry& option : object.options) {
@@ -36,7 +36,7 @@ SafePosture::Settings safe_posture_of(const SafeConfig& safe) {
   return {.pose = safe.pose, .after_s = safe.after_s, .time_s = safe.time_s};
 }
 
-// To load or reload a file may take as long as some ticks: meanwhile behaviors stand still, and the heartbeat.
+// Loading or reloading a file may take as long as some ticks. Meanwhile the behaviors and the heartbeat stand still.
 ScriptLimits limits_on_wall_clock(const EngineSettings& engine) {
   constexpr std::int64_t ticks_to_load = 20;
   ScriptLimits limits;
@@ -45,12 +45,12 @@ ScriptLimits limits_on_wall_clock(const EngineSettings& engine) {
   return limits;
 }
 
-// When a joystick's state is recorded: the robot has one, or this run.
+// True when a joystick's state is recorded: the robot or this run has one.
 bool has_joystick(const ScenarioConfig& scenario, const RobotConfig& robot) {
   return robot.engine.joystick || !scenario.joystick.recording.empty() || !scenario.joystick_device.empty();
 }
 
-// The behaviors' names are known once they are loaded.
+// Checks the behaviors' names in events; they are known only after loading.
 void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
   const std::vector<std::string> names = host.names();
   for (const ScenarioEvent& event : scenario.events) {
@@ -123,7 +123,8 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   make_behaviors();
 }
 
-// The plant's robot: what the files say, then the scenario's start pose, then what it sets and draws.
+// The plant's robot: first the files' values, then the scenario's start pose, then the quantities that it sets and
+// draws.
 void Assembly::vary(std::uint64_t seed) {
   const RobotConfig& config = robot_.config;
   variant_.model = config.model;

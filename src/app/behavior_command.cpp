@@ -57,7 +57,7 @@ int draw_svg(const std::string& dot) {
 
 int run_graph(const BehaviorOptions& options) {
   const std::string& file = options.files.front();
-  (void)read_input_file(file);  // tells what is not there
+  (void)read_input_file(file);  // throws when it does not exist
   const Robot robot = read_robot(robot_for(file, options));
   const auto system = make_control_system(robot);
   RunLog log;

@@ -1,4 +1,4 @@
-// `kadans behavior check | graph | test`: what an author does with a behavior before it moves a robot.
+// `kadans behavior check | graph | test`: commands for the author of a behavior, before it moves a robot.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@ namespace kadans {
 
 struct BehaviorOptions {
   std::vector<std::string> files;
-  std::string robot;               // configuration; "" = by the behavior's folder
-  std::string format = "mermaid";  // of the graph: mermaid, dot or svg
-  std::string only;                // of the tests: part of their names
+  std::string robot;               // configuration; "": the one for the behavior's folder
+  std::string format = "mermaid";  // format of the graph: mermaid, dot or svg
+  std::string only;                // run only tests whose names contain this
   std::string junit;
   bool json = false;
-  bool plugins = false;  // are loaded by check
+  bool plugins = false;  // check loads plug-ins
 };
 
 void add_behavior(CLI::App& app, BehaviorOptions& options);

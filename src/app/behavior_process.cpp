@@ -28,7 +28,7 @@ BehaviorLink::Setup setup_of(const RunOptions& options) {
   return setup;
 }
 
-// As an engine's thread has it, once everything is loaded.
+// Sets memory limit, locked memory and priority as for an engine's thread, once everything is loaded.
 void settle(const BehaviorLink::Setup& setup) noexcept {
   if (setup.memory_bytes > 0) (void)limit_memory(setup.memory_bytes);
   if (setup.locks_memory != 0) (void)lock_memory(heap_reserve_bytes);

@@ -1,6 +1,6 @@
-// Behaviors of a live run in a process of their own (script/process): the program starts itself with a command of its
-// own, so that the other side is an empty process that reads the same files. The same files, the same numbers: it
-// builds the control objects too, for their names and ranges, but neither plant nor engines.
+// Runs the behaviors of a live run in a process of their own (script/process). The program starts itself with a hidden
+// command, so the new process is empty and reads the same files. The same files give the same numbers of parameters and
+// set-points: the process makes the control objects, for their names and ranges, but neither plant nor engines.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,10 @@
 
 namespace kadans {
 
-// The scenario that a live run is.
+// The scenario that corresponds to a live run.
 ScenarioConfig live_scenario(const RunOptions& options);
 
-// Starts it; whatever it finds wrong it says on standard error. Throws std::system_error.
+// Starts the process. It writes mistakes that it finds to standard error. Throws std::system_error.
 std::unique_ptr<ProcessHost> start_behavior_process(const RunOptions& options, BehaviorLog& log);
 
 }  // namespace kadans

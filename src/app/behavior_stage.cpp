@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What stands in for numbers of the snapshot.
+// Replaces numbers of the snapshot.
 class Sensors final : public SnapshotFilter {
  public:
   explicit Sensors(const Catalog& catalog)
@@ -50,15 +50,15 @@ class Sensors final : public SnapshotFilter {
     return false;
   }
 
-  // Who sets the angles means the posture too.
+  // A test that sets the angles expects the posture that belongs to them.
   static void lie_as_leant(BaseStatus& base) noexcept {
     const auto [sin_roll, cos_roll] = sine_cosine(base.roll_rad);
     const auto [sin_pitch, cos_pitch] = sine_cosine(base.pitch_rad);
     base.posture = posture_of({-sin_pitch, cos_pitch * sin_roll, cos_pitch * cos_roll});
   }
 
-  // Of which joint or foot `name` is this field: "joints.l_knee.position_rad", "feet.left.contact"; 0 of
-  // "base.roll_rad".
+  // The index of the joint or foot if `name` is this field of it: "joints.l_knee.position_rad", "feet.left.contact"; 0
+  // for "base.roll_rad".
   std::optional<std::size_t> index_in(const std::string& name, const StatusField& field) const {
     using enum StatusField::Part;
     const auto is = [&](const std::string& path) { return name == path + "." + field.name; };

@@ -7,10 +7,11 @@
 
 namespace kadans {
 
-// The configuration of the robot that a behavior is for: config/<name of its folder>/robot.json, or else the only robot
-// of the project. Throws InputError when there is none, or more than one.
+// The configuration of the robot for which a behavior is: config/<name of its folder>/robot.json, or else the only
+// robot of the project. Throws InputError when there is no robot, or more than one.
 std::filesystem::path robot_of_behavior(const std::filesystem::path& behavior);
-// The only robot of the project around this folder. Throws InputError that names those there are.
+// The only robot of the project around this folder. Throws InputError that lists the robots when there is not exactly
+// one.
 std::filesystem::path only_robot(const std::filesystem::path& folder);
 
 class IdealStages final : public TestStages {

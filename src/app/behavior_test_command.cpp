@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The test files: those that were named, and in folders all *_test.lua.
+// The test files: the named files, and all *_test.lua in the named folders.
 std::vector<std::string> test_files(const std::vector<std::string>& named) {
   std::vector<std::string> files;
   for (const std::string& name : named) {
@@ -66,7 +66,7 @@ class BehaviorTests {
     return static_cast<std::size_t>(std::ranges::count(cases_, verdict, &JunitCase::verdict));
   }
 
-  // A file that does not load is told, and the others are run.
+  // A file that does not load is reported, and the other files are still run.
   void run(const std::string& file) {
     IdealStages stages(options_.robot);
     bool named = false;

@@ -36,7 +36,7 @@ void add_below(const fs::path& folder, bool scripts_only, std::vector<fs::path>&
   }
 }
 
-// Of a project its three folders: it holds much else.
+// In a project only its three folders are searched, because it holds much else.
 std::vector<fs::path> files_in(const fs::path& folder, bool scripts_only) {
   std::vector<fs::path> parts;
   for (const char* part : {"behaviors", "config", "models"}) {

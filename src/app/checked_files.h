@@ -1,4 +1,4 @@
-// Which files `kadans check` looks at.
+// Chooses the files that `kadans check` checks.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,13 @@ namespace kadans {
 
 struct CheckedFile {
   std::filesystem::path file;
-  bool found = false;  // in a folder: what it is none of ours there is passed over
+  bool found = false;  // found in a folder: a file there that is not ours is passed over
 };
 
-// Files as they are named, all below a folder, and what a pattern chooses ("config/*/robot.json"), each once. In a
-// folder .urdf, .json and .lua count, not what begins with a dot; of a whole project only its config, models and
-// behaviors. `scripts_only`: .lua alone. Throws InputError for what is not there and for a folder that holds nothing.
+// The named files, all files below a named folder, and all files that a pattern chooses ("config/*/robot.json"), each
+// once. In a folder .urdf, .json and .lua files count, but not names that begin with a dot. In a whole project only
+// config, models and behaviors are searched. `scripts_only`: only .lua files. Throws InputError for a file that does
+// not exist and for a folder without files to check.
 std::vector<CheckedFile> files_to_check(const std::vector<std::string>& named, bool scripts_only);
 
 }  // namespace kadans

@@ -1,10 +1,10 @@
-// A run at a tick, to go on from there: once more as it went, or otherwise.
+// A checkpoint: a run at a tick, from which it can be continued, unchanged or in another way.
 //
-// What a run holds between two ticks cannot be written down exactly: coroutines of scripts cannot be taken out of a Lua
-// state, nor Bullet's pairs and contact caches in the order on which its solver depends. A run repeats bit for bit, so
-// a checkpoint is what the run was made of, the tick, and the hash of all states until then. To go on is to run to the
-// tick again, at full speed and without record, to see that the hash is the same, and then to go on; in between, one
-// process may split into many (run_branches.h).
+// The state of a run between two ticks cannot be saved exactly: neither coroutines of scripts can be taken out of a Lua
+// state, nor Bullet's pairs and contact caches in the order on which its solver depends. But a run repeats bit for bit.
+// So a checkpoint holds the inputs of the run, the tick, and the hash of all states until then. To continue, the
+// program runs to that tick again, at full speed and without a record, compares the hash, and then goes on. At that
+// point one process may split into many (run_branches.h).
 //
 // The file is a record without messages: inputs as in run_inputs.h, metadata "checkpoint".
 #pragma once
@@ -21,7 +21,7 @@ namespace kadans {
 struct Checkpoint {
   RunInputs inputs;
   RunMark at;
-  std::vector<HashMark> trail;  // of the way there
+  std::vector<HashMark> trail;  // hashes on the way to the tick
 };
 
 inline constexpr double checkpoint_trail_s = 0.1;
@@ -31,7 +31,7 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::string& file);
 // Throws InputError when the file is no checkpoint or is damaged.
 Checkpoint read_checkpoint(const std::string& file);
 
-// "2.5=crouched.mcap". Throws InputError that names `option`.
+// A checkpoint to be written: "2.5=crouched.mcap". parse_checkpoint throws InputError.
 struct CheckpointOrder {
   double at_s = 0;
   std::string file;
@@ -46,7 +46,7 @@ class CheckpointWriter final : public RunObserver {
   void tick(double, std::span<const double>) override {}
   void between_ticks(const RunMark& mark) override;
 
-  const std::vector<CheckpointOrder>& missed() const noexcept { return orders_; }  // the run was over before
+  const std::vector<CheckpointOrder>& missed() const noexcept { return orders_; }  // the run ended before them
 
  private:
   RunInputs inputs_;

@@ -1,5 +1,5 @@
-// The command line: its parser, and where the options of each command go. Help, completion, the tests of all commands
-// and the program itself are made from this one table.
+// The command line: its parser, and the structs into which the options of each command are read. Help, completion, the
+// tests of all commands and the program itself use this one table.
 #pragma once
 
 #include <string>
@@ -50,16 +50,16 @@ struct CommandLine {
   NewControlObjectOptions new_object;
 };
 
-// A command that can be run, not a group of them.
+// A command that can be run, not a group of commands.
 struct CommandEntry {
   std::string words;  // "ctl fault list"
   const CLI::App* command = nullptr;
-  std::vector<const CLI::Option*> options;  // also those of `ctl`, which its verbs take; --help aside
+  std::vector<const CLI::Option*> options;  // without --help; for verbs of `ctl` also the options of `ctl`
 };
-// In the order of the help. Those that are not for people are left out.
+// All commands in the order of the help, without hidden ones.
 std::vector<CommandEntry> commands_of(const CommandLine& line);
 
-// examples.cpp. Gives each command and group its examples and exit codes, as the end of its --help.
+// examples.cpp. Adds examples and exit codes to the end of the --help of each command and group.
 void add_examples(CLI::App& app);
 
 }  // namespace kadans

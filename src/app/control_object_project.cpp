@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t name_max = 48;
 
-// Every "@type@" and "@Class@" of a template.
+// Replaces every "@type@" and "@Class@" in a template.
 std::string filled(std::string_view text, const ControlObjectNames& names) {
   std::string result;
   for (std::size_t i = 0; i < text.size();) {

@@ -1,5 +1,5 @@
-// The files of a new control object; @type@ and @Class@ stand for its names. The law in them is a spring and a damper:
-// something that works, to be replaced.
+// The files of a new control object; @type@ and @Class@ stand for its names. Their control law is a spring and a
+// damper: a working example that the author replaces.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// A robot's control objects, made from its configuration.
+// Makes a robot's control objects from its configuration.
 #include <algorithm>
 #include <map>
 #include <stdexcept>
@@ -16,7 +16,7 @@ ObjectOptions options_of(const ObjectConfig& object) {
   return texts;
 }
 
-// Of an option's text, or of the object when it has none.
+// The place of an option's text, or of the object when the option is not given.
 TextPlace place_of(const ObjectConfig& object, const std::string& option) {
   const auto given = std::ranges::find(object.options, option, &TextEntry::key);
   return given == object.options.end() ? object.place : given->text_place;

@@ -1,5 +1,5 @@
-// The examples that each command's --help ends with. Their files are those of the project and what examples above
-// leave.
+// The examples at the end of each command's --help. They use files of the project and files that earlier examples have
+// written.
 #include <algorithm>
 #include <string_view>
 

@@ -32,7 +32,7 @@ std::string check_urdf(const std::string& file) {
   return what;
 }
 
-// Whether the behaviors that the robot gives parameters take them.
+// Checks that behaviors accept the parameters that the robot's configuration gives them.
 void check_behavior_values(const RobotConfig& config, const Catalog& catalog) {
   std::set<fs::path> files;
   for (const BehaviorValue& given : config.behavior_values) files.insert(given.chunk);
@@ -98,7 +98,7 @@ const FileChecks::Known& FileChecks::robot_at(const fs::path& config) {
   return *known;
 }
 
-// A behavior belongs to the robot whose configuration has the name of the behavior's folder.
+// A behavior belongs to the robot whose configuration folder has the name of the behavior's folder.
 const FileChecks::Known* FileChecks::robot_of(const fs::path& script, std::string& missing) {
   if (!robot_.empty()) return &robot_at(robot_);
   fs::path config;
@@ -113,7 +113,7 @@ const FileChecks::Known* FileChecks::robot_of(const fs::path& script, std::strin
 
 std::string FileChecks::check_script_file(const CheckedFile& checked_file) {
   const fs::path& file = checked_file.file;
-  (void)read_input_file(file);  // tells what is not there
+  (void)read_input_file(file);  // throws when it does not exist
   std::string missing;
   const Known* const known = robot_of(file, missing);
   CheckedScript checked =

@@ -1,4 +1,4 @@
-// `kadans check` and `kadans behavior check`: what is wrong in files.
+// Finds mistakes in files, for `kadans check` and `kadans behavior check`.
 #pragma once
 
 #include <filesystem>
@@ -13,14 +13,14 @@ namespace kadans {
 
 class FileChecks {
  public:
-  // `robot`: configuration that behaviors are checked against; "" = that of the folder they are in. A plug-in that is
-  // loaded runs code of its own, whoever wrote it: only when `plugins` says so.
+  // `robot` is the configuration against which behaviors are checked; "": the one for their folder. Loading a plug-in
+  // executes its code, which anybody may have written. So plug-ins are loaded only when `plugins` is true.
   FileChecks(std::string robot, bool plugins);
 
-  // What it is, for people, "" for JSON that was found and is none of ours. Throws InputError with everything that is
-  // wrong.
+  // Says what the file is, for people; "" for a JSON file found in a folder that is not ours. Throws InputError with
+  // all mistakes.
   std::string check(const CheckedFile& checked);
-  // A file of Lua: "fits tulip", "a module", "tests". Throws InputError.
+  // The same for a Lua file: "fits tulip", "a module", "tests". Throws InputError.
   std::string check_script_file(const CheckedFile& checked);
 
  private:
@@ -37,7 +37,7 @@ class FileChecks {
 
   std::string robot_;
   PluginGate gate_;
-  std::map<std::filesystem::path, std::unique_ptr<Known>> robots_;  // that were read
+  std::map<std::filesystem::path, std::unique_ptr<Known>> robots_;  // the robots that were read
 };
 
 }  // namespace kadans

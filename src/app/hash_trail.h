@@ -1,4 +1,4 @@
-// The state hash of a run at even times: where two runs part can then be told to the second without a record.
+// The state hash of a run at even intervals. It shows when two runs begin to differ, without a record.
 #pragma once
 
 #include <string>
@@ -26,11 +26,11 @@ class HashTrail final : public RunObserver {
   std::vector<HashMark> marks_;
 };
 
-// A mark a line, and back; lines that are damaged are left out.
+// Writes one line for each mark, and reads the lines back. Damaged lines are left out.
 std::string marks_text(const std::vector<HashMark>& marks);
 std::vector<HashMark> marks_of(const std::string& text);
 
-// Between which times two trails part: "between 2 s and 3 s"; "" when they do not.
+// When two trails begin to differ: "between 2 s and 3 s"; "" when they do not differ.
 std::string where_parted(const std::vector<HashMark>& first, const std::vector<HashMark>& second);
 
 }  // namespace kadans

@@ -22,9 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* beside = "beside";
-constexpr std::size_t input_max_bytes = std::size_t{256} << 20U;  // a plug-in, by its hash
+constexpr std::size_t input_max_bytes = std::size_t{256} << 20U;  // large enough for a plug-in, which is only hashed
 
-// The two folders from which paths in a record count.
+// The two folders at which paths in a record start.
 struct Folders {
   fs::path root, own;
 
@@ -226,7 +226,7 @@ UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& rec
     if (scenario == recorded.files.end() || !scenario->text || fs::path(name).is_absolute())
       throw InputError({.file = record, .message = "does not hold its scenario"});
     scenario_ = folder_ / name;
-  } catch (const fs::filesystem_error& error) {  // a name too long, a file in place of a folder
+  } catch (const fs::filesystem_error& error) {  // a name is too long, or a file stands in the place of a folder
     remove();
     throw InputError({.file = record, .message = std::string("its files cannot be unpacked: ") + error.what()});
   } catch (...) {
@@ -264,12 +264,12 @@ void UnpackedInputs::add_behaviors(RunInputs& inputs) const {
 }
 
 void UnpackedInputs::link_plugin(const InputFile& file, const std::string& record, bool any_plugins) {
-  const fs::path here = project_here() / file.path;  // an absolute path stays what it is
+  const fs::path here = project_here() / file.path;  // an absolute path stays unchanged
   const auto refuse = [&](const std::string& why) {
     throw InputError({.file = record, .message = "needs the plug-in " + file.path + ", " + why});
   };
-  // By its recorded hash alone a sender could choose among the files of this machine, those that came with the record
-  // included.
+  // If the recorded hash alone decided, the sender of a record could choose any file of this machine, also files that
+  // came with the record.
   const std::string inside = here.lexically_normal().lexically_relative(project_here()).generic_string();
   if (!any_plugins && (inside.empty() || inside.starts_with("..")))
     refuse("which is not in the project around the working directory: --allow-plugins takes it from there");
@@ -281,7 +281,7 @@ void UnpackedInputs::link_plugin(const InputFile& file, const std::string& recor
     refuse("which belongs to another user: give it to yourself, or take it with --allow-plugins");
   if (here == file.path) return plugins_.let_in.push_back(here);
   fs::create_directories((folder_ / file.path).parent_path());
-  fs::create_symlink(here, folder_ / file.path);  // refuses what exists
+  fs::create_symlink(here, folder_ / file.path);  // fails when the file exists
   plugins_.let_in.push_back(folder_ / file.path);
 }
 
@@ -290,7 +290,7 @@ void UnpackedInputs::unpack(const InputFile& file) const {
   fs::create_directories(place.parent_path());
   if (fs::exists(fs::symlink_status(place))) throw InputError({.file = place.string(), .message = "is there already"});
   std::ofstream stream(place, std::ios::binary);
-  stream << file.text.value_or("");  // of a mesh nobody reads more than its name
+  stream << file.text.value_or("");  // a mesh stays empty: only its name is used
   stream.close();
   if (!stream) throw InputError({.file = place.string(), .message = "cannot be written"});
 }

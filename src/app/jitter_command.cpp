@@ -1,5 +1,5 @@
-// `kadans jitter`: stretches of our own waiting and of cyclictest's take turns, so that what the machine does meanwhile
-// hits both alike.
+// `kadans jitter`: measurements of our own waiting and of cyclictest take turns, so that other activity of the machine
+// affects both in the same way.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -79,7 +79,7 @@ int run_jitter(const JitterOptions& options) {
   catch_interrupts();
   std::unique_ptr<MachineLoad> load;
   if (options.load) load = std::make_unique<MachineLoad>();
-  (void)lock_memory(std::size_t{1} << 20U);  // without the right, which has been told
+  (void)lock_memory(std::size_t{1} << 20U);  // fails without the right, which has been reported
   std::unique_ptr<KeepAwake> awake;
   if (options.keep_awake) awake = std::make_unique<KeepAwake>(run.settings.cpu);
   measure(run);

@@ -34,7 +34,7 @@ double median_of(const Stretches& stretches, Value value) {
   return median(values);
 }
 
-// The median of the pairs' ratios: what the machine did meanwhile changes both of a pair.
+// The median of the pairs' ratios, because other activity of the machine changes both values of a pair.
 double ratio(const JitterRun& run, const TickQuantile& quantile) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < run.yardstick.size(); ++i) {
@@ -61,14 +61,15 @@ std::string table(const JitterSample& own, const YardstickSample& yardstick) {
   return text + row("execution", own.statistics.execution);
 }
 
-// A line a band: how many wake-ups came off by so much.
+// One line for each band of lateness: how many wake-ups were late by that much.
 std::string histogram(const TickStatistics& jitter, std::int64_t period_ns) {
   std::string text;
   std::uint64_t before = 0;
   const auto total = static_cast<double>(std::max<std::uint64_t>(jitter.count(), 1));
   const auto band = [&](const std::string& name, std::uint64_t until) {
     const double share = static_cast<double>(until - before) / total;
-    // Logarithmic, so that a thousandth still shows: full bar = all, a quarter less for each tenth.
+    // Logarithmic, so that a thousandth is still visible: a full bar is all, and each factor of ten is a sixth of the
+    // bar less.
     const double length = share > 0 ? std::max(1.0, bar_width * (1 + std::log10(share) / 6)) : 0;
     text += printed("  %-22s %10llu %9.4f %%  ", name.c_str(), static_cast<unsigned long long>(until - before),
                     100 * share);

@@ -1,4 +1,4 @@
-// The histogram as a picture: lateness to the right, shares upwards, both logarithmic, ours beside cyclictest's.
+// Draws the histograms: lateness to the right, shares upwards, both logarithmic, ours beside that of cyclictest.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 constexpr double width = 720, height = 360, left = 60, bottom = 310, top = 30, right = 700;
 constexpr double ns_min = 10, ns_max = 1e8;
 constexpr double share_min = 1e-6;
-constexpr int bins = 84;  // 12 a decade
+constexpr int bins = 84;  // 12 for each decade
 
 double x_of(double ns) { return left + (right - left) * std::log(ns / ns_min) / std::log(ns_max / ns_min); }
 

@@ -1,5 +1,5 @@
-// A line on stderr about runs that go on side by side: how many are done, how long it may still take. It is drawn over
-// on a terminal; elsewhere, where only a few lines are wanted, there is one for each tenth of the way when asked for.
+// A line on stderr about runs in parallel: how many are done and the estimated time left. On a terminal the line is
+// drawn over. Elsewhere there is no line, or with Log::tenths one line for each tenth of the jobs.
 #pragma once
 
 #include <chrono>
@@ -13,8 +13,8 @@ class JobProgress {
   JobProgress(std::size_t jobs, bool shown, Log log = Log::terminal_only);
 
   void ended() noexcept { ++done_; }
-  void draw(std::size_t running);  // a few times a second
-  void clear() const;              // before anything else is printed
+  void draw(std::size_t running);  // call it a few times a second
+  void clear() const;              // call it before anything else is printed
   double elapsed_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
 
  private:

@@ -11,8 +11,8 @@ namespace {
 
 struct Known {
   const char* name;     // "a robot's configuration"
-  const char* command;  // what takes it, before its name ...
-  const char* does;     // ... and what that does
+  const char* command;  // the command that takes it, before the file's name ...
+  const char* does;     // ... and what that command does
 };
 
 const Known& known(JsonKind kind) {

@@ -1,8 +1,8 @@
-// Ends the process when what must end does not: a thread of its own that sleeps until a deadline passes, then says what
-// hangs and leaves by _exit, with the exit code of a run that failed. So whatever one part waits for, a run ends.
+// A watchdog for the end of the process. A thread of its own sleeps until a deadline passes, then says what hangs and
+// calls _exit with the given exit code. So a run ends even when one of its parts hangs.
 //
-// With the right to it the thread runs in real time above all others: a thread that keeps a CPU to itself does not keep
-// it from its work. It calls nothing that could wait for another thread: no allocation, no lock that others hold.
+// With the right to do so, the thread runs in real time above all others, so a thread that occupies a CPU cannot stop
+// it. It calls nothing that could wait for another thread: no allocation, no lock that others hold.
 #pragma once
 
 #include <atomic>
@@ -14,13 +14,13 @@ namespace kadans {
 
 class LastResort {
  public:
-  // `priority`: of SCHED_FIFO, 0: the usual. Throws std::system_error when there can be no thread.
+  // `priority` is that of SCHED_FIFO; 0: normal scheduling. Throws std::system_error when no thread can be made.
   LastResort(int priority, int exit_code);
-  ~LastResort();  // nothing is expected any more
+  ~LastResort();  // ends the watch
   LastResort(const LastResort&) = delete;
   LastResort& operator=(const LastResort&) = delete;
 
-  // From now on `what` must be over within the time, in place of what was expected before. `what` is not copied.
+  // From now on `what` must end within within_ns; this replaces the earlier expectation. `what` is not copied.
   void expect(const char* what, std::int64_t within_ns) noexcept;
 
  private:

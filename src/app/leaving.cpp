@@ -9,7 +9,7 @@ void Leaving::beside_tick(std::int64_t time_ns) {
   if (step_ == Step::play) {
     try {
       host_.order({.kind = PlayOrder::Kind::stop});  // carried out in the tick that follows
-    } catch (const InputError&) {                    // nothing plays any more
+    } catch (const InputError&) {                    // the process of the behaviors is down
     }
     step_ = Step::leave;
     return;

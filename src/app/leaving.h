@@ -1,5 +1,5 @@
-// How behaviors leave a robot that is to be switched off: what plays leaves its states, then the robot moves to the
-// safe posture of its configuration. On the behavior thread, asked for by the supervisor.
+// Prepares a robot for being switched off: the playing behaviors leave their states, then the robot moves to the safe
+// posture of its configuration. It runs on the behavior thread after the supervisor has called ask().
 #pragma once
 
 #include <atomic>

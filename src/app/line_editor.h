@@ -1,5 +1,5 @@
-// Lines typed at a terminal, with editing, history and completion by libedit, while something else goes on between the
-// keys. There is one terminal, so there may be one editor at a time.
+// Reads lines from a terminal with editing, history and completion by libedit, while other work goes on between the
+// keys. There is one terminal, so there may be only one editor at a time.
 #pragma once
 
 #include <filesystem>
@@ -13,18 +13,18 @@ namespace kadans {
 class LineEditor {
  public:
   struct Completion {
-    std::size_t begin = 0;  // of the word in the text
+    std::size_t begin = 0;  // where the word begins in the text
     std::vector<std::string> words;
   };
   using Complete = std::function<Completion(const std::string& text)>;
 
-  // The history is kept in the file if it can be; "" keeps none.
+  // The history is kept in history_file if it can be written; "": no history.
   LineEditor(std::string prompt, std::filesystem::path history_file, Complete complete);
   ~LineEditor();
   LineEditor(const LineEditor&) = delete;
   LineEditor& operator=(const LineEditor&) = delete;
 
-  // Waits for keys, at most so long. A line when one is complete.
+  // Waits for keys, at most for `milliseconds`. Returns a line when one is complete.
   std::optional<std::string> poll(int milliseconds);
   bool ended() const noexcept { return ended_; }  // Ctrl-D on an empty line
   void prompt(const std::string& text);           // from the next line on
@@ -45,8 +45,8 @@ class LineEditor {
   bool ended_ = false;
 };
 
-// Where history is kept: $XDG_STATE_HOME/kadans/NAME, or ~/.local/state; "" when there is no home. Makes the folder;
-// whether it can be written is found out by writing.
+// The path for a file that is kept between runs: $XDG_STATE_HOME/kadans/NAME, or in ~/.local/state; "" when there is no
+// home. Makes the folder; it does not check that the file can be written.
 std::filesystem::path state_file(const std::string& name);
 
 }  // namespace kadans

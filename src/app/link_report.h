@@ -1,4 +1,4 @@
-// What became of what passed between a plant and whoever drives it.
+// Reports the counts of the link between a plant and its control engine.
 #pragma once
 
 #include <string>

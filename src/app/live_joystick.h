@@ -1,5 +1,5 @@
-// The joystick of a live run: a task that reads it a hundred times a second beside the engines, so that neither waits
-// for it; and what is said when it is pulled out.
+// The joystick of a live run. A task reads it a hundred times a second, so the engines never wait for it. It also
+// reports when the joystick is unplugged.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace kadans {
 
 class LiveJoystick final : public Task {
  public:
-  // `path`: of a device or a recording; "": the settings' own. Throws InputError when it cannot be read.
+  // `path` is a device or a recording; "": the one in the settings. Throws InputError when it cannot be read.
   LiveJoystick(const JoystickSettings& settings, const std::string& path, JoystickStorage& storage)
       : storage_(storage), source_(make_joystick(settings, path.empty() ? settings.device : path)) {}
 
@@ -24,7 +24,7 @@ class LiveJoystick final : public Task {
     return true;
   }
 
-  // Supervisor: what there is to say since the last time.
+  // Supervisor: an event when the joystick was plugged in or unplugged since the last call.
   std::optional<Event> news(const Snapshot& snapshot) {
     if (snapshot.tick == 0 || snapshot.joystick.connected == connected_) return std::nullopt;
     connected_ = snapshot.joystick.connected;

@@ -1,5 +1,5 @@
-// What behaviors say in a live run, to the record and to the supervisor: through queues, so that neither a slow disk
-// nor a terminal that stands still keeps the behavior thread.
+// Passes the log lines and transitions of behaviors in a live run to the record and to the supervisor. They go through
+// queues, so that neither a slow disk nor a blocked terminal delays the behavior thread.
 #pragma once
 
 #include "kadans/telemetry/event_log.h"

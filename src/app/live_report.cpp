@@ -71,7 +71,7 @@ std::string rows_of(const TaskThread& thread) {
   return rows + row("  work", s.execution, "");
 }
 
-// A recorder may be there for its flight recorder alone.
+// A recorder may exist only for its flight recorder.
 bool has_record(const LiveResult& result) {
   return result.recorder != nullptr && (result.recorder->rows() > 0 || !result.recorder->error().empty());
 }

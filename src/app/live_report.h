@@ -1,4 +1,4 @@
-// What a live run came to: how punctual its threads were, what was sent, refused, recorded and lost.
+// The report of a live run: how punctual its threads were, and what was sent, refused, recorded and lost.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ struct LiveResult {
   const ControlTask& control;
   const BehaviorEngine& behaviors;
   const ControlEngine& engine;
-  const PlantTask* plant = nullptr;  // of a model
-  std::vector<PlantCount> link{};    // of a plant that has one
+  const PlantTask* plant = nullptr;  // of a model, else nullptr
+  std::vector<PlantCount> link{};    // the link's counts, of a plant that has a link
   const Recorder* recorder = nullptr;
-  const ProcessHost* process = nullptr;  // of the behaviors
+  const ProcessHost* process = nullptr;  // of the behaviors, if they have a process
   double duration_s = 0;
   double start_ms = 0;  // from the start of the process to the first control tick
-  std::string ended;    // why: "told to stop", "duration", or what failed
+  std::string ended;    // why it ended: "told to stop", "duration over", or what failed
   bool failed = false;
 };
 

@@ -8,7 +8,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::int64_t start_ns = 1'000'000;  // from the last thread's coming up to time 0
+constexpr std::int64_t start_ns = 1'000'000;  // from the start of the last thread to time 0
 constexpr std::int64_t record_period_ns = 20'000'000, joystick_period_ns = 10'000'000;
 
 }  // namespace
@@ -22,8 +22,8 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks, bool 
       supervisor_wait_(timing.virtual_time ? virtual_time_.make_wait(give_up) : nullptr) {
   const auto priority = [&](int wanted) { return timing.real_time && !timing.virtual_time ? wanted : 0; };
   const std::int64_t period_ns = timing.control_period_ns;
-  // On the wall clock the model is half a period behind, so that what it is told and what it says is always as old; and
-  // it shares the control thread's CPU: when the machine takes that away for a while, time passes for neither.
+  // On the wall clock the model runs half a period later, so that its inputs and outputs always have the same age. It
+  // shares the control thread's CPU: when the machine takes that CPU away for a while, time passes for neither.
   const std::int64_t prepare_ns = timing.virtual_time ? 0 : timing.spin_ns / 4;
   const std::int64_t plant_first_ns = timing.virtual_time ? 0 : period_ns / 2;
   add({.name = "control",
@@ -54,7 +54,7 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks, bool 
         0);
   }
   if (tasks.record == nullptr) return;
-  // A machine busy for seconds must not cost rows: the ring holds one or two.
+  // Rows must not be lost when the machine is busy for seconds, because the ring holds only one or two seconds.
   add({.name = "record", .period_ns = record_period_ns, .priority = priority(record_priority)}, *tasks.record, 0);
 }
 
@@ -71,7 +71,7 @@ void LiveThreads::add(const TaskSettings& settings, Task& task, std::int64_t spi
 bool LiveThreads::start(void (*tell)(const std::string& message)) {
   if (!timing_.virtual_time) {
     if (timing_.keep_awake) awake_.emplace(timing_.cpu);
-    (void)leave_cpu(timing_.cpu);  // and so do the threads that are started here
+    (void)leave_cpu(timing_.cpu);  // the threads that are started here do so, too
   }
   try {
     for (const auto& thread : threads_) thread->start();
@@ -111,7 +111,7 @@ std::string LiveThreads::not_begun() const {
   return names.empty() ? "a thread" : names;
 }
 
-// Who is stopped before the line opens does not beat once.
+// A thread that is stopped before the line opens does not beat even once.
 void LiveThreads::cancel() noexcept {
   for (const auto& thread : threads_) thread->stop();
   line_.open();
@@ -120,7 +120,7 @@ void LiveThreads::cancel() noexcept {
 std::vector<std::string> LiveThreads::stop(std::int64_t patience_ns) noexcept {
   for (const auto& thread : threads_) thread->stop();
   if (supervisor_wait_) supervisor_wait_->end();
-  // Where one hangs, virtual time stands, and all others wait for it.
+  // When a thread hangs, virtual time stands still and all other threads wait for it.
   if (timing_.virtual_time && !join_all(patience_ns).empty()) virtual_time_.release();
   return join_all(patience_ns);
 }

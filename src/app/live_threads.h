@@ -1,5 +1,5 @@
-// The threads of a live run on their clocks: control, behaviors, the model, the record; and the supervisor's own place
-// among them. The same on the wall clock and on virtual time.
+// The threads of a live run and their clocks: control, behaviors, the model, the joystick, the record, and the waiting
+// of the supervisor's thread. They are the same on the wall clock and on virtual time.
 #pragma once
 
 #include <memory>
@@ -17,18 +17,20 @@
 
 namespace kadans {
 
-// The model stands for hardware, which waits for nobody: whatever keeps it from its step must keep the control thread
-// too, or time would pass for control alone and every sensor would fall silent.
+// The model stands for hardware, which never waits. So it has a higher priority than the control thread: anything that
+// delays the model must delay the control thread, too. Otherwise time would pass for control alone, and every sensor
+// would fall silent.
 inline constexpr int control_priority = 90, plant_priority = 92, behavior_priority = 40, joystick_priority = 30,
                      record_priority = 20;
-// Whoever must end what hangs may not wait for a CPU that it keeps: the supervisor is above all that plays behaviors,
-// the last resort above everything, a process of behaviors below the thread that kills it.
+// A thread that must end a hanging thread may not wait for the CPU that the hanging one occupies. So the supervisor is
+// above the threads that play behaviors, the last resort is above everything, and a process of behaviors is below the
+// thread that kills it.
 inline constexpr int last_resort_priority = 95, supervisor_priority = 45, behavior_process_priority = 39;
 
 struct LiveTasks {
   ControlTask& control;
   BehaviorTask& behaviors;
-  PlantTask* plant = nullptr;  // of a model
+  PlantTask* plant = nullptr;  // of a model, else nullptr
   Task* record = nullptr;
   Task* joystick = nullptr;
 };
@@ -36,7 +38,7 @@ struct LiveTasks {
 struct LiveTiming {
   std::int64_t control_period_ns = 1'000'000, behavior_period_ns = 10'000'000;
   bool virtual_time = false;
-  bool real_time = true;  // priorities
+  bool real_time = true;  // use real-time priorities
   bool keep_awake = true;
   std::int64_t spin_ns = default_spin_ns;
   int cpu = 0;  // of the control thread
@@ -44,15 +46,16 @@ struct LiveTiming {
 
 class LiveThreads {
  public:
-  // The tasks must outlive it. Time 0 is a little later than when all threads are up. While the supervisor waits for
-  // them, or on virtual time that stands, it looks whether to `give_up`.
+  // The tasks must outlive this object. Time 0 is a little after all threads have started. While the supervisor waits
+  // for the threads, or for virtual time that stands still, it calls `give_up`; when that returns true, it stops
+  // waiting.
   LiveThreads(const LiveTiming& timing, const LiveTasks& tasks, bool (*give_up)() noexcept);
 
-  // Waits until all threads have a CPU; after a second, and from then on each ten, `tell` says which do not. False: it
-  // was given up and nothing has begun. Throws std::system_error.
+  // Waits until all threads have a CPU. After a second, and then every ten seconds, it calls `tell` with the threads
+  // that have none. False: the wait was given up and nothing has begun. Throws std::system_error.
   [[nodiscard]] bool start(void (*tell)(const std::string& message));
-  // Once the supervisor does not wait any more. The threads that go on after `patience_ns`, by name: whoever is told of
-  // one may not destroy anything that it works on.
+  // Call it when the supervisor no longer waits. Returns the names of the threads that still run after `patience_ns`.
+  // The caller must not destroy anything that such a thread uses.
   [[nodiscard]] std::vector<std::string> stop(std::int64_t patience_ns) noexcept;
 
   Wait& supervisor() noexcept { return *supervisor_wait_; }
@@ -60,7 +63,7 @@ class LiveThreads {
   const TaskThread& behaviors() const noexcept { return *threads_[1]; }
   const std::vector<std::unique_ptr<TaskThread>>& all() const noexcept { return threads_; }
   const KeepAwake* keep_awake() const noexcept { return awake_ ? &*awake_ : nullptr; }
-  // Time 0 on CLOCK_MONOTONIC, on the wall clock and once started.
+  // Time 0 on CLOCK_MONOTONIC; valid on the wall clock after start().
   std::int64_t origin_ns() const noexcept { return timing_.virtual_time ? WallClock().now_ns() : line_.origin_ns(); }
 
  private:

@@ -36,7 +36,7 @@ void Pace::tick(double time_s, std::span<const double>) {
   const auto since =
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(time_s));
   const auto now = std::chrono::steady_clock::now();
-  if (!running_ || now > began_ + since + std::chrono::milliseconds(100)) began_ = now - since;  // late: from here on
+  if (!running_ || now > began_ + since + std::chrono::milliseconds(100)) began_ = now - since;  // late: start anew
   running_ = true;
   std::this_thread::sleep_until(began_ + since);
 }

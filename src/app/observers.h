@@ -1,4 +1,4 @@
-// Who looks on while a scenario runs: the progress bar, the pace, the drawn signals.
+// Observers of a running scenario: the progress bar, the pace, the drawn signals.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace kadans {
 
-// A bar on stderr while the run goes; takes itself away at the end. Also asks for a stop after SIGINT or SIGTERM.
+// A progress bar on stderr, which is removed at the end. It also asks for a stop after SIGINT or SIGTERM.
 class ProgressBar final : public RunObserver {
  public:
   ProgressBar(double duration_s, bool shown) : duration_s_(duration_s), shown_(shown) {}
@@ -27,7 +27,7 @@ class ProgressBar final : public RunObserver {
   int drawn_percent_ = -1;
 };
 
-// Holds the run back to the pace of the wall clock, between two ticks. A run that is slower than that is not hurried.
+// Slows the run down to the pace of the wall clock, between two ticks. A run that is slower does not catch up.
 class Pace final : public RunObserver {
  public:
   void tick(double time_s, std::span<const double> row) override;

@@ -1,5 +1,5 @@
-// `kadans plant`: serves a model of a robot in real time to a control engine on another machine, one after the other.
-// Each finds the robot as its configuration lets it start.
+// `kadans plant`: serves a model of a robot in real time to control engines on other machines, one after the other.
+// Each session begins with the robot in its configured start.
 #include <algorithm>
 #include <cstdio>
 
@@ -25,10 +25,10 @@
 namespace kadans {
 namespace {
 
-constexpr int look_every_ms = 50;  // for signals and the end of a session
+constexpr int look_every_ms = 50;  // interval of checks for signals and the end of a session
 constexpr std::uint32_t catch_up_max = 10;
 
-// A beat of the model's period. What it is late by more than a few periods is lost for the model, and counted.
+// Steps the model each period. When it is late by more than a few periods, the rest is lost for the model and counted.
 class ServeTask final : public Task {
  public:
   ServeTask(PlantEmulator& emulator, World& world) noexcept : emulator_(emulator), world_(world) {}
@@ -37,7 +37,7 @@ class ServeTask final : public Task {
     lost_periods_ += 1 + std::uint64_t{beat.missed} - periods;
     return emulator_.beat(world_, periods);
   }
-  std::uint64_t lost_periods() const noexcept { return lost_periods_; }  // after the thread
+  std::uint64_t lost_periods() const noexcept { return lost_periods_; }  // call it after the thread has ended
 
  private:
   PlantEmulator& emulator_;
@@ -74,7 +74,7 @@ class PlantService {
     }
   }
 
-  // One session on a thread of its own. False when the model failed.
+  // Serves one session on a thread of its own. False when the model failed.
   bool serve(World& world) {
     std::fprintf(stderr, "driven by %s\n", emulator_->peer_name().c_str());
     const std::int64_t period_ns = robot_.config.engine.control_period_ns();

@@ -1,4 +1,4 @@
-// What `kadans behavior check` finds in the behaviors that a scenario plays: told before anything moves.
+// Applies `kadans behavior check` to the behaviors that a scenario plays, before anything moves.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,18 @@
 
 namespace kadans {
 
-// In these files, from the project's root; what several of them require or call is told once.
+// The problems in these files. `root` is the project's root. A problem in a file that several of them require or call
+// stands there once.
 std::vector<InputProblem> problems_in(const std::set<std::filesystem::path>& files, const std::filesystem::path& root,
                                       const Catalog& catalog);
 
-// Of its lists, and of those of its events. A version that an event reloads is not among them: it is refused when it
-// comes, and the running one goes on.
+// The problems in the behaviors of the scenario's list and of its events' lists. Versions that an event reloads are
+// left out: a wrong version is refused at its time, and the running one goes on.
 std::vector<InputProblem> problems_of_played(const ScenarioConfig& scenario, const Catalog& catalog);
-// The same, with those versions.
+// The same, with the versions that events reload.
 std::vector<InputProblem> problems_of_named(const ScenarioConfig& scenario, const Catalog& catalog);
 
-// Throws InputError when there are any in what is played.
+// Throws InputError when problems_of_played() finds any.
 void refuse_faulty_behaviors(const ScenarioConfig& scenario, const Catalog& catalog);
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// One process that splits into many: each goes on from the very same memory. For a program of one thread.
+// Splits one process into many by fork(): each continues with a copy of the same memory. For a program with one thread.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace kadans {
 
-// What each new process prints is kept, and printed in their order.
+// The output of each new process is kept, and printed in their order.
 class ProcessSplit {
  public:
   // In the new process: true, and this object is of no more use there. Throws std::system_error.
   bool split(std::size_t at_once);
-  // In the first process: waits for all, prints what they said, and gives the worst of their exit codes.
+  // In the first process: waits for all, prints their output, and returns the greatest of their exit codes.
   int finish();
 
  private:

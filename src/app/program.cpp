@@ -80,7 +80,7 @@ void add_run(CLI::App& app, RunOptions& options) {
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
 }
 
-// Not for people: `run` starts it.
+// A hidden command that `run` starts.
 void add_behavior_process(CLI::App& app, RunOptions& options) {
   CLI::App* process = app.add_subcommand("behavior-process", "")->group("");
   process->add_option("robot", options.robot)->required();
@@ -90,7 +90,7 @@ void add_behavior_process(CLI::App& app, RunOptions& options) {
 
 namespace {
 
-// "--sed 1": the option that was meant.
+// The hint for a wrong option such as "--sed 1".
 std::string unknown_option(const CLI::App& command, int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* app = &command; app != nullptr; app = app->get_parent()) {
@@ -107,7 +107,7 @@ std::string unknown_option(const CLI::App& command, int argc, char** argv) {
   return {};
 }
 
-// "kadans smi", "kadans ctl stauts": the word that was meant.
+// The hint for a wrong word such as "kadans smi" or "kadans ctl stauts".
 std::string hint(const CLI::App& app, int argc, char** argv, const std::string& before = {}) {
   int at = 1;
   while (at < argc && argv[at][0] == '-') at += std::string_view(argv[at]) == "--socket" ? 2 : 1;

@@ -24,8 +24,8 @@ std::string hexadecimal(std::span<const unsigned char> bytes) {
   return text;
 }
 
-// The id in a segment of notes, "" when there is none. A note is its head, its name and its content, each padded to
-// four bytes.
+// The build id in a segment of ELF notes; "" when there is none. A note is its head, its name and its content, each
+// padded to four bytes.
 std::string build_id(const unsigned char* notes, std::size_t size) {
   const auto padded = [](std::size_t length) { return (length + 3) / 4 * 4; };
   for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= size;) {
@@ -43,7 +43,7 @@ std::string build_id(const unsigned char* notes, std::size_t size) {
 int add_part(dl_phdr_info* info, std::size_t, void* target) {
   const std::string path = info->dlpi_name;
   const std::string file = path.substr(path.rfind('/') + 1);
-  if (file.starts_with("linux-")) return 0;  // what the kernel lends to every process
+  if (file.starts_with("linux-")) return 0;  // mapped by the kernel into every process
   std::string id;
   for (int i = 0; i < info->dlpi_phnum && id.empty(); ++i) {
     const ElfW(Phdr)& segment = info->dlpi_phdr[i];

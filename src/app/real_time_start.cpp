@@ -36,7 +36,7 @@ bool rights_suffice(int priority, bool soft) {
 }
 
 void bind_all_functions(char** argv) {
-  constexpr const char* variable = "LD_BIND_NOW";   // of ld.so; linking with -z now binds what a file itself calls
+  constexpr const char* variable = "LD_BIND_NOW";   // of ld.so; linking with -z now binds only what a file itself calls
   const char* const bound = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): before any thread is started
   if (bound != nullptr && *bound != '\0') return;
   (void)setenv(variable, "1", 1);  // NOLINT(concurrency-mt-unsafe)

@@ -1,18 +1,18 @@
-// What the commands that run in real time ask of the machine before they start.
+// The preparations of commands that run in real time.
 #pragma once
 
 namespace kadans {
 
-// Says what is missing. False when the command must not go on without: it is, and `soft` is not set.
+// Prints the missing rights. False when rights are missing and `soft` is not set; then the command must not go on.
 bool rights_suffice(int priority, bool soft);
 
-// Starts this program anew, unless that was done, so that all functions of its libraries are bound before main(): else
-// a real-time thread that is the first to call one has it looked up, which takes long and touches memory all over.
-// Returns when they are bound, or cannot be, which is told. Before any thread is started.
+// Restarts this program once, so that all functions of its libraries are bound before main(). Otherwise the first call
+// of a function on a real-time thread would look it up, which takes long and touches much memory. Returns when the
+// functions are bound; or when they cannot be bound, which it prints. Call it before any thread is started.
 void bind_all_functions(char** argv);
 
-// All memory stays where it is, but for libraries that no real-time thread calls; Bullet is one of them without a
-// model. Without the right to it, which has been told, nothing happens.
+// Locks all memory, except for libraries that no real-time thread calls; without a model Bullet is one of these.
+// Without the right to lock memory nothing happens; rights_suffice() has printed that.
 void lock_program(bool with_model) noexcept;
 
 }  // namespace kadans

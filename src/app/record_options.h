@@ -1,4 +1,4 @@
-// What the command line says of records, and what follows from it and the robot's configuration.
+// The options of the command line for records, and the plan that follows from them and from the robot's configuration.
 #pragma once
 
 #include <optional>
@@ -14,12 +14,13 @@ class App;
 namespace kadans {
 
 struct RecordOptions {
-  std::string signals;             // "joint.*, base.*@100"; "" = as the robot's configuration says
-  std::optional<double> flight_s;  // what the flight recorder keeps
+  std::string signals;             // "joint.*, base.*@100"; "": those of the robot's configuration
+  std::optional<double> flight_s;  // time span that the flight recorder keeps
 };
 void add_record_options(CLI::App& command, RecordOptions& options);
 
-// `flies`: there is a flight recorder unless told otherwise. Throws InputError when a choice of signals is wrong.
+// `flies`: there is a flight recorder unless an option says otherwise. Throws InputError when the choice of signals is
+// wrong.
 RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, bool flies);
 
 }  // namespace kadans

@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int frame_ms = 10;           // between looks at the keyboard
-constexpr double behind_max_s = 0.25;  // a slow machine lets the simulation fall behind, not the keyboard
+constexpr int frame_ms = 10;           // between checks of the keyboard
+constexpr double behind_max_s = 0.25;  // on a slow machine the simulation falls behind, not the keyboard
 
 ScenarioConfig read_scenario(const ReplOptions& options) {
   ScenarioConfig scenario;
@@ -37,7 +37,7 @@ ScenarioConfig read_scenario(const ReplOptions& options) {
   return scenario;
 }
 
-// What behaviors and the supervisor say, until the console shows it.
+// Keeps the messages of behaviors and the supervisor until the console shows them.
 class Chatter final : public BehaviorLog {
  public:
   void transition(const Transition&) override {}
@@ -65,10 +65,10 @@ class Repl {
         console_({.root = project_root(scenario_.file), .folders = folders_of(scenario_)}, assembly_.catalog(),
                  assembly_.host()),
         speed_(options.speed) {
-    step();  // so that there is something to see
+    step();  // so that there is a first snapshot
   }
 
-  // Line after line; what is wrong goes to stderr and makes the exit code 1.
+  // Reads line by line. Errors go to stderr and make the exit code 1.
   int from_pipe() {
     int code = exit_passed;
     bool unfinished = false;
@@ -126,7 +126,7 @@ class Repl {
   void catch_up() {
     while (time_s() < due_s_ - 1e-9 && !interrupted()) step();
   }
-  // Lines see the newest tick; those that are to come begin after `seconds`.
+  // Lets `seconds` pass. Lines that are evaluated afterwards see the newest tick.
   void advance(double seconds) {
     due_s_ += seconds;
     catch_up();

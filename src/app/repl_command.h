@@ -1,5 +1,5 @@
-// `kadans repl`: a console in a simulation. From a terminal the simulation runs at the pace of the wall clock
-// meanwhile; from a pipe time passes by `:run` only, so that what is printed repeats.
+// `kadans repl`: a console in a simulation. On a terminal the simulation runs at the pace of the wall clock meanwhile.
+// From a pipe time passes only by `:run`, so the output is repeatable.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ class App;
 namespace kadans {
 
 struct ReplOptions {
-  std::string scenario;  // "" = the project's only robot, nothing plays
-  std::string play;      // in place of the scenario's list
+  std::string scenario;  // "": the project's only robot, and nothing plays
+  std::string play;      // replaces the scenario's list
   std::optional<std::uint64_t> seed;
-  double speed = 1;  // of the simulation on a terminal, in seconds per second; 0: it stands still but for :run
+  double speed = 1;  // on a terminal: simulated seconds per second; 0: time passes only by :run
 };
 
 void add_repl(CLI::App& app, ReplOptions& options);

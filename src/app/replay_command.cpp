@@ -28,7 +28,7 @@ std::optional<std::uint64_t> number_in(const TextMap& facts, const char* name) {
   return found == facts.end() ? std::nullopt : number_of<std::uint64_t>(found->second);
 }
 
-// What stands at the front of the record. Throws InputError when it cannot be run again.
+// Reads the inputs at the front of the record. Throws InputError when the record cannot be run again.
 RunInputs read_front(const std::string& record) {
   const auto refuse = [&](const std::string& why) { throw InputError({.file = record, .message = why}); };
   McapReader reader(record);
@@ -51,7 +51,7 @@ RunInputs read_front(const std::string& record) {
   return inputs;
 }
 
-// The run, compared as it goes.
+// The repeated run; it is compared with the record while it goes.
 class Replay final : public RunObserver {
  public:
   Replay(const std::string& record, const RunInputs& inputs, const RunRequest& request)
@@ -89,11 +89,11 @@ class Replay final : public RunObserver {
   const RecordComparison& comparison() const noexcept { return comparison_; }
   const std::string& error() const noexcept { return result_.error; }
   std::vector<InputFile> files() const { return input_files(scenario_, assembly_); }
-  // Where and why the record ends before its end, or "".
+  // Where and why the record is cut short; "" when it is not.
   std::string problem() const { return comparison_.ended() && !reader_.complete() ? reader_.problem() : ""; }
-  // The run was over, or had to end, while the record goes on.
+  // True when the run ended, or had to end, before the end of the record.
   bool shorter() const { return !comparison_.over(); }
-  // The state of all that is not recorded is another at the end.
+  // True when the state at the end differs in a part that is not recorded.
   bool other_end() const {
     const TextMap result = recorded_result();
     return at_end_ && result.contains("state_hash") && result.at("state_hash") != hash_text(result_.state_hash);
@@ -125,7 +125,7 @@ std::string plural(std::uint64_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-// All that there is to tell.
+// Everything that the report needs.
 struct Findings {
   const ReplayOptions& options;
   const Replay& replay;

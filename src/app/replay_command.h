@@ -1,6 +1,6 @@
-// `kadans replay`: runs a record again, with the files that are here now or with those inside it, and compares every
-// recorded signal in every tick, bit for bit. Says that all is the same, or where the two part and what changed among
-// the inputs. With the files of the record a change of the program or its libraries stands alone.
+// `kadans replay`: runs a record again, with the files on the disk or with those inside the record, and compares every
+// recorded signal in every tick, bit for bit. It prints that everything is the same, or where the runs differ and which
+// inputs changed. With the record's own files, only a change of the program or of its libraries can make a difference.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@ namespace kadans {
 
 struct ReplayOptions {
   std::string record;
-  bool from_record = false;  // its files in place of those on the disk
+  bool from_record = false;  // use its files instead of those on the disk
   bool allow_plugins = false;
   bool json = false;
 };
 
 void add_replay(CLI::App& app, ReplayOptions& options);
-// 0 the same, 1 not. Throws InputError for what cannot be run again.
+// Returns 0 when everything is the same, else 1. Throws InputError when the record cannot be run again.
 int run_replay(const ReplayOptions& options);
 
 }  // namespace kadans

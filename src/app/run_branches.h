@@ -1,5 +1,5 @@
-// Lets a run part from the one it was, between two ticks: other parameters of control objects, something else to play,
-// a push. What the plant is made of stays: a robot does not change its masses while it moves.
+// Changes a run between two ticks, so that it branches off from the original run: other parameters of control objects,
+// other behaviors, a push. The plant itself stays the same, because a robot does not change its masses while it moves.
 #pragma once
 
 #include <string>
@@ -16,21 +16,21 @@ namespace kadans {
 RunBranch parse_branch(const std::string& text);
 std::string branch_text(const RunBranch& branch);
 
-// What a branch does to a run.
+// Carries out the changes of a branch.
 class BranchActions {
  public:
-  // Throws InputError for a parameter, a link or a behavior that there is not, and for a value out of its range.
+  // Throws InputError for an unknown parameter, link or behavior, and for a value out of its range.
   BranchActions(const RunBranch& branch, const ScenarioConfig& scenario, Assembly& assembly, double at_s);
 
-  void begin(const RunMark& mark);  // once, between two ticks
-  // After begin(), between two ticks: the pushes of the next.
+  void begin(const RunMark& mark);  // call it once, between two ticks
+  // Call it after begin(), between two ticks: applies the pushes of the next tick.
   void between_ticks(const RunMark& mark) const;
 
  private:
   struct Setting {
     ParameterId parameter = 0;
     double number = 0;
-    bool scale = false;  // of what it is at the branch
+    bool scale = false;  // `number` multiplies the value at the branch
   };
   void read_setting(const NumberEntry& setting, const ParameterTable& parameters);
 

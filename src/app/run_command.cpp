@@ -1,4 +1,4 @@
-// `kadans run`: the engines on real threads, and the supervisor that starts, watches and ends them.
+// `kadans run`: runs the engines on real threads, and the supervisor that starts, watches and ends them.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -40,7 +40,8 @@ namespace {
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
-// Of the end: threads that are told to, each other part, a record on a slow disk; virtual time that stands.
+// Limits at the end of a run: for threads that were told to stop, for each other part, for a server, for a record on a
+// slow disk; and for virtual time that stands still.
 constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, service_ns = 5'000'000'000,
                        record_ns = 10'000'000'000, standing_ns = 2'000'000'000;
 
@@ -58,7 +59,8 @@ Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenar
           .behavior_period_s = robot.engine.behavior_period_s};
 }
 
-// Many runs on virtual time may go on at once, so there nobody is found without having been asked to be.
+// Many runs on virtual time may go on at the same time. So a run on virtual time is reachable only when a folder was
+// named.
 CtlPlace place_of(const RunOptions& options) {
   CtlPlace place = options.ctl;
   place.wanted = place.wanted && (!options.virtual_time || !place.folder.empty());
@@ -78,7 +80,7 @@ LiveTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
           .cpu = options.cpu >= 0 ? options.cpu : real_time_cpu("/")};
 }
 
-// From the start of this process to a time on CLOCK_MONOTONIC, to 10 ms.
+// The time in ms from the start of this process to a time on CLOCK_MONOTONIC, with a resolution of 10 ms.
 double ms_since_start(std::int64_t monotonic_ns) {
   std::ifstream file("/proc/self/stat");
   std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -132,7 +134,7 @@ class LiveRun {
                             options_.ros2.commands;
     const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
-    ctl_.start();  // who is there before the first tick may look, and stop the robot
+    ctl_.start();  // clients that connect before the first tick may read, and stop the robot
     if (!assembly_.plant().open(interrupted)) return exit_interrupted;
     LastResort last_resort(timing.real_time && !timing.virtual_time ? last_resort_priority : 0, exit_failed);
     LiveThreads threads(timing,
@@ -176,7 +178,7 @@ class LiveRun {
     return std::make_unique<LiveJoystick>(settings, options_.joystick, parts_.control.exchange().joystick);
   }
 
-  // Drives off and the record closed, whichever thread hangs; says which do.
+  // Switches the drives off and closes the record, even when threads hang. Returns the names of hanging threads.
   std::vector<std::string> switch_off(LiveThreads& threads, LastResort& last_resort) {
     const auto hangs = [](const std::vector<std::string>& hanging, const char* name) {
       return std::ranges::find(hanging, name) != hanging.end();
@@ -185,7 +187,7 @@ class LiveRun {
     std::vector<std::string> hanging = threads.stop(joining_ns);
     ActuationFrame off;
     off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
-    if (!hangs(hanging, "control")) assembly_.plant().write(off);  // else the plant's own watchdog has to
+    if (!hangs(hanging, "control")) assembly_.plant().write(off);  // else the plant's own watchdog must switch them off
     assembly_.plant().close();
     tell(threads.supervisor().now_ns());
     last_resort.expect("closing the record", record_ns);
@@ -217,14 +219,14 @@ class LiveRun {
     return exit_interrupted;
   }
 
-  // A thread that hangs works on what a return would destroy.
+  // Ends by _exit, because a hanging thread still uses objects that a return would destroy.
   [[noreturn]] static void leave_behind(const std::vector<std::string>& hanging) {
     for (const std::string& name : hanging) print_error("the thread '" + name + "' hangs; the run ended without it");
     std::fflush(nullptr);
     _exit(exit_failed);
   }
 
-  // Until somebody or something ends the run; says what.
+  // Watches until the run ends. Returns the reason.
   std::string watch(LiveThreads& threads) {
     Wait& wait = threads.supervisor();
     for (std::int64_t at_ns = supervisor_period_ns;; at_ns += supervisor_period_ns) {
@@ -244,7 +246,8 @@ class LiveRun {
     }
   }
 
-  // Posture, damp, off. A robot whose threads failed, or that is held already, does not get the posture.
+  // The robot moves to the safe posture, damps, and is off. The posture is left out when a thread failed or the robot
+  // is already held.
   void leave(LiveThreads& threads) {
     const SafetySettings& safety = parts_.control.safety().settings();
     const bool held = level() >= SafetyLevel::hold;
@@ -263,7 +266,7 @@ class LiveRun {
     return snapshot->status.safety.level;
   }
 
-  // Virtual time that stands is not waited for: a thread hangs.
+  // Lets `seconds` pass. It does not wait for virtual time that stands still, because then a thread hangs.
   void pass(LiveThreads& threads, double seconds) {
     Wait& wait = threads.supervisor();
     const std::int64_t end_ns = wait.now_ns() + std::llround(seconds * 1e9);
@@ -286,7 +289,7 @@ class LiveRun {
     std::fprintf(stderr, "%9.2f s  %s: %s\n", 1e-9 * static_cast<double>(t.time_ns), t.behavior.c_str(), text.c_str());
   }
 
-  // What behaviors said, and faults but for late ticks, which the report counts.
+  // Reports the messages of behaviors, and faults except late ticks, which the final report counts.
   void tell(std::int64_t time_ns) {
     Event event;
     while (live_log_.told().pop(time_ns, event)) tell(event);
@@ -323,14 +326,14 @@ class LiveRun {
   EchoLog echo_{&live_log_};
   RunLog log_{&echo_, kept_lines};
   std::unique_ptr<PlantExchange> link_;
-  std::unique_ptr<ProcessHost> process_;  // of the behaviors
+  std::unique_ptr<ProcessHost> process_;  // of the behaviors, or nullptr
   Assembly assembly_;
   struct {
     ControlEngine& control;
     BehaviorEngine& behaviors;
   } parts_;
-  std::unique_ptr<TruthTask> truth_;  // of a model
-  std::unique_ptr<PlantTask> plant_;  // likewise
+  std::unique_ptr<TruthTask> truth_;  // of a model, or nullptr
+  std::unique_ptr<PlantTask> plant_;  // of a model, or nullptr
   std::unique_ptr<LiveJoystick> joystick_;
   Leaving leaving_;
   Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog(),

@@ -19,7 +19,7 @@
 
 namespace kadans {
 
-// A line a type: the "type" of a robot's configuration, and what makes it.
+// One line for each type: the "type" in a robot's configuration, and the function that makes it.
 void add_shipped_types(ControlObjectTypes& types) {
   types.add("joint_pid", make_joint_pid);
   types.add("joint_cascade", make_joint_cascade);

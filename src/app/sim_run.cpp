@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* height_signal = "plant.base.height_m";
 
-// A run that was asked to be short says nothing about what was to come later: such checks are not judged.
+// A run that was shortened on the command line says nothing about later times, so checks about them are left out.
 std::vector<ScenarioCheck> reached_checks(const ScenarioConfig& scenario, double duration_s) {
   std::vector<ScenarioCheck> checks = scenario.checks;
   if (duration_s >= scenario.duration_s) return checks;
@@ -200,7 +200,7 @@ int SimRun::tell_parting() const {
 
 std::string SimRun::record_name() const {
   namespace fs = std::filesystem;
-  if (options_.no_record && options_.report.wanted()) {  // for the report alone
+  if (options_.no_record && options_.report.wanted()) {  // only for the report
     fs::create_directories(options_.report.folder);
     return (fs::path(options_.report.folder) / (report_file(scenario_.name, seed_) + ".mcap.part")).string();
   }
@@ -211,7 +211,7 @@ std::string SimRun::record_name() const {
   return (asked.parent_path() / (asked.stem().string() + "." + branch + asked.extension().string())).string();
 }
 
-// A file that was asked for and cannot be written is an error; the usual one is not.
+// When the file was named and cannot be written, that is an error; for the default file it is not.
 bool SimRun::open_record() {
   if (options_.no_record && !options_.report.wanted()) return false;
   record_ = record_name();
@@ -223,7 +223,7 @@ bool SimRun::open_record() {
   return false;
 }
 
-// A record, or what the flight recorder writes.
+// Describes a record or a dump of the flight recorder.
 template <typename Record>
 void SimRun::describe(Record& record) const {
   const RobotTexts texts = robot_texts(assembly_);
@@ -245,7 +245,7 @@ void SimRun::start_record() {
   if (!remote_) assembly_.record_to(recorder_.get());
 }
 
-// A fault latched.
+// To be called when a fault has latched: begins a dump of the flight recorder.
 void SimRun::fly() {
   FlightRecorder& flight = *recorder_->flight();
   const std::string file = std::filesystem::path(record_name()).replace_extension(".flight.mcap").string();
@@ -301,7 +301,7 @@ ReportSubject SimRun::subject(const RunResult& result) const {
           .repeat = repeat()};
 }
 
-// A record that only the page needed goes.
+// Writes the report's page. A record that only the page needed is removed.
 void SimRun::write_page(const RunResult& result) {
   std::vector<std::string> seen;
   for (std::size_t i = 0; i < checks_.size(); ++i) {

@@ -1,4 +1,4 @@
-// One run of `kadans sim`: from the start, or on from a checkpoint.
+// One run of `kadans sim`, from the start or from a checkpoint.
 #pragma once
 
 #include <memory>
@@ -19,12 +19,12 @@
 
 namespace kadans {
 
-// Events go to the recorder only when it exists, and it exists only when the signals are known: this lets the log be
-// made first.
+// A log whose target is set later. The log must be made first, but the recorder that takes its events can be made only
+// when the signals are known.
 class LateLog final : public BehaviorLog {
  public:
   void set(BehaviorLog* log) noexcept { log_ = log; }
-  void show() noexcept { shown_ = true; }  // messages at once on stderr, for somebody who edits while it runs
+  void show() noexcept { shown_ = true; }  // prints messages at once on stderr, for a person who edits while it runs
   void transition(const Transition& transition) override;
   void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
 
@@ -33,7 +33,7 @@ class LateLog final : public BehaviorLog {
   bool shown_ = false;
 };
 
-// Where a run goes on from, and as what.
+// The checkpoint from which a run continues, and its branches.
 struct SimContinuation {
   Checkpoint from;
   std::vector<RunBranch> branches;  // at least one, which may do nothing
@@ -41,10 +41,10 @@ struct SimContinuation {
 
 class SimRun final : public RunObserver {
  public:
-  // The request's scenario is the file to read; without a continuation the run is recorded from its first tick.
+  // `request` names the scenario's file. Without a continuation the run is recorded from its first tick.
   SimRun(const SimOptions& options, const RunRequest& request, std::optional<SimContinuation> continuation = {});
 
-  // Prints the report, or those of all branches. The program's exit code.
+  // Runs, prints the report, or those of all branches, and returns the program's exit code.
   int run();
 
   void tick(double time_s, std::span<const double> row) override;
@@ -62,7 +62,7 @@ class SimRun final : public RunObserver {
   bool open_record();
   void fly();
   void finish_record(const RunResult& result);
-  // Something that was to be left behind is not there, or not whole: then the run does not end with 0.
+  // To be called when an output file is missing or incomplete: prints that, and the exit code will not be 0.
   void tell_lost(const std::string& what);
   std::string record_name() const;
   int report(RunResult& result);
@@ -98,8 +98,8 @@ class SimRun final : public RunObserver {
   std::vector<ReportTrace> traces_;  // for the report
 
   std::optional<SimContinuation> continuation_;
-  std::vector<BranchActions> actions_;  // of the branches
-  RunBranch branch_;                    // that this process takes
+  std::vector<BranchActions> actions_;  // one for each branch
+  RunBranch branch_;                    // the branch that this process takes
   const BranchActions* taken_ = nullptr;
   bool reached_ = false, parted_ = false;
   bool split_ = false;  // this process has split into the branches and is done

@@ -45,7 +45,7 @@ std::vector<Row> rows_of_robot(const std::string& file) {
 }
 
 std::vector<Row> rows_of_behavior(const ParamsOptions& options) {
-  (void)read_input_file(options.file);  // tells what is not there
+  (void)read_input_file(options.file);  // throws when it does not exist
   const Robot robot = read_robot(options.robot.empty() ? robot_of_behavior(options.file) : fs::path(options.robot));
   const auto system = make_control_system(robot);
   RunLog log;

@@ -1,4 +1,4 @@
-// `kadans lua-stubs` and `kadans params`: the tables of a robot and of a behavior, for editors and for people.
+// `kadans lua-stubs` and `kadans params`: show the tables of a robot and of a behavior, for editors and for people.
 #pragma once
 
 #include <string>

@@ -28,7 +28,7 @@ SweepPlan read_plan(const SweepOptions& options) {
   return plan;
 }
 
-// What the plan's part came to: of a shard only its own cases, so that none is missing for want of the others.
+// The results of this shard alone, so that cases of other shards do not count as missing.
 MergedSweep part_of(const SweepResults& results, const Shard& shard) {
   MergedSweep part = merge({results});
   std::erase_if(part.rows, [&](const CaseRow& row) { return !shard.holds(row.index); });

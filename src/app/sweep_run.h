@@ -1,4 +1,4 @@
-// Runs cases of a sweep side by side, each in a process of its own, and keeps what came of them.
+// Runs cases of a sweep in parallel, each in a process of its own, and stores their results.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace kadans {
 
 class SweepRun final : public JobWatcher {
  public:
-  // Keeps references. `json`: each case is printed as a line, and there is no progress.
+  // Keeps references. `json`: prints each case as a line, without progress.
   SweepRun(const ExperimentConfig& plan, const std::vector<SweepSubject>& subjects, const SweepResults& results,
            std::vector<SweepCase> cases, bool json, JobProgress::Log log = JobProgress::Log::tenths);
 

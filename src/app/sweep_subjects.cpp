@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Scenario, robot with plug-ins, its description with meshes, all behaviors and their libraries.
+// A hash of the scenario, the robot with plug-ins, its description with meshes, all behaviors and their libraries.
 std::uint64_t content_of(const ScenarioConfig& scenario, const RobotConfig& robot) {
   ContentHash hash;
   for (const fs::path& file : files_of(scenario.file)) hash.add_file(file);
@@ -27,7 +27,7 @@ std::uint64_t content_of(const ScenarioConfig& scenario, const RobotConfig& robo
   return hash.value();
 }
 
-// The ends of what an axis may be: what lies between them is in range when they are.
+// The ends of an axis's values: when they are in range, all values between them are.
 std::vector<double> ends_of(const Distribution& distribution) {
   if (distribution.kind == Distribution::Kind::values) return distribution.values;
   return {distribution.at(0), distribution.at(1)};

@@ -1,5 +1,5 @@
-// The scenarios of a plan as campaigns need them: with the quantities of their robots, a hash of all they depend on,
-// and looked through before anything runs.
+// Reads and checks the scenarios of a plan before anything runs, with the quantities of their robots and a hash of
+// everything that they depend on.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace kadans {
 
-// Throws InputError with everything that is wrong in the scenarios' files, in the plan's metrics, and in the ranges of
-// what it varies.
+// Throws InputError with all mistakes in the scenarios' files, in the plan's metrics, and in the ranges of varied
+// quantities.
 std::vector<SweepSubject> read_sweep_subjects(const ExperimentConfig& plan, const PluginGate& gate = {});
 
-// The program that runs scenarios: this one, or that beside it.
+// The path of the program that runs scenarios: this program, or `kadans` beside kadans-tune.
 std::string run_program_path();
-// Its version with a hash of the program itself: results of two builds are not mixed.
+// The program's version with a hash of its file, so that results of two builds are not mixed.
 std::string build_version();
 
 }  // namespace kadans

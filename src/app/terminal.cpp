@@ -27,12 +27,12 @@ bool color_wanted() {
   return no_color == nullptr || *no_color == '\0';
 }
 
-// The code, or another when stdout did not take all.
+// Returns `code`, or another one when output to stdout was lost.
 int delivered(int code) {
   errno = 0;
   const bool flushed = std::fflush(stdout) == 0;
   if (flushed && std::ferror(stdout) == 0) return code;
-  if (errno == EPIPE) return code;  // a reader that has had enough
+  if (errno == EPIPE) return code;  // the reader has stopped reading
   const std::string why = errno == 0 ? std::string() : ": " + std::generic_category().message(errno);
   print_error("stdout: not all of the results could be written" + why);
   return code == exit_passed ? exit_usage : code;
@@ -59,7 +59,7 @@ int ended_well(const std::function<int()>& run) {
   } catch (const InputError& error) {
     print_problems(error);
     code = exit_usage;
-  } catch (const std::filesystem::filesystem_error& error) {  // a place that somebody named
+  } catch (const std::filesystem::filesystem_error& error) {  // a path that the user named
     print_error(error.path1().string() + ": " + error.code().message());
     code = exit_usage;
   } catch (const std::exception& error) {
@@ -74,9 +74,9 @@ void catch_interrupts() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction before = {};
-  if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)  // else by nohup
+  if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)  // nohup ignores it
     sigaction(SIGHUP, &action, nullptr);
-  action.sa_handler = SIG_IGN;  // writing fails then, which is told
+  action.sa_handler = SIG_IGN;  // then writing fails, which is reported
   sigaction(SIGPIPE, &action, nullptr);
   sigaction(SIGXFSZ, &action, nullptr);
 }

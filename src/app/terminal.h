@@ -1,4 +1,4 @@
-// What the program may do on the streams it was given, and what it says there.
+// The program's standard streams, its messages and exit codes, and interrupts.
 #pragma once
 
 #include <functional>
@@ -10,19 +10,20 @@ namespace kadans {
 
 enum ExitCode : int { exit_passed = 0, exit_failed = 1, exit_usage = 2, exit_internal = 3, exit_interrupted = 130 };
 
-bool stdout_takes_color();  // a terminal, and NO_COLOR is not set
+bool stdout_takes_color();  // stdout is a terminal, and NO_COLOR is not set
 bool stderr_is_terminal();
 
-// One line a problem on stderr: "error: file:line:column: what is wrong".
+// Prints one line for each problem on stderr: "error: file:line:column: what is wrong".
 void print_problems(const InputError& error);
 void print_error(const std::string& message);
 
-// All that a program does, and what it ends with: the code that `run` gives, or that of what it throws, which is told
-// on stderr. Never 0 when stdout did not take all that was printed on it, a full disk. Throws nothing.
+// Calls `run` and returns the exit code of the program: the code that `run` returns, or the code for its exception,
+// which is printed on stderr. The code is never 0 when output to stdout was lost, for example on a full disk. Throws
+// nothing.
 int ended_well(const std::function<int()>& run);
 
-// From now on SIGINT, SIGTERM and SIGHUP, a terminal that closes, set a flag instead of ending the program, and end
-// scripts that go on nevertheless; a reader that has gone, or a file that may not grow, ends nothing.
+// From now on SIGINT, SIGTERM and SIGHUP (a closed terminal) set a flag instead of ending the program; running scripts
+// are then stopped after a moment. SIGPIPE and SIGXFSZ are ignored.
 void catch_interrupts();
 bool interrupted() noexcept;
 

@@ -74,7 +74,7 @@ class Suite final : public JobWatcher {
   bool stop_asked() const override { return stop_ || interrupted(); }
 
  private:
-  // Its process writes the page, so there is more to wait for.
+  // The process of the run writes the page, so it gets more time.
   void add_report(Job& job) const {
     constexpr double drawing_s = 120;
     job.arguments.insert(job.arguments.end(),
@@ -82,7 +82,7 @@ class Suite final : public JobWatcher {
     job.wall_limit_s += drawing_s;
   }
 
-  // Another state is a failure of a run that passes otherwise.
+  // A run whose state hash differs has failed.
   void check_golden(RunOutcome& run) const {
     if (run.status != RunStatus::passed && run.status != RunStatus::failed) return;
     const std::string difference = golden_->difference(run);
@@ -105,7 +105,7 @@ class Suite final : public JobWatcher {
            std::ranges::any_of(ended_, [](const auto& e) { return e.second.status != RunStatus::passed; });
   }
 
-  // In the order of the plan, whatever order they ended in.
+  // Reports the runs in the order of the plan, not in the order in which they ended.
   void report(const FailedRuns& failed_runs) {
     std::ranges::sort(ended_, {}, [](const auto& e) { return e.first; });
     std::vector<RunOutcome> outcomes;

@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A robot that is read once for all scenarios on it. One that cannot be read, or that brings native code, which may do
-// anything, is left to the processes of its runs.
+// A robot that is read once for all its scenarios. A robot that cannot be read is left to the processes of its runs;
+// and so is one with plug-ins, whose native code may do anything.
 struct KnownRobot {
   bool tried = false;
   Robot robot;

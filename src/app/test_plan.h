@@ -1,4 +1,4 @@
-// What `kadans test` is going to run, and what failed the last time.
+// The plan of `kadans test`: the runs to be made, and the runs that failed the last time.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@
 
 namespace kadans {
 
-// One run that is wanted.
+// One run to be made.
 struct PlannedRun {
   FoundScenario scenario;
   std::uint64_t seed = 1;
 };
 
-// What failed the last time, a "seed file" a line; one list for each project.
+// The runs that failed the last time: a file with a line "seed file" for each; one file for each project.
 class FailedRuns {
  public:
   explicit FailedRuns(const std::filesystem::path& root);
 
   void read();
-  // Those of these scenarios.
+  // The failed runs of these scenarios.
   std::vector<PlannedRun> of(const std::vector<FoundScenario>& scenarios) const;
-  // A list that cannot be written is a comfort that is missing, no more.
+  // Errors of writing are ignored, because the list is only a convenience.
   void write(const std::vector<PlannedRun>& failed) const;
 
  private:
@@ -33,14 +33,14 @@ class FailedRuns {
   std::vector<std::string> lines_;
 };
 
-// All seeds of all scenarios, or what failed of them; --seed and --repeat choose among the seeds.
+// All seeds of all scenarios, or with --rerun-failed the failed ones; --seed and --repeat choose the seeds.
 std::vector<PlannedRun> plan_runs(const TestOptions& options, const std::vector<FoundScenario>& scenarios,
                                   FailedRuns& failed);
 
-// Throws InputError when behavior check finds something in what they play.
+// Throws InputError when `behavior check` finds problems in the behaviors that the runs play.
 void refuse_faulty_runs(const std::vector<PlannedRun>& runs);
 
-// A line a run with its tags, and what it is about; or one JSON object a run.
+// Prints for each run its name and tags and a line with its doc; or one JSON object.
 void print_plan(const std::vector<PlannedRun>& runs, bool json);
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// How long ticks took, as reports tell it: in microseconds, to the nanosecond.
+// The durations of ticks for reports: in microseconds, rounded to nanoseconds.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ inline double in_us(const TickStatistics& statistics, const TickQuantile& quanti
   return in_us(statistics.percentile_ns(quantile.share));
 }
 
-// min, mean, these, max.
+// An object with min, mean, the given quantiles, max.
 nlohmann::ordered_json tick_json(const TickStatistics& statistics, std::span<const TickQuantile> quantiles);
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// The words of the messages about fields, and the descriptions of fields.
+// The texts of messages about fields, and the descriptions of fields.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@ namespace kadans {
 
 // "plant.drives" and "*_knee" -> plant.drives['*_knee']
 std::string key_path(const std::string& path, std::string_view name);
-// What a value is: "the number 3", "an array".
+// Describes a value for a message: "the number 3", "an array".
 std::string described(const JsonValue& value);
-// "must be 0..1 rad", "must be at least 0 Nm"; empty limits are none.
+// "must be 0..1 rad", "must be at least 0 Nm". An empty string means no limit.
 std::string range_text(const std::string& min, const std::string& max, std::string_view unit);
 std::string range_text(const NumberRange& range);
 // "has 5 items, must be 0..4"

@@ -1,5 +1,5 @@
-// Reads a robot's configuration, part by part. With a model the joint-keyed parts are filled; without one (the URDF is
-// wrong, or the fields are only described) their fields are checked all the same.
+// Reads a robot's configuration, part by part. When there is a model, the settings of its joints are filled. Without a
+// model (the URDF is wrong, or the fields are only described), the fields of those settings are still checked.
 #pragma once
 
 #include <optional>
@@ -57,9 +57,9 @@ class RobotReader {
   void pose(Fields& entry);
   void pose_value(const Fields& entry, const NumberEntry& value, PoseInfo& pose);
 
-  // The joints that a pattern chooses; none is a problem at `place`.
+  // The joints that a pattern chooses. Adds a problem at `place` when it chooses none.
   std::vector<std::size_t> joints(std::string_view pattern, TextPlace place);
-  // Runs `read` on the settings of each joint that the entry's key chooses, on a scratch copy without a model.
+  // Runs `read` on the settings of each joint that the entry's key chooses. Without a model, it runs on a scratch copy.
   template <typename Settings, typename Read>
   void each_joint(Fields& entry, std::vector<Settings>& settings, Read&& read) {
     Settings scratch{};

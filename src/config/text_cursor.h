@@ -1,4 +1,4 @@
-// Walks over a text and always knows the line and column it is at; columns count characters, not bytes.
+// Walks over a text and always knows its current line and column. Columns count characters, not bytes.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ class TextCursor {
   explicit TextCursor(std::string_view text) noexcept : text_(text) {}
 
   bool at_end() const noexcept { return position_ >= text_.size(); }
-  // The character `ahead` of the cursor; '\0' behind the end.
+  // The character `ahead` places after the cursor; '\0' past the end of the text.
   char peek(std::size_t ahead = 0) const noexcept {
     return ahead < text_.size() - position_ ? text_[position_ + ahead] : '\0';
   }

@@ -1,5 +1,5 @@
-// A plug-in's control object on the program's side: everything that goes to it passes the seam of plugin.h, everything
-// that comes from it is doubted.
+// A plug-in's control object on the program's side. Every call to it goes through the seam of plugin.h; everything that
+// comes back is checked.
 #pragma once
 
 #include <atomic>
@@ -28,7 +28,7 @@ class PluginObject final : public ControlObject {
   void update(const Snapshot& snapshot) override;
 
  private:
-  struct Told;  // what the object declares, as it comes
+  struct Told;  // collects what the object declares
 
   template <typename Call>
   void call(Call&& call) const noexcept;

@@ -1,4 +1,4 @@
-// The text of a file from outside: is it text at all, and on which line and column is a byte of it.
+// The text of a file from outside: checks that it is text, and finds the line and column of a byte.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// A URDF text as XML, every element with its place, and the list of what is wrong with it.
+// A URDF text as XML, with the place of every element and a list of the mistakes.
 #pragma once
 
 #include <string>

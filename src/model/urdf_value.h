@@ -1,4 +1,5 @@
-// The values that URDF's attributes can have, read strictly: a whole number is the whole text, finite, with a point.
+// The values that URDF's attributes can have, read strictly: a number takes up the whole text, is finite, and has a
+// decimal point, not a comma.
 #pragma once
 
 #include <cstdint>

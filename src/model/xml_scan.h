@@ -1,7 +1,7 @@
-// Where the elements and attributes of an XML text stand. tinyxml2 reads the values but knows only lines; this scan
-// finds every start tag and its attributes byte for byte, in the order of the document, and names the commonest ways of
-// not being XML (a tag that is not closed, closed by another, a missing quote) better than a parser's error code.
-// It also bounds what the parsers after it have to face: depth, elements, attributes, no document type declarations.
+// Where the elements and attributes of an XML text stand. tinyxml2 reads the values but knows only lines. This scan
+// finds every start tag and its attributes byte for byte, in the order of the document. It describes the most common
+// XML mistakes (a tag that is not closed or closed by another one, a missing quote) better than a parser's error code.
+// It also bounds what the parsers after it get: depth, elements, attributes, no document type declarations.
 #pragma once
 
 #include <optional>

@@ -9,7 +9,7 @@ inline MachineFinding finding(std::string topic, bool good, std::string is, std:
   return {std::move(topic), good, std::move(is), std::move(should), good ? std::string() : std::move(how)};
 }
 
-// What a folder holds, in the order of the names; nothing when there is no such folder.
+// What a folder holds, sorted by name; empty when there is no such folder.
 std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
 // Governor, idle states, clock source, interrupts.

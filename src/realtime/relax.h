@@ -1,4 +1,5 @@
-// What a loop that waits for time or for another thread does between two looks: it yields the core's other half.
+// To be called between two looks in a loop that waits for time or for another thread: leaves the core to its other
+// hardware thread.
 #pragma once
 
 namespace kadans {

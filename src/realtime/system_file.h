@@ -1,4 +1,4 @@
-// Small files of /proc and /sys, which have no size and one thing to say.
+// Reads small files of /proc and /sys, which state no size and hold one value.
 #pragma once
 
 #include <cstdint>

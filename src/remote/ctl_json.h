@@ -1,4 +1,4 @@
-// Tables and answers as the JSON that ctl's clients read.
+// Converts tables and answers to the JSON that clients of ctl read.
 #pragma once
 
 #include <string>
@@ -16,12 +16,12 @@ std::string refusal(const std::string& why);
 
 Json behaviors_json(const Answer& report);
 Json status_json(const Instance& instance, const InstanceStatus& status);
-// {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; what is not told is null.
+// {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
 Json drives_json(const PowerStatus& power, const RobotModel& model);
 Json fault_json(const Fault& fault, const RobotModel& model);
 
-// Everything of a kind: "behaviors", "sets", "objects", "parameters", "signals". The report counts for behaviors and
-// parameters; the status for sets. Throws InputError on another kind.
+// Lists all items of a kind: "behaviors", "sets", "objects", "parameters", "signals". `report` is used for behaviors
+// and parameters, `status` for sets. Throws InputError on another kind.
 Json list_json(const std::string& what, const Instance& instance, const InstanceStatus& status, const Answer& report);
 
 }  // namespace kadans

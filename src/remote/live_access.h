@@ -1,9 +1,9 @@
-// Who may do what on a live server, told from the head of a request alone.
+// Decides the rights of a request to a live server from its HTTP head alone.
 //
-// A browser lets any page open connections to any address, and a page may give its own name our address (DNS
-// rebinding). So a client without the token must call the server by a name that is the server's: an address that it was
-// reached at, a name of the loopback, or one that --live-host adds. A page of another site needs the token, too, even
-// if it calls us rightly. Who has the token got it from the person who started the server.
+// A browser lets any page open connections to any address, and the owner of a page can let his own host name point to
+// our address (DNS rebinding). So a client without the token must call the server by one of the server's own names: the
+// address at which the request came in, a loopback name, or a name from --live-host. A page of another site needs the
+// token even when it uses such a name. A client with the token got it from the person who started the server.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace kadans {
 
-// What a request says of itself, and the address of this machine that it came to.
+// The fields of a request's head, and the address of this machine at which it came in.
 struct Knock {
-  std::string_view host, origin, token;  // "": not given
+  std::string_view host, origin, token;  // "": field not given
   std::string reached_at;                // "127.0.0.1", "::1"
 };
 
@@ -22,12 +22,12 @@ enum class Access { writes, reads, wrong_host, other_site };
 
 class LiveAccess {
  public:
-  // `hosts`: names beside those of the addresses, without a port.
+  // `hosts` are additional names of this server, without a port.
   LiveAccess(std::string token, std::vector<std::string> hosts);
 
   Access of(const Knock& knock) const;
   const std::string& token() const noexcept { return token_; }
-  // For who is refused.
+  // The text for a refused client.
   static const char* why(Access refused) noexcept;
 
  private:

@@ -1,10 +1,10 @@
-// The connections of a live server, and who goes when another one comes.
+// The connections of a live server. It decides which connection is closed when there is no room for a new one.
 //
-// Three kinds are counted apart: requests (whoever is not, or not yet, a client of the protocol), readers and writers.
-// A request that is one too many takes the place of the one that was served longest ago, first of those without the
-// token. A reader that is one too many is refused, unless it comes from this machine: then the oldest reader goes,
-// first of those from elsewhere. So the operator and a page on this machine get in whatever strangers hold open.
-// Server's thread.
+// Three kinds are counted separately: requests (connections that are not, or not yet, clients of the protocol), readers
+// and writers. When there are too many requests, the one that was served longest ago is closed; those without the token
+// go first. When there are too many readers, a new reader is refused. But a reader on this machine replaces the oldest
+// reader; those from other machines go first. So the operator and a page on this machine always get in, whatever
+// connections strangers hold open. Server's thread.
 #pragma once
 
 #include <cstddef>
@@ -20,20 +20,20 @@ namespace kadans {
 class LiveCrowd {
  public:
   void take(std::unique_ptr<LiveConnection> connection);
-  // Before a connection becomes a client. False: there is none.
+  // To be called before a connection becomes a client. False: there is no room.
   [[nodiscard]] bool make_room(bool writes, bool local) noexcept;
-  // Closes one request; false: there is none. For when the system has no more to give.
+  // Closes one request; false: there is none. For the case that the system has no more descriptors.
   bool close_one() noexcept;
-  // Of connections in the order in which they were served.
+  // A number that counts up each time that a connection is served.
   std::uint64_t next_turn() noexcept { return ++turns_; }
-  // After the hub took what is new. Frees what is over.
+  // To be called after each beat of the hub. Frees the connections that are over.
   void beat() noexcept;
   std::uint32_t clients() const noexcept;
 
  private:
   using Standing = LiveConnection::Standing;
   std::size_t count(Standing standing) const noexcept;
-  // Open, of this standing, and the first by `order`; nullptr: none.
+  // The first by `order` of the open connections with this standing; nullptr: none.
   LiveConnection* first(Standing standing, bool (*order)(const LiveConnection&, const LiveConnection&)) noexcept;
 
   std::list<std::unique_ptr<LiveConnection>> connections_;

@@ -28,7 +28,7 @@ struct ServiceCall {
 
 std::string session_id();  // of this process
 
-const std::string& service_advertisement();  // the same to all clients
+const std::string& service_advertisement();  // the same for all clients
 Json service_failure(std::uint32_t call, const std::string& why);
 Json parameter_json(const LiveParameter& parameter);
 

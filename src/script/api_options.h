@@ -1,4 +1,4 @@
-// The arguments of the API's functions in the words of editor stubs and reference; the options of motions come from
+// Describes the arguments of the API's functions for editor stubs and the reference. The options of motions come from
 // the table that the bindings read (motion_options.h).
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace kadans {
 
-// ": kadans.MoveOptions" of the argument `name` of a function; "" when any value goes.
+// The type of the argument `name` of a function, as ": kadans.MoveOptions"; "" when any value is allowed.
 std::string argument_type(std::string_view function, std::string_view name);
 std::string motion_option_stubs();
 std::string motion_option_reference();

@@ -1,4 +1,4 @@
-// What a behavior is made of; behavior_loading.cpp puts it together, behavior.cpp runs it.
+// The parts of a behavior. behavior_loading.cpp makes them, behavior.cpp runs them.
 #pragma once
 
 #include <memory>
@@ -23,17 +23,17 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
 
   void say(const char* text) noexcept override;
   void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
-  void tell_dropped(bool at_once) noexcept;  // how many lines were too many
+  void tell_dropped(bool at_once) noexcept;  // logs how many lines were dropped
   void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;
-  void tell_refused() noexcept;  // what the control engine refused since the last time
-  // The sets of all active machines that the snapshot does not show are asked for in the next tick.
+  void tell_refused() noexcept;  // logs what the control engine has refused since the last call
+  // Asks in the next tick for the control sets of all active machines that are not active in the snapshot.
   void want_sets(const Snapshot& snapshot) noexcept;
-  // Reads what a tick is going to need; false when it was done a moment ago.
+  // Reads the memory that a tick will need into the caches; false when this was done a moment ago.
   bool warm(const Snapshot& snapshot) noexcept;
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
 
-  WarmUp warm_up;  // of a tick
+  WarmUp warm_up;  // memory of a tick
   Settings settings;
   const Catalog& catalog;
   BehaviorLog& log;
@@ -58,34 +58,34 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
 
 struct Behavior::Past {
   std::unique_ptr<Parts> parts;
-  std::vector<bool> left;  // its states that the swap left
+  std::vector<bool> left;  // its states that were left at the swap
   std::int64_t swapped_ns = 0;
   std::vector<LuaState::Source> taken_back;  // files that failed in their first second
-  std::string complaint;                     // said last, not to be repeated
+  std::string complaint;                     // the last logged complaint, so that it is not repeated
 };
 
-// Reads the file, makes the chart and the bindings. 0 instructions: as many as loading may take. Throws InputError.
+// Reads the file, makes the chart and the bindings. `instructions` 0: the limit for loading. Throws InputError.
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
 
-// behavior_arguments.cpp. Gives the parameters of the behavior, and of those that it calls, the robot's values. Throws
-// InputError.
+// behavior_arguments.cpp. Sets the parameters of the behavior and of those that it calls to the values in the robot's
+// configuration. Throws InputError.
 void give_robot_values(Behavior::Parts& parts);
 
-// behavior_arguments.cpp. Gives the behavior what Settings::arguments holds. Throws InputError.
+// behavior_arguments.cpp. Gives the behavior the values of Settings::arguments. Throws InputError.
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
 
-// behavior_adoption.cpp. Lets `fresh`, newly loaded, stand where `old` stands: active states, vars, parameters, random
-// numbers; `old` is not changed. False: fresh.lua->error() says why.
+// behavior_adoption.cpp. Copies the state of `old` into the newly loaded `fresh`: active states, vars, parameters,
+// random numbers. `old` is not changed. False: fresh.lua->error() says why.
 bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,
                     const Snapshot& snapshot, CommandSender& commands) noexcept;
-// [-0 +1] The `vars` of a machine, from its table.
+// [-0 +1] Pushes the `vars` of a machine.
 void push_vars(lua_State* state, const RunnerTables::Machine& machine);
-// Whether a machine goes on with vars of another version of it.
+// True when a machine can take over vars of this version of it.
 bool takes_vars(const Chart::Machine& machine, int version) noexcept;
-// [-1] The machine's own vars are on the stack and those it had, of `version`, on top of them: the own ones become as
-// those. Raises what `migrate` raises.
+// [-1 +0] The top of the stack holds the vars that the machine had in `version`, below them are its own vars. Copies
+// the old values into the own vars. Raises what `migrate` raises.
 void give_vars(lua_State* state, const Chart::Machine& machine, int version);
-// Leaves the states that are marked, in a transaction of its own. False: an exit raised.
+// Leaves the marked states in a transaction of its own. False: an `exit` raised.
 bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
                   CommandSender& commands) noexcept;
 

@@ -1,4 +1,5 @@
-// Which state of a chart is which of another version of it: those of the same path, kind and machine.
+// Maps the states of a chart to those of another version of it: states with the same path and kind that are both a
+// machine's root or both not.
 #pragma once
 
 #include <string_view>
@@ -9,7 +10,7 @@
 
 namespace kadans {
 
-// One a state of `from`: its number in `to`, or no_state.
+// For each state of `from` its number in `to`, or no_state.
 inline std::vector<StateIndex> map_states(const Chart& from, const Chart& to) {
   std::unordered_map<std::string_view, StateIndex> known;
   for (StateIndex i = 0; i < to.size(); ++i) known.emplace(to.states[i].path, i);

@@ -1,4 +1,4 @@
-// From the author's tables to a Chart.
+// Makes a Chart from the author's tables.
 #pragma once
 
 #include <lua.hpp>
@@ -7,8 +7,8 @@
 
 namespace kadans {
 
-// The behavior at `index` becomes `chart`, what it calls included; functions and tables get registry references.
-// Raises on what cannot be read; Chart::resolve() then finds wrong names.
+// Reads the behavior at `index` of the stack and all behaviors that it calls into `chart`. Functions and tables get
+// registry references. Raises on anything that cannot be read; wrong names are found later by Chart::resolve().
 void read_chart(lua_State* state, int index, Chart& chart);
 
 }  // namespace kadans

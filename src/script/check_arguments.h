@@ -1,5 +1,5 @@
-// The arguments of calls that are written out in the text: names of poses, set-points, presets, parameters, joints, and
-// numbers against their ranges.
+// Checks literal arguments of calls in the text: names of poses, set-points, presets, parameters and joints, and the
+// ranges of numbers.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ class ArgumentCheck {
   explicit ArgumentCheck(const Behavior::Parts& parts) : catalog_(parts.catalog) {}
 
   const ObjectInfo* object(const std::string& name) const noexcept;
-  // `at`: the first token of the arguments.
+  // `at` is the index of the first token of the arguments.
   std::vector<ArgumentProblem> pose_name(const Tokens& tokens, std::size_t at) const;
   std::vector<ArgumentProblem> of_method(const ObjectInfo& object, const std::string& method, const Tokens& tokens,
                                          std::size_t at) const;
@@ -32,7 +32,7 @@ class ArgumentCheck {
     std::string name, unit;
     double min = 0, max = 0;
   };
-  // `offsets`: numbers are relative to what nobody knows here.
+  // `offsets`: the numbers are relative to values that are unknown here.
   std::vector<ArgumentProblem> pose(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const;
   std::vector<ArgumentProblem> pose_table(const ObjectInfo& object, const Tokens& tokens, std::size_t at,
                                           bool offsets) const;

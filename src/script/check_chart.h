@@ -1,5 +1,5 @@
-// Mistakes in the shape of a chart that runs all the same: states that nothing leads to, states that nothing leads out
-// of, finals that do not say how it ended, transitions that are never looked at.
+// Finds mistakes in the shape of a chart that could still run: states that cannot be reached, states without a way out,
+// final states without an outcome, transitions that can never be taken.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace kadans {
 
-// The chart is resolved and free of other problems.
+// The chart must be resolved and free of other problems.
 void check_chart(const Chart& chart, std::vector<InputProblem>& problems);
 
 }  // namespace kadans

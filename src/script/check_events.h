@@ -1,5 +1,5 @@
-// Transitions on an event that nobody emits: no function of the behavior and of what it requires and calls, and no
-// state that ends inside the one that waits.
+// Finds transitions on an event that is never emitted: neither by a function of the behavior or of the files that it
+// requires and calls, nor by a final state inside the waiting state.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Modules of an author's own: fields that are given to them while they run, files that return nothing, and guards that
-// stand in them.
+// Checks of an author's own modules: fields that are assigned while they run, files that return nothing, and guards in
+// them.
 #pragma once
 
 #include <vector>
@@ -9,25 +9,25 @@
 
 namespace kadans {
 
-// A file that was loaded, read.
+// A loaded file and its parsed text.
 struct ReadSource {
   const LuaState::Source* source = nullptr;
   SourceScopes scopes;
 };
 
-// Which file each name in `require` is.
+// Tells the facts which file each name in `require` means.
 void name_modules(const std::vector<ReadSource>& read, const LuaState& lua, const KnownNames& known,
                   SourceFacts& facts);
 
-// Whatever a module is given as a field anywhere is its own, and one that is filled by computed names holds what it
-// likes.
+// Adds all fields to a module that are assigned to it anywhere. A module that is filled by computed names may have any
+// field.
 void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, const SourceFacts& facts,
                    KnownNames& known);
 
-// Modules whose value somebody uses though they return none.
+// Finds modules whose value is used although they return nothing.
 void check_module_values(const std::vector<ReadSource>& read, const LuaState& lua, std::vector<InputProblem>& problems);
 
-// Functions that guards are and that return no value, in whatever file.
+// Finds guards that return no value, in any file.
 void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& known,
                         std::vector<InputProblem>& problems);
 

@@ -1,6 +1,6 @@
-// Names that a behavior's functions use and nobody knows, found by reading its text, whatever branch they stand in:
-// fields of m and s, control objects, set-points, presets, parameters, poses, vars, globals, own modules; values out of
-// range; guards that write or return nothing; waits where nothing can wait; events that nobody emits.
+// Finds mistakes by reading the text of a behavior, in every branch: unknown names (fields of m and s, control objects,
+// set-points, presets, parameters, poses, vars, globals, own modules), values out of range, guards that write or return
+// nothing, waits in places that cannot wait, and events that are never emitted.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace kadans {
 
-// Of a behavior that is loaded: its file and all that it requires and calls. `known` learns what the files give
-// modules.
+// Checks the file of a loaded behavior and all files that it requires and calls. Fields that the files assign to
+// modules are added to `known`.
 void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<InputProblem>& problems);
 
 }  // namespace kadans

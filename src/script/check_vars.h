@@ -1,5 +1,5 @@
-// `vars`, `args` and what a k.call gives: plain data, which an entry copies and a reload keeps. Anything else raises as
-// soon as the behavior is entered.
+// Checks that `vars`, `args` and the arguments of k.call are plain data, because entering copies them and a reload
+// keeps them. Anything else would raise as soon as the behavior is entered.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace kadans {
 
-// Of a behavior that is loaded.
+// `parts` is a loaded behavior.
 void check_vars(Behavior::Parts& parts, std::vector<InputProblem>& problems);
 
 }  // namespace kadans

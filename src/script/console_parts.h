@@ -1,4 +1,4 @@
-// What a console is made of; console_names.cpp holds what Lua sees, console.cpp runs lines and commands.
+// The parts of a console. console_names.cpp makes the names that Lua sees, console.cpp runs lines and commands.
 #pragma once
 
 #include <string>
@@ -16,10 +16,10 @@ struct ConsoleBehavior {
   std::vector<ScriptParameter> parameters;
 };
 
-// Names with dots as tables in tables, their values renewed together.
+// Shows names with dots as nested tables; all values are refilled together.
 struct ValueTree {
   std::vector<std::string> names;  // sorted
-  std::vector<std::size_t> ids;    // of the values, in the names' order
+  std::vector<std::size_t> ids;    // ids of the values, in the names' order
   int slots = Chart::no_function;  // registry: table and key of each, in the names' order
 
   explicit ValueTree(const std::vector<std::string>& unsorted);
@@ -45,24 +45,24 @@ struct Console::Parts final : ScriptVoice {
   ValueTree signals, parameters;
   std::vector<ConsoleBehavior> behaviors;
   int environment = Chart::no_function;  // registry: the globals of the lines
-  int content = Chart::no_function;      // registry: what is there besides
-  int show = Chart::no_function;         // registry: makes text of values
+  int content = Chart::no_function;      // registry: the console's own names
+  int show = Chart::no_function;         // registry: the function that makes text of values
 
   bool writes = false;
   int line_number = 0;
-  std::string pending;  // lines that are not complete yet
+  std::string pending;  // lines that do not form a complete statement yet
   int pending_line = 1;
   std::string printed;
 
-  CommandQueue nowhere_queue;  // what is commanded while it only reads
+  CommandQueue nowhere_queue;  // takes the commands while the console only reads
   CommandSender nowhere{nowhere_queue};
 };
 
-// Makes the environment; the argument is the parts. Raises.
+// Makes the environment. The argument on the stack is the Parts. Raises.
 int open_console(lua_State* state);
-// [-0 +0] Brings s, signals, parameters and behaviors up to date.
+// [-0 +0] Refills s, signals, parameters and behaviors.
 void refill_console(lua_State* state, Console::Parts& parts, const Console::View& view);
-// The words that may stand at the end of the path: "signals.plant.ba".
+// The completions of the last part of a path such as "signals.plant.ba".
 std::vector<std::string> console_names(Console::Parts& parts, const std::string& path);
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// The hint of a message, ", did you mean 'x'?", made without leaving a C++ object behind when Lua raises.
+// Makes the hint of a message, ", did you mean 'x'?". No C++ object is alive when Lua raises.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace kadans {
 
 using Hint = std::array<char, 320>;
 
-// What is near, or begins like it (a unit forgotten), or else all names when they are few.
+// The nearest name, or a name that begins with it (a forgotten unit), or else all names when they are few.
 inline std::string hint_text(const std::string& wrong, const std::vector<std::string>& names) {
   std::string near = did_you_mean(wrong, names);
   if (!near.empty() || names.empty()) return near;
@@ -27,8 +27,8 @@ inline std::string hint_text(const std::string& wrong, const std::vector<std::st
   return all;
 }
 
-// `fill` adds the known names to the vector it is given; it does not raise. The time goes with the product of the
-// lengths: charged behind it, when nothing is left that needs a destructor.
+// `fill` adds the known names to the vector that it gets; it must not raise. The time is proportional to the product of
+// the lengths. It is charged at the end, when no object that needs a destructor is left.
 template <typename Fill>
 Hint make_hint(lua_State* state, const char* wrong, Fill fill) {
   constexpr double instructions_per_letter = 2;

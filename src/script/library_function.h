@@ -1,6 +1,7 @@
-// Functions of Lua's own library, wrapped: what one costs, in proportion to its arguments, is charged before it begins,
-// what it made is charged after, and those that call back into the script nest only so deep, since each takes a piece
-// of the C stack. What cannot be known beforehand is not forwarded but written anew, with a StepMeter.
+// Wraps functions of Lua's own library. The cost, in proportion to the arguments, is charged before the call, and the
+// cost of the result after it. Functions that call back into the script may nest only to a bounded depth, because each
+// level needs C stack. A function whose cost cannot be known beforehand is not forwarded but written anew with a
+// StepMeter.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +10,29 @@
 
 namespace kadans {
 
-// [-0 +0] The field `name` of the table at the top becomes `function`, with what was there as upvalue 1.
+// [-0 +0] Replaces the field `name` of the table at the top of the stack by `function`, whose upvalue 1 is the old
+// value.
 void wrap(lua_State* state, const char* name, lua_CFunction function);
 
-// [-0 +0] The field `name` of the table at `table` becomes `function`.
+// [-0 +0] Sets the field `name` of the table at `table` to `function`.
 void set_function(lua_State* state, int table, const char* name, lua_CFunction function);
 
 // [-all +results] Calls upvalue 1 with the arguments on the stack.
 int forward(lua_State* state);
-// The same, and charges for the string it made. A string takes at most 64 kB (lua_heap.h), so this may come late.
+// The same, and charges for the resulting string. A string has at most 64 kB (lua_heap.h), so it may be charged
+// afterwards.
 int forward_text(lua_State* state);
 
-// Around other code that calls back. Raises. What an error leaves behind is mended where errors are caught.
+// To be called around other code that calls back. begin_callback raises. After an error the depth is restored where the
+// error is caught.
 void begin_callback(lua_State* state, const char* name);
 void end_callback(lua_State* state) noexcept;
 
 void charge_text(lua_State* state, double bytes);
-// What it takes to compile so much of a source.
+// The instructions that compiling so many bytes of source costs.
 constexpr double compiling_instructions(double bytes) noexcept { return 2 * bytes; }
 
-// As LuaJIT reads a number that stands for a place: what is no int is the smallest one.
+// Converts a number to a position as LuaJIT does: a number that is no int becomes the smallest int.
 std::int32_t to_place(lua_Number number) noexcept;
 std::int32_t optional_place(lua_State* state, int index, std::int32_t otherwise);
 

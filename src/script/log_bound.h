@@ -1,5 +1,5 @@
-// How many lines a behavior may say: lines_max in a second of the engine's clock, so that a script that logs in every
-// tick floods neither the record nor the console. What is more is dropped and counted.
+// Bounds the log lines of a behavior to lines_max in a second of the engine's clock, so that a script that logs in
+// every tick floods neither the record nor the console. Further lines are dropped and counted.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ class LogBound {
  public:
   static constexpr std::uint32_t lines_max = 100;
 
-  enum class Answer : std::uint8_t { say, warn, drop };  // warn: the first to be dropped in this second
+  enum class Answer : std::uint8_t { say, warn, drop };  // warn: the first line that is dropped in this second
   Answer admit(std::int64_t now_ns) noexcept {
     if (now_ns - began_ns_ >= second_ns || now_ns < began_ns_) {
       began_ns_ = now_ns;
@@ -20,7 +20,7 @@ class LogBound {
     ++dropped_;
     return said_++ == lines_max ? Answer::warn : Answer::drop;
   }
-  // Lines dropped since the last call, once their second is over; 0 before.
+  // Returns the lines dropped since the last call once their second is over, or with `at_once`; else 0.
   std::uint64_t take_dropped(std::int64_t now_ns, bool at_once) noexcept {
     if (dropped_ == 0 || (now_ns - began_ns_ < second_ns && !at_once)) return 0;
     const std::uint64_t count = dropped_;

@@ -1,4 +1,4 @@
-// What every C function of the sandbox can reach from its lua_State: the allocator's user data is the core.
+// The data that every C function of the sandbox can reach from its lua_State: it is the user data of the allocator.
 #pragma once
 
 #include <deque>
@@ -27,11 +27,11 @@ struct LuaCore {
   lua_State* main = nullptr;
   lua_State* running = nullptr;        // the coroutine of a `run` while it runs, else nullptr
   void* bindings = nullptr;            // of the behavior that owns the state
-  int (*entry)(lua_State*) = nullptr;  // what LuaState::call() runs
-  int called = LUA_NOREF;              // registry: the function of a state that was called last
+  int (*entry)(lua_State*) = nullptr;  // the function that LuaState::call() runs
+  int called = LUA_NOREF;              // registry: the chart function that was called last
   bool loading = true;
-  int depth = 0;       // of library functions that call back
-  int coroutines = 0;  // that resume one another
+  int depth = 0;       // nesting depth of library functions that call back
+  int coroutines = 0;  // nesting depth of coroutines that resume one another
 };
 
 inline LuaCore& core_of(lua_State* state) noexcept {
@@ -40,11 +40,11 @@ inline LuaCore& core_of(lua_State* state) noexcept {
   return *static_cast<LuaCore*>(core);
 }
 
-// Of the thread's own time: what the machine gave to others is not in it. Asks the kernel, so it costs some 0.7 us.
+// The CPU time of this thread, without the time of other threads. It asks the kernel, which costs about 0.7 us.
 std::int64_t thread_now_ns() noexcept;
 
-// Notes the innermost line of a script in `error`, or else the line where the function that was called last begins: a
-// tail call leaves no trace. Never allocates.
+// Notes the innermost script line in `error`. When there is none (a tail call leaves no trace), it notes the line where
+// the function that was called last begins. Never allocates.
 void note_place(lua_State* state, ScriptError& error) noexcept;
 
 }  // namespace kadans

@@ -1,8 +1,9 @@
-// A motion that a behavior asked for, as its handle in Lua knows it.
+// A motion that a behavior asked for: the data behind its handle in Lua.
 //
-// It is pending until the tick's transaction is sent, sent until the control engine says that it applied the
-// transaction, and done when the object is at rest or the motion's time has passed since. Refused: the control engine
-// said that it refused the transaction; expired: it never said anything.
+// It is pending until the tick's transaction is sent. It is sent until the control engine reports that the transaction
+// was applied. It is done when the object is at rest, or when the motion's time has passed since it was applied. It is
+// refused when the control engine reports that it refused the transaction, and expired when the engine never reports
+// anything.
 #pragma once
 
 #include <cstdint>
@@ -23,21 +24,21 @@ struct Motion {
   std::uint32_t sequence = 0;
   std::int64_t asked_ns = 0, applied_ns = 0;
   double duration_s = 0;
-  Refusal refusal;          // when it was refused
-  std::uint32_t count = 0;  // set-points, stored behind this struct
+  Refusal refusal;          // set when it was refused
+  std::uint32_t count = 0;  // number of set-points, which are stored behind this struct
 
   SetpointId* setpoints() noexcept { return reinterpret_cast<SetpointId*>(this + 1); }
   bool over() const noexcept { return state >= MotionState::done; }
 };
 
-// Brings the state up to date.
+// Updates the state from the snapshot.
 void observe(Motion& motion, const Snapshot& snapshot, std::int64_t now_ns) noexcept;
-// Why it did not arrive, for Lua: nullptr when it did.
+// The name of the failure for Lua; nullptr when the motion has not failed.
 const char* failure(const Motion& motion) noexcept;
-// [-0 +1] What was wrong with it, for people: nil unless it was refused.
+// [-0 +1] Pushes the reason of a refusal as text for people; nil when it was not refused.
 void push_reason(lua_State* state, const Motion& motion);
 
-// [-0 +1] A new handle with room for `count` set-points.
+// [-0 +1] Pushes a new handle with room for `count` set-points.
 Motion* push_motion(lua_State* state, std::uint32_t count);
 // The handle at `index`, or nullptr.
 Motion* to_motion(lua_State* state, int index);

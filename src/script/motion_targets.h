@@ -1,5 +1,5 @@
-// Which set-points a motion moves, and where to: a pose by name, a table joint = position, or one set-point. Everything
-// here raises at the author's line and sends nothing.
+// Reads the set-points that a motion moves and their targets: a pose by name, a table joint = position, or one
+// set-point. All functions raise at the author's line and send nothing.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace kadans {
 struct MotionTarget {
   SetpointId id = 0;
   double value = 0;
-  SetpointState from;  // where the set-point is; known when placed
+  SetpointState from;  // the present set-point; set by place_targets
 };
 
 struct MotionTargets {
@@ -25,15 +25,15 @@ struct MotionTargets {
   const MotionTarget* end() const noexcept { return all.data() + count; }
 };
 
-// Of the pose at `index`: its name, or a table joint = rad. `called` is the method.
+// Reads the pose at `index`: its name, or a table joint = rad. `called` is the method's name for messages.
 void read_pose(lua_State* state, int index, const ObjectInfo& object, const char* called, MotionTargets& targets);
-// Of the set-point named at `index`.
+// The set-point that is named at `index`.
 SetpointId read_setpoint(lua_State* state, int index, const ObjectInfo& object);
 
-// Where the set-point is now, as the snapshot tells; where its joint is when its object is not active yet. Raises when
-// the control object cannot tell.
+// The present set-point from the snapshot, or the position of its joint when its object is not active yet. Raises when
+// the control object does not report it.
 SetpointState present_setpoint(lua_State* state, SetpointId id);
-// Adds offsets, checks ranges, and finds where the motion begins if it must be known.
+// Adds offsets, checks ranges, and finds the start of the motion if it is needed.
 void place_targets(lua_State* state, const MotionOptions& options, bool planned, MotionTargets& targets);
 
 }  // namespace kadans

@@ -1,8 +1,8 @@
-// Lua's patterns (Lua 5.1 manual, 5.4.1), matched step by step under the budget: each character compared and each item
-// looked at is a step that is charged, so a pattern that backtracks for ever ends in the middle.
+// Matches Lua's patterns (Lua 5.1 manual, 5.4.1) under the budget. Each compared character and each item is a step that
+// is charged, so a pattern that backtracks without end is stopped.
 //
-// What a pattern means, where it ends ('\0') and which mistakes raise is as in LuaJIT 2.1; the fuzzer of
-// tests/fuzz/lua_pattern.cpp compares the two. Nested items take a piece of the C stack each, 200 deep at most.
+// The meaning of a pattern, its end ('\0') and the mistakes that raise are the same as in LuaJIT 2.1; the fuzzer
+// tests/fuzz/lua_pattern.cpp compares the two. Each nested item needs C stack, so nesting is limited to 200.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace kadans {
 
-// Characters, a bit each.
+// A set of characters, one bit for each.
 class CharacterSet {
  public:
   constexpr void add(unsigned char c) noexcept { words_[c / 64] |= std::uint64_t{1} << (c % 64); }
@@ -38,7 +38,7 @@ class CharacterSet {
 
 class PatternMatcher {
  public:
-  // Subject and pattern stay on the stack of `state` meanwhile. The pattern is without its anchor.
+  // Subject and pattern must stay on the stack of `state` meanwhile. `pattern` is without its anchor.
   PatternMatcher(lua_State* state, std::string_view subject, const char* pattern) noexcept
       : state_(state),
         meter_(state),
@@ -46,25 +46,26 @@ class PatternMatcher {
         first_(subject.data()),
         last_(subject.data() + subject.size()) {}
 
-  // The first match at or behind `from`; only one at `from` when it is anchored. False: there is none. Raises what is
-  // wrong with the pattern.
+  // Finds the first match at or after `from`; when anchored, only a match at `from`. False: there is none. Raises on a
+  // wrong pattern.
   bool find(const char* from, bool anchored);
   const char* begin() const noexcept { return begin_; }
   const char* end() const noexcept { return end_; }
 
-  // Of the last match. [-0 +1] Capture `index` from 0 on; without captures 0 is the whole match. Raises when there is
-  // none.
+  // [-0 +1] Pushes capture `index` of the last match, counted from 0; without captures, 0 is the whole match. Raises
+  // when there is no such capture.
   void push_capture(int index);
-  // [-0 +n] All captures; the whole match when there are none and it is wanted.
+  // [-0 +n] Pushes all captures; the whole match when there are none and `whole` is true.
   int push_captures(bool whole);
-  // Behind the last match: charges the rest.
+  // To be called after the last match: charges the rest.
   void settle() { meter_.settle(); }
   StepMeter& meter() noexcept { return meter_; }
 
  private:
   static constexpr int captures_max = 32, depth_max = 200;
-  static constexpr std::ptrdiff_t open = -1, position = -2;  // in place of a length
-  // For an item with the call that goes on behind it, a character of a run, one of a set that is read, a capture.
+  static constexpr std::ptrdiff_t open = -1, position = -2;  // special values of a length
+  // Steps for an item and the call that continues after it, for a character of a run, for a character of a set, for a
+  // capture.
   static constexpr std::size_t item_steps = 20, run_steps = 3, set_steps = 6, capture_steps = 64;
   struct Capture {
     const char* begin;
@@ -72,7 +73,7 @@ class PatternMatcher {
   };
   struct Set {
     const char* item;  // its '['
-    const char* rest;  // behind its ']'
+    const char* rest;  // after its ']'
     CharacterSet set;
   };
 
@@ -94,7 +95,7 @@ class PatternMatcher {
   StepMeter meter_;
   const char* pattern_;
   const char* first_;  // of the subject
-  const char* last_;   // behind it; '\0' stands there
+  const char* last_;   // one past its end, where a '\0' is
   const char* begin_ = nullptr;
   const char* end_ = nullptr;
   int depth_ = 0, level_ = 0;

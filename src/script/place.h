@@ -1,4 +1,4 @@
-// Where in a script something was written, for messages.
+// A place in a script, for messages.
 #pragma once
 
 #include <lua.hpp>
@@ -10,13 +10,13 @@ struct Place {
   int line = 0;
 };
 
-// Of the script function that calls the running C function; `level` 1 is the direct caller.
+// The place in the script function that calls the running C function; `level` 1 is the direct caller.
 Place calling_place(lua_State* state, int level = 1);
-// Raises "file:line: message". With `needle`, the line is the first from the place on that holds this text.
+// Raises "file:line: message". With `needle`, the line is the first one from the place on that contains this text.
 int raise_at(lua_State* state, const Place& place, const char* needle, const char* format, ...);
 
-// [-0 +0] Raises when the table at `table` has a string key that is not among the names (ends with nullptr); `what` is
-// how messages call the table. The nearest name is told.
+// [-0 +0] Raises with the nearest name when the table at `table` has a string key that is not among `names`, which end
+// with nullptr. `what` is the name of the table in messages.
 void check_keys(lua_State* state, int table, const Place& place, const char* what, const char* const* names);
 
 }  // namespace kadans

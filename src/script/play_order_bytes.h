@@ -1,5 +1,5 @@
-// What the supervisor asks for, and what plays, as bytes and back: between two processes. A value that is not there is
-// read as zero or empty, and the reader is not ok() then.
+// Writes orders and items of the play list as bytes for another process, and reads them back. A missing value is read
+// as zero or empty, and then the reader is not ok().
 #pragma once
 
 #include "kadans/config/play_order.h"

@@ -1,32 +1,32 @@
-// The names that a script sees, and the tools that make tables read-only.
+// The names that a script sees, and functions that make tables read-only.
 #pragma once
 
 #include <lua.hpp>
 
 namespace kadans {
 
-// Builds the sandbox's globals and leaves them in the registry; push_environment() gets them. Raises.
+// Makes the sandbox's globals and stores them in the registry; push_environment() pushes them. Raises.
 void open_sandbox(lua_State* state);
 void push_environment(lua_State* state);
 
-// [-1 +1] Replaces the table on top by an empty one through which its content is read: writing raises, reading an
-// unknown field raises and names the nearest. `name` is what messages call it. Raises when out of memory.
+// [-1 +1] Replaces the table at the top of the stack by an empty table that reads from it. Writing raises, and reading
+// an unknown field raises with the nearest name. `name` is the table's name in messages. Raises when out of memory.
 void make_read_only(lua_State* state, const char* name, bool strict = true);
 // [-0 +1 when true] Pushes the content behind a read-only table.
 bool push_content(lua_State* state, int index);
-// [-1 +0] For the metatable of read-only content, below the top: the function at the top, called with one argument,
-// fills the content; push_content() calls it.
+// [-1 +0] The top of the stack is a function that fills a read-only content; the metatable of the content is below it.
+// push_content() calls the function with one argument.
 void set_filler(lua_State* state);
 // Raises "NAME has no field 'x', did you mean 'y'?" for the key at `key`, from the names in the table at `content`.
 int raise_unknown_field(lua_State* state, const char* name, int content, int key);
 
-// The parts of the library.
+// The parts of the library:
 void open_base(lua_State* state, int globals);  // [-0 +0] into the table at `globals`
-// [-0 +0] pcall, xpcall into the table at `globals`, resume, wrap into the coroutine library at the top.
+// [-0 +0] Puts pcall and xpcall into the table at `globals`, and resume and wrap into the coroutine library at the top.
 void open_protected_calls(lua_State* state, int globals);
 void open_math(lua_State* state);       // [-0 +0] into the math table at the top
-void open_strings(lua_State* state);    // [-0 +0] wraps what is in the string table at the top
-void open_patterns(lua_State* state);   // find, match, gmatch and gsub of it
+void open_strings(lua_State* state);    // [-0 +0] wraps the functions in the string table at the top
+void open_patterns(lua_State* state);   // find, match, gmatch and gsub of the string table
 void open_tables(lua_State* state);     // the same for the table library
 void check_writable(lua_State* state);  // raises when the first argument is no table, or a read-only one
 int sandbox_sort(lua_State* state);

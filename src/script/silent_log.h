@@ -1,4 +1,4 @@
-// For a behavior that is loaded to be looked at and does not play.
+// A log that drops everything, for a behavior that is only loaded to be inspected.
 #pragma once
 
 #include "kadans/engine/behavior_host.h"

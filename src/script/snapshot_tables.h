@@ -1,5 +1,5 @@
-// `s`: the snapshot as scripts see it. The tables are made once; each tick only their fields are replaced, and only
-// those that this script has ever read: the first read of a field fills it, and does so in each tick from then on.
+// `s`: the snapshot as scripts see it. The tables are made once. Each tick replaces only their fields, and only those
+// that this script has read before: the first read of a field fills it, and from then on each tick refills it.
 #pragma once
 
 #include <bitset>
@@ -19,17 +19,18 @@ namespace kadans {
 
 class SnapshotTables {
  public:
-  // Makes the tables; `feet` names the feet in their order. On demand: this must outlive the state, and stay where it
-  // is; else every field is refilled always. Returns the registry reference of `s`. Raises.
+  // Makes the tables and returns the registry reference of `s`. `feet` are the names of the feet in their order. With
+  // `on_demand` this object must outlive the state and must not move; without it every field is refilled each time.
+  // Raises.
   int open(lua_State* state, const Catalog& catalog, const std::vector<std::string>& feet, bool on_demand = false);
-  // The snapshot must live as long as functions of this tick run. Raises only when out of memory; fields that exist are
-  // replaced without allocation.
+  // The snapshot must live as long as functions of this tick run. Existing fields are replaced without allocation.
+  // Raises only when out of memory.
   void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
-  // Fills the field that the string at `key` names from now on. False: the part has none of this name.
+  // From now on fills the field that the string at `key` names. False: the part has no such field.
   bool read_first(lua_State* state, std::size_t part, int key);
-  // Fills all fields of a part from now on.
+  // From now on fills all fields of a part.
   void read_whole(lua_State* state, std::size_t part);
-  // Reads what refill() and the script are going to need. Before each refill().
+  // Reads the memory that refill() and the script will need into the caches. To be called before each refill().
   void warm_up() const noexcept;
 
  private:
@@ -39,8 +40,8 @@ class SnapshotTables {
     Kind kind;
     std::uint32_t index;
     int content;                          // registry reference
-    std::bitset<128> read{};              // its fields that were read
-    std::span<const std::byte> memory{};  // its tables
+    std::bitset<128> read{};              // the fields that were read
+    std::span<const std::byte> memory{};  // memory of its tables
   };
   struct Read {
     std::uint16_t part, field;
@@ -62,7 +63,7 @@ class SnapshotTables {
   Snapshot nothing_{};
   const Snapshot* snapshot_ = &nothing_;
   std::int64_t now_ns_ = 0;
-  std::span<const std::byte> joints_;  // the table that names them
+  std::span<const std::byte> joints_;  // memory of the table with their names
   std::vector<StatusField> fields_;
   std::vector<int> choices_;  // registry references, by field
   int keys_ = 0;

@@ -1,8 +1,8 @@
-// What is known of a behavior's functions, tables and modules once all its files were read: which function a field
-// holds, what a module returns, what a function is given.
+// Facts about a behavior's functions, tables and modules, collected from all its files: which function a field holds,
+// what a module returns, which arguments a function gets.
 //
-// A name stands for a value when that is the only one it is given anywhere. Files are read again until nothing new is
-// learnt, in three phases: see SourceFacts::Phase.
+// A name has a known value only when the same value is assigned everywhere. The files are read again and again in three
+// phases (SourceFacts::Phase), until nothing new is learnt.
 #pragma once
 
 #include <compare>
@@ -28,65 +28,65 @@ enum class SourceRole : std::uint8_t {
   table
 };
 
-// A token of one of the files.
+// The place of a token: its file and its index there.
 struct SourcePlace {
   std::size_t file = 0, token = 0;
   auto operator<=>(const SourcePlace&) const = default;
 };
 
-// What an expression stands for: `m.posture` is {machine, {"posture"}}, `legs.bend` of the author's module "legs"
-// {own_module, {"legs", "bend"}}, field `w` of a table that is written at `place` {table, {"w"}, place}.
+// The meaning of an expression. `m.posture` is {machine, {"posture"}}; `legs.bend` of the author's module "legs" is
+// {own_module, {"legs", "bend"}}; field `w` of a table that is written at `place` is {table, {"w"}, place}.
 struct SourceMeaning {
   SourceRole role = SourceRole::none;
   std::vector<std::string> path{};
-  SourcePlace place{};  // where a function or table is written; of parameters: their file
+  SourcePlace place{};  // where a function or table is written; for parameters: their file
   bool operator==(const SourceMeaning&) const = default;
 };
 
 class SourceFacts {
  public:
   enum class Phase : std::uint8_t {
-    values,   // what names stand for; a value that nobody knows may be known after the next reading
-    unknown,  // it never will be: the names that are given it stand for nothing
-    calls     // names are settled: which functions run in guards, and which are over within their tick
+    values,   // find values of names; a value that is unknown now may be known after the next reading
+    unknown,  // unknown values stay unknown: names to which one is assigned have no value
+    calls     // names are final: find which functions run in guards, and which end within their tick
   };
   struct Function {
     int line = 0;
-    bool in_chart = false;                       // may be one of the chart's
-    std::map<std::size_t, SourceMeaning> given;  // by the number of the parameter; 0 is `self` of a method
-    bool guard = false;                          // or called by one
+    bool in_chart = false;                       // may be a function of the chart
+    std::map<std::size_t, SourceMeaning> given;  // values by the number of the argument; 0 is `self` of a method
+    bool guard = false;                          // it is a guard, or a guard calls it
     bool under_when = false;
-    bool returns_value = false;   // by a `return` of its own
+    bool returns_value = false;   // it has a `return` with a value
     std::set<SourcePlace> tails;  // the functions whose values it returns: `return f(x)`
-    int returns = 0;              // that stand before what is read, or right before it
-    bool literal = false;         // of `at_once`: stands under the key itself
+    int returns = 0;              // number of `return`s up to the current place
+    bool literal = false;         // it is written directly under the key of `at_once`
     std::string at_once;
   };
 
   void name_module(const std::string& name, std::size_t file) { modules_[name] = file; }
 
-  // Each: another value of it, or the same one again. A value of role `none` is one that nobody knows.
+  // These functions note an assigned value. A value of role `none` is unknown.
   void give_local(SourcePlace name, const SourceMeaning& value) { learn(locals_, name, value); }
   void give_field(const SourceMeaning& table, const std::string& field, const SourceMeaning& value);
   void give_parameter(SourcePlace function, std::size_t number, const SourceMeaning& value);
   void give_module(std::size_t file, const SourceMeaning& returned) { learn(returned_, file, returned); }
-  // A field of a table that nobody knows.
+  // A field of an unknown table.
   void give_somewhere(const std::string& field) { given_somewhere_.insert(field); }
 
   SourceMeaning local(SourcePlace name) const;
-  // What it stands for, looked up in tables and modules as far as they are known. `written`: how many of the path's
-  // last fields stand where it is used, before and after.
+  // Follows a meaning through tables and modules as far as they are known. `written` is the number of the path's last
+  // fields that are written at the place of use; it is updated.
   SourceMeaning resolve(const SourceMeaning& meaning, std::size_t& written) const;
   SourceMeaning resolve(const SourceMeaning& meaning) const;
-  // Whether a call of it has a value, as far as is known.
+  // True unless it is known that the function returns no value.
   bool returns_value(SourcePlace function) const;
-  // That a module of the author's own is given in any file.
+  // The fields that any file assigns to an author's module.
   std::vector<std::string> fields_of(const std::string& module) const;
   const std::set<std::string>& given_somewhere() const noexcept { return given_somewhere_; }
 
-  std::map<SourcePlace, Function> functions;  // by the token `function`; a file is one itself, by its first token
+  std::map<SourcePlace, Function> functions;  // by their token `function`; a file counts as one, by its first token
   Phase phase = Phase::values;
-  bool learnt = false;  // since it was set to false
+  bool learnt = false;  // something was learnt since it was set to false
 
  private:
   template <typename Values, typename Key>

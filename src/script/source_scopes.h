@@ -1,8 +1,8 @@
-// What the names in a script stand for, found by reading it: blocks and locals, functions and what they are given.
+// Finds the meaning of the names in a script by reading it: blocks and locals, functions and their arguments.
 //
-// A function is given `m` and `s` when it is one of the chart's (`enter`, `when` ...), or when such a function hands
-// them on to it, whichever of the files it is in. What is learnt of functions, tables and modules stands in
-// SourceFacts, which the files of a behavior share.
+// A function gets `m` and `s` when it is one of the chart's functions (`enter`, `when` ...), or when such a function
+// passes them on to it, in any of the files. Facts about functions, tables and modules are kept in SourceFacts, which
+// the files of a behavior share.
 #pragma once
 
 #include <map>
@@ -18,27 +18,27 @@ namespace kadans {
 
 // One use of a name: `m.posture:move(` or `x.y = `.
 struct SourceUse {
-  SourceMeaning meaning;      // of the name and the fields after it
+  SourceMeaning meaning;      // meaning of the name and the fields after it
   std::string name;           // as written
   std::vector<int> lines;     // of the fields in meaning.path
-  std::size_t written = 0;    // how many of them stand here, the last ones
+  std::size_t written = 0;    // how many of these fields, the last ones, are written here
   bool known = false;         // a local or parameter, or `require` of a module
   bool outer = false;         // a local of a function around this one, or of the file
   bool assigned = false;      // stands left of a '='
-  bool guard = false;         // in a guard or in what a guard calls
-  std::string at_once;        // "enter" or another key whose function is over within its tick, if it is in one or in
-                              // what one calls, and runs whenever that does; or ""
+  bool guard = false;         // in a guard or in a function that a guard calls
+  std::string at_once;        // the key ("enter" ...) of a function that ends within its tick, when this use is in it
+                              // or in a function that it always calls; else ""
   std::string method;         // after ':', or ""
   int line = 0;               // of the name
-  std::size_t arguments = 0;  // token after the '(' of a call; 0: no call
-  std::size_t next = 0;       // token behind all of it, the '=' of an assignment
+  std::size_t arguments = 0;  // index of the token after the '(' of a call; 0: no call
+  std::size_t next = 0;       // index of the token after the whole use, the '=' of an assignment
 };
 
-// A function that is written out.
+// A function that is written in the text.
 struct SourceFunction {
   int line = 0;
-  bool guard = false;          // stands under `when`, itself or by its name
-  bool returns_value = false;  // somewhere; not one that is written inside it
+  bool guard = false;          // stands under `when`, directly or by its name
+  bool returns_value = false;  // it returns a value somewhere; functions inside it do not count
 };
 
 class SourceListener {
@@ -49,19 +49,19 @@ class SourceListener {
 
 class SourceScopes {
  public:
-  // The keys of the chart's functions ("enter", "when" ...) by the line where they begin.
+  // The keys ("enter", "when" ...) of the chart's functions, by the line where the function begins.
   using ChartFunctions = std::map<int, std::set<std::string>>;
 
-  // `file`: its number among those that share the facts, which outlive this.
+  // `file` is its number among the files that share `facts`. `facts` must outlive this object.
   SourceScopes(std::vector<SourceToken> tokens, std::size_t file, SourceFacts& facts);
-  // Only the chart's functions are guards, or over within their tick, or given `m` and `s`. Without them every function
-  // is whose key says so.
+  // Gives the functions of the chart: only these are guards, end within their tick, or get `m` and `s`. Without this
+  // call, every function counts as what its key says.
   void know_functions(ChartFunctions chart) { chart_ = std::move(chart); }
-  // Reads the file once, which adds to the facts.
+  // Reads the file once and adds to the facts.
   void read() { walk(nullptr); }
   void tell(SourceListener& listener) { walk(&listener); }
 
-  // After tell(): all functions, the file itself first.
+  // After tell(): all functions; the first is the file itself.
   std::vector<SourceFunction> functions() const;
   const std::vector<SourceToken>& tokens() const noexcept { return tokens_; }
   std::size_t file() const noexcept { return file_; }
@@ -71,11 +71,11 @@ class SourceScopes {
   struct Block {
     std::map<std::string, std::size_t> locals;  // the tokens that declare them
     std::size_t function = 0;
-    bool body = false;  // of the function, not of a statement in it
+    bool body = false;  // the block is the function's body, not a statement's
   };
-  struct Braces {  // of a table
+  struct Braces {  // the braces of a table
     std::size_t token = 0;
-    std::size_t blocks = 0;  // that are open around it
+    std::size_t blocks = 0;  // number of blocks that are open around it
   };
 
   void walk(SourceListener* listener);
@@ -115,14 +115,14 @@ class SourceScopes {
   std::size_t file_ = 0;
   SourceFacts* facts_;
   std::optional<ChartFunctions> chart_;
-  std::map<int, int> functions_by_line_;  // how many begin there
+  std::map<int, int> functions_by_line_;  // number of functions that begin on each line
   std::vector<Block> blocks_;
   std::vector<Braces> braces_;
-  std::map<std::string, std::size_t> next_locals_;  // of the block that comes
+  std::map<std::string, std::size_t> next_locals_;  // locals of the next block
   SourceListener* listener_ = nullptr;
 };
 
-// Reads the files until nothing new is learnt of what they share.
+// Reads the files until no new facts are learnt.
 void learn_facts(const std::vector<SourceScopes*>& files, SourceFacts& facts);
 
 }  // namespace kadans

@@ -1,8 +1,8 @@
-// How many slots a table has, empty ones too. To go through a table takes time in proportion to them, not to its
-// elements, and a script may fill a table and empty it again; but Lua's API does not tell.
+// Finds the number of slots of a table, empty ones included. The time to go through a table is proportional to its
+// slots, not to its elements, and a script may fill a table and empty it again. Lua's API does not give this number.
 //
-// So it is read where LuaJIT keeps it. The place is found by looking at tables of known sizes, in each state anew; when
-// it is not found, a table counts as if it had all memory that one block may have.
+// So it is read from LuaJIT's own data. Its place is found in each state by comparing tables of known sizes. When the
+// place is not found, every table counts as if it filled the largest allowed block of memory.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class TableSlots {
  public:
   // [-0 +0] Raises when out of memory.
   void find_place(lua_State* state);
-  // Steps (step_meter.h) that it takes to go through the table at `index` once.
+  // The steps (step_meter.h) to go through the table at `index` once.
   std::size_t steps(lua_State* state, int index) const noexcept;
   bool known() const noexcept { return place_ >= 0; }
 

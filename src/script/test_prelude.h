@@ -1,9 +1,9 @@
-// The part of the test kit that is Lua.
+// The part of the test kit that is written in Lua.
 #pragma once
 
 namespace kadans {
 
-// What may follow `expect(x).` and `expect(x).never.`
+// The matchers after `expect(x).` and `expect(x).never.`
 inline constexpr const char* test_matchers[] = {"to_equal",   "to_be_near",  "to_be_above", "to_be_below", "to_contain",
                                                 "to_be_true", "to_be_false", "to_be_nil",   "to_raise"};
 

@@ -1,5 +1,5 @@
-// Marks the functions that every tick runs, so that the linker puts them side by side: they fill a few pages rather
-// than a line or two of many, and WarmUp can read them in one go.
+// Marks the functions that every tick runs, so that the linker places them together. They then fill a few pages,
+// instead of one or two cache lines of many pages, and WarmUp can read them in one go.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace kadans {
 
-// The machine code of all functions that are marked.
+// The machine code of all marked functions.
 std::span<const std::byte> tick_code() noexcept;
 
 }  // namespace kadans

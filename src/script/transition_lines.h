@@ -1,6 +1,6 @@
-// Which line each transition of a chart is written in: the table that the chart was read from does not know, so the
-// source is looked at. What is not written out, { ... to = "name" ... } in the braces of its state, keeps the line that
-// it has.
+// Finds the source line of each transition of a chart. The tables from which the chart was read do not know the lines,
+// so the source is searched. A transition that is not written as { ... to = "name" ... } in the braces of its state
+// keeps the line that it has.
 #pragma once
 
 #include <vector>

@@ -1,11 +1,12 @@
 // The angle of a point by plain arithmetic, the same bits with every compiler and on every processor: the atan2 that
-// the program defines (portable_math.cpp). The estimator asks for four a tick.
+// the program defines (portable_math.cpp). The estimator needs four per tick.
 //
-// The lesser of the two coordinates over the greater is the tangent of at most 45 degrees. Of the four angles whose
-// tangents are 0, 1/4, 1/2 and 1 one is taken off that leaves at most 9.4 degrees, by tan(a - b) = (n - t d) / (d + t
-// n). The numerator is exact, since t d is a power of two times d and between half of n and twice n. The errors of
-// denominator and quotient are found (T. Dekker, A floating-point technique for extending the available precision,
-// 1971). The rest is the series q - q^3 / 3 + ... to the 19th power, and the parts are added up, each in two numbers.
+// The smaller of the two coordinates over the larger is the tangent of at most 45 degrees. One of the four angles whose
+// tangents are 0, 1/4, 1/2 and 1 is subtracted, the one that leaves at most 9.4 degrees, by tan(a - b) = (n - t d) / (d
+// + t n). The numerator is exact, because t d is a power of two times d and between half of n and twice n. The errors
+// of denominator and quotient are computed (T. Dekker, A floating-point technique for extending the available
+// precision, 1971). The rest is the series q - q^3 / 3 + ... to the 19th power. The parts are added up, each in two
+// numbers.
 //
 // Error below 0.6 units in the last place.
 #pragma once
@@ -17,7 +18,7 @@ namespace kadans {
 
 namespace arc_tangent_parts {
 
-// A number and what is missing in its last place.
+// A number, and what it lacks in its last place.
 struct Sum {
   double high, low;
 };
@@ -56,7 +57,7 @@ inline double series(double q) noexcept {
   return q * x * (first + x4 * (second + x4 * (-1.0 / 19)));
 }
 
-// a + sign b, the greater first.
+// a + sign b; a is the larger one.
 inline Sum add(const Sum& a, double sign, const Sum& b) noexcept {
   const double b_high = sign * b.high, high = a.high + b_high;
   return {high, ((a.high - high) + b_high) + (a.low + sign * b.low)};

@@ -1,4 +1,4 @@
-// A record of MCAP under construction: its opcode at once, its length when the scope ends.
+// A record of an MCAP file under construction: the constructor writes its opcode, the destructor its length.
 #pragma once
 
 #include "kadans/signal/byte_order.h"

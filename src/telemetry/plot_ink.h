@@ -1,4 +1,4 @@
-// The colors of a plot on light paper, and on dark.
+// The colors of a plot on light and on dark paper.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ struct PlotColor {
 namespace plot_ink {
 inline constexpr PlotColor paper{"#fefefe", "#12181e"}, text{"#1c2833", "#dde5ec"}, frame{"#8a97a3", "#5a6874"},
     grid{"#d9e0e6", "#232d36"}, shade{"#f1f4f7", "#19212a"}, fault{"#c62828", "#ff8a80"}, push{"#6a3d9a", "#c5a3ea"};
-// Apart from each other for those who see few colors as well (Okabe and Ito), on light and dark paper.
+// Colors that color-blind readers can tell apart, too (Okabe and Ito), on light and dark paper.
 inline constexpr std::array<PlotColor, 8> lines{{{"#0072b2", "#4ba9e0"},
                                                  {"#d55e00", "#f28a3c"},
                                                  {"#009e73", "#3cc79b"},

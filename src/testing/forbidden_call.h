@@ -1,5 +1,5 @@
-// What the functions that take the C library's place have in common: the marks of the current thread, the way out when
-// a marked thread calls one, and the way on to the library's own.
+// The common part of the functions that take the C library's place: the marks of the current thread, the report when a
+// marked thread calls such a function, and the way on to the library's own.
 #pragma once
 
 #include <atomic>
@@ -49,7 +49,7 @@ Function* next_definition(std::atomic<Function*>& known, const char* name) noexc
   return function;
 }
 
-// A static library gives a program only what it asks for: the guard asks for each group of calls by these.
+// From a static library a program gets only what it refers to: by these the guard refers to each group of calls.
 void link_heap_calls() noexcept;
 void link_exception_calls() noexcept;
 void link_file_calls() noexcept;

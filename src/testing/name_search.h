@@ -1,4 +1,4 @@
-// A name given without what stands before it: "kp_Nm_per_rad" for "object.joint.kp_Nm_per_rad".
+// Finds a name by its last parts: "kp_Nm_per_rad" for "object.joint.kp_Nm_per_rad".
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// A signal in a test's message.
+// Draws a signal in a test's message.
 #pragma once
 
 #include <iosfwd>

@@ -1,5 +1,5 @@
-// A robot put together from its files: the one place that names concrete types together. The order of the members is
-// the way of the data; each keeps references to those before it.
+// Assembles a robot from its files: the only place that names concrete types together. The order of the members is the
+// way of the data; each member keeps references to earlier ones.
 #pragma once
 
 #include <filesystem>
@@ -25,60 +25,59 @@
 
 namespace kadans {
 
-// A robot as its files describe it, and the types of control objects that it may be made of.
+// A robot as its files describe it, and the known types of control objects.
 struct Robot {
-  ControlObjectTypes types;  // shipped, registered by this program, brought by the robot's plug-ins
+  ControlObjectTypes types;  // shipped types, types registered by this program, types of the robot's plug-ins
   RobotConfig config;
 };
-// Loads the plug-ins that the file names; they stay loaded. Throws InputError with everything that is wrong, and where
-// the gate does not let a plug-in in.
+// Loads the plug-ins that the file names; they stay loaded. Throws InputError with all mistakes, and for a plug-in that
+// the gate does not let in.
 Robot read_robot(const std::filesystem::path& file, const PluginGate& gate = {});
 
-// Control objects of a configuration with their parameters set, and the catalog that describes them.
+// The control objects of a configuration with their parameters set, and the catalog that describes them.
 struct ControlSystem {
   Catalog catalog;
   std::vector<std::unique_ptr<ControlObject>> objects;
 };
-// Throws InputError at the place in the configuration that is wrong.
+// Throws InputError with the place of the mistake in the configuration.
 std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 
-// The host of a scenario's behaviors. Throws InputError.
+// Makes the host of a scenario's behaviors. Throws InputError.
 std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept = {});
-// What a plant that is no model is made for. `peer`: where it is; "": where the configuration says.
+// The data from which a plant that is no model is made. `peer` is its address; "": the one in the configuration.
 PlantSite plant_site(const RobotConfig& robot, const std::string& peer);
 
 class Assembly {
  public:
-  // Reads the robot and the behaviors that the scenario names. Throws InputError with everything that is wrong. The log
-  // must outlive the assembly, and so must `link`: with it the world is for a thread of its own, and the engines see
-  // its other end. With `outside`, which must outlive it too, the scenario's behaviors play in a process of their own,
-  // which has been started with them. When the scenario's plant is no model there is no world: no parts(), no world(),
-  // no truth().
+  // Reads the robot and the behaviors that the scenario names. Throws InputError with all mistakes. `log`, `link` and
+  // `outside` must outlive the assembly. With `link` the world runs on a thread of its own, and the engines use the
+  // other side of the link. With `outside` the scenario's behaviors play in that process, which has been started with
+  // them. When the scenario's plant is no model, there is no world: parts(), world() and truth() cannot be used.
   Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
            ProcessHost* outside = nullptr);
 
   const RobotConfig& robot() const noexcept { return robot_.config; }
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
-  const ScriptHost& host() const noexcept { return *host_; }  // when behaviors do not play outside
+  const ScriptHost& host() const noexcept { return *host_; }  // only when behaviors do not play outside
   ScriptHost& host() noexcept { return *host_; }
-  const ScriptHost* own_host() const noexcept { return host_.get(); }  // nullptr when they do
+  const ScriptHost* own_host() const noexcept { return host_.get(); }  // nullptr when they play outside
   OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
-  // Before the run: takes what somebody saves. Throws std::runtime_error when files cannot be watched.
+  // Call before the run: from now on saved files are reloaded. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() { host_->watch(); }
   RunParts parts() noexcept;
   ControlEngine& control() noexcept { return *control_; }
   BehaviorEngine& behaviors() noexcept { return *behaviors_; }
-  Plant& plant() noexcept;                                 // what the engine sees; not open yet
-  World* world() noexcept;                                 // faults included; nullptr: there is none
-  TruthSignals* truth() noexcept { return truth_.get(); }  // likewise
-  // What was set and drawn for this run.
+  Plant& plant() noexcept;                                 // the plant that the engine sees; it is not open yet
+  World* world() noexcept;                                 // with its faults; nullptr: there is none
+  TruthSignals* truth() noexcept { return truth_.get(); }  // nullptr: there is none
+  // The quantities that were set or drawn for this run.
   const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
 
-  // Before the first step: from then on the behaviors see what the filter, which must outlive this, makes of the
-  // snapshot.
+  // Call before the first step: the behaviors then see the snapshot as the filter changes it. The filter must outlive
+  // this object.
   void filter(SnapshotFilter& filter);
 
  private:
@@ -97,7 +96,7 @@ class Assembly {
   Robot robot_;
   PlantVariant variant_;
   std::vector<QuantityValue> quantities_;
-  std::unique_ptr<World> sound_, faulty_;  // the other is around it when something of its robot fails
+  std::unique_ptr<World> sound_, faulty_;  // faulty_ wraps sound_ when the scenario has faults of the plant
   std::unique_ptr<LinkedPlant> linked_;    // when the world is on another thread
   std::unique_ptr<Plant> elsewhere_;       // when there is no world
   std::unique_ptr<ControlSystem> control_system_;
@@ -107,7 +106,7 @@ class Assembly {
   std::unique_ptr<EngineExchange> exchange_;
   std::unique_ptr<TruthSignals> truth_;
   std::unique_ptr<ScriptHost> host_;
-  std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the behaviors' signals
+  std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the signals about the interpreter's own needs
   std::unique_ptr<ControlEngine> control_;
   std::unique_ptr<FaultyHost> faulty_host_;
   std::unique_ptr<FilteredHost> filtered_;

@@ -1,5 +1,5 @@
-// The whole program as one call. A program of your own that registers its control objects (control_object_types.h) and
-// calls this is `kadans` with those types in it: it simulates, checks and reports as the installed one does.
+// The whole program as one function. Your own program may register control objects (control_object_types.h) and call
+// this function. It is then `kadans` with those types: it simulates, checks and reports as the installed program does.
 //
 //   KADANS_REGISTER_CONTROL_OBJECT("spring", make_spring);
 //   int main(int argc, char** argv) { return kadans::run_program(argc, argv); }

@@ -1,4 +1,5 @@
-// Changes what the behaviors of an assembly see, for their tests: a robot on the ideal plant never falls by itself.
+// Changes the snapshot that the behaviors of an assembly see. Tests need this, because a robot on the ideal plant never
+// falls by itself.
 #pragma once
 
 #include "kadans/engine/behavior_host.h"
@@ -8,7 +9,7 @@ namespace kadans {
 class SnapshotFilter {
  public:
   virtual ~SnapshotFilter() = default;
-  // Behavior thread, before each behavior tick.
+  // Called on the behavior thread before each behavior tick.
   virtual void change(Snapshot& snapshot) noexcept = 0;
 };
 

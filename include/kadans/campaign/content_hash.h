@@ -1,5 +1,5 @@
-// A short name for contents: two files, or lists of texts, with the same hash are the same. 64 bits, not against
-// somebody who wants them to collide; the same on every machine.
+// A 64-bit hash that names contents: files or lists of texts with the same hash count as the same. It does not
+// withstand somebody who makes hashes collide on purpose. It is the same on every machine.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,12 @@ namespace kadans {
 
 class ContentHash {
  public:
-  // Texts are kept apart: "ab", "c" is not "a", "bc".
+  // Texts are kept apart: "ab", "c" gives another hash than "a", "bc".
   void add(std::string_view text) noexcept;
   void add(std::uint64_t value) noexcept { hash_.add(value); }
-  // A file's bytes; of a folder the names and bytes of all files in it and below whose name ends so ("" = all), sorted.
-  // What is not there is something too. Throws InputError when a file cannot be read.
+  // add_file adds the bytes of a file; a file that does not exist changes the hash too. add_folder adds the names and
+  // bytes of all files in the folder and below it whose names end with `ending` ("": all files), sorted. Both throw
+  // InputError when a file cannot be read.
   void add_file(const std::filesystem::path& file);
   void add_folder(const std::filesystem::path& folder, std::string_view ending = "");
 

@@ -1,4 +1,4 @@
-// Files that are there whole or not at all, whatever ends the program or the machine.
+// Files that are written whole or not at all, even when the program or the machine stops in between.
 #pragma once
 
 #include <filesystem>
@@ -6,15 +6,15 @@
 
 namespace kadans {
 
-// Writes under a temporary name beside it, forces it to the disk, renames it over what was there, whose mode it keeps.
-// A link is followed, and a device or pipe is written to as it is. Throws InputError that names the file. Two writers
-// at once leave the file of one of them.
+// Writes a temporary file beside `file`, forces it to the disk and renames it over `file`, whose mode it keeps. A link
+// is followed. A device or a pipe is written to directly. Throws InputError that names the file. When two processes
+// write at once, the file of one of them stays.
 void write_durably(const std::filesystem::path& file, std::string_view bytes);
 
-// Something that bytes flow through, /dev/stdout: no file can take its place.
+// True for a character device or a pipe, such as /dev/stdout: it cannot be replaced by a file.
 bool is_device_or_pipe(const std::filesystem::path& file);
-// Where a file of this name lies: at the end of a link, which need not be there yet, else there; a device or pipe stays
-// as it is named. Throws InputError.
+// The file that a symbolic link leads to; it need not exist yet. A path that is no link, a device or a pipe is given
+// back unchanged. Throws InputError when the link leads nowhere.
 std::filesystem::path end_of_link(const std::filesystem::path& file);
 
 }  // namespace kadans

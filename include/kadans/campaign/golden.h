@@ -1,9 +1,10 @@
-// The state hashes that the runs of a suite are known to end with: a file in the tree, beside the folder of its
-// scenarios (config/scenarios.golden.json). A change that should make no difference is shown to make none; one that
-// makes a difference renews the file, and the diff of the tree tells which runs it touched. Hashes of each second tell
-// where.
+// Golden hashes: the state hashes with which the runs of a suite are expected to end. They stand in a file beside the
+// folder of the scenarios (config/scenarios.golden.json). A change to the code that should not alter behavior is
+// checked against them. A change that alters behavior on purpose renews the file, and the diff of the file shows which
+// runs it touched. A hash for each second shows at what time a run begins to differ.
 //
-// The numbers are those of one architecture, whatever the processor: another rounds otherwise and has to have its own.
+// The hashes hold for all processors of one architecture. Another architecture rounds differently and needs a file of
+// its own.
 #pragma once
 
 #include <cstdint>
@@ -22,24 +23,25 @@ struct GoldenRun {
   std::vector<std::string> each_s;  // the first eight digits
 };
 
-// The file that goes with a folder of scenarios.
+// The golden file of a folder of scenarios.
 std::filesystem::path golden_file(const std::filesystem::path& folder);
 
 class GoldenHashes {
  public:
-  // Reads what is there; nothing is an empty list. Throws InputError for a file that is none of these, or of another
-  // machine.
+  // Reads the file; a file that does not exist is an empty list. Throws InputError for a file that is no list of golden
+  // hashes, or that belongs to another architecture.
   explicit GoldenHashes(std::filesystem::path file);
 
   const std::filesystem::path& file() const noexcept { return file_; }
-  // Why this run is not the golden one, "" when it is: "state parts from the golden run between 2 s and 3 s".
+  // Says where this run differs from the golden run, for a person: "its state parts from the golden run's between 2 s
+  // and 3 s; ..."; "" when it does not differ.
   std::string difference(const RunOutcome& run) const;
 
-  // Takes the runs that passed in place of what was known of them; with `all`, forgets what was not run. Gives what
-  // that changes, a line each.
+  // Replaces the golden hashes of the runs that passed. With `all`, it also removes the golden runs that are not among
+  // `runs`. Returns the changes, one line each.
   std::vector<std::string> take(const std::vector<RunOutcome>& runs, bool all);
   std::size_t size() const noexcept { return runs_.size(); }
-  // In one piece, or not at all. Throws InputError when it cannot be written.
+  // Writes the file whole or not at all. Throws InputError when it cannot be written.
   void write() const;
 
  private:

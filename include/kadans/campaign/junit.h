@@ -12,7 +12,7 @@ struct JunitCase {
   std::string file, name;
   double wall_s = 0;
   Verdict verdict = Verdict::passed;
-  std::string type, message, text;  // of what did not pass: a word, a line, all of it
+  std::string type, message, text;  // of a case that did not pass: its kind in a word, one line, the whole text
 };
 
 // A <testsuites> document; characters that XML cannot hold are left out.

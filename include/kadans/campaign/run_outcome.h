@@ -1,4 +1,4 @@
-// What came of one run of a scenario in a process of its own, read from what the process left.
+// The result of one run of a scenario in a process of its own, read from the process's output and exit code.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +22,22 @@ struct RunOutcome {
   RunStatus status = RunStatus::crashed;
   double wall_s = 0, simulated_s = 0;
   std::string state_hash;
-  std::vector<std::string> hashes;  // each second, when they were asked for
+  std::vector<std::string> hashes;  // one for each second, when the run was asked for them
   std::vector<CheckResult> checks;
-  std::vector<EvidenceTrace> traces;     // of the checks that failed
-  std::vector<std::string> transitions;  // the last ones, a line each
-  std::vector<std::string> errors;       // what the run, a behavior or the process said
+  std::vector<EvidenceTrace> traces;     // signals around the moment at which checks failed
+  std::vector<std::string> transitions;  // the last ones, one line each
+  std::vector<std::string> errors;       // messages of the run, of a behavior or of the process
   std::vector<QuantityValue> quantities;
   std::vector<MetricValue> metrics;
   std::string repeat;  // the command that repeats it
-  std::string json;    // the run's own report, "" when it left none
+  std::string json;    // the report that the run printed, "" when it printed none
 };
 
 // `outcome.out` is what `kadans sim --json` prints.
 RunOutcome read_run_outcome(const JobOutcome& outcome);
 
-// The run's own report with what only the outside knows: {status, file, wall_s, repeat, scenario, seed, ...}, one line.
+// The report that the run printed, and what only the parent process knows of it: {status, file, wall_s, repeat,
+// scenario, seed, ...}, on one line.
 std::string run_json(const RunOutcome& run);
 
 }  // namespace kadans

@@ -17,13 +17,13 @@ struct FoundScenario {
   double wall_limit_s = 60;
 };
 
-// All scenarios in a folder and below it, by path. A JSON file is a scenario when its schema or its keys say so; others
-// are passed over. Throws InputError with everything that is wrong in any of them.
+// All scenarios in a folder and below it, sorted by path. A JSON file is a scenario when its schema or its keys say so;
+// other files are passed over. Throws InputError with all mistakes of all scenarios.
 std::vector<FoundScenario> scenarios_in(const std::filesystem::path& folder);
 
-// Of the scenarios in `folder` those that a selector chooses, each once: a file or a folder, a tag, or a pattern over
-// the names ('*' for anything; without one, a part of the name). Without selectors all. Throws InputError for a
-// selector that chooses nothing, with the nearest name or tag.
+// The scenarios in `folder` that at least one selector chooses, each once; without selectors all of them. A selector is
+// a file, a folder, a tag, a pattern over the names with '*', or a part of a name. Throws InputError for a selector
+// that chooses nothing, with the nearest name or tag.
 std::vector<FoundScenario> find_scenarios(const std::filesystem::path& folder,
                                           const std::vector<std::string>& selectors);
 

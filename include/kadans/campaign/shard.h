@@ -7,18 +7,18 @@
 
 namespace kadans {
 
-// Of every `count` cases the one with `index`.
+// Holds every `count`-th case, beginning with case `index`.
 struct Shard {
   std::size_t index = 0, count = 1;
   bool holds(std::size_t number) const noexcept { return number % count == index; }
   bool whole() const noexcept { return count == 1; }
 };
 
-// "0/4" .. "3/4". Throws InputError.
+// Reads "0/4" .. "3/4". Throws InputError.
 Shard parse_shard(const std::string& text);
 
-// What a task of a Slurm array is to do: SLURM_ARRAY_TASK_ID, _COUNT, _MIN and _STEP; nothing outside an array. Throws
-// InputError when the array is no range.
+// The shard of this task in a Slurm array, from SLURM_ARRAY_TASK_ID, _COUNT, _MIN and _STEP; nullopt outside an array.
+// Throws InputError when the array is not a range.
 std::optional<Shard> slurm_shard();
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// What a sample says of what it was drawn from, and how surely. All intervals hold with 95 %.
+// Estimates from a sample, with confidence intervals. All intervals have a confidence of 95 %.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@ struct Interval {
   double low = 0, high = 0;
 };
 
-// Of a share, `hits` of `count` (Wilson, 1927): within 0..1 also for small counts and for none or all.
+// The score interval of a share, `hits` of `count` (Wilson, 1927). It stays within 0..1 also for small counts and when
+// none or all are hits.
 Interval wilson_interval(std::size_t hits, std::size_t count) noexcept;
 
 struct SampleStatistics {
@@ -21,11 +22,11 @@ struct SampleStatistics {
   Interval mean_interval;
 };
 
-// Of the values that are finite. The interval of the mean comes from a bootstrap (percentiles of 2,000 resamples;
-// Efron, 1979), whose random numbers come from the seed and the name alone.
+// Statistics of those values that are finite. The interval of the mean comes from a bootstrap (percentiles of 2,000
+// resamples; Efron, 1979). The bootstrap's random numbers depend on the seed and the name alone.
 SampleStatistics sample_statistics(const std::vector<double>& values, std::uint64_t seed, std::string_view name);
 
-// Linear between the two nearest values; `sorted` ascending and not empty, share 0..1.
+// Interpolates linearly between the two nearest values. `sorted` is ascending and not empty; share is 0..1.
 double quantile(const std::vector<double>& sorted, double share) noexcept;
 
 }  // namespace kadans

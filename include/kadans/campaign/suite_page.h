@@ -1,4 +1,4 @@
-// All runs of a suite as a page: what came of each, how long it took, the way to its own report.
+// All runs of a suite as an HTML page: the result of each run, how long it took, and a link to its own report.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace kadans {
 
-// Links those reports that lie in the folder. `wall_s`: of the whole suite.
+// A run gets a link when its report lies in `folder`. `wall_s` is the time of the whole suite.
 std::string suite_page(const std::vector<RunOutcome>& runs, double wall_s, const std::filesystem::path& folder);
 
 }  // namespace kadans

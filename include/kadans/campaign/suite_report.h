@@ -1,4 +1,5 @@
-// What a suite of runs has to say: for people while it runs and at its end, for continuous integration as JUnit XML.
+// The report of a suite of runs: as text for people, while it runs and at its end, and as JUnit XML for continuous
+// integration.
 #pragma once
 
 #include <string>
@@ -13,17 +14,17 @@ struct SuiteStyle {
   bool unicode = true;
 };
 
-// One run in a line: what came of it, its name, its times.
+// One line for a run: its result, its name, its times.
 std::string suite_line(const RunOutcome& run, const SuiteStyle& style);
 
-// Why a run did not pass: its checks, the signals around the moment as small plots, the last transitions, what was
-// drawn for it, and the command that repeats it.
+// Why a run did not pass: its checks, small plots of the signals around the moment of failure, the last transitions,
+// the values that were drawn for the run, and the command that repeats it.
 std::string failure_report(const RunOutcome& run, const SuiteStyle& style);
 
-// The table at the end: failures first, then counts and times. `wall_s`: of the whole suite.
+// The table at the end: failures first, then counts and times. `wall_s` is the time of the whole suite.
 std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, const SuiteStyle& style);
 
-// A <testsuites> document, one <testcase> a run, as CI servers read it.
+// A <testsuites> document with one <testcase> for each run, as CI servers read it.
 std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s);
 
 }  // namespace kadans

@@ -1,5 +1,6 @@
-// A folder of results: sweep.json says which sweep it is of, cases/ holds one file a case. Files are written whole, so
-// whatever is there counts, and a sweep that was cut off goes on where it was. Several shards may share a folder.
+// A folder with the results of a sweep: sweep.json says which sweep it is, cases/ holds one file for each case. Files
+// are written whole, so every file that exists is valid, and an interrupted sweep continues where it stopped. Several
+// shards may share a folder.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace kadans {
 
-// What all shards of a sweep agree on.
+// The description of a sweep; it is the same for all its shards.
 struct SweepManifest {
   std::string sweep, doc;  // its name
   std::string plan;        // hash of its name and of all its cases
@@ -28,7 +29,7 @@ struct SweepManifest {
 
 SweepManifest manifest_of(const SweepPlan& plan, const std::vector<SweepCase>& cases, const std::string& version);
 
-// What is known of a case, without anything that differs when it is run again.
+// The result of a case, without anything that would differ if it ran again (wall time).
 struct CaseRow {
   std::size_t index = 0;
   std::string id;
@@ -46,16 +47,16 @@ struct CaseRow {
 
 class SweepResults {
  public:
-  // Opens the folder for writing, makes it when it is not there. Throws InputError when it holds another sweep.
+  // Opens the folder for writing, and creates it if need be. Throws InputError when it holds another sweep.
   SweepResults(std::filesystem::path folder, const SweepManifest& manifest);
-  // Opens what is there. Throws InputError when it is no folder of results.
+  // Opens an existing folder. Throws InputError when it holds no results.
   explicit SweepResults(std::filesystem::path folder);
 
   const std::filesystem::path& folder() const noexcept { return folder_; }
   const SweepManifest& manifest() const noexcept { return manifest_; }
   bool has(const SweepCase& one) const;
   void store(const SweepCase& one, const std::string& json) const;
-  // By index. Throws InputError for a file that is no result of this sweep.
+  // Sorted by index. Throws InputError for a file that is no result of this sweep.
   std::vector<CaseRow> rows() const;
 
  private:
@@ -64,10 +65,10 @@ class SweepResults {
   SweepManifest manifest_;
 };
 
-// A case's result file, one line: {plan, case, id} and the run's own report without its evidence.
+// The text of a case's result file, one line: {plan, case, id} and the report of the run without its evidence.
 std::string case_json(const SweepManifest& manifest, const SweepCase& one, const RunOutcome& run);
 
-// Where they differ, for people: "seed 1 and 2"; "" when they are the same.
+// Where two manifests differ, for people: "seed 1 and 2"; "" when they are the same.
 std::string difference(const SweepManifest& a, const SweepManifest& b);
 
 }  // namespace kadans

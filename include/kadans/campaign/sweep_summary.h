@@ -1,4 +1,4 @@
-// What a sweep says: for people as text, for machines as one object.
+// The summary of a sweep: as text for people, as one JSON object for machines.
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@ namespace kadans {
 struct SweepCounts {
   std::size_t cases = 0;  // with a result
   std::size_t passed = 0;
-  std::size_t first_try = 0;  // passed, and the metric that says so is not 0
-  double median_s = 0;        // of the time metric over the runs that passed; NaN without one
+  std::size_t first_try = 0;  // runs that passed and whose first_try metric is not 0
+  double median_s = 0;        // median of the time metric over the runs that passed; NaN without one
 };
 SweepCounts counts(const MergedSweep& sweep);
 
-// Complete, and as many passed as the plan demands.
+// True when no case is missing and the share that passed is at least passed_min.
 bool passed(const MergedSweep& sweep);
 
-// Shares with their intervals, metrics, the checks that failed, the worst cases with the line that repeats each, what
-// is missing. The same for the same rows.
+// Shares with their intervals, metrics, the checks that failed, the worst cases with the command that repeats each, and
+// the missing cases. The same rows give the same text.
 std::string sweep_summary(const MergedSweep& sweep);
 
-// {sweep, cases, passed, first_try, median_s}, one line; null for what the plan does not measure.
+// {sweep, cases, passed, first_try, median_s} on one line; null for a value that the plan does not measure.
 std::string sweep_json(const MergedSweep& sweep);
 
 }  // namespace kadans

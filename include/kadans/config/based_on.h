@@ -1,10 +1,12 @@
-// A file that says only what is different from another one: "based_on" names that one, from the project root.
+// A file may say only what differs from another file, its base. The key "based_on" names the base by its path from the
+// project root.
 //
-//   an object      has the base's keys, and those of the file in place of or after them
-//   a list whose items all have a "name"    the same: items of the same name are merged, new ones come last
-//   anything else  replaces what the base says
-// A base may be based on another one, up to based_on_depth_max. What comes from a base is said to stand where the file
-// names it; so a reader looks at the base first, for itself, that its own mistakes are told in their own place.
+//   an object      keys of the file replace those of the base, new keys come last
+//   a list whose items all have a "name"    items of the same name are merged, new items come last
+//   anything else  the file's value replaces the base's
+// A base may have a base itself, up to based_on_depth_max. Values that come from a base get the place at which the file
+// names the base. So a reader of such files first reads the base alone, so that the base's own mistakes are reported at
+// their own places.
 #pragma once
 
 #include <filesystem>
@@ -18,16 +20,16 @@ namespace kadans {
 
 inline constexpr std::size_t based_on_depth_max = 8;
 
-// A text, and what it is all based on, the nearest first.
+// The merged text, and all files that it is based on, the nearest first.
 struct BasedJson {
   JsonValue value;
   std::vector<std::filesystem::path> bases;
 };
 
-// Throws InputError with the first mistake: of JSON, a base that is not there, or files based on each other.
+// Throws InputError with the first mistake: invalid JSON, a base that does not exist, or files based on each other.
 BasedJson parse_based_json(std::string_view text, const std::string& file);
 
-// The file, and what it is based on. A file that cannot be read is based on nothing.
+// The file and all files that it is based on. A file that cannot be read has no base.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& file);
 
 }  // namespace kadans

@@ -1,9 +1,9 @@
-// A quantity that differs from run to run: how its values are spread, as a configuration says it.
+// The distribution of a quantity that differs from run to run, as a configuration writes it.
 //
 //   { "uniform": [0.5, 1.0] }   { "normal": [1.0, 0.05] }   { "log_uniform": [0.1, 10] }   { "values": [0, 1, 2] }
 //
-// A value is the distribution's quantile at a number u of [0, 1): so plain random draws, Latin hypercubes and grids all
-// come from the same place.
+// A value is the distribution's quantile at a number u in [0, 1). So random draws, Latin hypercubes and grids all use
+// the same function.
 #pragma once
 
 #include <array>
@@ -18,11 +18,11 @@ namespace kadans {
 struct Distribution {
   enum class Kind : std::uint8_t { uniform, log_uniform, normal, values };
   Kind kind = Kind::uniform;
-  std::array<double, 2> of{};  // low and high; of normal: mean and standard deviation
+  std::array<double, 2> of{};  // low and high; for normal: mean and standard deviation
   std::vector<double> values;  // each as likely as the others
-  bool together = false;       // all names that a pattern chooses get the same value, else each its own
+  bool together = false;       // all quantities that the pattern chooses get the same value; else each gets its own
 
-  // The quantile. u in [0, 1); of normal cut off at four standard deviations.
+  // The quantile at u in [0, 1). A normal distribution is cut off at four standard deviations.
   double at(double u) const noexcept;
 };
 
@@ -31,7 +31,7 @@ double normal_quantile(double p) noexcept;
 
 void distribution_fields(Fields& f, Distribution& distribution, Problems& problems);
 
-// One or more quantities of a robot, chosen by a pattern over their names, and how they vary.
+// Quantities of a robot, chosen by a pattern over their names, and their distribution.
 struct Variation {
   PlacedName pattern;  // "joint.*.torque_scale"
   Distribution distribution;

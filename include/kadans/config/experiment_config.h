@@ -1,5 +1,5 @@
-// What sweeps and tunings have in common: scenarios that are run many times, what varies from run to run, and what is
-// measured.
+// The common part of sweeps and tunings: the scenarios that are run many times, the quantities that vary from run to
+// run, and the metrics that are measured.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ struct ExperimentScenario {
   TextPlace place;
 };
 
-// Something that is varied: quantities by a pattern over their names.
+// Quantities that vary, chosen by a pattern over their names.
 struct ExperimentAxis {
   Variation variation;
-  std::uint32_t steps = 5;  // of a grid, when the distribution is continuous
+  std::uint32_t steps = 5;  // points in a grid, when the distribution is continuous
 };
 
 struct ExperimentConfig {
@@ -29,18 +29,18 @@ struct ExperimentConfig {
   std::string doc;
   std::vector<ExperimentScenario> scenarios;
   std::uint64_t seed = 1;
-  bool sample_randomise = false;  // what the scenarios randomise is sampled too, else drawn by each run's seed
+  bool sample_randomise = false;  // samples what the scenarios randomise, too; else each run's seed draws it
   std::vector<ExperimentAxis> vary;
   std::vector<MetricConfig> metrics;
 };
 
-// Reads them, and refuses what is wrong in them. Throws nothing.
+// Reads the fields and adds their mistakes to `problems`. Throws nothing.
 void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& problems);
 
-// Refuses a name that is none of the metrics; "" is none wanted.
+// Adds a problem when `name` is none of the metrics. An empty name is allowed: no metric is wanted.
 void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, Problems& problems);
 
-// The plan of a sweep or of a tuning, whichever the file is: `kadans sim --metrics`. Throws InputError.
+// Reads the metrics alone from the plan of a sweep or of a tuning, for `kadans sim --metrics`. Throws InputError.
 std::vector<MetricConfig> read_metrics(const std::string& file);
 
 }  // namespace kadans

@@ -1,14 +1,15 @@
-// A reading function is a list of fields, and the list is both the reader and the schema.
+// A function that reads an object is a list of its fields. The list is both the reader and the schema.
 //
 //   void engine_fields(Fields& f, EngineSettings& engine) {
 //     f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
 //     f.integer("commands_per_tick_max", engine.commands_per_tick_max, {255, 1024}, "commands applied in one tick");
 //   }
 //
-// Run on a JSON object, each line checks type and range and stores the value; what is not in the file keeps the value
-// it had, which so is the default. Run without an object (describe_fields), each line describes itself, default
-// included; schema.h writes that as JSON Schema. Keys that no line asks for are refused with the nearest known key.
-// Every object may carry a "doc" for people. All mistakes go to one Problems; true means that the value was stored.
+// When the function runs on a JSON object, each line checks type and range and stores the value. A field that is not in
+// the file keeps the value it had, so that value is the default. When the function runs without an object
+// (describe_fields), each line describes its field, default included; schema.h writes the description as JSON Schema. A
+// key that no line asks for is refused, with the nearest known key. Every object may carry a "doc" for people. All
+// mistakes are added to one Problems; a line returns true when it stored the value.
 #pragma once
 
 #include <algorithm>
@@ -61,7 +62,7 @@ struct TextEntry {
   TextPlace text_place;  // of the text
 };
 
-// What a field is, for the schema and the manual.
+// The description of a field, for the schema and the manual.
 struct FieldInfo {
   enum class Kind : std::uint8_t { boolean, integer, number, string, object, list, map };
   Kind kind = Kind::object;
@@ -73,8 +74,8 @@ struct FieldInfo {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   CountRange count;                  // of a list's items
-  std::vector<std::string> choices;  // of a string, when not every one will do
-  std::vector<FieldInfo> fields;     // an object's; a list's or map's one element
+  std::vector<std::string> choices;  // the allowed strings; empty: any string
+  std::vector<FieldInfo> fields;     // of an object; of a list or map one element, which describes its items
 };
 
 class Fields {
@@ -89,15 +90,15 @@ class Fields {
   bool string(std::string_view name, std::string& value, std::string_view doc, Need need = Need::optional);
   bool strings(std::string_view name, std::vector<PlacedName>& values, CountRange count, std::string_view doc,
                Need need = Need::optional);
-  // As many numbers as `values` has.
+  // The file must give as many numbers as `values` has.
   bool numbers(std::string_view name, std::span<double> values, NumberRange range, std::string_view doc,
                Need need = Need::optional);
-  // As many numbers as the file gives.
+  // The file decides how many numbers it gives, within `count`.
   bool number_list(std::string_view name, std::vector<double>& values, CountRange count, NumberRange range,
                    std::string_view doc, Need need = Need::optional);
-  // The members of this object itself: any keys, each with a number.
+  // Reads the members of this object itself: keys are free, each value is a number.
   void number_entries(std::vector<NumberEntry>& entries, NumberRange range, std::string_view doc);
-  // Likewise, each with a string.
+  // The same with strings as values.
   void text_entries(std::vector<TextEntry>& entries, std::string_view doc);
 
   template <std::integral T>
@@ -134,17 +135,17 @@ class Fields {
     return each(open(FieldInfo::Kind::map, name, doc, {}, need), read);
   }
 
-  // False while describing: there is no file.
+  // False while the fields are only described and there is no file.
   bool reading() const noexcept { return value_ != nullptr; }
-  const std::string& key() const noexcept { return key_; }  // under which this object stands in its map
+  const std::string& key() const noexcept { return key_; }  // the key of this object in its map
   TextPlace key_place() const noexcept { return key_place_; }
   TextPlace place() const noexcept { return value_ == nullptr ? TextPlace{} : value_->place; }
   bool has(std::string_view name) const { return value_ != nullptr && value_->find(name) != nullptr; }
-  TextPlace place(std::string_view name) const;   // of the value of a field, or of the object when it has none
+  TextPlace place(std::string_view name) const;   // of the field's value, or of the object when the field is not given
   std::string path(std::string_view name) const;  // "plant.drives["*_knee"].viscous_Nms_per_rad"
   const std::string& path() const noexcept { return path_; }
 
-  // After the last field: refuses the keys that no field asked for.
+  // To be called after the last field: refuses the keys that no field asked for.
   void finish();
 
  private:
@@ -200,7 +201,7 @@ FieldInfo describe_fields(Read&& read) {
   return info;
 }
 
-// A number as short as it can be written without loss: "0.001", "1e-05".
+// The shortest text that gives exactly this number: "0.001", "1e-05".
 std::string number_text(double value);
 
 }  // namespace kadans

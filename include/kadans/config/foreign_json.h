@@ -1,6 +1,6 @@
-// JSON from outside of the process (clients, records, other processes' reports) as trees of nlohmann-json, and trees as
-// text. That library bounds nothing by itself: its trees are copied and written by recursion, its messages quote what
-// came, and it refuses to write a text that is not UTF-8.
+// Reads JSON from outside the process (clients, records, reports of other processes) into trees of nlohmann-json, and
+// writes such trees as text. The library itself has no bounds: it copies and writes trees by recursion, its messages
+// quote the input, and it refuses to write a text that is not UTF-8. These functions add the bounds.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,13 @@
 
 namespace kadans {
 
-// Values nest at most json_depth_max deep (kadans/config/json_value.h). Nothing: it is no JSON, or nests deeper.
+// nullopt when the text is no JSON, or when its values nest deeper than json_depth_max (kadans/config/json_value.h).
 std::optional<nlohmann::ordered_json> read_foreign_json(std::string_view text);
 
-// The same; throws InputError with the place, and never a word of the text. `file` only names it.
+// The same, but throws InputError with the place. The message never quotes the text. `file` only names it.
 nlohmann::ordered_json parse_foreign_json(std::string_view text, const std::string& file = "");
 
-// On one line, or indented by so many blanks. Bytes that are not UTF-8 become U+FFFD.
+// Writes the tree on one line (indent -1) or indented by `indent` blanks. Bytes that are not UTF-8 become U+FFFD.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace kadans

@@ -1,8 +1,8 @@
 // A JSON text (RFC 8259) as a tree in which every value and every key knows its line and column.
 //
-// Stricter than the standard: a key may stand only once in an object, values nest at most 64 deep, a text has at most
-// 16 MB and a million values, numbers must fit a double, the text must be UTF-8. Looser in one thing: // and /* */
-// comments are skipped. Numbers do not depend on the locale.
+// The parser is stricter than the standard: a key may stand only once in an object, values nest at most 64 deep, a text
+// has at most 16 MB and a million values, numbers must fit a double, and the text must be UTF-8. It is looser in one
+// point: it skips // and /* */ comments. Reading numbers does not depend on the locale.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ struct JsonValue {
   TextPlace place;  // of its first character
   bool boolean = false;
   double number = 0;
-  std::string text;                 // of a string; of a number as it was written
+  std::string text;                 // of a string; of a number the text as it was written
   std::vector<JsonValue> items;     // of an array
   std::vector<JsonMember> members;  // of an object, in the order of the file
 
@@ -42,7 +42,7 @@ inline constexpr std::size_t json_depth_max = 64;
 inline constexpr std::size_t json_values_max = 1'000'000;
 inline constexpr std::size_t json_size_max_bytes = input_file_max_bytes;
 
-// Throws InputError with the first mistake; `file` only names the text.
+// Throws InputError with the first mistake. `file` only names the text.
 JsonValue parse_json(std::string_view text, const std::string& file);
 
 }  // namespace kadans

@@ -1,4 +1,5 @@
-// Names chosen by a pattern: '*' stands for any characters, none included; everything else for itself.
+// True when the pattern fits the name. '*' stands for any number of characters, also none; every other character stands
+// for itself.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@ bool matches(std::string_view pattern, std::string_view name) noexcept;
 // Indices of the names that match, in their order.
 std::vector<std::size_t> matching(std::string_view pattern, std::span<const std::string> names);
 
-// Letters, digits and '_': what may become a part of signals' names.
+// True when the name has only letters, digits and '_', so that it may be a part of a signal's name.
 bool is_word(std::string_view name) noexcept;
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// What the supervisor can ask of what plays.
+// An order of the supervisor to the behaviors that play.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@ namespace kadans {
 
 struct PlayOrder {
   enum class Kind : std::uint8_t {
-    play,     // `list` follows what plays
-    replace,  // what plays leaves its states, then `list` begins
-    pause,    // charts do not step, motions come to rest
-    resume,   // both go on
-    stop,     // what plays leaves its states
-    reload,   // `behavior` goes on with the text of `file`
+    play,     // `list` is appended to what plays
+    replace,  // the playing behaviors leave their states, then `list` begins
+    pause,    // charts stop stepping, motions come to rest
+    resume,   // charts and motions continue
+    stop,     // the playing behaviors leave their states
+    reload,   // `behavior` continues with the program text of `file`
   };
   Kind kind = Kind::play;
   std::vector<PlayItem> list{};
@@ -25,12 +25,12 @@ struct PlayOrder {
   std::filesystem::path file{};
 };
 
-// Who takes such orders.
+// Takes such orders.
 class OrderTaker {
  public:
   virtual ~OrderTaker() = default;
-  // Behavior thread, between ticks: takes effect with the next. Throws InputError, and nothing changes, when something
-  // in it is wrong.
+  // Call on the behavior thread between ticks; the order takes effect in the next tick. Throws InputError when the
+  // order is wrong; then nothing changes.
   virtual void order(const PlayOrder& order) = 0;
 };
 

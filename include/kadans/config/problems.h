@@ -1,6 +1,6 @@
-// Mistakes in a file from outside, collected while it is read and thrown as one InputError, in the order of the file.
-// Everything read from a file keeps its place, so that what is only found wrong later (a parameter nobody declares, a
-// signal nobody records) can still be refused where it was written.
+// The mistakes in a file from outside. They are collected while the file is read and thrown as one InputError, in the
+// order of the file. All that is read from a file keeps its place. So a mistake that is found only later (an undeclared
+// parameter, a signal that is not recorded) is still reported at the place where it was written.
 #pragma once
 
 #include <span>
@@ -23,11 +23,12 @@ class Problems {
   explicit Problems(std::string file) : file_(std::move(file)) {}
 
   void add(TextPlace place, std::string message);
-  void add(const InputError& error);  // what another file got wrong, behind the problems of this one
-  // "unknown joint 'l_kne', did you mean 'l_knee'?"; with nothing near, the first known names.
+  void add(const InputError& error);  // mistakes of another file; they are listed after those of this file
+  // Adds "unknown joint 'l_kne', did you mean 'l_knee'?". When no known name is near, the message lists the first known
+  // names.
   void add_unknown(TextPlace place, std::string_view what, std::string_view wrong, std::span<const std::string> known,
                    std::string_view where = "");
-  void throw_if_any() const;  // InputError, sorted by place, nothing said twice
+  void throw_if_any() const;  // throws InputError, sorted by place, without duplicates
 
   bool empty() const noexcept { return problems_.empty() && others_.empty(); }
   const std::string& file() const noexcept { return file_; }
@@ -42,10 +43,11 @@ class Problems {
 std::string unknown_name(std::string_view what, std::string_view wrong, std::span<const std::string> known,
                          std::string_view where = "");
 
-// A name from outside in a message: in single quotes, not too long, control characters escaped.
+// A name from outside, made safe for a message: in single quotes, shortened when too long, control characters replaced
+// by '?'.
 std::string in_quotes(std::string_view name);
 
-// One mistake at a place, thrown at once.
+// Throws one mistake at a place at once.
 [[noreturn]] void refuse(const std::string& file, TextPlace place, const std::string& message);
 [[noreturn]] void refuse_unknown(const std::string& file, const PlacedName& wrong, std::string_view what,
                                  std::span<const std::string> known);

@@ -1,5 +1,5 @@
-// Paths inside a file are meant from the root of the project that the file belongs to, so that a copied or installed
-// tree works on its own, from any working directory.
+// Paths inside a file start at the root of the project to which the file belongs. So a copied or installed tree works
+// from any working directory.
 #pragma once
 
 #include <filesystem>
@@ -10,16 +10,17 @@
 
 namespace kadans {
 
-// The nearest folder above `file` that holds at least two of the folders `config`, `models` and `behaviors`. A file
-// outside any project belongs to the project around the working directory, else to its own folder.
+// The root is the nearest folder above `file` that holds at least two of the folders `config`, `models` and
+// `behaviors`. A file outside any project belongs to the project around the working directory; without one, its own
+// folder is the root.
 std::filesystem::path project_root(const std::filesystem::path& file);
 
-// A path as written inside `file`: absolute paths stay, "./x" and "../x" are meant from the file's folder, all others
-// from its project root.
+// Resolves a path as it is written inside `file`: an absolute path stays, "./x" and "../x" start at the file's folder,
+// and all others start at its project root.
 std::filesystem::path resolve(std::string_view path, const std::filesystem::path& file);
 
-// resolve, for something that must be an existing file: else adds a problem at `place`, with the nearest file that is
-// there, and gives an empty path. `what` names the key for people: "urdf".
+// Resolves a path that must name an existing file. If there is none, it adds a problem at `place` with the nearest
+// existing file, and returns an empty path. `what` names the key for people: "urdf".
 std::filesystem::path resolve_file(std::string_view path, TextPlace place, std::string_view what, Problems& problems);
 
 }  // namespace kadans

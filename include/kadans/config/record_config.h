@@ -1,10 +1,11 @@
-// Which signals a record holds, and how often: rates by patterns over the signals' names, later entries override
-// earlier ones. A robot's configuration says so, a run's command line may say otherwise:
+// Which signals a record holds and at what rate. Rates are given by patterns over the signals' names; later entries
+// override earlier ones. A robot's configuration sets them, and a run's command line may override them:
 //
-//   "record": {"signals": {"plant.*": 0, "control.*": 100}}     the rest in each tick
-//   --signals "joint.*, base.*@100"                             these and nothing else
+//   "record": {"signals": {"plant.*": 0, "control.*": 100}}     these rates, all other signals in each tick
+//   --signals "joint.*, base.*@100"                             only these signals
 //
-// Whether a pattern fits a signal shows only when the signals of the run are declared: ticks_between() says so.
+// The signals of a run are known only when they are declared, so patterns that fit no signal are found by
+// ticks_between().
 #pragma once
 
 #include <cstdint>
@@ -18,26 +19,27 @@
 namespace kadans {
 
 struct SignalChoice {
-  std::string file;                   // or the option, for messages
-  std::vector<NumberEntry> rates_Hz;  // 0: not recorded; infinite: in each tick
-  bool others = true;                 // signals that no entry fits are recorded in each tick
+  std::string file;                   // the configuration's file or the option's name, for messages
+  std::vector<NumberEntry> rates_Hz;  // 0: not recorded; infinity: recorded in each tick
+  bool others = true;                 // signals that fit no entry are recorded in each tick
 };
 
 struct RecordConfig {
   SignalChoice signals;
   bool single_precision = false;
-  double flight_s = 30;  // what a flight recorder keeps; 0: there is none
-  double flight_MB = 8;  // in which it keeps that, packed
+  double flight_s = 30;  // time span that the flight recorder keeps; 0: no flight recorder
+  double flight_MB = 8;  // memory for that span, compressed
 };
 
 void record_fields(Fields& f, RecordConfig& record);
 
-// "joint.*, base.*@100". Throws InputError that names `option`.
+// Reads a text such as "joint.*, base.*@100". Throws InputError that names `option`.
 SignalChoice parse_signal_choice(const std::string& text, const std::string& option);
 
-// By signal: each n-th tick, 0: not at all. Throws InputError with the place of a pattern that fits no signal and the
-// name that was meant, and of a rate that is not the control rate divided by a whole number. Signals of what not every
-// run has, a model's truth (plant.*) and behaviors (behavior.*), need not be there.
+// For each signal n: it is recorded in each n-th tick, 0: not at all; an empty list: all signals in each tick. Throws
+// InputError with the place for a pattern that fits no signal, with the nearest name, and for a rate that is not the
+// control rate divided by a whole number. Patterns for a model's truth (plant.*) and for behaviors (behavior.*) may fit
+// no signal, because not every run has such signals.
 std::vector<std::uint32_t> ticks_between(const SignalChoice& choice, const SignalTable& signals,
                                          double control_period_s);
 

@@ -1,9 +1,10 @@
-// A robot's configuration: one JSON file that names its URDF and says everything else about plant, estimator, safety,
-// engine, control objects, control sets and poses. Keys are the structs' fields, units included; where the same is
-// said of many joints the key is a pattern over the joints' names ("*_knee"), later entries override earlier ones.
+// A robot's configuration: one JSON file that names the robot's URDF and sets everything else of plant, estimator,
+// safety, engine, control objects, control sets and poses. The keys are the names of the structs' fields, units
+// included. For settings of joints the key is a pattern over the joints' names ("*_knee"); later entries override
+// earlier ones.
 //
-// Nothing here knows a concrete control object: the names of types come from the caller, parameters are checked
-// against the objects' own tables by apply_parameters.
+// This code knows no concrete control object. The caller gives the names of the types, and apply_parameters checks the
+// parameters against the objects' own tables.
 #pragma once
 
 #include <cstdint>
@@ -35,16 +36,16 @@ struct ObjectConfig {
   TextPlace place;
   PlacedName type;
   std::vector<std::size_t> joints;       // in the order of the model
-  std::uint32_t divisor = 1;             // low level every n-th control tick
-  std::uint32_t high_level_divisor = 1;  // high level every n-th behavior tick
-  std::vector<TextEntry> options;        // what its type asks for beyond parameters
-  std::vector<NumberEntry> parameters;   // key: pattern over the object's parameter names, without its own
+  std::uint32_t divisor = 1;             // the low level runs every n-th control tick
+  std::uint32_t high_level_divisor = 1;  // the high level runs every n-th behavior tick
+  std::vector<TextEntry> options;        // settings of its type other than parameters
+  std::vector<NumberEntry> parameters;   // key: pattern over the parameters' names without the object's name
   std::vector<PresetConfig> presets;
 };
 
-// Where the robot goes when a behavior failed.
+// The posture that the robot takes after a behavior has failed.
 struct SafeConfig {
-  std::string pose;  // "": it holds its last set-points
+  std::string pose;  // "": the robot holds its last set-points
   double after_s = 0.5;
   double time_s = 1.5;
 };
@@ -57,7 +58,7 @@ struct RobotConfig {
   EngineSettings engine;
   PlantSettings plant;
   PlantTypes plant_types = kadans::plant_types();  // with this robot's settings
-  JoystickSettings joystick;                       // engine.joystick: whether the file has one
+  JoystickSettings joystick;                       // engine.joystick is true when the file has one
   EstimateSettings estimate;
   SafetySettings safety;
   std::vector<ObjectConfig> objects;
@@ -65,32 +66,33 @@ struct RobotConfig {
   SetMask initial_sets = 1;
   std::vector<std::uint32_t> at_drives;  // objects in no set, see control_sets.h
   SwitchSettings switching;
-  std::vector<UnheldLaw> unheld;  // one a joint
+  std::vector<UnheldLaw> unheld;  // one for each joint
   std::vector<PoseInfo> poses;
-  std::vector<BehaviorValue> behavior_values;  // whether a behavior has the parameter shows when it is loaded
+  std::vector<BehaviorValue> behavior_values;  // checked against the behavior's parameters when it is loaded
   std::string start_pose;
   SafeConfig safe;
   RecordConfig record;
 };
 
-// Throws InputError with everything that is wrong, the URDF's mistakes included. `object_types`: the types of control
-// objects that the program knows; none: any, what a plug-in would bring is not asked.
+// Throws InputError with all mistakes, those of the URDF included. `object_types` are the types of control objects that
+// the program knows; when it is empty, types are not checked, for the plug-ins that may bring them are not loaded.
 RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types);
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
                                    std::span<const std::string> object_types);
 
-// A plug-in that the file names, found.
+// A plug-in that the file names; its file exists.
 struct PluginFile {
   std::filesystem::path file;
   TextPlace place;
 };
-// The plug-ins alone: they must be loaded before the types of control objects are known. Throws InputError when the
-// file is no JSON or names a plug-in that is not there; other mistakes are read_robot_config's to tell.
+// Reads the plug-ins alone, because they must be loaded before the types of control objects are known. Throws
+// InputError when the file is no JSON or names a plug-in that does not exist. read_robot_config reports all other
+// mistakes.
 std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot);
 
-// Sets the configured parameters in the tables of `catalog`, whose objects were made from config.objects in their
-// order, and fills the objects' presets. Throws InputError on a pattern that fits no parameter of the object, with the
-// nearest one, and on a value out of a parameter's range.
+// Sets the configured parameters in the tables of `catalog` and fills the objects' presets. The catalog's objects must
+// have been made from config.objects in the same order. Throws InputError for a pattern that fits no parameter of the
+// object, with the nearest name, and for a value out of a parameter's range.
 void apply_parameters(const RobotConfig& config, Catalog& catalog);
 
 // The fields of the file, for the schema.

@@ -1,4 +1,4 @@
-// What a scenario demands: of one signal, that it stays within bounds; of several, a condition in Lua.
+// A check of a scenario: one signal must stay within bounds, or a Lua condition over several signals must hold.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace kadans {
 
-// Each speaks of what the check demands: a signal within [min, max], or the condition `that`.
+// "It" is the demand of the check: the signal is within [min, max], or the condition `that` is true.
 enum class CheckKind : std::uint8_t {
   always,      // it holds in every tick
-  never,       // in none
-  eventually,  // in at least one
-  at_end,      // in the last
-  within,      // whenever `when` becomes true, it holds at the latest within_s later
-  settles,     // from `when` on (or from_s) it holds for good at the latest within_s later
+  never,       // it holds in no tick
+  eventually,  // it holds in at least one tick
+  at_end,      // it holds in the last tick
+  within,      // each time that `when` becomes true, it holds at most within_s later
+  settles,     // at most within_s after `when` (or from_s) it begins to hold, and holds until the end
 };
 
 struct ScenarioCheck {
@@ -26,15 +26,16 @@ struct ScenarioCheck {
   std::string signal;  // "" with a condition
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  std::string that;  // a condition in Lua, "" with a signal
-  std::string when;  // of within and settles
+  std::string that;  // a condition in Lua; "" with a signal
+  std::string when;  // for within and settles
   double within_s = 0;
-  double from_s = 0;                                         // looked at from here ...
+  double from_s = 0;                                         // the check covers the time from here ...
   double until_s = std::numeric_limits<double>::infinity();  // ... to here, both included
   TextPlace signal_place, that_place, when_place;
 };
 
-// The fields of one check; with a file, what they say together is looked at as well. `others` are those before it.
+// The fields of one check. When there is a file, it also verifies that the fields fit together. `others` are the checks
+// before it.
 void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std::vector<ScenarioCheck>& others,
                   Problems& problems);
 

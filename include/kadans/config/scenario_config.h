@@ -1,4 +1,4 @@
-// A scenario: a robot, a plant, the behaviors it plays and what must hold meanwhile, in one JSON file.
+// A scenario in one JSON file: a robot, a plant, the behaviors that play, and the checks that must hold.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +20,19 @@ namespace kadans {
 
 inline constexpr double scenario_duration_max_s = 1e6;  // of simulated time
 
-// A joystick's recording that is played.
+// A recording of a joystick that is played back.
 struct ScenarioJoystick {
   std::string recording;  // "": none
   TextPlace place;
   double at_s = 0;
-  double lost_at_s = std::numeric_limits<double>::infinity();  // from then on it is unplugged
+  double lost_at_s = std::numeric_limits<double>::infinity();  // the joystick is unplugged from then on
 };
 
-// Which plug-ins the robot may load. Those of a record from elsewhere are not taken on trust.
+// Which plug-ins the robot may load. Plug-ins that a record from elsewhere names are not trusted.
 struct PluginGate {
   bool closed = false;
-  std::vector<std::filesystem::path> let_in;  // although it is closed: absolute, normal
-  std::string remedy;                         // for the others
+  std::vector<std::filesystem::path> let_in;  // allowed although the gate is closed: absolute, normalised paths
+  std::string remedy;                         // what a person can do to allow the others, for the message
 
   bool lets_in(const std::filesystem::path& file) const;
 };
@@ -42,34 +42,35 @@ struct ScenarioConfig {
   std::string name;
   std::string doc;
   std::string robot;             // path of the robot's configuration, resolved
-  std::string plant = "bullet";  // a type of plant_type.h; in a file a model
-  std::string peer;              // not in the file: where the drives of one that is no model are; "": the robot's own
+  std::string plant = "bullet";  // name of a plant type (plant_type.h); a file may name only a model
+  std::string peer;  // not in the file: address of a plant that is no model; "": the one in the robot's configuration
   double duration_s = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> tags;
-  std::uint32_t repeat = 1;      // runs of it in a test, each with the next seed
+  std::uint32_t repeat = 1;      // runs of it in `kadans test`, each with the next seed
   double wall_limit_s = 60;      // a run that takes longer is stopped
   PlacedName start_pose;         // "": the robot's own
-  std::vector<NumberEntry> set;  // quantities, by patterns over their names
+  std::vector<NumberEntry> set;  // values of quantities, by patterns over their names
   std::vector<Variation> randomise;
-  std::vector<NumberEntry> set_last;  // not in the file: what the command line sets, after all draws
+  std::vector<NumberEntry> set_last;  // not in the file: values that the command line sets, after all random draws
   std::vector<PlayItem> behaviors;
   std::vector<ScenarioEvent> events;
   std::vector<ScenarioPush> pushes;
   std::vector<ScenarioFault> faults;
   WorldConfig world;
   ScenarioJoystick joystick;
-  std::string joystick_device;  // not in the file: of a live run
-  bool on_wall_clock = false;   // likewise: time does not stand while a behavior is slow
+  std::string joystick_device;  // not in the file: device of a run on the wall clock
+  bool on_wall_clock = false;   // not in the file: time goes on while a behavior is slow
   std::vector<ScenarioCheck> checks;
   PluginGate plugins;  // not in the file
 };
 
-// Where the names in its lists are looked for.
+// The folders in which the names of its behaviors are looked up.
 PlayFolders folders_of(const ScenarioConfig& scenario);
 
-// Throws InputError with everything that is wrong. The files that it names are there, but not yet read; whether the
-// signals exist is for whoever has the table: refuse_unknown(file, {check.signal, check.signal_place}, "signal", ...).
+// Throws InputError with all mistakes. The files that the scenario names exist, but they are not read yet. Signals are
+// not checked here: code that has the signal table does so with refuse_unknown(file, {check.signal,
+// check.signal_place}, "signal", ...).
 ScenarioConfig read_scenario_config(const std::filesystem::path& file);
 ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file);
 

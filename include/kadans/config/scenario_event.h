@@ -1,5 +1,5 @@
-// What happens in a scenario at a time given beforehand, so that the run repeats: orders of the supervisor, and
-// behaviors that go on with another file as if somebody had saved it.
+// An event of a scenario: an order of the supervisor at a given time, so that the run can be repeated. A reload lets a
+// behavior continue with another file, as if somebody had saved it.
 #pragma once
 
 #include "kadans/config/fields.h"
@@ -12,7 +12,8 @@ struct ScenarioEvent {
   PlayOrder order;
 };
 
-// The fields of one event. Lists are read with the folders; a reload's behavior is for whoever knows the names.
+// The fields of one event. `folders` are used to find the behaviors of a list. The name of a reload's behavior is not
+// checked here, because the names are known only when the behaviors play.
 void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, Problems& problems);
 
 }  // namespace kadans

@@ -1,4 +1,5 @@
-// Something that fails in a scenario: a sensor, a drive, the behaviors' tick, the commands on their way, the clock.
+// A fault that a scenario injects: in a sensor, a drive, the supply, the behaviors' tick, the transport of commands, or
+// the clock.
 #pragma once
 
 #include <limits>
@@ -34,7 +35,8 @@ struct ScenarioFault {
     clock_missed,
   };
   Kind kind = Kind::sensor_silent;
-  // A joint; of sensors also a foot's link, a sensor's name, or "imu"; "" of what is the robot's as a whole.
+  // The name of a joint; for a sensor fault also of a foot's link or a sensor, or "imu"; "" for faults of the whole
+  // robot.
   PlacedName of;
   double from_s = 0;
   double until_s = std::numeric_limits<double>::infinity();  // not included

@@ -1,4 +1,4 @@
-// A push on a link of the robot, as a force over a time.
+// A push on a link of the robot: a force that acts for a time.
 #pragma once
 
 #include <vector>

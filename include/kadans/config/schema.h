@@ -1,5 +1,5 @@
-// JSON Schema (draft-07) from the same field lists that read the files, so that editors complete and check them.
-// config/schema/*.schema.json are these texts; a test compares them.
+// Makes JSON Schemas (draft-07) from the same field lists that read the files, so that editors can complete and check
+// the files. config/schema/*.schema.json hold these texts; a test compares them.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// A tuning: parameters of control objects that are to be found so that a metric of scenarios becomes as small as it
-// can be over many randomised runs, in one JSON file.
+// A tuning, in one JSON file: it searches values for parameters of control objects that make a metric of the scenarios
+// as small as possible over many randomised runs.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,26 @@
 
 namespace kadans {
 
-// One number that is sought; all parameters that the pattern chooses get it.
+// One number that is searched; all parameters that the pattern chooses get it.
 struct TunedParameter {
   PlacedName pattern;           // "control.posture.*_knee.kp_Nm_per_rad"
-  Distribution range;           // uniform or log_uniform between the least and the greatest value
-  std::optional<double> start;  // else what the robot's configuration says
+  Distribution range;           // uniform or log_uniform between the least and the greatest allowed value
+  std::optional<double> start;  // without it, the search starts at the value in the robot's configuration
 };
 
 struct TunePlan : ExperimentConfig {
   std::vector<TunedParameter> tune;
-  std::uint32_t runs = 8;         // of each candidate, the same for all
-  std::uint32_t check_runs = 40;  // of before and after, others than those
+  std::uint32_t runs = 8;         // runs of each candidate; all candidates have the same ones
+  std::uint32_t check_runs = 40;  // runs before and after the tuning, with other seeds
   std::uint32_t population = 8;   // candidates of a generation
   std::uint32_t generations = 20;
   double step = 0.25;       // first spread of the candidates, as a share of the ranges
   PlacedName score;         // metric
-  bool greatest = false;    // its greatest value is sought instead of its least
-  double failed_score = 0;  // what a run counts that did not pass or has no value
+  bool greatest = false;    // the greatest value is searched instead of the least
+  double failed_score = 0;  // score of a run that did not pass or has no value
 };
 
-// Throws InputError with everything that is wrong; scenarios are there, but not yet read.
+// Throws InputError with all mistakes. The scenarios' files exist, but they are not read yet.
 TunePlan read_tune_plan(const std::filesystem::path& file);
 TunePlan read_tune_plan_text(const std::string& text, const std::string& file);
 

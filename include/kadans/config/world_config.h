@@ -1,6 +1,6 @@
-// The "world" of a scenario: a list of what stands, lies, rolls and swings around the robot, the ground's slope and
-// motion, and what the robot is given to carry. Which keys an entry has follows from its kind; plant/world.h says what
-// they mean.
+// The "world" of a scenario: a list of the fixed and moving bodies around the robot, the slope and motion of the
+// ground, and the payloads that the robot carries. The kind of an entry decides which keys it has; plant/world.h
+// explains them.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ namespace kadans {
 
 struct WorldConfig {
   WorldSettings settings;
-  std::vector<TextPlace> payload_links;  // where each payload's link is named
+  std::vector<TextPlace> payload_links;  // places in the file at which the payloads' links are named
 };
 
-// The list under the key "world".
+// Reads the list under the key "world".
 void world_fields(Fields& f, WorldConfig& world, Problems& problems);
 
 // The settings for this robot. Throws InputError when a payload's link is not one of its links.

@@ -1,6 +1,6 @@
-// A robot that stands on two feet, as it is or a moment ahead: the kinematics of the measured state, moved on with the
-// filtered joint velocities and the gyro, so that a velocity of any point is a difference in which no position is
-// differentiated. What the measures of balance are made of.
+// The kinematics of a robot on two feet, now or a moment ahead. The state a moment ahead is the measured state, moved
+// on with the filtered joint velocities and the gyro. So the velocity of any point is the difference between the two,
+// and no measured position is differentiated. The measures of balance are built on this.
 //
 // One owner, the control thread. Only the constructor allocates or throws.
 #pragma once
@@ -14,15 +14,16 @@
 namespace kadans {
 
 inline constexpr double gravity_of_balance_m_s2 = 9.81;
-inline constexpr double lowest_com_m = 0.1;  // over the feet's frames; below, a robot does not stand
-inline constexpr double moment_s = 0.001;    // how far ahead velocities are looked for
+inline constexpr double lowest_com_m = 0.1;  // over the feet's frames; a robot does not stand below this
+inline constexpr double moment_s = 0.001;    // how far ahead velocities are computed
 
 class BodyAhead {
  public:
-  // Of the options left_foot and right_foot: the links that stand. Throws OptionError. Keeps a reference to the model.
+  // The feet are the links that the options left_foot and right_foot name. Throws OptionError. Keeps a reference to the
+  // model.
   explicit BodyAhead(const ObjectSetup& setup);
 
-  // The base's origin at 0, the base turned by `upright` and by what it turns in ahead_s.
+  // Puts the base's origin at 0 and turns the base by `upright` and by its rotation in ahead_s.
   void update(const ControlInput& input, const Quat& upright, double ahead_s) noexcept;
 
   const Kinematics& kinematics() const noexcept { return kinematics_; }      // as of the last update

@@ -1,5 +1,6 @@
-// What the control side offers to the outside, by name: objects, control sets, poses, presets and the tables. Made
-// before the loop, read by any thread after, never changed. Scripts, viewers and `check` need nothing else.
+// What the control layer offers to the other layers, by name: objects, control sets, poses, presets and the tables. It
+// is made before the loop and never changed afterwards, so any thread may read it. Scripts, viewers and `check` need
+// nothing else.
 #pragma once
 
 #include <cstdint>
@@ -38,27 +39,28 @@ struct ObjectInfo {
 struct ControlSetInfo {
   std::string name;
   std::vector<std::uint32_t> objects;       // in the order of computing
-  std::vector<Composition> compositions{};  // one an object; empty: every object sets its joints
+  std::vector<Composition> compositions{};  // one per object; empty: every object sets its joints
 };
 
-// Positions for some joints, by name; what a behavior moves to.
+// A named posture that a behavior can move to: positions for some joints.
 struct PoseInfo {
   std::string name;
   std::vector<std::pair<std::size_t, double>> position_rad;  // joint index, position
 };
 
-// What a joint does that no active control set holds: back to where it was let go, with this stiffness. 0 and 0: off.
+// What a joint does while no active control set holds it: a spring and a damper draw it back to where it was let go.
+// Both 0: the joint is off.
 struct UnheldLaw {
   double stiffness_Nm_per_rad = 0;
   double damping_Nms_per_rad = 0;
 };
 
-// What a parameter of a behavior is on this robot, before anybody changes it.
+// The first value of a behavior's parameter on this robot, as its configuration gives it.
 struct BehaviorValue {
   std::string behavior, parameter;
   double value = 0;
   std::string chunk{};  // the behavior's file, from the project root
-  std::string file{};   // where it stands
+  std::string file{};   // the configuration that gives it
   int line = 0, column = 0;
 };
 
@@ -71,13 +73,12 @@ struct Catalog {
   std::vector<ControlSetInfo> sets;
   std::vector<PoseInfo> poses;
   SetMask initial_sets = 1;
-  std::vector<std::uint32_t>
-      at_drives;                 // objects that are in no set: they make the drives do what sets and safety want
-  std::vector<DriveLaw> drives;  // one a joint; empty: switching is not smoothed
+  std::vector<std::uint32_t> at_drives;  // the actuator-level objects, which are in no set (control_sets.h)
+  std::vector<DriveLaw> drives;          // one per joint; empty: switching is not smoothed
   SwitchSettings switching;
-  std::vector<UnheldLaw> unheld;  // one a joint; empty: off
+  std::vector<UnheldLaw> unheld;  // one per joint; empty: off
   std::vector<BehaviorValue> behavior_values;
-  std::vector<SensorChannel> sensors;  // beside joints, IMU and feet, in the order of the frames
+  std::vector<SensorChannel> sensors;  // other than joints, IMU and feet; in the order of the frames
 };
 
 }  // namespace kadans

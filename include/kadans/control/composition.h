@@ -1,13 +1,13 @@
-// How several control objects share a joint. Objects of a set compute in its order; each one's proposal for a joint is
-// composed with what the ones before it made of that joint:
+// How several control objects share a joint. The objects of a set compute in the order of the set. Each object's
+// proposal for a joint is combined with the result of the objects before it:
 //
-//   set       replaces it
-//   sum       adds its effort; the mode stays (a joint that is off takes the proposal's mode)
-//   blend     (1 - w) of what was there and w of the proposal, w being a parameter of the set; in different modes there
-//             is nothing between: the heavier one writes
-//   priority  replaces it while the object claims the joint, that is while its proposal is not off
+//   set       the proposal replaces the result
+//   sum       the proposal's effort is added; the mode stays (a joint that is off takes the whole proposal)
+//   blend     (1 - w) of the result and w of the proposal; w is a parameter of the set. Different modes do not mix: the
+//             one with the larger weight is taken
+//   priority  the proposal replaces the result while the object claims the joint: while the proposal is not off
 //
-// The limits of the safety layer come last, over whatever was composed.
+// The safety layer applies its limits last, to the final result.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ namespace kadans {
 
 enum class Composition : std::uint8_t { set, sum, blend, priority };
 
-// True when the proposal has a share in what stands in `actuation` now. `weight` counts for blend alone.
+// Changes `actuation`, the result so far, to the new result. True when the proposal has a share in it. `weight` is used
+// for blend only.
 bool compose(Composition composition, double weight, const JointActuation& proposal,
              JointActuation& actuation) noexcept;
 

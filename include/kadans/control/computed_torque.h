@@ -5,22 +5,24 @@
 //   u = limit((M(q) + J_rotor) a + h(q, qd) + viscous qd_ref + I, +-effort_max),   dI/dt = ki (q_ref - q)
 //
 // With the mass matrix M and the bias h (Coriolis, centrifugal and gravity forces) of the robot every joint's error
-// obeys e'' + kd e' + kp e = 0, whatever the pose. The high level computes M and h (model/dynamics.h), about 14 us for
-// TULip, for half of its period ahead, the middle of the time in which they are used; the low level takes the newest
-// there are and never waits. They hold for the robot as it hangs from its base, the base carried evenly and pointing
-// where the estimator says: limbs in the air, or a robot on a stand. Where feet bear the robot the model is short of
-// its weight; the integral then has to carry it. Joints that other objects drive, and passive ones, count as not
-// accelerating.
+// obeys e'' + kd e' + kp e = 0, whatever the pose. The high level computes M and h (model/dynamics.h) in about 14 us
+// for TULip. It computes them for half of its period ahead, the middle of the time in which they are used. The low
+// level takes the newest ones and never waits.
+//
+// M and h hold for a robot that hangs from its base: limbs in the air, or a robot on a stand. The base is carried
+// evenly, with its orientation from the estimator. Where feet bear the robot, its weight is missing in the model and
+// the integral has to carry it. Passive joints and joints that other objects drive count as not accelerating.
 //
 // Set-points  <joint>.position_rad (within the joint's limits), reached by a minimum-jerk motion in the time given.
-// Parameters  a Config a joint; gains are those of the error's equation, so kp = w^2 and kd = 2 d w give it the natural
-//             frequency w (rad/s) and the damping ratio d.
-// Signals     a State a joint, and model_age_s: since M and h were measured, or since the start while they are older.
-// Start       the reference goes on with the joint and comes to rest. Torque that the law does not explain goes to the
-//             integral when ki > 0, else it fades within 0.2 s of the first M and h of this activation.
-// Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops; the others
-//             count it as not accelerating. Its reference is taken anew where it is measured again. A snapshot that is
-//             not finite gives no M and h: the last ones stand, and model_age_s grows.
+// Parameters  a Config per joint; gains are those of the error's equation, so kp = w^2 and kd = 2 d w give it the
+//             natural frequency w (rad/s) and the damping ratio d.
+// Signals     a State per joint, and model_age_s: the time since the measurement that M and h come from, or since the
+//             start while they are older than the start.
+// Start       the reference continues with the joint's motion and comes to rest. Torque that the law does not explain
+//             goes to the integral when ki > 0; else it fades within 0.2 s after the first M and h of this activation.
+// Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops; for the
+//             other joints it counts as not accelerating. Its reference starts anew when it is measured again. A
+//             snapshot that is not finite gives no M and h: the last ones stay, and model_age_s grows.
 #pragma once
 
 #include <limits>
@@ -75,7 +77,7 @@ class ComputedTorque final : public ControlObject {
  private:
   // From the high level to the low level: behavior thread -> control thread.
   struct ModelData {
-    std::int64_t time_ns = std::numeric_limits<std::int64_t>::min();  // of the state they belong to
+    std::int64_t time_ns = std::numeric_limits<std::int64_t>::min();  // of the state that M and h belong to
     JointMatrix mass;                                                 // kg m2
     std::array<double, max_joints> bias_Nm{};
   };

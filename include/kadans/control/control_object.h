@@ -1,11 +1,11 @@
 // A control object: an algorithm for one joint or many, in two levels.
 //
 // The low level, step(), runs in the control thread each tick: bounded, no allocation, no lock, no exception. The high
-// level, update(), runs in the behavior thread and may be costly; what it computes reaches the low level through a
-// Latest<> that the object owns. Neither reads a clock: dt comes in.
+// level, update(), runs in the behavior thread and may be costly. What it computes reaches the low level through a
+// Latest<> that the object owns. Neither level reads a clock: dt comes in.
 //
-// An object declares its tunables, its recorded state and its set-points once, in declare(); configuration, scripts,
-// recorder and viewers know it only through those tables.
+// An object declares its tunables, its recorded state and its set-points once, in declare(). Configuration, scripts,
+// recorder and viewers know it only through these tables.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@
 
 namespace kadans {
 
-// What the low level sees. References hold for the call.
+// What the low level sees. The references are valid during the call only.
 struct ControlInput {
   const JointStates& joints;
   const RobotStatus& status;
@@ -34,7 +34,7 @@ struct ControlInput {
   double dt_s;
 };
 
-// Where an object declares what it has; names get the object's name in front.
+// Where an object declares its parameters, set-points and signals. Their names get the object's name in front.
 class Declaration {
  public:
   Declaration(std::string object, std::uint32_t owner, ParameterTable& parameters, SetpointTable& setpoints,
@@ -63,7 +63,7 @@ struct ObjectSetup {
   const RobotModel& model;
   std::vector<std::size_t> joints;  // the joints it drives, indices into the model; at least one, none twice
   ObjectOptions options{};
-  std::vector<DriveLaw> drives{};  // one a joint of the model; empty: not known
+  std::vector<DriveLaw> drives{};  // one per joint of the model; empty: not known
 };
 
 class ControlObject {
@@ -79,27 +79,28 @@ class ControlObject {
   // Control thread, in the tick that makes the object active: takes over without a jump from the measured state and the
   // last actuation.
   virtual void start(const ControlInput& input) noexcept = 0;
-  // Control thread: writes the actuation of its joints. One that stands at the drives (control_sets.h) finds there what
-  // is wanted of them, and replaces it by what the motors shall do.
+  // Control thread: writes the actuation of its joints. An actuator-level object (control_sets.h) finds there what is
+  // wanted of its joints and replaces it by what their motors shall do.
   virtual void step(const ControlInput& input, ActuationFrame& actuation) noexcept = 0;
   // Control thread, in the wait before a tick: computes what step would, by the same functions but on copies, so that
-  // its code and its memory are in the caches. Changes nothing; an object may leave it out. At the drives what was
-  // last wanted of the joints is in input.last.
+  // its code and its memory are in the caches. Changes nothing; an object may leave it out. For an actuator-level
+  // object input.last holds what was last wanted of the joints.
   virtual void rehearse(const ControlInput& input) const noexcept { (void)input; }
-  // Control thread. The caller has checked the value against the set-point's range and duration_s >= 0; 0 is at once.
+  // Control thread. The caller has checked that the value is in the set-point's range and duration_s >= 0. A duration
+  // of 0 acts at once.
   virtual void set_point(std::uint32_t channel, double value, double duration_s) noexcept = 0;
   // Control thread: comes to rest where its motion is now.
   virtual void cancel_motion(std::uint32_t channel) noexcept = 0;
-  // Control thread: where the set-point is on its way. False: this object cannot be led along a motion that others
-  // plan.
+  // Control thread: where the set-point is on its way. False: this object cannot be led along a motion that the engine
+  // plans (setpoint_motions.h).
   virtual bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
     (void)channel, (void)state;
     return false;
   }
-  // Control thread, before each step of such a motion: where the set-point is in this tick. It takes the place of the
-  // object's own motion; after the last one, or a cancel_motion, the object goes on by itself.
+  // Control thread, before each step of such a motion: where the set-point is in this tick. This takes the place of the
+  // object's own motion. After the last call, or a cancel_motion, the object goes on by itself.
   virtual void follow(std::uint32_t channel, const SetpointState& state) noexcept { (void)channel, (void)state; }
-  // Control thread: until the last motion under way has arrived; 0 when all is at rest.
+  // Control thread: the time until the last motion under way has arrived; 0 when all are at rest.
   virtual double motion_remaining_s() const noexcept = 0;
   // Control thread: one or more of its parameters have new values.
   virtual void parameters_changed() noexcept {}

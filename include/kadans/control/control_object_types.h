@@ -1,12 +1,12 @@
 // The types of control objects that a program can make, by the name that a robot's configuration writes in "type".
 //
-// Types come from three sides: those shipped with Kadans, which the app lists; those of a program that links Kadans,
-// which registers them before main():
-//
-//   KADANS_REGISTER_CONTROL_OBJECT("spring", make_spring)   // std::unique_ptr<ControlObject> make_spring(const
-//   ObjectSetup&)
-//
-// and those of plug-ins (plugin_library.h). A name belongs to one of them: the second who claims it is refused.
+// Types come from three sources:
+//   1. Kadans itself; the app lists them.
+//   2. A program that links Kadans; it registers them before main():
+//        std::unique_ptr<ControlObject> make_spring(const ObjectSetup&);
+//        KADANS_REGISTER_CONTROL_OBJECT("spring", make_spring)
+//   3. Plug-ins (plugin_library.h).
+// A name belongs to one type: a second type with the same name is refused.
 //
 // Before the loop, one thread.
 #pragma once
@@ -26,7 +26,7 @@ using MakeControlObject = std::function<std::unique_ptr<ControlObject>(const Obj
 
 class ControlObjectTypes {
  public:
-  // `source` says for people where the type comes from. Throws std::invalid_argument on a name that is empty or taken.
+  // `source` tells people where the type comes from. Throws std::invalid_argument on a name that is empty or taken.
   void add(const std::string& name, MakeControlObject make, const std::string& source = "kadans");
   // All that KADANS_REGISTER_CONTROL_OBJECT registered in this program.
   void add_registered();
@@ -44,7 +44,7 @@ class ControlObjectTypes {
   std::vector<Type> types_;
 };
 
-// One link in the list of what was registered before main(); never made but by the macro.
+// An entry in the list of the types that were registered before main(). Only the macro makes one.
 class RegisteredControlObject {
  public:
   using Make = std::unique_ptr<ControlObject> (*)(const ObjectSetup&);
@@ -59,8 +59,8 @@ class RegisteredControlObject {
 
 }  // namespace kadans
 
-// At namespace scope in a source file of the program itself: the linker drops those of a static library that nothing
-// else refers to.
+// Write it at namespace scope in a source file of the program itself: from a static library the linker drops source
+// files that nothing else refers to.
 #define KADANS_REGISTER_CONTROL_OBJECT(name, make) KADANS_REGISTER_CONTROL_OBJECT_AT(name, make, __COUNTER__)
 #define KADANS_REGISTER_CONTROL_OBJECT_AT(name, make, count) KADANS_REGISTER_CONTROL_OBJECT_AS(name, make, count)
 #define KADANS_REGISTER_CONTROL_OBJECT_AS(name, make, count)                                    \

@@ -1,14 +1,15 @@
-// All control objects and the sets in which they work together. Sets are built and checked before the loop; those that
-// are active have no joint in common (set_partition.h). Objects of an active set compute in the order of the set, and
-// compose what they propose for a joint (composition.h); a joint that no active set holds does what the configuration
-// says (unheld_joints.h). A change of the active sets makes no step (switchover.h), concerns the joints of the sets
-// that come or leave alone, and costs the starting of the objects that come in, whatever the number of sets.
+// All control objects, and the control sets in which they work together. Sets are built and checked before the loop.
+// The active sets have no joint in common (set_partition.h). The objects of an active set compute in the order of the
+// set; their proposals for a joint are composed (composition.h). A joint that no active set holds does what the
+// configuration says (unheld_joints.h). A change of the active sets makes no step in torque (switchover.h) and concerns
+// only the joints of the sets that come or leave. It costs the start of the objects that come in, whatever the number
+// of sets.
 //
-// Objects that stand at the drives are in no set and always active. They work on what is left after composition and the
-// safety layer, in the tick that writes it: what they are given is wanted of the joint, what they leave is asked of its
-// motor (spring_torque.h). All others go on to see torques at joints, in ControlInput::last and everywhere.
+// Actuator-level objects are in no set and always active. They work after composition and the safety layer, in the tick
+// that writes the actuation: each gets what is wanted of the joint and replaces it by what its motor shall do
+// (spring_torque.h). All other objects still see joint torques, in ControlInput::last and everywhere.
 //
-// Signals     composition.<joint>.writers     the objects that have a share in its actuation, a bit each
+// Signals     composition.<joint>.writers     the objects that have a share in its actuation, one bit each
 //             composition.switch_share        the largest step that the last switch absorbed, as a share of the limit
 // Parameters  <set>.<object>.weight           of an object that blends
 #pragma once
@@ -27,31 +28,33 @@ namespace kadans {
 
 class ControlSets {
  public:
-  // Keeps the catalog, declares signals and parameters in it, marks set-points that can be led. Throws
-  // std::invalid_argument on a set that names no object or one twice, on an object that sets a joint which an earlier
-  // one of the set drives, on initial sets that share a joint, and on too many objects (numbered as there) or sets.
+  // Keeps a reference to the catalog, declares signals and parameters in it, and marks the set-points that can be led
+  // along a planned motion. `objects` are in the order of the catalog. Throws std::invalid_argument on a set without
+  // objects or with one twice, on an object that sets a joint which an earlier object of the set drives, on an
+  // actuator-level object that is in a set or shares a joint with another one, on initial sets that share a joint, and
+  // on too many objects or sets.
   ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlObject>> objects);
 
   // Control thread. Computes the actuation of all joints.
   void step(std::uint64_t tick, const ControlInput& input, ActuationFrame& actuation) noexcept;
-  // Control thread, in the wait before a tick: what drive and step would compute, on copies.
+  // Control thread, in the wait before a tick: computes what drive and step would, on copies.
   void rehearse(std::uint64_t tick, const ControlInput& input, ActuationFrame& scratch) const noexcept;
-  // Control thread, before step. The set computes from the next step on, in place of the active ones that it shares a
-  // joint with; objects that were not active start from the present state: in that step, or earlier by start_newcomers,
-  // so that they can be given set-points before it. Nothing changes when it is active.
+  // Control thread, before step. From the next step on the set computes, in place of the active sets that share a joint
+  // with it. Objects that were not active start from the present state: in that step, or already in start_newcomers, so
+  // that they can get set-points before the step. Nothing changes when the set is already active.
   void switch_to(std::uint32_t set) noexcept;
   void start_newcomers(const ControlInput& input) noexcept;
   // Control thread, before step. All objects of the active sets start anew, as if they had just been switched to.
   void restart(const ControlInput& input) noexcept;
-  // Control thread, after the safety layer, before the plant is written. `blind`: joints that are not measured in this
-  // tick; they keep what is in `actuation`.
+  // Control thread, after the safety layer and before the plant is written: runs the actuator-level objects. `blind`:
+  // joints that are not measured in this tick; they keep what is in `actuation`.
   void drive(const ControlInput& input, JointMask blind, ActuationFrame& actuation) noexcept;
   bool drives() const noexcept { return at_drives_ != 0; }  // whether drive() does anything
-  // Control thread, before step. `object` is an index in the catalog.
+  // Control thread, before step. `index` counts as in the catalog.
   ControlObject& object(std::uint32_t index) noexcept { return *objects_[index]; }
   void fill(Snapshot& snapshot) const noexcept;  // which sets and objects are active
 
-  // Behavior thread: the high level of all objects of the sets that the snapshot calls active.
+  // Behavior thread: runs the high level of all objects of the sets that are active in the snapshot.
   void update(std::uint64_t behavior_tick, const Snapshot& snapshot);
 
   SetMask active() const noexcept { return active_; }
@@ -70,12 +73,12 @@ class ControlSets {
   void make_plan(Catalog& catalog, const ControlSetInfo& set);
   void declare(Catalog& catalog);
   void check_drives();
-  using Writers = std::array<std::uint32_t, max_joints>;  // by joint: the objects that have a share, a bit each
+  using Writers = std::array<std::uint32_t, max_joints>;  // by joint: the objects that have a share, one bit each
   void compose_joints(const Member& member, Writers& writers, ActuationFrame& actuation) const noexcept;
 
   const Catalog& catalog_;
   std::vector<std::unique_ptr<ControlObject>> objects_;
-  std::vector<std::unique_ptr<ActuationFrame>> proposals_;  // by object; stand while a slower object rests
+  std::vector<std::unique_ptr<ActuationFrame>> proposals_;  // by object; kept in ticks that an object's divisor skips
   std::vector<Plan> plans_;                                 // by set
   Writers writers_{};
   SetPartition partition_;
@@ -85,7 +88,7 @@ class ControlSets {
   ObjectMask fresh_ = 0;  // started since the last step
   ObjectMask at_drives_ = 0;
   SetMask active_;
-  JointMask touched_ = 0;  // of sets that came or left since the last step
+  JointMask touched_ = 0;  // joints of the sets that came or left since the last step
   bool computed_ = false;  // at least one step
 };
 

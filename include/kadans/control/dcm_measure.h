@@ -1,11 +1,12 @@
-// Where the centre of mass is over each foot, and how it moves: what laws of balance are made of.
+// Position and velocity of the centre of mass relative to each foot: the measurements that balance laws use.
 //
-// Everything is in the heading frame: x forward along the ground where the base points, or pointed when it was told to
-// keep its heading, y left, z up; its origin is the base frame's. The velocity is a difference over a millisecond
-// (body_ahead.h). A velocity over a foot is one over the ground as long as that foot stands.
+// Everything is in the heading frame: x points forward along the ground, y left, z up. Forward is where the base points
+// now, or where it pointed at keep_heading(). The origin is that of the base frame. The velocity is a difference over a
+// millisecond (body_ahead.h). A velocity relative to a foot is a velocity over the ground as long as that foot stands.
 //
 // The divergent component of motion is where the robot's pendulum is going (Hof 2008, Human Movement Science 27(1);
-// Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z).
+// Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z). c is the centre of mass, v its
+// velocity.
 //
 // One owner, the control thread. Only the constructor allocates or throws.
 #pragma once
@@ -21,18 +22,18 @@ class DcmMeasure {
  public:
   struct OverFoot {
     Vec3 foot_m{};        // the foot's frame, from the base's origin
-    double toe_up_m = 0;  // how much its x axis points up, per metre
+    double toe_up_m = 0;  // how far its x axis rises, per metre: > 0 with the toes up
     Vec3 com_m{}, velocity_m_s{};
     double dcm_x_m = 0, dcm_y_m = 0;
   };
 
-  // The links named by the options left_foot and right_foot. Throws OptionError.
+  // The feet are the links that the options left_foot and right_foot name. Throws OptionError.
   explicit DcmMeasure(const ObjectSetup& setup) : body_(setup) {}
 
-  // False when the robot does not stand, or something is not measured.
+  // False when the robot does not stand, or a measurement is not finite.
   [[nodiscard]] bool update(const ControlInput& input) noexcept;
 
-  // From now on x is where the base points now; or it always is where the base points.
+  // keep_heading: x stays where the base points now. follow_heading: x always is where the base points.
   void keep_heading(const ControlInput& input) noexcept;
   void follow_heading() noexcept { keeps_ = false; }
   double yaw_rad() const noexcept { return yaw_rad_; }  // of the base in the heading frame

@@ -1,23 +1,27 @@
-// Steps when standing no longer helps: type "dcm_step", in effort mode. Meant to take precedence over a posture with
-// dcm_balance on it ("priority"): it claims the legs from its first step on and leaves them alone while the robot
-// stands.
+// Makes the robot step when standing can no longer keep it up: type "dcm_step", in effort mode. Meant to be composed
+// with "priority" over a posture with dcm_balance. It claims the legs from its first step on, and leaves them alone
+// while the robot stands.
 //
-// StepPlan says what each foot does; here are the torques.
+// StepPlan decides what each foot does; this class computes the torques.
 //
-//   stance leg  The hips hold the torso as it leaned when it lifted (after SIMBICON, Yin et al. 2007: ACM Trans. Graph.
-//               26(3)) and bear the weight beside them, the knee stays as it was, the ankle puts the centre of
-//               pressure. The ankle's roll is passive: sideways, the next foothold is all there is.
-//   swing leg   inverse kinematics of where the foot shall be over the ground, seen through the measured stance leg and
-//               attitude; PD on its joints.
-//   both bear   from the angles and speeds of the landing to a stance with the torso upright over the feet's middle:
-//               PD, and what the plan's pressure takes of each foot's force as feed-forward.
+// clang-format off
+//   stance leg  The hip holds the torso (after SIMBICON, Yin et al. 2007: ACM Trans. Graph. 26(3)): first at the lean
+//               that it had before the first step, then more and more upright. The hip also bears the weight beside it.
+//               The knee goes to stance_knee_rad. The ankle places the centre of pressure. The ankle's roll is passive:
+//               sideways, only the next foothold helps.
+//   swing leg   Inverse kinematics of where the foot shall be over the ground, computed through the measured stance leg
+//               and attitude; PD on its joints.
+//   both bear   The legs go from the angles and speeds of the landing to a stance with the torso upright over the
+//               middle between the feet: PD, with the torques that bear each foot's load as feed-forward.
+// clang-format on
 //
 // Joints      of both legs *_hip_yaw, *_hip_roll, *_hip_pitch, *_knee, *_ankle_pitch.
 // Options     left_foot, right_foot: the links that stand; required. The foot sensors are in this order too.
 // Parameters  Config and StepPlan::Config. `enabled`: 0 lets go at once.
 // Signals     State of the plan.
-// Start       with both feet where they are; nothing is claimed until it steps.
-// Given up    leaning beyond tilt_max_rad, or something not measured: lets go until it was enabled anew.
+// Start       with both feet where they are; no joint is claimed until the first step.
+// Given up    when the base leans beyond tilt_max_rad or a measurement is not finite, it lets go of the legs until it
+//             is disabled and enabled again.
 #pragma once
 
 #include <array>
@@ -36,25 +40,25 @@ class DcmStep final : public ControlObject {
   struct Config {
     double enabled = 0;  // 0..1
     double tilt_max_rad = 0.7;
-    double hip_height_m = 0.5;  // over the ankle, both bearing
+    double hip_height_m = 0.5;  // over the ankle, while both feet bear
     double stance_knee_rad = 0.5;
     double torso_Nm_per_rad = 250, torso_Nms_per_rad = 15;
-    double bears_share = 0.3;    // of these two, forward and back, while both feet bear
-    double lean_s = 0.5;         // in which it comes upright
-    double weight_share = 0.85;  // of the weight that hangs beside the stance hip
-    double counter_share = 0.8;  // of the swing hip's torque that the stance hip takes
+    double bears_share = 0.3;    // share of these two, in pitch, while both feet bear
+    double lean_s = 0.5;         // time constant with which the torso comes upright
+    double weight_share = 0.85;  // share of the weight beside the stance hip that it bears
+    double counter_share = 0.8;  // share of the swing hip's torque that the stance hip takes
     double ankle_max_Nm = 16;
     double ankle_smooth_s = 0.005;
-    double forward_share = 0.5;  // of the torques that bear the weight, as feed-forward, both bearing
-    double soft_share = 0.6;     // of kp, both bearing
-    double both_share = 0.1;     // of the load on a foot, below which the other one stands alone
-    double seek_m = 0.01;        // how deep a foot that lost the ground looks for it
-    double come_s = 0.4;         // from a landing to the stance
-    double carry = 0.7;          // share of the speeds of the landing
+    double forward_share = 0.5;  // feed-forward share of the torques that bear the weight, while both feet bear
+    double soft_share = 0.6;     // share of kp while both feet bear
+    double both_share = 0.1;     // share of the load on a foot below which the other one stands alone
+    double seek_m = 0.01;        // how deep a foot that lost the ground searches for it
+    double come_s = 0.4;         // time from a landing to the stance
+    double carry = 0.7;          // share of the landing's joint speeds that is kept
     std::array<double, leg_joints> kp_Nm_per_rad{}, kd_Nms_per_rad{};
   };
 
-  // Throws std::invalid_argument for a joint that is missing, OptionError for feet.
+  // Throws std::invalid_argument for a joint that is missing, OptionError for a wrong foot.
   explicit DcmStep(const ObjectSetup& setup);
 
   void declare(Declaration& declaration) override;
@@ -101,8 +105,8 @@ class DcmStep final : public ControlObject {
   StepPlan plan_;
   StepPlan::Phase phase_ = StepPlan::Phase::stands;  // of the last tick
   bool given_up_ = false;
-  double lean_rad_ = 0;               // of the torso, forward, as it shall be: what it was, then less
-  std::array<double, 2> ankle_Nm_{};  // smooth
+  double lean_rad_ = 0;               // wanted forward lean of the torso: from the measured one down to 0
+  std::array<double, 2> ankle_Nm_{};  // low-passed
   double alone_ = 0;                  // how much one foot bears alone, 0..1
   double phase_number_ = 0;
 };

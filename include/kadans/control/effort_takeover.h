@@ -1,7 +1,7 @@
-// How a law in effort mode that rests on a model of the robot takes over a joint. The torque that was there continues;
-// what the law does not explain of it is an offset. The offset stands while the model's data are still those of before,
-// and fades away once the high level has seen the robot since: that changes the law at once, so the offset is then
-// found anew. An integral, where there is one, may take the offset over instead and keep it.
+// How a law in effort mode that uses a model of the robot takes over a joint. The torque from before continues: its
+// difference to the law's torque becomes an offset. The offset is constant while the model's data are older than this
+// activation. The first data of this activation change the law's torque at once, so the offset is then computed anew
+// and fades away. If the law has an integral, it can take over the offset and keep it.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ class EffortTakeover {
     known_ = false;
   }
 
-  // What to add to the law's torque, beside the integral, which takes what it can within +-integral_max_Nm when the
-  // offset is found. `known`: the model's data are of this activation.
+  // Returns what to add to the sum of the law's torque and the integral. When the offset is computed, the integral
+  // takes what it can of it, within +-integral_max_Nm. `known`: the model's data are of this activation.
   double step(double law_Nm, bool known, double dt_s, double& integral_Nm, double integral_max_Nm) noexcept {
     if (pending_ || known != known_) {
       double rest_Nm = effort_Nm_ - law_Nm;
@@ -33,7 +33,7 @@ class EffortTakeover {
     }
     return offset_.step(known ? dt_s : 0);
   }
-  // The torque that came out in the end, from which the next finding of the offset continues.
+  // Takes the final torque of this step, from which the offset is computed the next time.
   void leave(double effort_Nm) noexcept { effort_Nm_ = effort_Nm; }
 
  private:

@@ -1,19 +1,18 @@
 // Plays a periodic motion and the torque that belongs to it, around the posture in which it started, in effort mode:
-// type "feedforward_player". What is known beforehand is fed forward, a PD only corrects (Craig, Introduction to
-// Robotics, 3rd ed., sec. 9.9); the series may come from a model, from a record of an earlier run or from iterative
-// learning.
+// type "feedforward_player". The known torque is fed forward, a PD only corrects (Craig, Introduction to Robotics, 3rd
+// ed., sec. 9.9). The series may come from a model, from a record of an earlier run or from iterative learning.
 //
 //   phi' = 2 pi rate,   s_x(phi) = sum over n = 1..3 of  x_cos<n> cos(n phi) + x_sin<n> sin(n phi)
 //   q_ref = q_0 + A s_position(phi)
 //   u = limit(u_0 + A s_effort(phi) + kp (q_ref - q) + kd (v_ref - v), +-effort_max)
 //
-// All joints share one phase, which begins at 0 at the start. A, the amplitude, is a set-point of each joint: 0 at the
-// start, so the series is faded in and out by moving it. q_0 is where the joint comes to rest after the start, u_0 the
-// torque that was there.
+// All joints share one phase phi, which is 0 at the start. The amplitude A is a set-point of each joint. It is 0 at the
+// start; moving it fades the series in and out. q_0 is where the joint comes to rest after the start, u_0 the torque
+// from before the start.
 //
 // Set-points  <joint>.amplitude, 0..1, reached along a minimum-jerk curve in the time given.
-// Parameters  rate_Hz of the object; gains and series of each joint. A coefficient that changes counts at once:
-//             change it while the amplitude is 0.
+// Parameters  rate_Hz of the object; gains and series of each joint. A changed coefficient acts at once: change it
+//             while the amplitude is 0.
 #pragma once
 
 #include <array>

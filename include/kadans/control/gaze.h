@@ -1,33 +1,39 @@
 // Turns two eyes on a neck to a point in space and keeps them there: type "gaze".
 //
-// High level, each behavior tick (100 Hz; high_level_divisor 5 makes it 20 Hz): from the measured joints and the target
-// the velocities of all joints, gaze_solver.h. Low level, each control tick: integrates them to positions, written in
-// position mode with the velocity as feed-forward, and lets the eyes answer at once what the neck does:
+// The high level runs each behavior tick (100 Hz; high_level_divisor 5 makes it 20 Hz). It computes the velocities of
+// all joints from the measured joints and the target (gaze_solver.h). The low level runs each control tick. It
+// integrates these velocities to positions, writes them in position mode with the velocity as feed-forward, and lets
+// the eyes react at once to the motion of the neck:
 //
-//   dv/dt within +-acceleration_max towards the velocity of the high level, and no faster than the way that is left to
-//   a position limit allows to brake with it of the eyes also  v += vor_gain C (v_neck measured - v_neck asked),
-//   dq_ref/dt = v
+// clang-format off
+//   all joints  dv/dt within +-acceleration_max towards the velocity of the high level; v never above the speed from
+//               which the joint can brake before its position limit
+//   eyes        v += vor_gain C (v_neck measured - v_neck asked)
+//   all joints  dq_ref/dt = v
+// clang-format on
 //
-// C is how the eyes must turn against the neck so that the gaze stays: a vestibulo-ocular reflex by the neck's own
-// sensors (Shibata et al. 2001, Biomimetic oculomotor control, Adaptive Behavior 9(3-4)). So a push against the head,
-// or a neck that lags behind its slow motors, moves the gaze little. What the base does is not seen: the target moves
-// with it. Nothing here carries the neck's weight: compose with a gravity_compensation ("sum").
+// C says how the eyes must turn against the neck so that the gaze stays: a vestibulo-ocular reflex that uses the neck's
+// own sensors (Shibata et al. 2001, Biomimetic oculomotor control, Adaptive Behavior 9(3-4)). So a push against the
+// head, or a neck that lags because its motors are slow, moves the gaze little. The motion of the base is not seen: the
+// target moves with the base. The object does not carry the neck's weight: compose with a gravity_compensation ("sum").
 //
-// The way downhill may end at a limit from where the joints are, although from the middle it would not: when the eyes
-// come no nearer, the head goes back to its middle once and tries again, then stays as near as it comes.
+// A descent from the present pose can end at a position limit where a descent from the middle would not. When the eyes
+// come no nearer to the target, the head therefore goes back to its middle once and tries again; after that it stays as
+// near as it comes.
 //
 // Options     head: the link that carries the eyes; left_eye, right_eye: links that look along their x axes. Required.
-// Set-points  x_m, y_m, z_m: the target in the base frame, reached by a minimum-jerk motion in the time given; 0 is a
-//             jump, so the eyes make a saccade. x_m_s, y_m_s, z_m_s: the velocity with which it goes on from there; for
-//             0.25 s, then the target stands unless told again.
-// Parameters  those of GazeSolver: gain_per_s, damping, damping_singular, null_per_s; vor_gain; a JointConfig a joint.
-// Signals     the target as it is now; left_error_rad, right_error_rad as the high level saw them; unreachable: the
-//             eyes come no nearer; scaled, at_limit: speed, position limits hold back; a JointState a joint.
-// Start       from the drives' last set-points, or from the measured state with a fading torque; the target is a point
-//             1 m ahead of the eyes.
-// Not finite  a joint that is not measured gets an actuation that is not finite, which the safety layer stops; without
-// a
-//             high level that sees all joints the velocities run out after 0.1 s and the reflex holds the gaze.
+// Set-points  x_m, y_m, z_m: the target in the base frame, reached by a minimum-jerk motion in the time given; with a
+//             time of 0 the target jumps and the eyes make a saccade. x_m_s, y_m_s, z_m_s: the velocity with which the
+//             target goes on from there for 0.25 s; then it stops, unless the velocity is set again.
+// Parameters  those of GazeSolver: gain_per_s, damping, damping_singular, null_per_s; vor_gain; per joint lead_max_rad
+//             and a GazeSolver::JointLaw.
+// Signals     the target as it is now; left_error_rad and right_error_rad, as the high level saw them; unreachable: the
+//             eyes come no nearer; scaled: speed limits hold the gaze back; at_limit: a joint is at its position limit;
+//             a JointState per joint.
+// Start       the reference continues from the drives' last set-points in position mode, else from the measured state
+//             while the torque from before fades; the target is a point 1 m ahead of the eyes.
+// Not finite  a joint that is not measured gets an actuation that is not finite, which the safety layer stops. When the
+//             high level has seen no complete measurement for 0.1 s, the joints come to rest and the reflex ends.
 #pragma once
 
 #include <array>
@@ -68,7 +74,7 @@ class Gaze final : public ControlObject {
   void update(const Snapshot& snapshot) override;
 
  private:
-  // From the low level to the high level, and back.
+  // From the low level to the high level (Aim), and back (Rates).
   struct Aim {
     std::uint32_t activation = 0;
     GazeSolver::Target target;
@@ -93,7 +99,7 @@ class Gaze final : public ControlObject {
   };
   struct Direction {
     MinimumJerk point;
-    double went_m = 0;  // with the velocity, since the point was set
+    double went_m = 0;  // the way that the velocity added since the point was set
     double velocity_m_s = 0, velocity_left_s = 0;
   };
   void declare_joint(Declaration& declaration, std::size_t i);
@@ -111,9 +117,9 @@ class Gaze final : public ControlObject {
   std::vector<double> seen_rad_;  // behavior thread
   Rates draft_;                   // behavior thread
   struct Retry {
-    std::int64_t moved_ns = 0;  // when the eyes last came nearer, or were there
+    std::int64_t moved_ns = 0;  // when the eyes last came nearer, or were on the target
     bool tried = false, going_back = false;
-    Vec3 target_m{};  // for which it was tried
+    Vec3 target_m{};  // the target for which it was tried
   };
   Retry retry_;  // behavior thread
   Latest<Rates> rates_;

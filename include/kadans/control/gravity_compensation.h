@@ -3,18 +3,18 @@
 //
 //   u = limit(gain (G(q0) + dG/dq (q - q0)), +-effort_max)
 //
-// The high level computes the gravity torques G and their slope at the newest pose q0 (model/dynamics.h); the low level
-// carries them on to where the joints are now. They hold for the robot as it hangs from its base, which points where
-// the estimator says: limbs in the air, or a robot on a stand; the legs of a standing robot carry it from below
-// instead.
+// The high level computes the gravity torques G and their slope at the newest pose q0 (model/dynamics.h). The low level
+// uses them to extrapolate G to the joints' present positions. G holds for a robot that hangs from its base, with the
+// base's orientation from the estimator: limbs in the air, or a robot on a stand. It does not hold for the legs of a
+// standing robot, which carry it from below.
 //
-// Parameters  gain (0..1; a new one is reached within 0.2 s) and <joint>.effort_max_Nm.
-// Signals     <joint>.effort_Nm, <joint>.saturated, gain, and model_age_s: since G was measured, or since the start
-//             while that is older.
-// Start       the torque that was there continues; what gravity does not explain of it fades within 0.2 s of the
+// Parameters  gain (0..1; a new value is reached within 0.2 s) and <joint>.effort_max_Nm.
+// Signals     <joint>.effort_Nm, <joint>.saturated, gain, and model_age_s: the time since the measurement that G comes
+//             from, or since the start while G is older than the start.
+// Start       the torque from before continues. The part that gravity does not explain fades within 0.2 s after the
 //             first G of this activation.
-// Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops; the others
-//             take it to be where it last was. A snapshot that is not finite gives no G: the last one stands.
+// Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops; for the
+//             other joints it counts as at q0. A snapshot that is not finite gives no new G: the last one stays.
 #pragma once
 
 #include <limits>
@@ -58,7 +58,7 @@ class GravityCompensation final : public ControlObject {
  private:
   // From the high level to the low level: behavior thread -> control thread.
   struct GravityData {
-    std::int64_t time_ns = std::numeric_limits<std::int64_t>::min();  // of the state they belong to
+    std::int64_t time_ns = std::numeric_limits<std::int64_t>::min();  // of the state that G belongs to
     std::array<double, max_joints> position_rad{};                    // q0
     std::array<double, max_joints> gravity_Nm{};
     JointMatrix slope_Nm_per_rad;

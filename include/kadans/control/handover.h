@@ -1,11 +1,11 @@
-// Taking over a joint from whatever drove it before, without a jump in the drive's torque: what the joint does, what
-// its drive was told last, and from these the state in which a control object's own law continues (inverse
-// initialisation; Astrom and Hagglund, Advanced PID Control, ISA 2006, sec. 13.5).
+// Takes over a joint from what drove it before, without a jump in the drive's torque. The joint's measured state and
+// the drive's last actuation give the state from which a control object's own law continues (inverse initialisation;
+// Astrom and Hagglund, Advanced PID Control, ISA 2006, sec. 13.5).
 //
-// An object in effort mode continues with the torque that was there. One in position or velocity mode continues with
-// the old set-point where the mode is the same; else it starts from the measured state, so that the drive's own gains
-// give nothing yet, and adds the torque that was there as feed-forward, which then fades while the drive takes up the
-// load.
+// An object in effort mode continues with the torque from before. An object in position or velocity mode continues with
+// the old set-point when the mode is the same. Otherwise it starts from the measured state, so that the drive's own
+// gains give no torque yet, and adds the torque from before as feed-forward. This torque fades while the drive takes up
+// the load.
 #pragma once
 
 #include "kadans/control/joint_axis.h"
@@ -20,29 +20,29 @@ struct Handover {
   double dt_s;
 };
 
-// The torque of the drive in effort mode: what was asked for there, else what was measured.
+// The drive's torque before: the commanded one if the drive was in effort mode, 0 if it was off, else the measured one.
 double effort_before_Nm(const Handover& handover) noexcept;
 
-// The position mode's fields as they continue in the actuation that this tick computes. A drive that follows a moving
-// reference sees it at the end of the tick after this one: two ticks beyond the measurement.
+// The position mode's fields for the actuation that this tick computes. The drive uses it until the end of the next
+// tick, two ticks after the measurement, so a moving reference is moved on to that time.
 struct PositionStart {
   double position_rad, velocity_rad_s, effort_Nm;
 };
 PositionStart position_before(const Handover& handover) noexcept;
 
-// The velocity mode's fields, likewise.
+// The velocity mode's fields for the actuation that this tick computes.
 struct VelocityStart {
   double velocity_rad_s, effort_Nm;
 };
 VelocityStart velocity_before(const Handover& handover) noexcept;
 
-// How long a reference takes that is taken over in motion to come to rest.
+// How long a reference that is taken over in motion takes to come to rest.
 inline constexpr double handover_stop_s = 0.2;
-// And one whose motion is cancelled.
+// How long a motion that is cancelled takes to come to rest.
 inline constexpr double cancel_time_s = 0.1;
 
-// A reference that goes on where and as fast as the joint moves and comes to rest soon, before the joint's limit if
-// that is possible. A joint beyond its limit is led back to it.
+// Lets the reference continue with the joint's position and velocity and come to rest within handover_stop_s, before
+// the joint's limit if possible. A joint beyond its limit is led back to the limit.
 void continue_motion(MinimumJerk& reference, double position_rad, double velocity_rad_s,
                      const JointAxis& axis) noexcept;
 

@@ -1,4 +1,5 @@
-// What a control object that works joint by joint keeps of each joint, and how it declares what belongs to one.
+// What a control object that works joint by joint knows of each joint, and how it declares a joint's parameters,
+// set-points and signals.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ namespace kadans {
 struct JointAxis {
   std::size_t joint = 0;  // index in the model
   std::string name;
-  double lower_rad = 0, upper_rad = 0;  // far away for a continuous joint, but finite: a set-point has a range
+  double lower_rad = 0, upper_rad = 0;  // very wide for a continuous joint, but finite: a set-point needs a range
   double velocity_max_rad_s = 0;
   double effort_max_Nm = 0;
 };

@@ -1,6 +1,6 @@
-// Position loop over velocity loop on each joint, in effort mode: type "joint_cascade". The servo's classical structure
-// (Leonhard, Control of Electrical Drives, 3rd ed., ch. 15): each loop has a limit of its own, so the joint is never
-// asked for more than velocity_max on a long way.
+// A position loop with an inner velocity loop on each joint, in effort mode: type "joint_cascade". This is the
+// classical structure of a servo (Leonhard, Control of Electrical Drives, 3rd ed., ch. 15). Each loop has a limit of
+// its own, so the joint never gets a velocity command beyond velocity_max on a long way.
 //
 //   v_cmd = limit(v_ref + kp (q_ref - q), +-velocity_max)
 //   u     = limit(feedforward + inertia a_ref + kv (v_cmd - v) + I, +-effort_max),   dI/dt = ki (v_cmd - v)
@@ -10,7 +10,8 @@
 // does not grow in the direction in which u is limited, nor beyond integral_max.
 //
 // Set-points  <joint>.position_rad, reached by a minimum-jerk motion in the time given.
-// Start       the reference goes on with the joint's velocity and comes to rest; the integral takes the torque over.
+// Start       the reference continues with the joint's velocity and comes to rest; the integral takes over the torque
+//             from before.
 #pragma once
 
 #include <memory>

@@ -1,15 +1,14 @@
-// A spring and a damper between each joint and its reference, with a torque of its own beside them:
-// type "joint_impedance" (Hogan 1985, Impedance Control, J. Dyn. Sys. Meas. Control 107; part I, without shaping the
-// inertia).
+// A spring and a damper between each joint and its reference, plus a torque that is a set-point: type "joint_impedance"
+// (Hogan 1985, Impedance Control, J. Dyn. Sys. Meas. Control 107; part I, without shaping the inertia).
 //
 //   u = limit(effort_ref + K (q_ref - q) + D (v_ref - v), +-effort_max)
 //
-// No integral: what pushes the joint meets the spring, however long it pushes. The load is carried by effort_ref.
+// There is no integral: a lasting push keeps the joint deflected. effort_ref carries the load.
 //
-// Option      loop: "here", unless it is said, or "drive": the drive computes it (impedance mode).
+// Option      loop: "here" (the default), or "drive": the drive computes the law (impedance mode).
 // Set-points  <joint>.position_rad and <joint>.effort_Nm, each reached along a minimum-jerk curve in the time given.
-// Start       the reference goes on with the joint's velocity and comes to rest; effort_ref is the torque that there
-//             was, and stays until it is set.
+// Start       the reference continues with the joint's velocity and comes to rest. effort_ref is the torque from
+//             before, until it is set.
 #pragma once
 
 #include <memory>

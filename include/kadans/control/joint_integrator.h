@@ -1,16 +1,17 @@
-// Integrates a velocity set-point to a position on each joint and writes it in position mode, the velocity as
-// feed-forward: type "joint_integrator". For robots that are steered by rates (Whitney 1969, Resolved Motion Rate
-// Control, IEEE Trans. Man-Machine Systems 10(2)): a camera head behind a joystick, a gaze controller that computes
-// joint velocities at 20 Hz.
+// Integrates a velocity set-point to a position on each joint and writes it in position mode, with the velocity as
+// feed-forward: type "joint_integrator". For robots that are commanded by rates (Whitney 1969, Resolved Motion Rate
+// Control, IEEE Trans. Man-Machine Systems 10(2)), for example a camera head with a joystick, or a gaze controller that
+// computes joint velocities at 20 Hz.
 //
 //   dv/dt within +-acceleration_max towards the set-point,  dq_ref/dt = v
 //
-// The motion brakes before the joint's limits (velocity_ramp.h) and stops at them; one that is taken over too fast for
-// that brakes as hard as it may. With lead_max_rad above 0 it also brakes before it is so far ahead of the measured
-// joint: a blocked joint does not wind the position up.
+// The motion brakes before the joint's limits (velocity_ramp.h) and stops at them. A motion that is too fast for that
+// when it is taken over brakes with acceleration_max. With lead_max_rad > 0 the reference also stays within that
+// distance ahead of the measured joint, so that a blocked joint does not wind the position up.
 //
 // Set-points  <joint>.velocity_rad_s, reached in the time given or as soon as acceleration_max allows.
-// Start       from the drive's last set-point, or from the measured state with a fading torque; the set-point is 0.
+// Start       the reference continues from the drive's last set-point in position mode, else from the measured state
+//             while the torque from before fades; the set-point is 0.
 #pragma once
 
 #include <memory>
@@ -26,7 +27,7 @@ class IntegratorLaw : public VelocityReference {
   };
   struct State {
     double reference_rad = 0;
-    double effort_Nm = 0;  // what is left of the torque taken over
+    double effort_Nm = 0;  // the rest of the torque taken over
   };
 
   explicit IntegratorLaw(const JointAxis& axis) : VelocityReference(axis) {}
@@ -37,7 +38,7 @@ class IntegratorLaw : public VelocityReference {
  private:
   Config config_;
   State state_;
-  double lowest_rad_ = 0, highest_rad_ = 0;  // the joint's range, and where it was at the start
+  double lowest_rad_ = 0, highest_rad_ = 0;  // the joint's range, widened to where it was at the start
 };
 
 std::unique_ptr<ControlObject> make_joint_integrator(const ObjectSetup& setup);

@@ -1,5 +1,5 @@
-// A symmetric matrix over the joints of a control object, its lower triangle row by row: half the bytes of a square,
-// for what the high level hands to the low level by copying. Rows count the object's joints, not the model's.
+// A symmetric matrix over the joints of a control object. It stores the lower triangle only, row by row: the high level
+// hands it to the low level by copying, and this halves the bytes. Rows count the object's joints, not the model's.
 #pragma once
 
 #include <array>
@@ -12,11 +12,12 @@ namespace kadans {
 struct JointMatrix {
   std::array<double, max_joints*(max_joints + 1) / 2> lower{};
 
-  // Both in either order, < max_joints.
+  // Row and column in either order, both < max_joints.
   double& operator()(std::size_t row, std::size_t column) noexcept { return lower[place(row, column)]; }
   double operator()(std::size_t row, std::size_t column) const noexcept { return lower[place(row, column)]; }
 
-  // The product with the first `size` of `in`; row by row along the triangle, each entry used for both its places.
+  // The matrix times the first `size` values of `in`. Goes through the triangle once and uses each entry for both of
+  // its places.
   std::array<double, max_joints> times(const std::array<double, max_joints>& in, std::size_t size) const noexcept {
     std::array<double, max_joints> out{};
     const double* entry = lower.data();

@@ -1,9 +1,10 @@
 // PID on each joint, in effort mode, with a set-point that moves smoothly: type "joint_pid". The law is pid.h.
 //
 // Set-points  <joint>.position_rad (within the joint's limits), reached by a minimum-jerk motion in the time given.
-// Parameters  a Pid::Config a joint: <joint>.kp_Nm_per_rad and so on.
-// Signals     a Pid::State a joint: <joint>.reference_rad and so on.
-// Start       the reference goes on with the joint's velocity and comes to rest; the integral takes the torque over.
+// Parameters  a Pid::Config per joint: <joint>.kp_Nm_per_rad and so on.
+// Signals     a Pid::State per joint: <joint>.reference_rad and so on.
+// Start       the reference continues with the joint's velocity and comes to rest; the integral takes over the torque
+//             from before.
 #pragma once
 
 #include <memory>

@@ -1,13 +1,13 @@
-// A velocity set-point on each joint, written in velocity mode, so that the drive's own loop follows it: type
-// "joint_velocity". The set-point is approached with limited acceleration and braked before the joint's limits, as
-// measured (velocity_ramp.h). A drive whose loop has no integral creeps under a load; ki adds what it lacks (the PI
-// speed loop of Leonhard, Control of Electrical Drives, 3rd ed., ch. 15):
+// A velocity set-point on each joint, written in velocity mode: the drive's own velocity loop follows it. Type
+// "joint_velocity". The velocity approaches the set-point with limited acceleration and brakes before the joint's
+// limits, by the measured position (velocity_ramp.h). A drive without an integral in its loop has a velocity error
+// under load; ki removes it (the PI speed loop of Leonhard, Control of Electrical Drives, 3rd ed., ch. 15):
 //
 //   dI/dt = ki (v_ref - v), added to the drive's torque, within +-effort_max
 //
 // Set-points  <joint>.velocity_rad_s, reached in the time given or as soon as acceleration_max allows.
-// Start       with the drive's last set-point, or the measured velocity; the set-point is 0. The torque that was
-//             there becomes the integral; with ki = 0 it fades.
+// Start       the velocity continues from the drive's last set-point in velocity mode, else from the measured velocity;
+//             the set-point is 0. The torque from before becomes the integral; with ki = 0 it fades.
 #pragma once
 
 #include <memory>
@@ -24,8 +24,8 @@ class VelocityLaw : public VelocityReference {
   };
   struct State {
     double error_rad_s = 0;  // reference minus measured
-    double effort_Nm = 0;    // added to the drive's: the integral, or what is left of the torque taken over
-    bool saturated = false;  // the integral
+    double effort_Nm = 0;    // added to the drive's: the integral, or the rest of the torque taken over
+    bool saturated = false;  // effort_Nm is at its bound
   };
 
   explicit VelocityLaw(const JointAxis& axis) : VelocityReference(axis) {}

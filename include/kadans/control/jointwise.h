@@ -1,5 +1,5 @@
-// A control object that treats each of its joints by the same law and independently: this template is the object, `Law`
-// is the mathematics of one joint. A law is
+// A control object that applies the same law to each of its joints, independently of the others. This template is the
+// object; `Law` is the mathematics of one joint. A law has:
 //
 //   explicit Law(const JointAxis& axis);
 //   static constexpr std::uint32_t channels;                               // its set-points, numbered from 0
@@ -10,20 +10,20 @@
 //   void cancel(std::uint32_t which) noexcept;
 //   double remaining_s() const noexcept;
 //
-// and, where a set-point can be led along a motion that others plan:
+// A law whose set-point can be led along a motion that the engine plans (setpoint_motions.h) also has:
 //
 //   bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept;
 //   void follow(std::uint32_t which, const SetpointState& state) noexcept;
 //
-// and, where it can be rehearsed (control_object.h):
+// A law that can be rehearsed (control_object.h) also has:
 //
 //   void rehearse(const JointState& state, double dt_s) const noexcept;    // as step, on copies
 //
-// The step in the tick of the start passes no time (dt_s = 0), so that a reference which starts where the joint is does
-// not run ahead of the measurement.
+// In the tick of the start, step() gets dt_s = 0. So a reference that starts at the joint's position does not run ahead
+// of the measurement.
 //
-// A joint whose measured state is not finite gets an actuation that is not finite, which the safety layer stops, and
-// leaves nothing behind: where it is measured again it is taken over anew.
+// A joint whose measured state is not finite gets an actuation that is not finite, which the safety layer stops. When
+// the joint is measured again, start() takes it over anew.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// A motion from where a set-point is now, with the velocity and acceleration it has, to rest at a target in a given
-// time: the quintic polynomial, which from rest to rest is the minimum-jerk motion (Flash and Hogan 1985, J. Neurosci.
-// 5(7), eq. 4). Taking over a motion under way never steps position, velocity or acceleration.
+// A motion of a set-point from its present position, velocity and acceleration to rest at a target in a given time: the
+// quintic polynomial, which from rest to rest is the minimum-jerk motion (Flash and Hogan 1985, J. Neurosci. 5(7), eq.
+// 4). A new target during a motion makes no step in position, velocity or acceleration.
 #pragma once
 
 namespace kadans {
@@ -17,9 +17,9 @@ class MinimumJerk {
   void start(double position, double velocity, double target, double duration_s) noexcept;
   // Reaches `target` at rest after duration_s > 0; at once for 0.
   void move(double target, double duration_s) noexcept;
-  // Is led along the motion of somebody else: here, and moving so. Stays at this state until told more.
+  // Takes a state of a motion that another part plans, and stays there until the next call.
   void follow(const State& state) noexcept;
-  // Comes to rest in duration_s, half the way that its velocity would have brought it.
+  // Comes to rest in duration_s, after half the way that it would go at its present velocity.
   void stop(double duration_s) noexcept;
 
   const State& step(double dt_s) noexcept;

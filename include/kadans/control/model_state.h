@@ -1,6 +1,6 @@
-// The whole robot's state as a rigid-body model wants it, from a snapshot: for the high level of control objects that
-// compute with Dynamics. The base is taken as carried: where it points and how it turns come from the estimator, where
-// it is and how it accelerates are left out.
+// Brings the whole robot's state from a snapshot into a rigid-body model, for the high level of control objects that
+// compute with Dynamics. The base's orientation and angular velocity come from the estimator. Its position and
+// acceleration are left out: the base counts as carried evenly.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,8 @@ class ModelState {
  public:
   explicit ModelState(const RobotModel& model);
 
-  // The dynamics become those of the snapshot, the joints moved on evenly by ahead_s. False, and they stay as they
-  // were, when something in the snapshot is not finite.
+  // Computes the dynamics of the snapshot, with the joints moved on at constant velocity by ahead_s. False, and nothing
+  // changes, when a value in the snapshot is not finite.
   [[nodiscard]] bool update(const Snapshot& snapshot, double ahead_s = 0) noexcept;
 
   const Dynamics& dynamics() const noexcept { return dynamics_; }

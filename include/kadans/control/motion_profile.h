@@ -1,17 +1,17 @@
-// A motion from any state to rest at a target, as fast as limits of velocity, acceleration and jerk allow; the target
-// may change at any time. The plan is made when it changes, in bounded time, and followed exactly: each phase is a
+// A motion from any state to rest at a target, as fast as limits of velocity, acceleration and jerk allow. The target
+// may change at any time. A new target makes a new plan, in bounded time. The plan is followed exactly: each phase is a
 // cubic.
 //
 // A plan changes the velocity to a peak, keeps it for a while and changes it to 0. Both changes take the least time
 // that acceleration and jerk allow (Biagiotti and Melchiorri, Trajectory Planning for Automatic Machines and Robots,
-// Springer 2008, sec. 3.4; with a start in motion Kroeger and Wahl 2010, IEEE Trans. Robotics 26(1)). The way that
-// remains when the present motion is brought to rest says in which direction the peak lies; the way grows with the
-// peak, so either the velocity limit is the peak and is kept for a while, or a search in a bracket finds the peak that
-// needs no cruise. A slower motion of a given duration is the same with a lower peak.
+// Springer 2008, sec. 3.4; with a start in motion Kroeger and Wahl 2010, IEEE Trans. Robotics 26(1)). The direction of
+// the peak is that of the way which remains after the present motion is brought to rest. The way grows with the peak.
+// So either the peak is the velocity limit and is kept for a while, or a search in a bracket finds the peak that needs
+// no cruise. A slower motion of a given duration is the same with a lower peak.
 //
-// From rest to rest this is the optimum in time, it never turns back and never passes the target. From a state in
-// motion it keeps the limits as well and is near the optimum. A state outside the limits is brought inside with the
-// jerk and the acceleration allowed.
+// From rest to rest the motion is time-optimal; it never turns back and never passes the target. From a state in motion
+// it also keeps the limits and is near the optimum. A state outside the limits is brought inside with the allowed jerk
+// and acceleration.
 //
 // One owner; nothing here allocates, locks or throws. The limits are greater than 0; units are up to the owner.
 #pragma once
@@ -32,9 +32,9 @@ class MotionProfile {
 
   // At rest at `position`, at once.
   void reset(double position) noexcept;
-  // In motion; follow with move or stop.
+  // Takes a state in motion. Call move or stop next.
   void set_state(const State& state) noexcept;
-  // Reaches `target` at rest after `duration`. False when that is too soon: then as soon as the limits allow.
+  // Reaches `target` at rest after duration_s. False when that is too soon: then as soon as the limits allow.
   bool move(double target, const Limits& limits, double duration_s = 0) noexcept;
   // Comes to rest as soon as the limits allow.
   void stop(const Limits& limits) noexcept;

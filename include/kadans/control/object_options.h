@@ -1,5 +1,6 @@
-// What a control object's type asks for beyond joints and parameters, by name: the configuration's "options". An object
-// asks for its options when it is made; what it never asked for is unknown to its type, and refused by whoever made it.
+// The options of a control object by name, "options" in the configuration: what its type needs beyond joints and
+// parameters. An object asks for its options when it is made. An option that it did not ask for is unknown to its type;
+// the code that made the object refuses it.
 //
 // Before the loop, one thread.
 #pragma once
@@ -32,7 +33,7 @@ class ObjectOptions {
   mutable std::vector<std::string> asked_;
 };
 
-// An option that the type cannot use, or lacks.
+// An option is missing, or has a value that the type cannot use.
 class OptionError : public std::invalid_argument {
  public:
   OptionError(std::string option, const std::string& message)

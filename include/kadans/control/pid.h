@@ -2,9 +2,9 @@
 //
 //   u = feedforward + kp e + I + kd (b v_ref - v_f),   dI/dt = ki e,   e = reference - position
 //
-// The derivative acts on the measured velocity, low-passed at kd_cutoff; the reference's own velocity, which a motion
-// delivers exactly and is never differentiated, enters with the weight b. The integral is kept as a torque, so changing
-// ki does not step u. Anti-windup: the integral does not grow in the direction in which u is limited, nor beyond
+// The derivative acts on the measured velocity, low-passed at kd_cutoff. The reference's own velocity enters with the
+// weight b; the motion delivers it exactly, it is never a difference. The integral is kept as a torque, so changing ki
+// does not step u. Anti-windup: the integral does not grow in the direction in which u is limited, nor beyond
 // integral_max. The output is limited to +-effort_max.
 //
 // One owner, the control thread; step() neither allocates, locks nor throws.
@@ -33,8 +33,8 @@ class Pid {
     bool saturated = false;
   };
 
-  // Takes over at the measured state so that the next output is effort_Nm, as far as the integral's limit allows, when
-  // the reference is there and moves with reference_velocity.
+  // Takes over at the measured state, with the reference at the same position. The integral is set so that the next
+  // output is effort_Nm, as far as its limit allows.
   void start(double position_rad, double velocity_rad_s, double effort_Nm,
              double reference_velocity_rad_s = 0) noexcept;
   // Returns the effort. Values that are not finite give a result that is not finite; the safety layer stops it.

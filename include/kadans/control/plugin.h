@@ -1,16 +1,16 @@
 // The seam to plug-ins: control objects in a shared library that was built apart from the program, perhaps by another
-// compiler. Everything that crosses it is plain data and functions in the manner of C; the frames are those of
-// kadans/signal, whose layout is fixed. A plug-in exports one function:
+// compiler. Only plain data and C functions cross it; the frames are those of kadans/signal, whose layout is fixed. A
+// plug-in exports one function:
 //
 //   extern "C" const kadans::Plugin* kadans_plugin();
 //
 // Nobody writes these tables by hand: KADANS_PLUGIN (plugin_glue.h) makes them from a ControlObject. The program reads
 // them with load_plugin (plugin_library.h).
 //
-// Whatever changes here, or in a frame's layout, needs a new plugin_abi_version. Version and sizes are compared before
-// anything else is called.
+// A change here, or in a frame's layout, needs a new plugin_abi_version. The program compares the version and the sizes
+// before it calls anything else.
 //
-// Threads: update in the behavior thread, the rest as in control_object.h. Strings hold for the call.
+// Threads: update in the behavior thread, the rest as in control_object.h. Strings are valid during the call only.
 #pragma once
 
 #include <cstdint>
@@ -65,7 +65,8 @@ struct alignas(8) PluginInput {
   double dt_s;
 };
 
-// Where the plug-in tells the program what its object has. They are numbered in the order of telling, from 0.
+// How the plug-in tells the program the parameters, set-points and signals of its object. Each kind is numbered from 0,
+// in the order of the calls.
 struct PluginDeclaration {
   void* program;
   void (*parameter)(void* program, const char* name, const char* unit, double min, double max, double initial,
@@ -79,7 +80,7 @@ struct PluginError {
   char text[512];  // ends with a 0
 };
 
-// One type of control object; no function is missing.
+// One type of control object. No function may be missing.
 struct PluginType {
   const char* name;
   void* (*create)(const PluginSetup*, PluginError*);  // nullptr: refused, error says why
@@ -92,13 +93,13 @@ struct PluginType {
   void (*set_point)(void* object, std::uint32_t channel, double value, double duration_s);
   void (*cancel_motion)(void* object, std::uint32_t channel);
   double (*motion_remaining_s)(void* object);
-  void (*read_signals)(void* object, double* values);  // one a signal
+  void (*read_signals)(void* object, double* values);  // one value per signal
   void (*update)(void* object, const Snapshot*);
 };
 
 struct Plugin {
   std::uint32_t abi_version;
-  // sizeof of what crosses the seam, as the plug-in was compiled.
+  // sizeof of the types that cross the seam, as the plug-in was compiled.
   std::uint32_t plugin_size, type_size, setup_size, link_size, joint_size, input_size, declaration_size;
   std::uint32_t joint_states_size, robot_status_size, actuation_frame_size, snapshot_size;
   std::uint32_t type_count;

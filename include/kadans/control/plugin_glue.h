@@ -1,13 +1,13 @@
-// Makes a plug-in of control objects: in one source file of a shared library,
+// Makes a plug-in from control objects. Write in one source file of a shared library:
 //
 //   KADANS_PLUGIN(kadans::plugin_type<make_spring>("spring"), kadans::plugin_type<make_damper>("damper"))
 //
-// where make_spring is a std::unique_ptr<kadans::ControlObject> (const kadans::ObjectSetup&). The object sees the model
-// as in the program, but for shapes and file names.
+// where make_spring is a std::unique_ptr<kadans::ControlObject> (const kadans::ObjectSetup&). The object sees the same
+// model as in the program, except shapes and file names.
 //
-// No exception leaves the library: what make_spring and declare() throw becomes the reason of a refusal. step() and the
-// others that the control thread calls are noexcept in ControlObject: a throw that leaves them ends the process, as
-// everywhere.
+// What make_spring and declare() throw does not leave the library; it becomes the reason of a refusal. step() and the
+// other functions of the control thread are noexcept in ControlObject: an exception that leaves one of them ends the
+// process.
 #pragma once
 
 #include <cstdio>
@@ -43,7 +43,7 @@ class PluginInstance {
 
 inline PluginInstance& plugin_instance(void* object) noexcept { return *static_cast<PluginInstance*>(object); }
 
-// True when `work` did not throw; else the error tells why.
+// False when `work` threw; then `error` says why.
 template <typename Work>
 bool without_exception(PluginError& error, Work&& work) noexcept {
   try {

@@ -1,10 +1,10 @@
-// Plug-ins: types of control objects that come in a shared library (plugin.h says how, plugin_glue.h makes one).
+// Plug-ins: types of control objects in a shared library. plugin.h is the interface, plugin_glue.h makes a plug-in.
 //
 // A library that does not fit is refused with a reason: it is no library, exports no kadans_plugin, was built for
 // another version of the seam or with frames of another size, lacks a function, or brings a type whose name is taken.
-// Its objects are kept at arm's length: an exception that comes out of one while the loop runs ends its work, its
-// joints are given NaN from then on and the safety layer damps them (signal `failed`). A library shares the program's
-// memory; against one that writes where it should not there is no help here.
+// The program does not trust a library's objects. An object that throws while the loop runs is not called again: its
+// joints get NaN from then on, and the safety layer damps them (signal `failed`). A library shares the program's
+// memory; nothing here protects against one that writes where it should not.
 //
 // Before the loop. A library stays loaded until the program ends.
 #pragma once

@@ -1,5 +1,5 @@
-// What the laws have in common that lead a joint to one set-point along a minimum-jerk motion: the joint, the motion
-// and the channel by which it is commanded.
+// The common part of the laws that lead a joint to one set-point along a minimum-jerk motion: the joint, the motion and
+// the channel of the set-point.
 #pragma once
 
 #include "kadans/control/handover.h"
@@ -26,7 +26,7 @@ class PositionReference {
 
  protected:
   explicit PositionReference(const JointAxis& axis) : axis_(axis) {}
-  // Goes on with the joint's velocity and comes to rest.
+  // The reference continues with the joint's velocity and comes to rest.
   void take_over(const Handover& handover) noexcept {
     continue_motion(reference_, handover.state.position_rad, handover.state.velocity_rad_s, axis_);
   }

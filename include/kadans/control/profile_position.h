@@ -1,11 +1,11 @@
-// A position set-point on each joint, approached as fast as limits of velocity, acceleration and jerk allow and written
-// in position mode, the velocity as feed-forward: type "profile_position". The law is motion_profile.h; the target may
-// change while the joint moves.
+// A position set-point on each joint, approached as fast as limits of velocity, acceleration and jerk allow, and
+// written in position mode with the velocity as feed-forward: type "profile_position". The law is motion_profile.h; the
+// target may change while the joint moves.
 //
-// Set-points  <joint>.position_rad. A duration that the limits cannot keep is flagged as late; 0 is the fastest.
+// Set-points  <joint>.position_rad. A duration that is too short for the limits sets the signal late; 0 is the fastest.
 // Parameters  the limits; they count from the next set-point on.
-// Start       from the drive's last set-point, or from the measured state with a fading torque; comes to rest within
-//             the limits.
+// Start       the reference continues from the drive's last set-point in position mode, else from the measured state
+//             while the torque from before fades; it comes to rest within the limits.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ class ProfileLaw {
   struct State {
     double target_rad = 0;
     double reference_rad = 0, reference_velocity_rad_s = 0, reference_acceleration_rad_s2 = 0;
-    double effort_Nm = 0;  // what is left of the torque taken over
+    double effort_Nm = 0;  // the rest of the torque taken over
     bool late = false;     // the last set-point will take longer than it was given
   };
   static constexpr std::uint32_t channels = 1;
@@ -55,7 +55,7 @@ class ProfileLaw {
   State state_;
   MotionProfile profile_;
   FadingEffort fading_;
-  double lowest_rad_ = 0, highest_rad_ = 0;  // the joint's range, and where it was at the start
+  double lowest_rad_ = 0, highest_rad_ = 0;  // the joint's range, widened to where it was at the start
 };
 
 std::unique_ptr<ControlObject> make_profile_position(const ObjectSetup& setup);

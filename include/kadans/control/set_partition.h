@@ -1,6 +1,6 @@
 // Which control sets can be active together: those whose joints are disjoint. A set that comes in takes the place of
-// all active sets that it shares a joint with; they leave whole, since a law that lost some of its joints would be
-// another one. Sets that it does not touch go on and notice nothing.
+// all active sets that share a joint with it. These leave as a whole, because a law without some of its joints would be
+// another law. The other sets go on unchanged.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace kadans {
 
-using JointMask = std::uint64_t;  // a bit a joint
+using JointMask = std::uint64_t;  // one bit per joint
 using ObjectMask = std::uint32_t;
 static_assert(max_joints <= 64 && max_objects <= 32);
 
@@ -29,12 +29,12 @@ class SetPartition {
   // Throws std::invalid_argument on more than max_control_sets sets.
   explicit SetPartition(const Catalog& catalog);
 
-  // What is active after `set` came in to `active`.
+  // The active sets after `set` came in to `active`.
   SetMask after(SetMask active, std::uint32_t set) const noexcept {
     if ((active & set_bit(set)) != 0) return active;
     return (active & ~sets_[set].touched) | set_bit(set);
   }
-  // Whether one of `a` and a different one of `b` share a joint (or an object).
+  // Whether a set of `a` and a different set of `b` share a joint or an object.
   bool clash(SetMask a, SetMask b) const noexcept;
   JointMask joints(SetMask sets) const noexcept;
   ObjectMask objects(SetMask sets) const noexcept;
@@ -44,7 +44,7 @@ class SetPartition {
   struct Set {
     JointMask joints = 0;
     ObjectMask objects = 0;
-    SetMask touched = 0;  // others that cannot be active with it
+    SetMask touched = 0;  // the other sets that cannot be active with it
   };
   std::vector<Set> sets_;
 };

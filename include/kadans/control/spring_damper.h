@@ -1,9 +1,9 @@
-// A spring and a damper between a joint and its reference, beside a torque that is given, all within a bound:
+// A spring and a damper between a joint and its reference, plus a given torque, all within a bound:
 //
 //   u = limit(effort + K (q_ref - q) + D (v_ref - v), +-effort_max)
 //
-// Computed here, once a tick, or by the drive (impedance mode), at its own rate and without the way there and back;
-// then the bound is that of the torque that is given, and the drive's own limit that of the sum.
+// The law is computed here, once a tick, or by the drive (impedance mode), at the drive's own rate and without the
+// delay of the bus. In the drive the bound applies to the given torque alone, and the drive's own limit to the sum.
 //
 // One owner, the control thread; step() neither allocates, locks nor throws.
 #pragma once
@@ -26,7 +26,7 @@ class SpringDamper {
     double effort_Nm = 0;
     bool saturated = false;
   };
-  // What a law calls them.
+  // The names that a law gives to its parameters and its signal.
   struct Names {
     const char* stiffness;
     const char* damping;

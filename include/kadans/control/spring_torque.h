@@ -1,17 +1,18 @@
-// Series elastic drives as drives of torque: turns the torque wanted at each joint into that of its motor, by a loop
-// around the spring's deflection (spring_torque_loop.h). Type "spring_torque".
+// Torque control of series elastic drives: an inner loop around the spring's deflection turns the wanted joint torque
+// into the motor's torque (spring_torque_loop.h). Type "spring_torque".
 //
-// It stands at the drives, not in control sets: "drives" in the robot's configuration names it, and it works on what is
-// left after composition and safety, in the tick that the state was measured in. So what computes torques outside of it
-// stays as it is, and its delay is the plant's alone. A joint that is not in effort mode is left to its drive.
+// It is an actuator-level object (control_sets.h), not part of a control set: "drives" in the robot's configuration
+// names it. It works on the actuation after composition and the safety layer, in the tick in which the state was
+// measured. So the outer loops that compute torques stay as they are, and the inner loop's delay is that of the plant
+// alone. A joint that is not in effort mode is left to its drive.
 //
 // Joints      with a spring in their drives.
-// Parameters  <joint>. spring_Nm_per_rad, rotor_inertia_kg_m2 (as the loop believes them to be; the drive's own unless
-//             given), bandwidth_Hz, damping_ratio, rate_cutoff_Hz, observer_Hz, and share: 0 hands on what is
-//             wanted, 1 closes the loop.
-// Signals     SpringTorqueLoop::State of each joint.
-// Start       whenever a joint comes back to effort mode: from the measured torque, without a disturbance.
-// Not finite  the motor gets what is wanted of the joint.
+// Parameters  <joint>. spring_Nm_per_rad, rotor_inertia_kg_m2 (the loop's model; the drive's own values unless given),
+//             bandwidth_Hz, damping_ratio, rate_cutoff_Hz, observer_Hz, and share: 0 gives the motor the wanted torque,
+//             1 closes the loop.
+// Signals     SpringTorqueLoop::State of each joint, without its rate.
+// Start       each time a joint comes back to effort mode: from the measured torque, with the disturbance at 0.
+// Not finite  the motor gets the wanted joint torque.
 #pragma once
 
 #include <memory>
@@ -30,7 +31,7 @@ class SpringTorque final : public ControlObject {
 
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
-  // `actuation` holds the torques wanted at the joints; those of its own it replaces.
+  // `actuation` holds the wanted joint torques; for its own joints they are replaced by motor torques.
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
   void rehearse(const ControlInput& input) const noexcept override;
   void set_point(std::uint32_t, double, double) noexcept override {}  // has none

@@ -1,18 +1,18 @@
 // The torque of one series elastic drive: an inner loop around its spring's deflection (Pratt and Williamson 1995,
 // IROS; Robinson 2000, PhD thesis, MIT; the observer as in Paine, Oh and Sentis 2014, IEEE/ASME T-Mech 19(3)).
 //
-// With the joint held the spring's torque T answers the motor's torque u as a mass on a spring,
-//     J/k T'' = u - f - T,      f: friction and whatever else the model leaves out,
-// so it rings at w0 = sqrt(k/J). The law
+// With the joint held still, the spring's torque T responds to the motor's torque u like a mass on a spring,
+//     J/k T'' = u - f - T,      f: friction and everything else that the model leaves out,
+// so it oscillates at w0 = sqrt(k/J). The law
 //     u = T_d + (w^2/w0^2 - 1) (T_d - T) - 2 z w/w0^2 T' + f^
-// makes T follow T_d as w^2 / (s^2 + 2 z w s + w^2). f^ comes from the rotor's momentum (De Luca and Mattone 2005,
-// ICRA):
+// makes T follow T_d as w^2 / (s^2 + 2 z w s + w^2). The estimate f^ of f comes from the rotor's momentum (De Luca and
+// Mattone 2005, ICRA):
 //     p^' = u - T - f^,   f^ = o (p^ - J rotor'),
-// a first-order low pass, of bandwidth o, of what the motor's torque does not explain. u is what the limit left of it,
-// so nothing winds up. No acceleration is differentiated.
+// a first-order low pass, of bandwidth o, of what the motor's torque does not explain. Here u is the torque after the
+// limit, so nothing winds up. The acceleration is never needed.
 //
-// What it cannot do: past w the joint feels the bare spring, and no stiffness above k can be rendered passively
-// (Vallery et al. 2008, IEEE RAM 15(3)). So w is modest, and stiffer laws outside want a stiffer spring.
+// What it cannot do: above w the joint feels the bare spring, and no stiffness above k can be rendered passively
+// (Vallery et al. 2008, IEEE RAM 15(3)). So w is modest, and a stiffer outer loop needs a stiffer spring.
 //
 // One owner, the control thread; step() neither allocates, locks nor throws.
 #pragma once
@@ -47,12 +47,12 @@ class SpringTorqueLoop {
   Config& config() noexcept { return config_; }
   const State& state() const noexcept { return state_; }
 
-  // The next step is a first one: nothing is known of disturbances.
+  // The next step is a first one: the estimate of the disturbance starts at 0.
   void restart() noexcept;
   // Takes over rate_cutoff_Hz. False, and nothing changes, when the tick is too long for it.
   bool retune() noexcept { return rate_.set_cutoff(config_.rate_cutoff_Hz); }
-  // The motor's torque. `joint`.effort_Nm is the spring's deflection times k. What is not finite is not used: then the
-  // motor gets what is wanted of the joint.
+  // Returns the motor's torque. `joint`.effort_Nm is the spring's deflection times k. When the measurement is not
+  // finite, the motor gets wanted_Nm.
   double step(double wanted_Nm, const JointState& joint, double dt_s) noexcept;
 
   double stiffest_gain() const noexcept;  // w^2/w0^2 - 1

@@ -1,14 +1,14 @@
-// How a robot stands on two feet, for the control objects that balance it: where its centre of mass is, and where that
-// is going, over the middle between the feet's frames.
+// Where the centre of mass of a robot on two feet is and where it is going, for the control objects that balance the
+// robot. Both are relative to the middle between the feet's frames.
 //
 // The divergent component of motion is where the robot's pendulum is going (Hof 2008, Human Movement Science 27(1);
-// Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z), c being the centre of mass over the
-// middle between the feet's frames, v its velocity. The robot stays up while xi can be kept over the soles, so the
-// centre of pressure has to lie beyond xi.
+// Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z). c is the centre of mass, v its
+// velocity. The robot stays up while xi can be kept over the soles. To push xi back, the centre of pressure has to lie
+// beyond xi.
 //
-// The velocity is a difference over a millisecond (body_ahead.h). The feet are taken to stand flat.
+// The velocity is a difference over a millisecond (body_ahead.h). The feet are assumed to stand flat.
 //
-// All in the heading frame: x forward along the ground where the base points, y left, z up.
+// Everything is in the heading frame: x forward along the ground where the base points, y left, z up.
 //
 // One owner, the control thread. Only the constructor allocates or throws.
 #pragma once
@@ -20,14 +20,15 @@
 
 namespace kadans {
 
-inline constexpr double standing_share_per_s = 5;  // how fast an object's share of torque comes and goes
+inline constexpr double standing_share_per_s = 5;  // how fast a balance object's share of torque may change
 
 class Standing {
  public:
-  // Of the options left_foot and right_foot: the links that stand. Throws OptionError. Keeps a reference to the model.
+  // The feet are the links that the options left_foot and right_foot name. Throws OptionError. Keeps a reference to the
+  // model.
   explicit Standing(const ObjectSetup& setup) : body_(setup) {}
 
-  // False when it does not stand, or something is not measured.
+  // False when the robot does not stand, or a measurement is not finite.
   bool update(const ControlInput& input) noexcept;
 
   const Vec3& com_m() const noexcept { return com_m_; }

@@ -1,12 +1,13 @@
-// When to step, with which foot, and where to: from the divergent component of motion, xi, alone. No torques here.
+// Decides when to step, with which foot and where to, from the divergent component of motion xi alone. Computes no
+// torques.
 //
-//   stands  both feet as they were put; nothing is asked for. Steps when xi, looked ahead by its rate, leaves what the
-//           soles hold, forward or backward
-//   swings  the foot that xi leaves behind goes past the other one, to where xi will be when it comes down, seen anew
-//           each tick. Feet that stand staggered need no push off: the push itself loads the one in front
-//   bears   both feet as they landed. Steps again when xi leaves them
+//   stands  Both feet are where they were put; nothing is asked for. A step begins when xi, predicted by its rate,
+//           leaves what the soles can hold, forward or backward.
+//   swings  The foot that xi moves away from passes the other foot and goes to where xi will be at touch-down; this
+//           place is computed anew each tick. Staggered feet need no push-off: the push itself loads the front foot.
+//   bears   Both feet are where they landed. The next step begins when xi leaves the soles.
 //
-// Everything is seen from the foot `stance`, in the heading frame. One owner, the control thread; nothing allocates.
+// Positions are relative to the foot `stance`, in the heading frame. One owner, the control thread; nothing allocates.
 #pragma once
 
 #include <array>
@@ -22,23 +23,23 @@ class StepPlan {
   enum class Phase : std::uint8_t { stands, swings, bears };
 
   struct Config {
-    Sole sole;              // of what the centre of pressure may be
-    double front_m = 0.10;  // xi before the foot in front beyond which it steps
-    double back_m = 0.07;   // xi behind the foot behind
-    double ahead_s = 0.02;  // how far xi is looked ahead
-    double again_m = 0.03;  // the same beyond the soles, once it has stepped
-    double settle_s = 0.1;  // after a landing, before the next step
+    Sole sole;              // where the centre of pressure may be
+    double front_m = 0.10;  // steps when xi is further than this before the front foot
+    double back_m = 0.07;   // steps when xi is further than this behind the rear foot
+    double ahead_s = 0.02;  // how far ahead xi is predicted for that
+    double again_m = 0.03;  // after a step: steps again when xi is further than this beyond the soles
+    double settle_s = 0.1;  // shortest time from a landing to the next step
     double swing_s = 0.26;
     double lift_m = 0.03;
-    double extra_x_m = 0.05;  // further than xi
+    double extra_x_m = 0.05;  // how far beyond xi the foot is put
     double extra_y_m = 0.03;
-    double apart_min_m = 0.17;  // between the feet
+    double apart_min_m = 0.17;  // between the feet, sideways
     double apart_max_m = 0.42;
     double reach_m = 0.40;       // longest step
-    double pressure_gain = 1.0;  // of p - xi, per xi - goal
-    double goal_x_m = 0.0;       // where xi shall rest, forward of the feet's middle
+    double pressure_gain = 1.0;  // (p - xi) / (xi - goal)
+    double goal_x_m = 0.0;       // where xi shall rest, forward of the middle between the feet
     double touch_N = 15;         // a foot that bears this has landed
-    double trust_per_s = 15;     // in what is measured of xi, once it has stepped
+    double trust_per_s = 15;     // after the first step: observer gain for the measured xi
   };
   struct Sight {
     std::array<DcmMeasure::OverFoot, 2> over{};
@@ -49,13 +50,13 @@ class StepPlan {
     Phase phase = Phase::stands;
     std::size_t stance = 0;  // 0 left, 1 right
     double time_s = 0;       // in the phase
-    Vec3 from_m{};           // where the other foot left, or landed
+    Vec3 from_m{};           // where the other foot lifted off, or landed
     GroundPoint foothold;
     GroundPoint dcm;           // over the stance foot
     double dcm_rate_m_s = 0;   // forward
     GroundPoint goal;          // where xi shall rest
-    double right_share = 0.5;  // of the load, asked for
-    GroundPoint in_sole;       // of the centre of pressure
+    double right_share = 0.5;  // wanted share of the load on the right foot
+    GroundPoint in_sole;       // wanted centre of pressure, from a foot's frame
     std::uint32_t steps = 0;
   };
 
@@ -63,7 +64,7 @@ class StepPlan {
   void advance(const Config& config, const Sight& sight, double dt_s) noexcept;
 
   const State& state() const noexcept { return state_; }
-  // Where the other foot's frame shall be, from the stance foot's.
+  // Where the other foot's frame shall be, relative to the stance foot's frame.
   Vec3 other_foot(const Config& config) const noexcept;
 
  private:

@@ -5,20 +5,21 @@
 //   F = K (x_ref - x) + D (v_ref - v), its length limited to force_max
 //   u = limit(J^T F + posture (q_start - q) - damping qd + I, +-effort_max)
 //
-// x is the point, v = J qd its velocity, J how it moves with the joints; all in the base frame, worked out in the tick
-// along the limb's own joints. Joints of the limb that other objects drive, and passive ones, count for x and v. What
-// the point leaves free (a leg's foot may turn) is the joints' own springs' and dampers' matter; the springs hold the
-// pose of the start and so act on the point too. Nothing compensates gravity: compose with a gravity_compensation
-// ("sum").
+// x is the position of the point, v = J qd its velocity, J its Jacobian, all in the base frame. Each tick computes them
+// along the limb's own joints. Passive joints of the limb and joints that other objects drive count for x and v, too.
+// The point leaves some motions free (a leg's foot may turn). The springs and dampers of the joints hold these; the
+// springs hold the pose of the start, so they also act on the point. Gravity is not compensated: compose with a
+// gravity_compensation ("sum").
 //
 // Options     link: the link that the point belongs to; required.
 // Set-points  x_m, y_m, z_m: of the point, in the base frame; reached by a minimum-jerk motion in the time given.
-// Parameters  point_x_m, point_y_m, point_z_m: the point in the link's frame (a new one is taken over as at the start);
-//             a Config a direction: x.stiffness_N_per_m and so on; force_max_N; a JointConfig a joint.
-// Signals     a State a direction, a JointState a joint, force_limited.
+// Parameters  point_x_m, point_y_m, point_z_m: the point in the link's frame (a new point is taken over as at the
+//             start); a Config per direction: x.stiffness_N_per_m and so on; force_max_N; a JointConfig per joint.
+// Signals     a State per direction, a JointOutput per joint, force_limited.
 // Start       the reference is where the point is. Torque that the law does not explain fades within 0.2 s.
-// Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops. While one of
-//             the limb is not, where the point is is unknown: F is 0, and the reference is taken anew after.
+// Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops. While any
+//             joint of the limb is not measured, the position of the point is unknown: F is 0, and the reference is
+//             taken anew afterwards.
 #pragma once
 
 #include <array>
@@ -55,7 +56,7 @@ class TaskImpedance final : public ControlObject {
     bool saturated = false;
   };
 
-  // Throws std::invalid_argument for a passive joint, no or an unknown link, and a joint that does not move it.
+  // Throws std::invalid_argument for a passive joint, a missing or unknown link, and a joint that does not move it.
   explicit TaskImpedance(const ObjectSetup& setup);
 
   void declare(Declaration& declaration) override;
@@ -93,10 +94,10 @@ class TaskImpedance final : public ControlObject {
   std::vector<Part> parts_;
   std::array<Direction, 3> directions_;
   Vec3 point_in_link_m_{};
-  Vec3 point_started_m_{};  // point_in_link_m_ of the reference
+  Vec3 point_started_m_{};  // point_in_link_m_ when the reference was taken
   double force_max_N_ = 0;
   bool force_limited_ = false;
-  bool located_ = false;  // the reference belongs to a point whose place is known
+  bool located_ = false;  // the reference was taken from a known position of the point
   bool fresh_ = false;    // started, not stepped yet
 };
 

@@ -1,17 +1,18 @@
 // A list of via points for each joint, followed by a PID in effort mode: type "trajectory_list". Behaviors fill the
-// list by set-points with durations, a high level in C++ by append(); the low level fetches a point when it has reached
-// the one before, without ever waiting.
+// list by set-points with durations, a high level in C++ by append(). The low level fetches a point when it has reached
+// the one before; it never waits.
 //
-// Between two points runs a cubic Hermite polynomial. A point without a velocity gets one from its neighbours, so that
-// the motion stays monotone between points (Fritsch and Carlson 1980, SIAM J. Numer. Anal. 17(2)): 0 where the
-// direction turns and at the end. So the reference stays between the points that lie around it. A point that arrives
-// while the last one is under way still changes the velocity there.
+// Two points are joined by a cubic Hermite polynomial. A point without a velocity gets one from its neighbours, so that
+// the motion is monotone between points (Fritsch and Carlson 1980, SIAM J. Numer. Anal. 17(2)): 0 where the direction
+// turns, and 0 at the last point. So the reference stays between the two points around it. A point that arrives while
+// the motion goes to the last one still changes the velocity at that last one.
 //
-// Set-points  <joint>.position_rad. With append = 1 each is added to the list, to be reached its duration after the one
-//             before; with 0 it replaces what is left of the list. A duration of 0 is at once.
-// Underrun    a point announced that more would come and none has: the reference comes to rest there, the signal
-//             underrun stays set until the next point, underruns counts them. A point for which there is no room, or
-//             which is not acceptable, is refused; dropped counts those of set-points.
+// Set-points  <joint>.position_rad. With append = 1 a set-point is added to the list; its duration counts from the
+//             point before. With append = 0 it replaces the rest of the list. A duration of 0 acts at once.
+// Underrun    a point announced another one (ViaPoint::more), and none has come when it is reached. The reference comes
+//             to rest, the signal underrun stays set until the next point, and underruns counts it.
+// Refused     a point for which there is no room, or which is not acceptable. The signal dropped counts the refused
+//             set-points.
 // Threads     append() belongs to the behavior thread, all else to the control thread.
 #pragma once
 
@@ -28,9 +29,9 @@ struct ViaPoint {
   static constexpr double chosen = std::numeric_limits<double>::quiet_NaN();
 
   double position_rad = 0;
-  double velocity_rad_s = chosen;  // or a finite one: passed at that velocity
+  double velocity_rad_s = chosen;  // a finite value: the velocity at the point
   double duration_s = 0;           // after the point before; at least duration_min_s
-  bool more = false;               // the writer means to follow it up in time
+  bool more = false;               // the writer will add another point in time
 
   static constexpr double duration_min_s = 0.001;
 };
@@ -38,7 +39,7 @@ struct ViaPoint {
 class TrajectoryLaw {
  public:
   struct State {
-    std::uint32_t waiting = 0;  // points in the list, the one under way not among them
+    std::uint32_t waiting = 0;  // points in the list, without the one under way
     std::uint32_t underruns = 0;
     std::uint32_t dropped = 0;
     bool underrun = false;

@@ -1,5 +1,5 @@
-// The joints that no active control set holds: each is drawn back to where it was when it was let go, as stiff and
-// damped as the configuration says. Without stiffness it damps, without both it is off.
+// The joints that no active control set holds. A spring and a damper from the configuration draw each of them back to
+// where it was when it was let go. With stiffness 0 the joint is only damped, with both 0 it is off.
 //
 // One owner, the control thread; nothing here allocates after construction, locks or throws.
 #pragma once
@@ -15,7 +15,8 @@ class UnheldJoints {
  public:
   explicit UnheldJoints(std::vector<UnheldLaw> laws) : laws_(std::move(laws)) {}
 
-  // When the sets change: which joints they hold from now on. What was unheld stays where it is drawn to.
+  // When the sets change. `held`: the joints that the sets hold from now on. A joint that was unheld before keeps the
+  // position to which it is drawn.
   void let_go(JointMask held, const JointStates& joints) noexcept;
   void forget() noexcept { unheld_ = 0; }
   // Each tick.

@@ -1,5 +1,5 @@
-// What the laws have in common that take a velocity as set-point: the velocity is approached with limited acceleration
-// and braked before the joint's limits (velocity_ramp.h), and the torque that was there at the start fades away.
+// The common part of the laws whose set-point is a velocity. The velocity approaches the set-point with limited
+// acceleration and brakes before the joint's limits (velocity_ramp.h). The torque from before the start fades away.
 #pragma once
 
 #include "kadans/control/handover.h"
@@ -20,14 +20,14 @@ class VelocityReference {
   struct Motion {
     double setpoint_rad_s = 0;
     double velocity_rad_s = 0;  // on the way to the set-point
-    bool limited = false;       // by what is in the way
+    bool limited = false;       // a limit is in the way
   };
 
   explicit VelocityReference(const JointAxis& axis) : axis_(axis) {}
   void declare(AxisTables& tables);
-  // The set-point is 0.
+  // Continues with this velocity and torque; the set-point is 0.
   void take_over(double velocity_rad_s, double effort_Nm) noexcept;
-  // `below` and `above` are the ways left in either direction.
+  // Returns the velocity. below_rad and above_rad: the way that is left in the negative and the positive direction.
   double advance(double dt_s, double below_rad, double above_rad) noexcept;
 
   JointAxis axis_;

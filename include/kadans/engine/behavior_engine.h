@@ -24,7 +24,7 @@ class BehaviorEngine {
 
   std::uint64_t ticks() const noexcept { return tick_; }
   const CommandSender& commands() const noexcept { return commands_; }
-  // Behavior thread, between ticks: for who commands besides the host, a console.
+  // Behavior thread, between ticks: for other senders of commands than the host, such as a console.
   CommandSender& sender() noexcept { return commands_; }
 
  private:

@@ -1,4 +1,4 @@
-// The seam between the behavior engine and whatever plays behaviors. engine does not know Lua; script implements this.
+// The seam between the behavior engine and what plays behaviors. engine does not know Lua; script implements this.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace kadans {
 class BehaviorHost {
  public:
   virtual ~BehaviorHost() = default;
-  // Behavior thread, once a behavior tick. The snapshot holds for the call. Each behavior collects its commands in a
-  // transaction of its own from `commands` and commits it.
+  // Behavior thread, once a behavior tick. The snapshot is valid during the call only. Each behavior collects its
+  // commands in a transaction of its own from `commands` and commits it.
   virtual void tick(const Snapshot& snapshot, CommandSender& commands) noexcept = 0;
-  // Behavior thread, shortly before a tick, or never. Nothing changes that a tick could tell; what it is going to need
-  // is fetched. The snapshot holds for the call.
+  // Behavior thread, shortly before a tick, or never. Fetches what the tick is going to need; changes nothing that a
+  // tick could notice. The snapshot is valid during the call only.
   virtual void prepare(const Snapshot& /*newest*/) noexcept {}
 };
 
@@ -29,7 +29,7 @@ struct Transition {
   std::string why;
 };
 
-// Where a behavior speaks to people. Behavior thread.
+// Where behaviors report to people. Behavior thread.
 class BehaviorLog {
  public:
   virtual ~BehaviorLog() = default;

@@ -1,4 +1,4 @@
-// The seam to time. Engines are handed time; only what drives them reads a clock.
+// The seam to time. Engines get the time as an argument; only what drives them reads a clock.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ class Clock {
   virtual std::int64_t now_ns() const noexcept = 0;
 };
 
-// Time that passes when told to: the plant's time leads.
+// Time that passes only by advance(): the plant's time leads.
 class VirtualClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return now_ns_; }

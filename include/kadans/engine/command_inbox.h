@@ -1,6 +1,6 @@
-// The control engine's end of the command queue: whole transactions only, checked before the first effect, at most a
-// fixed number of commands a tick. A transaction with one bad command is refused whole and counted; the snapshot says
-// why (refusal.h).
+// The control engine's end of the command queue. It applies whole transactions only, checks each before its first
+// effect, and takes at most a fixed number of commands per tick. A transaction with one bad command is refused as a
+// whole and counted; the snapshot says why (refusal.h).
 //
 // While the robot is held, or worse, its set-points, parameters and control set stay what they are: commands that would
 // change them are refused, unless the same transaction clears the faults first. A motion under way goes on to its end.
@@ -24,9 +24,9 @@ class CommandInbox {
   CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& sets, std::uint32_t commands_per_tick_max,
                std::int64_t age_max_ns);
 
-  // Control thread. Applies what arrived, oldest first; what exceeds the tick's share waits for the next. A fault of
-  // the safety layer says when something was refused. Objects of a set that is switched to start at once, so that
-  // set-points behind the switch in the same transaction count.
+  // Control thread. Applies the transactions that have arrived, oldest first; what exceeds the commands per tick waits
+  // for the next tick. A refusal raises a fault of the safety layer. The objects of a set that comes in start at once,
+  // so that set-points behind the switch in the same transaction act on them.
   void apply(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept;
 
   struct State {
@@ -35,16 +35,17 @@ class CommandInbox {
     std::uint32_t refused = 0;           // commands of refused transactions
   };
   const State& state() const noexcept { return state_; }
-  // Which transactions were refused, into the snapshot.
+  // Writes into the snapshot which transactions were applied and which refused.
   void fill(Snapshot& snapshot) const noexcept;
   SetpointMotions& motions() noexcept { return motions_; }
   const DriveRequests& drives() const noexcept { return drives_; }
 
  private:
   RefusalReason judge(const Command& command) const noexcept;
-  // Whether the safety layer holds what the command would change, and which joint. `active`: control sets before it.
+  // Whether the safety layer holds what the command would change, and which joint. `active`: the control sets before
+  // the command.
   RefusalReason held(const Command& command, const Safety& safety, SetMask active, std::uint16_t& joint) const noexcept;
-  // The first of `count` commands that is refused.
+  // The refusal of the first of the `count` commands that is refused; with the reason none: there is no such command.
   Refusal judge_transaction(std::uint32_t count, const Safety& safety) const noexcept;
   void refuse(const Command& header, Refusal refusal, std::uint64_t tick, Safety& safety) noexcept;
   void execute(const Command& command, const ControlInput& input, Safety& safety) noexcept;

@@ -32,7 +32,7 @@ struct EngineExchange {
   SnapshotStorage snapshot;    // written by the control thread
   CommandQueue commands;       // pushed by the behavior thread, popped by the control thread
   HeartbeatStorage heartbeat;  // written by the behavior thread
-  JoystickStorage joystick;    // written by whoever reads one, read by the control thread
+  JoystickStorage joystick;    // written by the thread that reads a joystick, read by the control thread
 };
 
 class ControlEngine {
@@ -79,7 +79,7 @@ class ControlEngine {
   Snapshot snapshot_;         // joints and status are estimated in place
   ActuationFrame actuation_;  // computed in the last tick, written in this one
   ActuationFrame written_;    // in this tick: what is wanted of the joints
-  ActuationFrame motors_;     // and what went to the plant for it, when objects stand at the drives
+  ActuationFrame motors_;     // what went to the plant instead, when there are actuator-level objects
   std::vector<double> row_;
   Rehearsal rehearsal_;
 };

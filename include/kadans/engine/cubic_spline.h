@@ -1,7 +1,7 @@
 // A curve through points at given times: cubic polynomials between them, with velocity and acceleration continuous at
 // every point, the velocity given at the start and 0 at the end (Biagiotti and Melchiorri, Trajectory Planning for
-// Automatic Machines and Robots, Springer 2008, sec. 4.4.1). It swings beyond the points where they turn; range() says
-// how far.
+// Automatic Machines and Robots, Springer 2008, sec. 4.4.1). The curve overshoots points where the direction turns;
+// range() says how far.
 //
 // A fixed number of points; nothing here allocates, locks or throws.
 #pragma once
@@ -18,7 +18,7 @@ class CubicSpline {
   static constexpr std::size_t points_max = 16;
 
   void begin(double value, double velocity) noexcept;
-  // False, and nothing changes, when there are points_max, or the duration after the point before is not > 0.
+  // False, and nothing changes, when there are points_max points already, or duration_s is not > 0.
   [[nodiscard]] bool add(double value, double duration_s) noexcept;
   // After the last point: finds the velocities.
   void plan() noexcept;

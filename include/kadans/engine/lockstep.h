@@ -1,5 +1,6 @@
 // Virtual time on one thread: the world's time leads, everything else follows in a fixed order, so that the same seed
-// gives the same run bit for bit. One step is a control period: control tick, behavior tick when it is due, world.
+// gives the same run bit for bit. One step is one control period: the control tick, the behavior tick when it is due,
+// then the world.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,8 @@ class Lockstep {
   // Throws what the world's step throws.
   void step();
 
-  // What tests and scenarios let go wrong: control ticks that are missed before the next one, and behavior ticks that
-  // do not come until it is taken back.
+  // Faults for tests and scenarios. miss: skips this number of control ticks before the next one. silence_behaviors: no
+  // behavior tick comes until it is called with false.
   void miss(std::uint32_t control_ticks) noexcept { missed_ = control_ticks; }
   void silence_behaviors(bool silent) noexcept { behaviors_silent_ = silent; }
 

@@ -1,9 +1,10 @@
-// A rehearsal of the tick. Between two ticks a CPU works for others, and when it comes back the tick's code and memory
-// are no longer in its caches: a tick of one microsecond takes five. The control thread, which waits for the last
-// stretch anyway, therefore goes through the tick beforehand: the same functions, on copies of what they would change.
+// A rehearsal of the tick. Between two ticks the CPU works for others, and afterwards the tick's code and memory are no
+// longer in its caches: a tick of one microsecond takes five. Therefore, in the last part of its wait, the control
+// thread goes through the tick beforehand: it calls the same functions, on copies of what they would change.
 //
-// Nothing that counts is changed, no plant is read or written, no command taken, nothing published: a run with
-// rehearsals and one without compute the same (tests/engine/rehearsal_test.cpp). No allocation, no system call.
+// A rehearsal changes nothing that counts. It reads and writes no plant, takes no command and publishes nothing. So a
+// run with rehearsals computes the same as a run without (tests/engine/rehearsal_test.cpp). No allocation, no system
+// call.
 #pragma once
 
 #include "kadans/estimate/estimator.h"

@@ -11,11 +11,11 @@ namespace kadans {
 struct EngineSettings {
   double control_period_s = 0.001;
   double behavior_period_s = 0.01;  // a whole multiple of the control period
-  // What one behavior may take in one tick by the wall clock, in a run on it; 0: half of the behavior period.
+  // Wall-clock time that one behavior may take in one tick, in a run on the wall clock; 0: half the behavior period.
   double behavior_time_max_s = 0;
   std::uint32_t commands_per_tick_max = max_transaction;
   double command_age_max_s = 0.1;  // older transactions are refused
-  bool joystick = false;           // it is recorded
+  bool joystick = false;           // the joystick is recorded
 
   std::int64_t control_period_ns() const noexcept { return std::llround(control_period_s * 1e9); }
   std::int64_t behavior_time_max_ns() const noexcept {

@@ -19,11 +19,12 @@ class TickStatistics {
   std::int64_t min_ns() const noexcept { return count() == 0 ? 0 : min_ns_.get(); }
   std::int64_t max_ns() const noexcept { return max_ns_.get(); }
   double mean_ns() const noexcept { return count() == 0 ? 0 : sum_ns_.get() / static_cast<double>(count()); }
-  // The duration that `share` of all stay below or at (0.5: the median), within a bucket's width; 0 without any.
+  // The duration that a `share` of all durations do not exceed (0.5: the median), within a bucket's width; 0 when there
+  // are none.
   double percentile_ns(double share) const noexcept;
-  // How many were at most so long, within a bucket's width.
+  // How many durations were at most this long, within a bucket's width.
   std::uint64_t count_until(std::int64_t duration_ns) const noexcept;
-  // Another's durations as if they had been added here; by the owner of this one.
+  // Adds all durations of another one. Called by the thread that owns this one.
   void add_all(const TickStatistics& other) noexcept;
 
  private:

@@ -23,11 +23,11 @@ class CommandSender {
   // The number of the transaction, from 1; 0 when it was refused; the last number again when nothing was added.
   std::uint32_t commit() noexcept;
   void discard() noexcept;
-  // For the far end of a queue that somebody else empties into another one: the next transaction is number
-  // last_sequence + 1, and until the next call no more commands are sent, headers included, than there is room for.
+  // For a sender in another process, whose queue is emptied into the engine's queue. The next transaction gets the
+  // number last_sequence + 1, and until the next call at most `room` commands are sent, headers included.
   void follow(std::uint32_t last_sequence, std::size_t room) noexcept;
   std::size_t room() const noexcept { return std::min(room_, queue_.free()); }  // commands, headers included
-  // What the last commit() sent; nothing when it sent nothing. Until the next add().
+  // What the last commit() sent; empty when it sent nothing. Valid until the next add().
   std::span<const Command> committed() const noexcept { return {batch_.data() + 1, committed_}; }
 
   std::uint32_t last_sequence() const noexcept { return sequence_; }

@@ -1,5 +1,5 @@
-// A rotation as three axes: those of a frame, given in another. Dearer to keep than a quaternion, cheaper to turn
-// points with; the estimator carries rotations along the legs this way.
+// A rotation as three axes: those of one frame, given in another. It needs more memory than a quaternion and rotates
+// points faster; the estimator carries rotations along the legs this way.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ inline Axes axes_of(const Quat& q) noexcept {
           {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
 }
 
-// A vector given along the axes, in the frame that the axes are given in.
+// Takes a vector given along the axes; returns it in the frame that the axes are given in.
 inline Vec3 along(const Axes& axes, const Vec3& v) noexcept {
   return {axes.x[0] * v[0] + axes.y[0] * v[1] + axes.z[0] * v[2],
           axes.x[1] * v[0] + axes.y[1] * v[1] + axes.z[1] * v[2],
@@ -41,7 +41,7 @@ struct Attitude {
 };
 Attitude attitude(const Axes& axes) noexcept;
 
-// By the way up in the base frame, of length 1. A trunk that leans by more than 53 degrees lies.
+// `up` is the upward unit vector in the base frame. A trunk that leans by more than 53 degrees lies.
 Posture posture_of(const Vec3& up) noexcept;
 
 }  // namespace kadans

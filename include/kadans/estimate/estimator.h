@@ -1,17 +1,17 @@
 // Second step of the tick: from what the sensors say to what the robot does.
 //
-// Each joint's position is the encoder's, its velocity the filtered difference quotient (velocity_filter.h), its effort
-// the spring's deflection times its stiffness, or the motor's own effort where there is no spring. The base's
+// Each joint's position is the encoder's. Its velocity is the filtered difference quotient (velocity_filter.h). Its
+// effort is the spring's deflection times its stiffness, or the motor's own effort where there is no spring. The base's
 // orientation comes from the IMU (orientation_filter.h). Contact and centre of pressure come from the soles
-// (contact_detector.h); through the legs that bear the base's height over the lowest sole is known, and where the
-// ground bears the robot as a whole.
+// (contact_detector.h). The legs that bear give the base's height over the lowest sole and the centre of pressure of
+// the whole robot.
 //
-// Sensors fail. A reading counts as new when its `sequence` changed (0: none yet); without a new one everything that
-// depends on it holds, and the next one is used with the time that truly passed. A value that is not finite is not
-// used. Both are reported in health(), for the safety layer. A joint with a sample_divisor of n is looked at in every
-// n-th tick only (tick % n == 0), and in the first.
+// Sensors fail. A reading counts as new when its `sequence` changed (0: none yet). Without a new reading everything
+// that depends on it keeps its value, and the next reading is used with the time that truly passed. A value that is not
+// finite is not used. Both are reported in health(), for the safety layer. A joint with a sample_divisor of n is looked
+// at only in every n-th tick (tick % n == 0), and in the first.
 //
-// Copies carry the whole state: an estimator that is copied goes on as its original would.
+// A copy carries the whole state: it goes on as the original would.
 //
 // One owner, the control thread. update neither allocates nor throws.
 #pragma once
@@ -39,7 +39,7 @@ class Estimator {
   // the joint or foot, the value and the range.
   Estimator(const RobotModel& model, const EstimateSettings& settings, double dt_s);
 
-  // dt_s: since the last update. Fills joints, and status but for its safety part.
+  // dt_s: since the last update. Fills joints, and status except its safety part.
   void update(const SensorFrame& sensors, double dt_s, std::uint64_t tick, JointStates& joints,
               RobotStatus& status) noexcept;
 
@@ -51,7 +51,7 @@ class Estimator {
   struct JointTrack {
     VelocityFilter velocity;
     double spring_Nm_per_rad = 0;
-    std::int64_t last_time_ns = 0;  // of the last reading, where the bus tells
+    std::int64_t last_time_ns = 0;  // of the last reading, where the bus tells it
     std::uint32_t last_sequence = 0;
     double elapsed_s = 0;  // since the last position that was used
     JointState state;

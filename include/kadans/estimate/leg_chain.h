@@ -1,6 +1,6 @@
-// Where one foot is, by forward kinematics along the joints from the base to it: a fraction of the whole robot's, so
-// that the estimator can afford it in every tick. Rotations are carried as three axes, and a joint about x, y or z
-// turns just two of them.
+// Forward kinematics of one foot, along the joints from the base to it. It costs a fraction of the whole robot's
+// kinematics, so that the estimator can afford it in every tick. Rotations are carried as three axes, and a joint about
+// x, y or z turns just two of them.
 //
 // One owner, the control thread. update neither allocates nor throws.
 #pragma once

@@ -4,7 +4,7 @@
 // filters on the special orthogonal group, IEEE TAC 53(5), 2008, equations 32), on quaternions. The gyro is integrated;
 // the accelerometer, which at rest points up, turns the estimate slowly towards gravity and teaches the gyro's bias.
 // A robot that steps, falls or hits the floor feels more or less than gravity: the correction fades out linearly
-// until | |a| / g - 1 | reaches gravity_tolerance. Nothing observes yaw: it starts at 0 and drifts with what is left of
+// until | |a| / g - 1 | reaches gravity_tolerance. Yaw is not observable: it starts at 0 and drifts with the rest of
 // the bias about the vertical.
 //
 // One owner, the control thread. update neither allocates nor throws.

@@ -18,16 +18,16 @@ struct EstimateFoot {
 
 struct EstimateSettings {
   double velocity_cutoff_Hz = 100;               // Butterworth, second order
-  std::vector<double> joint_velocity_cutoff_Hz;  // one a joint; 0, or no vector: velocity_cutoff_Hz
+  std::vector<double> joint_velocity_cutoff_Hz;  // one per joint; 0, or no vector: velocity_cutoff_Hz
   double accelerometer_gain_per_s = 0.5;         // how fast gravity corrects roll and pitch
   double gyro_bias_gain_per_s2 = 0.05;           // how fast the gyro's bias is learnt
   double gyro_bias_max_rad_s = 0.2;              // no bias is learnt beyond it
-  double gravity_tolerance = 0.2;                // | |a| / g - 1 | where the accelerometer loses its say
+  double gravity_tolerance = 0.2;                // | |a| / g - 1 | from which the accelerometer is not used
   double contact_on_N = 8, contact_off_N = 4;    // hysteresis of foot contact
   std::vector<EstimateFoot> feet;
   std::vector<SensorChannel> channels;
-  std::vector<double> spring_Nm_per_rad;      // one a joint; 0: no spring, the motor's effort is the joint's torque
-  std::vector<std::uint32_t> sample_divisor;  // one a joint: sampled every n-th tick; empty: all every tick
+  std::vector<double> spring_Nm_per_rad;      // one per joint; 0: no spring, the motor's effort is the joint's torque
+  std::vector<std::uint32_t> sample_divisor;  // one per joint: sampled every n-th tick; empty: all every tick
 };
 
 }  // namespace kadans

@@ -10,7 +10,7 @@
 namespace kadans {
 
 // Before the loop. The snapshot is what Estimator::update fills; it must outlive the table's use. Throws
-// std::invalid_argument on a name taken.
+// std::invalid_argument on a name that is taken.
 void declare_signals(SignalTable& table, const RobotModel& model, const EstimateSettings& settings,
                      const Snapshot& snapshot);
 

@@ -25,7 +25,7 @@ class VelocityFilter {
 
   explicit VelocityFilter(const Config& config);  // throws std::invalid_argument naming field, value and range
 
-  // How far the velocity of an evenly accelerated joint lags behind.
+  // The delay of the velocity of an evenly accelerated joint.
   static double delay_s(const Config& config) noexcept;
 
   // False, and nothing changes, outside (0, 0.45 / dt_s).

@@ -3,18 +3,19 @@
 // Each reader owns a triple buffer: three slots of which the writer holds one, the reader holds one, and the third is
 // in the middle. Writing fills the writer's slot and swaps it with the middle; reading swaps the middle, if it is
 // newer, with the reader's slot. One atomic exchange each, no loop, so both sides are wait-free and a reader that
-// stops forever disturbs nobody. A write costs one copy a reader; what nobody read is overwritten: this is not a queue.
+// stops forever disturbs nobody. A write costs one copy per reader. A value that nobody has read is overwritten: this
+// is not a queue.
 //
 // Memory order: every exchange both releases the slot that is given away (the writer's new value, or the reader's end
 // of reading) and acquires the one that comes back, so a slot has one owner at any time and its bytes need no atomics.
-// The look whether there is news orders nothing, since nothing is read on its word: read() exchanges after it, and
-// finds that news or newer. Each order is needed: tests/interleavings weakens one after the other and finds what
-// breaks.
+// The check whether there is news orders nothing, because nothing is read relying on it: read() does an exchange after
+// it and finds that value or a newer one. Each of these orders is needed: tests/interleavings weakens one after the
+// other and finds what breaks.
 //
 // Latest is trivially copyable and holds no pointer, so it may live in memory shared between two processes. Copy it
-// only while nobody reads or writes. Where there is a copy_used(from, to) for T, publishing copies by that. A process
-// that is killed inside publish() or read() may leave two parties with the same slot: when a party died, construct the
-// storage anew before the next one takes its place.
+// only while nobody reads or writes. If there is a function copy_used(from, to) for T, publish() copies with it. A
+// process that is killed inside publish() or read() may leave two parties with the same slot: when a party has died,
+// construct the storage anew before the next one takes its place.
 #pragma once
 
 #include <array>
@@ -44,7 +45,7 @@ class Latest {
     alignas(cache_line) std::uint32_t write_slot = 0;  // writer
     alignas(cache_line) Word middle{1};                // both
     alignas(cache_line) std::uint32_t read_slot = 2;   // reader
-    std::uint32_t readings = 0;                        // likewise: that live
+    std::uint32_t readings = 0;                        // reader: the Readings that live
   };
 
  public:
@@ -63,20 +64,21 @@ class Latest {
     }
   }
 
-  // Writer thread only: brings the places of the next publish() near. Changes nothing.
+  // Writer thread only: fetches the slots of the next publish() into the cache. Changes nothing.
   void warm() const noexcept {
     for (const Channel& channel : channels_) bring_near<1>(channel.slots[channel.write_slot]);
   }
-  // Thread of reader `reader` only: brings what read() will find near, unless something newer comes. Changes nothing.
+  // Thread of reader `reader` only: fetches the slot that read() will find into the cache, unless something newer
+  // comes. Changes nothing.
   void warm_read(std::size_t reader = 0) noexcept {
     Channel& channel = channels_[reader];
     const std::uint32_t middle_slot = Memory::at(channel.middle).load(std::memory_order_relaxed) & slot_mask;
     bring_near<0>(channel.slots[has_news(reader) ? middle_slot : channel.read_slot]);
   }
 
-  // The value that a reader looks at, for as long as this lives. Who reads again meanwhile finds the same value: what
-  // is looked at is never given back to the writer, however deep the call that reads again. Give it a name: of one
-  // without nothing can be kept.
+  // The value that a reader looks at, for as long as the Reading lives. If the same reader reads again meanwhile,
+  // however deep the call, it finds the same value: the slot is not given back to the writer. Give the Reading a name:
+  // a temporary gives no access to the value.
   class Reading {
    public:
     Reading(const Reading&) = delete;
@@ -102,7 +104,7 @@ class Latest {
     }
     return Reading(channel);
   }
-  // The same, as a copy.
+  // What read() finds, as a copy.
   T newest(std::size_t reader = 0) noexcept {
     const Reading reading = read(reader);
     return *reading;
@@ -123,7 +125,7 @@ class Latest {
       to = from;
   }
 
-  // A hint to the processor: no access that the language knows of, so no race with the slot's owner.
+  // A hint to the processor. For the language this is no access to memory, so there is no race with the slot's owner.
   template <int to_write>
   static void bring_near(const Slot& slot) noexcept {
     const auto* const bytes = reinterpret_cast<const unsigned char*>(&slot);

@@ -1,5 +1,5 @@
-// The memory through which the templates of this folder speak from thread to thread, as their last parameter: the
-// machine's, unless a checker looks on. tests/interleavings gives them one that is as weak as the language allows.
+// The memory through which the templates of this folder exchange data between threads; it is their last parameter. This
+// is the machine's memory. The checker in tests/interleavings gives them one that is as weak as the language allows.
 #pragma once
 
 #include <atomic>
@@ -8,13 +8,13 @@
 namespace kadans {
 
 struct MachineMemory {
-  // A number that several threads touch, through at() alone. It is a plain one, so that what holds it stays trivially
-  // copyable, which std::atomic would not.
+  // A number that several threads access, through at() only. It is a plain number, so that a type that holds it stays
+  // trivially copyable; with std::atomic it would not.
   template <typename T>
   using Word = T;
 
-  // Of a word, also of a const one: atomic_ref wants a non-const object even to load, and words are never const
-  // objects.
+  // Atomic access to a word, also through a const reference. atomic_ref needs a non-const object even to load; the
+  // words themselves are never const objects.
   template <typename T>
   static std::atomic_ref<T> at(const T& word) noexcept {
     static_assert(std::atomic_ref<T>::is_always_lock_free, "also on 32-bit machines");

@@ -1,5 +1,5 @@
-// A number that one thread changes and any thread may read: relaxed, so it orders nothing else. On the machines we know
-// it costs what a plain number costs. Trivially copyable, like all that crosses threads here.
+// A number that one thread changes and any thread may read. Access is relaxed, so it orders nothing else; on the
+// machines we know it costs no more than a plain number. Trivially copyable, like all that crosses threads here.
 #pragma once
 
 #include <cstdint>

@@ -1,10 +1,11 @@
 // A bounded queue from one producer to one consumer. A batch goes in whole or not at all and becomes visible at once,
-// so a reader never sees half a transaction. Full means refused: nothing blocks, nothing is overwritten.
+// so a reader never sees half a transaction. A batch that does not fit is refused: nothing blocks, nothing is
+// overwritten.
 //
-// Two positions count what was pushed and what was popped, modulo 2^32; the difference is what waits. Each side stores
-// its own position with release after it has touched the slots and loads the other's with acquire before it touches
-// them. Its own it loads relaxed: nobody else stores there. Each order is needed: tests/interleavings weakens one after
-// the other and finds what breaks.
+// Two positions count the elements that were pushed and popped, modulo 2^32; the difference is what waits. Each side
+// stores its own position with release after it has touched the slots, and loads the other's with acquire before it
+// touches them. It loads its own position relaxed, because nobody else stores there. Each order is needed:
+// tests/interleavings weakens one after the other and finds what breaks.
 //
 // Wait-free on both sides, trivially copyable and without pointers, so that it also works in memory shared between two
 // processes. Copy it only while nobody pushes or pops. A producer that is killed inside a push leaves nothing behind; a
@@ -28,7 +29,8 @@ class Ring {
   static_assert(Capacity <= (std::size_t{1} << 31), "positions are counted modulo 2^32");
 
  public:
-  // Producer thread only. False, and nothing is queued, when the batch does not fit. The batch is no part of the ring.
+  // Producer thread only. False, and nothing is queued, when the batch does not fit. The batch must not lie in the ring
+  // itself.
   [[nodiscard]] bool try_push(std::span<const T> batch) noexcept { return try_push(batch, {}); }
   // Producer thread only. The same for a batch that lies in two places, `first` before `second`.
   [[nodiscard]] bool try_push(std::span<const T> first, std::span<const T> second) noexcept {
@@ -43,7 +45,7 @@ class Ring {
   // Producer thread only.
   [[nodiscard]] bool try_push(const T& value) noexcept { return try_push(std::span<const T>(&value, 1)); }
 
-  // Producer thread only: brings the places of the next `count` elements near, to be written soon.
+  // Producer thread only: fetches the slots of the next `count` elements into the cache, for writing.
   void warm(std::size_t count) const noexcept {
     constexpr std::size_t a_line = cache_line / sizeof(T) > 0 ? cache_line / sizeof(T) : 1;
     for (std::size_t i = 0; i < count + a_line; i += a_line) {
@@ -82,7 +84,7 @@ class Ring {
   static constexpr std::size_t cache_line = 64;
   static constexpr std::uint32_t mask = static_cast<std::uint32_t>(Capacity - 1);
 
-  // In at most two pieces, the second from the start of the slots.
+  // Copies in at most two pieces, the second from the start of the slots.
   void copy_in(std::uint32_t position, std::span<const T> batch) noexcept {
     const std::size_t start = position & mask;
     const std::size_t before_end = std::min(batch.size(), Capacity - start);

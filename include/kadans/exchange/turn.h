@@ -1,12 +1,13 @@
-// Two sides take turns over memory that they share: one writes, names a number last of all, and rings; the other finds
-// that number, and then reads. What was written before is whole from then on, and belongs to the other side until it
-// hands over a number of its own.
+// Two sides take turns with memory that they share. One side writes the memory, then stores a number and rings a bell.
+// The other side finds the number and then reads: all that was written before the number is complete. The memory now
+// belongs to this side, until it gives a number of its own.
 //
-// Memory order: give() releases what its side wrote and has read, given() acquires it. The bell is no part of that: it
-// says that there is something to look at, so who looks without having heard it finds the same.
+// Memory order: give() releases what its side wrote and has read, given() acquires it. The bell orders nothing: it only
+// says that there is something to look at. A side that looks without the bell finds the same.
 //
-// Trivially copyable, no pointers: also for memory that two processes share. The other side may write anything there at
-// any time, if it is hostile: who must not trust it compares the number and copies before he looks.
+// Trivially copyable and without pointers, so it also works in memory that two processes share. A hostile process may
+// write anything there at any time: a side that must not trust the other checks the number, and copies the data before
+// it looks at them.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +30,7 @@ class Turn {
   // The other side: what was given last; 0: nothing yet. Wait-free.
   std::uint32_t given() const noexcept { return Memory::at(number_).load(std::memory_order_acquire); }
 
-  // The other side: waits until something else is given than `before`. Nothing: the side that gives is gone.
+  // The other side: waits until a number other than `before` is given. Nothing: the side that gives is gone.
   template <typename Bell>
   std::optional<std::uint32_t> next(std::uint32_t before, Bell& bell) const noexcept {
     while (bell.wait(-1) != Bell::Heard::end) {

@@ -2,17 +2,17 @@
 //
 //   M(q) dv + h(q, v) = tau
 //
-// v are the generalised velocities, size() of them, first those of a floating base, then the joints in the model's
-// order: linear velocity of the base frame's origin, angular velocity, both in world axes (m/s, rad/s); rad/s, or m/s
-// for a prismatic joint. tau likewise: the force and, about the base frame's origin, the moment on the base (N, Nm);
-// joint torques in Nm, or N. dv is the plain time derivative of v, so that the origin's acceleration is what a camera
-// would see. Mimic joints count as joints of their own.
+// v holds the size() generalised velocities. A floating base comes first: the linear velocity of the base frame's
+// origin and the angular velocity, both in world axes (m/s, rad/s). The joints follow in the model's order (rad/s, or
+// m/s for a prismatic joint). tau has the same order: the force on the base and the moment about the base frame's
+// origin (N, Nm), then the joint torques (Nm, or N). dv is the plain time derivative of v, so the acceleration of the
+// origin is what a camera would see. Mimic joints count as joints of their own.
 //
-// Orocos KDL works it out: the forces by its recursive Newton-Euler algorithm for trees, the mass matrix from its
-// inertias of composite bodies, as its own solver for chains does. Gravity and the centre of mass are read off the
-// rows that the mass matrix has for a floating base. An update takes about 14 us for TULip. A drive's rotor, reflected
-// to its joint, adds its inertia to the diagonal (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.6); the
-// rotors' gyroscopic torques are left out.
+// Orocos KDL computes the forces by its recursive Newton-Euler algorithm for trees, and the mass matrix from its
+// inertias of composite bodies, as its own solver for chains does. Gravity and the centre of mass are read from the
+// rows that the mass matrix has for a floating base. An update takes about 14 us for TULip. The inertia of a drive's
+// rotor, reflected to its joint, is added to the diagonal (Featherstone, Rigid Body Dynamics Algorithms, 2008, section
+// 9.6); the rotors' gyroscopic torques are left out.
 //
 // One owner, any thread. Nothing but the constructor allocates or throws. Values that are not finite give results that
 // are not.
@@ -37,16 +37,16 @@ class Dynamics {
   struct Config {
     Base base = Base::fixed;
     Vec3 gravity_m_s2{0, 0, -9.81};           // world axes
-    std::vector<double> rotor_inertia_kg_m2;  // reflected to the joint, one a joint; empty: none
+    std::vector<double> rotor_inertia_kg_m2;  // reflected to the joint, one per joint; empty: none
   };
-  // Of the base link's frame, in the world. A fixed base may be put, turned and moved anyhow, without acceleration.
+  // Of the base link's frame, in the world. A fixed base may have any pose and velocity, but has no acceleration.
   struct BaseState {
     Pose pose;
     Vec3 velocity_m_s{}, angular_velocity_rad_s{};  // world axes
   };
 
-  // Keeps a reference to the model, which must outlive it. Throws std::invalid_argument for rotors that are not one a
-  // joint.
+  // Keeps a reference to the model, which must outlive it. Throws std::invalid_argument unless there is one rotor
+  // inertia per joint, or none.
   Dynamics(const RobotModel& model, const Config& config);
   explicit Dynamics(const RobotModel& model) : Dynamics(model, Config()) {}
   Dynamics(Dynamics&&) noexcept;
@@ -64,7 +64,7 @@ class Dynamics {
   const Eigen::MatrixXd& mass_matrix() const noexcept { return mass_; }
   // n: Coriolis, centrifugal and gravity forces, h.
   const Eigen::VectorXd& bias() const noexcept { return bias_; }
-  // n: what holds the robot against gravity when it is at rest.
+  // n: the forces that hold the robot against gravity when it is at rest.
   const Eigen::VectorXd& gravity() const noexcept { return gravity_; }
   // How gravity() changes with the joints' positions: joint_count x joint_count, symmetric, Nm/rad. The second
   // derivative of the potential energy.

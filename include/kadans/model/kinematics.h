@@ -25,7 +25,7 @@ class Kinematics {
   // Keeps a reference to the model, which must outlive it.
   explicit Kinematics(const RobotModel& model);
 
-  // position_rad: one value a joint (radians, metres for prismatic joints). `base` is the pose of links[0].
+  // position_rad: one value per joint (radians, metres for prismatic joints). `base` is the pose of links[0].
   void update(std::span<const double> position_rad, const Pose& base = {}) noexcept;
 
   const Pose& link(std::size_t index) const noexcept { return poses_[index]; }  // as of the last update

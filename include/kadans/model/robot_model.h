@@ -83,7 +83,7 @@ struct Joint {
 
 struct RobotModel {
   std::string name;
-  std::string file;           // where it came from
+  std::string file;           // the file that it was read from
   std::vector<Link> links;    // links[0] is the floating base; parents come before children
   std::vector<Joint> joints;  // size() == links.size() - 1, at most max_joints
 

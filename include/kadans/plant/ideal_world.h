@@ -1,5 +1,5 @@
-// A plant without physics, for tests: each joint is a double integrator of its own inertia; position and velocity modes
-// are obeyed at once. The base stands still and upright.
+// A plant without physics, for tests. Each joint is a double integrator with its own inertia. Commands in position and
+// velocity mode are reached at once. The base stands still and upright.
 #pragma once
 
 #include "kadans/plant/modelled_channels.h"

@@ -1,5 +1,5 @@
-// The sensors that a robot's configuration names, as a model has them: each reads its value with noise, and again after
-// its period. What else they should read, scenarios set: they are no part of a model's physics.
+// A model of the sensors that a robot's configuration names beside joints, IMU and feet. Each reads its configured
+// value with noise, anew after each period. They are no part of a model's physics: scenarios set what else they read.
 #pragma once
 
 #include <cstdint>

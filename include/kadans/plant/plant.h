@@ -1,5 +1,5 @@
 // The seam between the control engine and what it controls: the robot's hardware, or a robot in a simulated world
-// (world.h). Engines see plants alone.
+// (world.h). Engines see only plants.
 //
 // read and write are called once a tick by the control thread: sample first, actuate a constant time later. Both are
 // bounded and make no system call that may block. The rest is called off the tick, before the first and after the last.
@@ -13,7 +13,7 @@
 
 namespace kadans {
 
-// What became of what passes between a plant and its drives: "lost", 3.
+// A count of the messages between a plant and its drives: "lost", 3.
 struct PlantCount {
   const char* name;
   std::uint64_t value;
@@ -26,10 +26,11 @@ class Plant {
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
 
-  // Before the loop: what it tells of itself beside the sensors.
+  // Before the loop: declares the signals that it has beside the sensors.
   virtual void declare_signals(SignalTable& table) const { (void)table; }
-  // Before the loop: finds what is to be driven and waits until it can be. Throws InputError that says what stands in
-  // the way, and what to do about it. False: give_up(), asked again and again and after each signal, ended it.
+  // Before the loop: finds the drives and waits until they can be driven. Throws InputError that says what is in the
+  // way, and what to do about it. It asks give_up() repeatedly, and after each signal of the system; when that says
+  // true, open returns false.
   virtual bool open(bool (*give_up)() noexcept = nullptr) {
     (void)give_up;
     return true;
@@ -39,9 +40,9 @@ class Plant {
   // After the loop.
   virtual std::vector<PlantCount> link_counts() const { return {}; }
 
-  // Control thread. Fills sensors as they are now, counts included.
+  // Control thread. Fills the frame with the sensors as they are now, counts included.
   virtual void read(SensorFrame& sensors) noexcept = 0;
-  // Control thread. Holds until the next write.
+  // Control thread. The actuation holds until the next write.
   virtual void write(const ActuationFrame& actuation) noexcept = 0;
   // Control thread, in the wait before a tick: read and write will follow soon. Changes nothing.
   virtual void warm() noexcept {}

@@ -1,14 +1,14 @@
 // The types of plants that a robot can be driven through: a model in a simulated world, or a bus with drives.
 //
-// A type is a folder of src/plant with a file type.cpp; nothing else names it. The robot's configuration reads its
-// fields under plant.NAME, `--plant NAME` chooses it, schema and check know it by what it says of itself here. A
-// program that links Kadans (app/program.h) registers types of its own before main():
+// A type is a folder of src/plant with a file type.cpp; nothing else names it. Its fields stand under plant.NAME in the
+// robot's configuration, `--plant NAME` chooses it, and schema and check know it by what it declares here. A program
+// that links Kadans (app/program.h) registers types of its own before main():
 //
 //   KADANS_REGISTER_PLANT_TYPE(make_bench_type);  // std::unique_ptr<kadans::PlantType> make_bench_type();
 //
-// docs/hardware.md says how one is written.
+// docs/hardware.md says how to write one.
 //
-// Before the loop, one thread, but for what the made plants and emulators say of themselves.
+// Before the loop, one thread. The plants and emulators that a type makes state their threads themselves.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@
 
 namespace kadans {
 
-// What a list of fields is read into, or described to: see config/fields.h. `doc` is a sentence for people.
+// Visits a list of fields, to read or to describe them: see config/fields.h. `doc` is a sentence for people.
 class PlantFields {
  public:
   struct Range {
@@ -46,11 +46,11 @@ struct PlantLayout {
   std::int64_t period_ns = 1'000'000;
 };
 
-// The robot that drives, or an emulator of them, are made for.
+// The robot for which drives, or an emulator of drives, are made.
 struct PlantSite {
   std::string file;  // the robot's configuration, for messages
   PlantLayout layout;
-  std::string peer;                // where the drives are, by the command line; "": where the configuration says
+  std::string peer;                // where the drives are, from the command line; "": where the configuration says
   double damping_Nms_per_rad = 2;  // of joints that nobody drives
 };
 
@@ -61,14 +61,14 @@ struct WorldSite {
   std::uint64_t seed = 1;
 };
 
-// The other side of a type's wire: who speaks its protocol drives a modelled robot, one after the other.
+// The other side of a type's wire: programs that speak its protocol drive a modelled robot, one after the other.
 //
 // Threads: await() before a session, beat() in it, the rest after it.
 class PlantEmulator {
  public:
   struct Session {
-    std::uint32_t releases = 0;      // times that the watchdog took the joints
-    std::int64_t answer_max_ns = 0;  // oldest sample that an actuation was told to answer, by the plant's clock
+    std::uint32_t releases = 0;      // how often the watchdog took over the joints
+    std::int64_t answer_max_ns = 0;  // greatest age of the sample that an actuation answers, by the plant's clock
     double answer_sum_ns = 0;
     std::uint64_t answers = 0;
     bool left = false;  // the peer said goodbye; else it fell silent
@@ -80,7 +80,7 @@ class PlantEmulator {
   PlantEmulator(const PlantEmulator&) = delete;
   PlantEmulator& operator=(const PlantEmulator&) = delete;
 
-  // Answers what came, after waiting for it for so long; true once there is a peer: a session began.
+  // Waits at most this long for datagrams and answers them. True once there is a peer: a session began.
   virtual bool await(int milliseconds) noexcept = 0;
   // `periods` passed since the last beat. False: the session is over. Throws what the world's step throws.
   virtual bool beat(World& world, std::uint32_t periods) = 0;
@@ -89,7 +89,7 @@ class PlantEmulator {
   virtual std::vector<PlantCount> link_counts() const = 0;
 };
 
-// Holds the settings that one robot's configuration gives to it.
+// A type of plant, with the settings that one robot's configuration gives to it.
 class PlantType {
  public:
   virtual ~PlantType() = default;
@@ -98,39 +98,39 @@ class PlantType {
   PlantType& operator=(const PlantType&) = delete;
 
   virtual std::string_view name() const noexcept = 0;
-  virtual std::string_view doc() const noexcept = 0;  // what it is, some words
-  // What the robot's configuration may say under the type's name; what it does not say keeps its value.
+  virtual std::string_view doc() const noexcept = 0;  // what it is, in a few words
+  // The fields that the robot's configuration may set under the type's name. A field that it omits keeps its value.
   virtual bool has_fields() const noexcept { return false; }
   virtual void fields(PlantFields& fields) { (void)fields; }
 
-  // A model: make_world makes it. Throws std::invalid_argument that names what in the settings does not fit.
+  // A model: make_world makes its world. Throws std::invalid_argument that names the setting that does not fit.
   virtual bool is_model() const noexcept { return false; }
   virtual bool has_objects() const noexcept { return false; }  // a scenario's "world" can stand in it
   virtual std::unique_ptr<World> make_world(const WorldSite& site) const;
 
-  // Not a model: make_plant makes what drives are reached through; not open yet. Throws InputError.
+  // Not a model: make_plant makes the plant that reaches the drives. It is not open yet. Throws InputError.
   virtual std::unique_ptr<Plant> make_plant(const PlantSite& site) const;
 
-  // What the maker calls the codes that its drives tell; none: they are told as numbers.
+  // The maker's words for the codes of its drives; nullptr: codes are told as numbers.
   virtual DriveWords drive_words() const noexcept { return nullptr; }
 
-  // Speaks a protocol: make_emulator serves a world to it, at the place where it listens. Throws InputError.
+  // Speaks a protocol: make_emulator makes the other side of it, which listens at `listen`. Throws InputError.
   virtual bool is_protocol() const noexcept { return false; }
   virtual std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const;
 };
 
 using PlantTypes = std::vector<std::shared_ptr<PlantType>>;
 
-// Those of this program, each with its default settings: the shipped ones by name, then those that were registered.
-// Throws std::invalid_argument when two have one name.
+// The types of this program, each with its default settings: the shipped ones by name, then the registered ones. Throws
+// std::invalid_argument when two have the same name.
 PlantTypes plant_types();
-// One that is there. Throws std::out_of_range.
+// The type of this name. Throws std::out_of_range when there is none.
 const PlantType& plant_type(const PlantTypes& types, std::string_view name);
 
-// Names of the types for which `is` holds; of all.
+// Names of the types for which `is` holds; without `is`, of all.
 std::vector<std::string> plant_type_names(bool (PlantType::*is)() const noexcept = nullptr);
 
-// One link in the list of what was registered before main(); never made but by the macro.
+// An entry in the list of the types that were registered before main(). Only the macro makes one.
 class RegisteredPlantType {
  public:
   using Make = std::unique_ptr<PlantType> (*)();
@@ -144,8 +144,8 @@ class RegisteredPlantType {
 
 }  // namespace kadans
 
-// At namespace scope in a source file of the program itself: the linker drops those of a static library that nothing
-// else refers to.
+// Write it at namespace scope in a source file of the program itself: from a static library the linker drops source
+// files that nothing else refers to.
 #define KADANS_REGISTER_PLANT_TYPE(make) KADANS_REGISTER_PLANT_TYPE_AT(make, __COUNTER__)
 #define KADANS_REGISTER_PLANT_TYPE_AT(make, count) KADANS_REGISTER_PLANT_TYPE_AS(make, count)
 #define KADANS_REGISTER_PLANT_TYPE_AS(make, count)                                \

@@ -1,4 +1,4 @@
-// What a modelled plant is made of beside the robot's links: drives, sensors, feet, ground, world, solver.
+// What a modelled plant consists of beside the robot's links: drives, sensors, feet, ground, world, solver.
 #pragma once
 
 #include <array>
@@ -62,13 +62,13 @@ struct SurfaceSettings {
 enum class ContactSolver : std::uint8_t { tree, stock };
 
 struct PlantSettings {
-  std::vector<DriveSettings> drives;      // one a joint
-  std::vector<EncoderSettings> encoders;  // one a joint
+  std::vector<DriveSettings> drives;      // one per joint
+  std::vector<EncoderSettings> encoders;  // one per joint
   ImuSettings imu;
   std::vector<FootSettings> feet;
-  std::vector<SensorChannel> channels;    // beside joints, IMU and feet
+  std::vector<SensorChannel> channels;    // sensors other than joints, IMU and feet
   std::vector<SurfaceSettings> surfaces;  // links not named have friction 0.5
-  double ground_friction = 1.0;           // a contact's friction is the product
+  double ground_friction = 1.0;           // a contact's friction is the product of both
   Vec3 gravity_m_s2{0, 0, -9.81};
   ContactSolver solver = ContactSolver::tree;
   int solver_iterations = 10;
@@ -79,7 +79,7 @@ struct PlantSettings {
   // ground or the fixed object of the world under it (a fixed base stays where it is put).
   Pose base;
   bool stand_on_ground = true;
-  std::vector<double> position_rad;  // one a joint
+  std::vector<double> position_rad;  // one per joint
 };
 
 }  // namespace kadans

@@ -1,8 +1,8 @@
-// What stands, lies, rolls and swings around the robot: the settings of a modelled plant's world.
+// The settings of a modelled plant's world: the ground and the objects around the robot.
 //
-// Every object has a name and a pose; x of the pose is the direction that an object without symmetry looks in: a ramp
-// and stairs go up along it, a wall stands across it, a pendulum hits along it. A contact's friction is the product of
-// both surfaces, its restitution the greater of both (the robot's and the ground's are 0).
+// Every object has a name and a pose. The x axis of the pose gives an object its direction: a ramp and stairs go up
+// along it, a wall stands across it, a pendulum hits along it. The friction of a contact is the product of both
+// surfaces' friction, its restitution the greater of both (the robot's and the ground's are 0).
 //
 //   box       pose of its centre; with a mass it moves freely
 //   ramp      pose of its lower edge's middle; a slab that rises at incline_rad for length_m, measured along it
@@ -11,7 +11,7 @@
 //   ball      pose of its centre; rolling_friction_m is the lever arm of rolling resistance
 //   pendulum  pose of the bob's centre at rest; a bob on a massless rod, held distance_m behind until release_s
 //   ground    a plane through the world's origin that rises at slope_rad towards slope_heading_rad
-// Boxes, ramps, stairs, walls and the ground may be driven along a profile of velocity, which nothing stops.
+// Boxes, ramps, stairs, walls and the ground may be driven along a velocity profile; nothing stops them.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,8 @@ namespace kadans {
 inline constexpr std::size_t max_world_objects = 32;
 inline constexpr std::uint32_t max_stairs = 32;
 
-// A velocity over time, in world axes: straight lines between the knots, the first's before, the last's after them.
+// A velocity over time, in world axes: linear between the knots, that of the first knot before it, that of the last
+// knot after it.
 struct MotionSettings {
   struct Knot {
     double time_s = 0;
@@ -44,7 +45,7 @@ Vec3 velocity_at(const MotionSettings& motion, double time_s) noexcept;
 struct WorldBox {
   Vec3 size_m{};        // full edge lengths
   double mass_kg = 0;   // 0: fixed
-  Vec3 velocity_m_s{};  // at the start, of one with a mass
+  Vec3 velocity_m_s{};  // at the start, of a box with a mass
 };
 struct WorldRamp {
   double length_m = 0, width_m = 0, incline_rad = 0;
@@ -77,7 +78,7 @@ struct WorldObject {
   double friction = 1;
   MotionSettings motion;
 
-  // Moves as forces make it.
+  // Whether forces move it.
   bool free() const noexcept {
     const auto* box = std::get_if<WorldBox>(&shape);
     return box != nullptr ? box->mass_kg > 0
@@ -85,7 +86,7 @@ struct WorldObject {
   }
 };
 
-// A point mass fixed to a link for a time. What is taken up already moves as the link does.
+// A point mass fixed to a link for a time. When it is taken up it already has the link's velocity.
 struct PayloadSettings {
   std::string name;
   std::string link;
@@ -101,14 +102,14 @@ struct WorldSettings {
   MotionSettings ground_motion;
 };
 
-// The boxes that an object is made of: one, or one a step; none for a ball or a pendulum.
+// The boxes that an object is made of: one, stairs one per step; none for a ball or a pendulum.
 struct SolidBox {
   Pose pose;  // of its centre
   Vec3 size_m{};
 };
 std::vector<SolidBox> solid_boxes(const WorldObject& object);
 Pose ground_pose(const WorldSettings& world);  // of the plane: z is its normal
-// Of the ground, or of the highest fixed object over this point.
+// The height of the ground, or of the highest fixed object, at this point.
 double surface_height_m(const WorldSettings& world, double x_m, double y_m);
 
 }  // namespace kadans

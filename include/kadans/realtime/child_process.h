@@ -69,7 +69,7 @@ class ChildProcess {
   std::optional<int> status_;
 };
 
-// For the program: from now on it dies when the thread that started it does.
+// Called by the program itself: from now on it dies when the thread that started it dies.
 void die_with_parent() noexcept;
 
 // A nameless file in memory, for what a child reads or writes.

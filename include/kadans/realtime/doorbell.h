@@ -1,9 +1,9 @@
-// How two processes wake each other over what they share in memory: one end each of a pair of connected sockets. A ring
-// says that there is something to look at and means nothing else; rings that nobody waited for count as one.
+// How two processes that share memory wake each other: each has one end of a pair of connected sockets. A ring says
+// that there is something to look at and means nothing else. Rings that nobody has waited for count as one.
 //
-// Sockets and not a futex in the shared memory: the system closes the other end when its process dies, whatever kills
-// it, so that who waits wakes at once instead of at the end of his patience; and the other side can scribble over no
-// memory that a wait depends on. One thread an end.
+// Why sockets and not a futex in the shared memory: the system closes the other end when its process dies, whatever
+// kills it, so that a process that waits wakes at once and not only after its timeout. And no wait depends on memory
+// that the other side can overwrite. One thread per end.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ class Doorbell {
   // Both ends, closed in programs that are started. Throws std::system_error.
   static std::pair<Doorbell, Doorbell> make_pair();
 
-  // Never blocks; to ring where nobody is does nothing.
+  // Never blocks. Has no effect when the other side is gone.
   void ring() const noexcept;
-  // Waits for a ring for at most this long; < 0: for ever. Takes all rings there are, but no more than a few: the other
-  // side cannot keep it here.
+  // Waits for a ring for at most this long; < 0: for ever. Takes all rings that there are, but only a few at most: the
+  // other side cannot keep it here.
   Heard wait(std::int64_t timeout_ns) noexcept;
 
   int descriptor() const noexcept { return descriptor_; }

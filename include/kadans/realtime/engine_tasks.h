@@ -17,8 +17,8 @@ class BesideTick {
   virtual void beside_tick(std::int64_t time_ns) = 0;
 };
 
-// A control tick a beat: from waking up to having published there is no system call but the plant's. What comes beside
-// it comes after.
+// One control tick per beat. From the wake-up to the publishing there is no system call but the plant's. Work beside
+// the tick comes after it.
 class ControlTask final : public Task {
  public:
   explicit ControlTask(ControlEngine& engine, BesideTick* after = nullptr) noexcept : engine_(engine), after_(after) {}
@@ -37,7 +37,7 @@ class ControlTask final : public Task {
   TickStatistics cost_;
 };
 
-// A behavior tick a beat, after what comes beside it.
+// One behavior tick per beat. Work beside the tick comes before it.
 class BehaviorTask final : public Task {
  public:
   explicit BehaviorTask(BehaviorEngine& engine, BesideTick* before = nullptr) noexcept

@@ -1,5 +1,5 @@
-// The timing test: how late a periodic task that does nothing wakes, on this machine, in the ways the runtime can wait;
-// and the same by cyclictest, the yardstick that everybody knows, on the same CPU at the same priority.
+// The timing test: how late a periodic task that does nothing wakes on this machine, in the ways the runtime can wait.
+// For comparison the same by cyclictest, the common yardstick, on the same CPU at the same priority.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,8 @@ struct JitterSample {
 // Takes samples * period. Throws std::system_error when there can be no thread.
 JitterSample measure_jitter(const JitterSettings& settings);
 
-// Wake-up lateness of cyclictest's samples; its jitter is taken from the differences, as its grid is ours.
+// Wake-up lateness of cyclictest's samples. The jitter is taken from their differences, because its time grid is like
+// ours.
 struct YardstickSample {
   TickStatistics lateness, jitter;
 };

@@ -1,9 +1,8 @@
-// Keeps a CPU from idling: a thread of the lowest class there is (SCHED_IDLE) that spins on it and gives way to
-// whatever else wants to run. An idle CPU sleeps deeper the longer it idles, and a virtual one leaves to its host;
-// waking it takes several times what waking a thread on a busy one does. It costs that CPU's rest: power, heat, a
-// host's time.
+// Keeps a CPU from idling: a thread of the lowest scheduling class (SCHED_IDLE) spins on it and gives way to every
+// other thread. The longer a CPU idles, the deeper it sleeps; an idle virtual CPU is given back to its host. Waking it
+// then takes several times as long as waking a thread on a busy CPU. The price is power, heat, and the host's time.
 //
-// Also holds /dev/cpu_dma_latency at 0, where that may be written: then no CPU leaves for a deep sleep.
+// Also holds /dev/cpu_dma_latency at 0, if it may be written: then no CPU goes into a deep sleep.
 #pragma once
 
 #include <atomic>

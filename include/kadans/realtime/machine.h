@@ -1,5 +1,5 @@
-// What of a machine decides whether a 1 kHz loop can be kept: what is, what it should be, how to change it. Each thing
-// is read from /proc and /sys, so that any machine can be examined from a copy of those.
+// Examines whether a machine can keep a 1 kHz loop: each finding says what is, what it should be and how to change it.
+// Everything is read from /proc and /sys, so that any machine can be examined from a copy of these.
 #pragma once
 
 #include <filesystem>

@@ -1,7 +1,8 @@
-// Makes a machine busy, so that timing can be measured where it matters: processes that compute, fill memory, write to
-// the disk, wake each other and set timers, of the usual scheduling class.
+// Makes a machine busy, so that timing can be measured where it matters: starts processes of the normal scheduling
+// class that compute, fill memory, write to the disk, wake each other and set timers.
 //
-// Processes, not threads: they share neither the memory lock nor the fate of the one who measures; they end with it.
+// They are processes and not threads, so that they do not share the memory lock of the process that measures, and
+// cannot make it fail. They end with it.
 #pragma once
 
 #include <vector>

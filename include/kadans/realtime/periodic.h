@@ -1,13 +1,13 @@
 // The beat of a periodic task: grid points first_ns + k * period_ns.
 //
-// A beat is never caught up with. When the work of a beat is not done at the next grid point, or the system wakes the
-// task a whole period late, the points that have passed are left out and counted, and the task goes on on the grid:
-// there is always a wait between two beats, and a task that is too slow leaves time to the others. Nor does a beat
-// follow one that woke late in less than half a period: what changed in a whole one would look as if it had changed in
-// a moment. What the task is told is true: how many were left out, and how long ago the last beat was.
+// A missed beat is never made up for. When the work of a beat is not done at the next grid point, or the system wakes
+// the task a whole period late, the points that have passed are left out and counted, and the task continues on the
+// grid. So there is always a wait between two beats, and a task that is too slow leaves time to the others. After a
+// late wake-up the next beat does not come in less than half a period: else a change during a whole period would look
+// like a change in a moment. The task is told how many beats were left out, and how long ago the last one really was.
 //
-// A clock that does not advance over a wait gives a beat that `stands`: there is nothing to be done in it.
-// One owner, the task's thread; the statistics may be read by any.
+// When the clock does not advance over a wait, the beat `stands`: the task has nothing to do in it. One owner, the
+// task's thread; any thread may read the statistics.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct Beat {
   std::int64_t due_ns = 0;   // the grid point
   std::int64_t woke_ns = 0;
   double dt_s = 0;           // between this wake-up and the last; the period at first
-  std::uint32_t missed = 0;  // left out before this one
-  bool stands = false;       // the clock
+  std::uint32_t missed = 0;  // beats left out before this one
+  bool stands = false;       // the clock did not advance
 };
 
 class Periodic {
@@ -37,10 +37,11 @@ class Periodic {
     (void)plan();
     return wake();
   }
-  // The same in two steps: when the next beat is due, what was worked past left out; then the waiting.
+  // The same in two steps. plan() leaves out the points that have passed and returns the time of the next beat; wake()
+  // waits for it.
   std::int64_t plan() noexcept;
   Beat wake() noexcept;
-  // The work of the beat is done. Before the next next().
+  // To be called when the work of the beat is done, before the next next().
   void done() noexcept;
 
   const TaskStatistics& statistics() const noexcept { return statistics_; }

@@ -1,15 +1,15 @@
-// Where the calling thread runs, and how urgently. Both are wishes: 0, or errno of a system that refuses.
+// The CPU and the priority of the calling thread. The system may refuse: each function returns 0, or errno.
 #pragma once
 
 namespace kadans {
 
-// It, and what it starts from here on, leaves this CPU to others, if there is another.
+// The calling thread, and what it starts from now on, no longer uses this CPU, if there is another one.
 int leave_cpu(int cpu) noexcept;
 // SCHED_FIFO at this priority.
 int take_priority(int priority) noexcept;
-// When memory runs out, the system takes this process before others.
+// When memory runs out, the system kills this process before others.
 void be_first_victim() noexcept;
-// The process may map at most so much more than it has now.
+// The process may map at most this much more memory than it has now.
 int limit_memory(unsigned long long more_bytes) noexcept;
 
 }  // namespace kadans

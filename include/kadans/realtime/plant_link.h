@@ -1,8 +1,8 @@
 // A world on a thread of its own, and what the control thread sees of it.
 //
-// The world's thread steps it once a period and publishes what its sensors say; the control thread reads the newest and
-// leaves its actuation, which holds until the model's next step, as a drive would. Both through storages that never
-// block: position independent, so the model may as well be another process.
+// The world's thread steps the world once a period and publishes the sensors. The control thread reads the newest
+// sample and publishes its actuation; the model holds it until its next step, as a drive would. Both use storages that
+// never block. These are position independent, so the model may also be in another process.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,8 @@ class LinkedPlant final : public Plant, public TruthSource {
   mutable PlantTruth truth_;  // as last asked for
 };
 
-// The model's end. When its thread comes late it steps what it missed, but at most a few periods: the rest of the time
-// did not pass for the model, and is counted.
+// The model's end. When its thread comes late, it makes up for the periods that it missed, but for a few at most. The
+// rest of the time does not pass for the model, and is counted.
 class PlantTask final : public Task {
  public:
   PlantTask(PlantExchange& exchange, World& world, std::int64_t period_ns) noexcept

@@ -1,4 +1,4 @@
-// What a process needs leave for to run in real time, and whether it has it: by a capability or by a limit.
+// The rights that a process needs to run in real time, and whether it has them: by a capability or by a limit.
 #pragma once
 
 #include <cstdint>

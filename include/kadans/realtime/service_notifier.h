@@ -1,10 +1,11 @@
-// Tells systemd how the service is (sd_notify): ready, what it does, that it lives, that it stops.
+// Tells systemd the state of the service (sd_notify): ready, what it does, alive, stopping.
 //
-// The protocol is one datagram of KEY=VALUE lines to the socket that NOTIFY_SOCKET names, promised stable by systemd;
-// so libsystemd, five times the size of what it would do here, is left out. Without the variable nothing happens.
+// The protocol is one datagram of KEY=VALUE lines to the socket that NOTIFY_SOCKET names; systemd promises to keep it
+// stable. So libsystemd, five times the size of the code that would use it, is not needed. Without the variable nothing
+// happens.
 //
-// WATCHDOG=1 goes out only when the control tick has advanced since the last time: a control thread that hangs gets the
-// service restarted, whatever the others still do. One owner, the supervisor's thread.
+// WATCHDOG=1 is sent only when the control tick has advanced since the last time. So systemd restarts the service when
+// the control thread hangs, whatever the other threads still do. One owner, the supervisor's thread.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,7 @@ class ServiceNotifier {
   bool connected() const noexcept { return file_ >= 0; }
   void ready(std::string_view status);
   void stopping();
-  // Often enough: twice a watchdog period. `tick` is the control engine's.
+  // To be called twice per watchdog period. `tick` is the control engine's.
   void alive(std::uint64_t tick);
 
  private:

@@ -1,4 +1,4 @@
-// Memory that two processes share: nameless, so that nobody else finds it and nothing of it outlives them.
+// Memory that two processes share. It has no name, so that nobody else finds it and nothing of it outlives them.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,9 @@ namespace kadans {
 
 class SharedMemory {
  public:
-  // New, all zero; its descriptor is closed in programs that are started. Throws std::system_error.
+  // New memory, all zero. Its descriptor is closed in programs that are started. Throws std::system_error.
   explicit SharedMemory(std::size_t bytes);
-  // That of another process; takes the descriptor over. Throws std::system_error, also when it is smaller.
+  // The memory of another process; takes the descriptor over. Throws std::system_error, also when it is smaller.
   SharedMemory(int descriptor, std::size_t bytes);
   ~SharedMemory();
   SharedMemory(const SharedMemory&) = delete;

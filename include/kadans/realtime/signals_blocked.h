@@ -1,5 +1,5 @@
-// For as long as this lives the thread that made it blocks all signals, and so do, for good, the threads that it starts
-// meanwhile: signals disturb only the thread that waits for them.
+// Blocks all signals in the thread that makes it, for as long as it lives. Threads that are started meanwhile block
+// them for good. So signals disturb only the thread that waits for them.
 #pragma once
 
 #include <csignal>

@@ -1,9 +1,10 @@
 // Where tasks that beat together wait until all of them are there; then time begins for them.
 //
-// Threads are started one after the other by one that is not in real time, which a busy machine may keep for seconds
-// between two of them. Without this the first would beat alone meanwhile: a control thread whose model is not yet there
-// sees silent sensors.
-// Threads: each task's calls wait() once; others ask or open() the line.
+// Threads are started one after the other, by a thread that is not in real time. A busy machine may hold that thread up
+// for seconds between two of them. Without the line the first task would beat alone meanwhile: a control thread whose
+// model is not yet there sees silent sensors.
+//
+// Threads: each task's thread calls wait() once; others ask or open() the line.
 #pragma once
 
 #include <atomic>
@@ -20,11 +21,11 @@ class StartLine {
 
   // A task's thread, once: returns time 0 when all are there.
   std::int64_t wait() noexcept;
-  // Any thread: the same, without being one that is waited for.
+  // Any thread: waits for time 0 as well, but is not counted as a task.
   std::int64_t origin_ns() const noexcept;
-  // Any thread: all are there, or nobody waits any more.
+  // Any thread: whether the line is open: all are there, or open() was called.
   bool is_open() const noexcept { return origin_ns_.load(std::memory_order_acquire) != 0; }
-  // Not all will come: nobody waits any more.
+  // Opens the line although not all tasks will come.
   void open() noexcept;
 
  private:

@@ -1,8 +1,9 @@
-// A periodic task on a thread of its own: its period, priority, CPU and stack, and what became of it.
+// A periodic task on a thread of its own, with a period, a priority, a CPU and a stack.
 //
-// The thread blocks all signals, so that they disturb only the thread that started it, touches its stack before the
-// first beat (of a large one 256 kB), and has its scheduling from the start: SCHED_FIFO above 0, the usual one at 0.
-// The task runs without what the system refuses of that; refused_priority() and refused_cpu() tell.
+// The thread blocks all signals, so that they disturb only the thread that started it. It touches its stack before the
+// first beat (of a large stack 256 kB). It has its scheduling class from its first instruction: SCHED_FIFO with a
+// priority above 0, the normal one with 0. If the system refuses the priority or the CPU, the task runs without it;
+// refused_priority() and refused_cpu() say so.
 //
 // pthreads, not std::thread: Xenomai replaces the pthread calls when the program is linked, not those inside libstdc++.
 // Threads: start, stop, join by the owner; the others by any.
@@ -25,7 +26,7 @@ class Task {
   virtual ~Task() = default;
   // The task's thread. False: the task is over. An exception ends it too.
   virtual bool beat(const Beat& beat) = 0;
-  // The task's thread, from prepare_ns before a beat is due on, as often as there is time for.
+  // The task's thread, in the last prepare_ns before a beat is due, as often as there is time.
   virtual void prepare() noexcept {}
 };
 
@@ -41,7 +42,7 @@ struct TaskSettings {
 
 class TaskThread {
  public:
-  // Wakes without the clock having advanced in a row before the task gives up.
+  // After this many wake-ups in a row without an advance of the clock the task gives up.
   static constexpr int standing_max = 100;
 
   // Task and wait must outlive it.
@@ -52,10 +53,10 @@ class TaskThread {
 
   // Throws std::system_error when there can be no thread.
   void start();
-  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }  // after the beat that goes on
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }  // after the present beat
   void join() noexcept;
-  // Waits until a time on CLOCK_MONOTONIC. False: the thread goes on; whoever does not join it may not destroy what it
-  // works on, nor this.
+  // Joins, but waits at most until a time on CLOCK_MONOTONIC. False: the thread still runs, and neither this object nor
+  // what the task works on may be destroyed before a join.
   [[nodiscard]] bool join_until(std::int64_t monotonic_ns) noexcept;
 
   const TaskSettings& settings() const noexcept { return settings_; }
@@ -64,9 +65,9 @@ class TaskThread {
   const TickStatistics& preparation() const noexcept { return preparation_; }
   bool begun() const noexcept { return begun_.load(std::memory_order_relaxed); }  // it got its CPU
   bool over() const noexcept { return over_.load(std::memory_order_acquire); }
-  // Once it is over: why it ended before its time, "" when it did not.
+  // Once it is over: why it ended before its time; "" when it did not.
   const char* failure() const noexcept { return over() ? failure_.data() : ""; }
-  // Once it beats: what the system refused, as errno; 0 when nothing.
+  // Once it beats: the errno with which the system refused; 0 when it did not.
   int refused_priority() const noexcept { return refused_priority_.load(std::memory_order_relaxed); }
   int refused_cpu() const noexcept { return refused_cpu_.load(std::memory_order_relaxed); }
   // CPU time that it used so far; 0 before start().

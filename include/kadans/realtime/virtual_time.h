@@ -1,9 +1,10 @@
-// Virtual time for real threads: it stands while any of them works, and when all wait it jumps to the first that is
-// due. All that are due then run at once, so the exchange of data between them is real, while nothing depends on how
-// fast they are: a model may be slower than the wall clock, and a sanitizer may look on.
+// Virtual time for real threads. Time stands still while any of the threads works. When all of them wait, time jumps to
+// the earliest due time, and all threads that are due then run at once. So the exchange of data between them is real,
+// but nothing depends on their speed: a model may be slower than the wall clock, and the program may run under a
+// sanitizer.
 //
-// Unlike lockstep (engine/lockstep.h) a run does not repeat bit for bit: who goes first within an instant is the
-// system's choice.
+// Unlike lockstep (engine/lockstep.h) a run does not repeat bit for bit: the system chooses which thread goes first
+// within an instant.
 #pragma once
 
 #include <atomic>
@@ -19,12 +20,12 @@ namespace kadans {
 
 class VirtualTime {
  public:
-  // Before the thread that will wait on it is started: from now on time stands until it waits, or ends. The time must
-  // outlive what it made. While time stands, until() looks some twenty times a second of wall time whether to
-  // `give_up`, and then returns early.
+  // To be called before the thread that will wait is started: from now on time stands until this thread waits, or ends.
+  // This object must outlive the Wait that it makes. While time stands, until() asks give_up() some twenty times per
+  // second of wall time; when that says true, it returns early.
   std::unique_ptr<Wait> make_wait(bool (*give_up)() noexcept = nullptr);
 
-  // Any thread: nobody waits any more, now or later; time stands.
+  // Any thread: ends all waits, now and later; time stands.
   void release() noexcept;
   // Any thread.
   std::int64_t now_ns() const noexcept { return now_ns_.load(std::memory_order_acquire); }

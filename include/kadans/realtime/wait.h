@@ -2,8 +2,7 @@
 //
 // Everything that differs between operating systems, between wall and virtual time, and between a test and the robot
 // is behind it: POSIX (posix_wait.h), threads on virtual time (virtual_time.h), a fake in tests. Xenomai's POSIX skin
-// takes the place of the POSIX calls when the program is linked, EVL would be one more class; docs/realtime.md says
-// how.
+// replaces the POSIX calls when the program is linked; EVL would be one more class. docs/realtime.md says how.
 #pragma once
 
 #include <cstdint>

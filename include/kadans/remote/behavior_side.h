@@ -1,7 +1,7 @@
-// The behavior thread's part of an instance: carries out orders before a tick, between two ticks of the behaviors. What
-// goes to the control thread is one transaction an order, and is answered when the control engine has applied or
-// refused it; what a behavior has to do with is answered when the next tick is over. Every change is logged with who
-// asked for it.
+// The behavior thread's part of an instance: carries out orders between two ticks of the behaviors. An order to the
+// control thread is one transaction; it is answered when the control engine has applied or refused the transaction. An
+// order to the behaviors is answered when their next tick is over. Every change is logged with the name of the client
+// that asked for it.
 #pragma once
 
 #include <cstdint>
@@ -26,30 +26,30 @@ class BehaviorSide final : public BesideTick {
  public:
   struct Parts {
     Instance& instance;
-    ScriptHost* host;      // where behaviors play: here
-    ProcessHost* process;  // or there; the other is nullptr
+    ScriptHost* host;      // the behaviors run in this host ...
+    ProcessHost* process;  // ... or in this process; the other pointer is nullptr
     BehaviorEngine& engine;
     EngineExchange& exchange;
-    EchoLog& echo;     // between the behaviors and `log`'s readers
-    BehaviorLog& log;  // where changes are told; what is said there passes the echo
+    EchoLog& echo;     // stands between the behaviors and the readers of `log`
+    BehaviorLog& log;  // changes are logged here; its messages pass through the echo
   };
   static constexpr std::size_t consoles_max = 4;
-  static constexpr std::int64_t led_again_ns = 1'000'000'000;  // a hand that leads a set-point is logged so often
+  static constexpr std::int64_t led_again_ns = 1'000'000'000;  // moving set-points are logged once in this time
 
-  // Everything must outlive it. `next` is called after it in every tick.
+  // All parts must outlive this object. `next` is called after it in every tick.
   explicit BehaviorSide(const Parts& parts, BesideTick* next = nullptr) : p_(parts), next_(next) {}
 
   void beside_tick(std::int64_t time_ns) override;
 
  private:
-  // An order that is on its way.
+  // An order that has been begun and not yet answered.
   struct Pending {
     std::unique_ptr<OrderCase> order;
     OrderQueue* from;
     std::int64_t asked_ns;
-    std::uint64_t asked_tick;    // of the behaviors, which a simulation does not play in each of its own
-    std::uint32_t sequence = 0;  // of its transaction; 0: it waits for the end of a tick
-    ParameterChange change{};    // of set_parameter and undo
+    std::uint64_t asked_tick;    // tick of the behaviors; a simulation does not run them in each of its own ticks
+    std::uint32_t sequence = 0;  // of its transaction; 0: the order waits for the end of a tick
+    ParameterChange change{};    // for set_parameter and undo
     bool lasting = false;
     std::uint16_t lifts = 0;  // of clear_faults: SafetyStatus::lifts before
     JointMask joints = 0;     // of orders to drives
@@ -84,14 +84,14 @@ class BehaviorSide final : public BesideTick {
 
   Parts p_;
   BesideTick* next_;
-  bool stopped_ = false;     // by the emergency stop, in the last tick
-  std::uint16_t lifts_ = 0;  // of it
+  bool stopped_ = false;     // by the emergency stop, as of the last tick
+  std::uint16_t lifts_ = 0;  // of the emergency stop, as of the last tick
   std::vector<Pending> pending_;
   TuningHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client
   std::vector<double> parameters_;
-  std::vector<EchoLog::Line> lines_;                   // said in the last tick, when an order was carried out in it
-  std::int64_t time_ns_ = 0, led_ns_ = -led_again_ns;  // when set-points were last told of
+  std::vector<EchoLog::Line> lines_;                   // messages of the last tick, when it carried out an order
+  std::int64_t time_ns_ = 0, led_ns_ = -led_again_ns;  // led_ns_: when a set-point was last logged
 };
 
 }  // namespace kadans

@@ -1,6 +1,6 @@
-// The text of the robot's configuration as the instance read it, and the way back into the file: parameters that were
-// tuned while it ran are written where they stand, those of behaviors under `behaviors`, everything else stays as it
-// is. The file is there whole at any time, and nothing that somebody wrote meanwhile is lost: then nothing is written.
+// The text of the robot's configuration as the instance read it, and the way to save tuned parameters into the file.
+// Parameters of control objects are written where they stand, those of behaviors under `behaviors`; everything else
+// stays as it is. The file is whole at any time. When somebody else has changed the file meanwhile, nothing is written.
 #pragma once
 
 #include <filesystem>
@@ -15,14 +15,15 @@
 
 namespace kadans {
 
-// A preset that gives a parameter another value than the one that was saved: a behavior that chooses it has that.
+// A preset that sets a parameter to another value than the saved one. A behavior that chooses this preset gets the
+// value of the preset.
 struct PresetOverride {
   std::string name;  // of the parameter
   std::string preset;
   double value = 0;
 };
 
-// What goes into a preset besides: those of the values that it sets.
+// Values to be saved in a preset, too: those parameters of `values` that the preset sets.
 struct PresetSave {
   std::string preset;  // "": none
   std::vector<ParameterChange> values{};
@@ -30,17 +31,17 @@ struct PresetSave {
 
 class ConfigurationText {
  public:
-  // Before the loop. Without a file nothing can be saved. `robot`: the folder in behaviors/ whose behaviors it may
-  // name.
+  // Call it before the loop. Without a file nothing can be saved. `robot` is the folder in behaviors/ whose behaviors
+  // the file may name.
   explicit ConfigurationText(std::filesystem::path file, std::string robot = {});
 
   const std::filesystem::path& file() const noexcept { return file_; }
-  // Threads that serve clients. Gives the presets that override what was saved. Throws InputError when the file is no
-  // longer what was read, a parameter has no place in it, or the preset sets none of its values; std::system_error when
-  // it cannot be written. Nothing is written then.
+  // Call it on threads that serve clients. Returns the presets that override saved values. Throws InputError when the
+  // file was changed since it was read, when a parameter has no place in it, or when the preset sets none of the
+  // values; InputError or std::system_error when the file cannot be written. Then nothing is written.
   std::vector<PresetOverride> save(const std::vector<ParameterChange>& changes, const Catalog& catalog,
                                    const PresetSave& also = {});
-  // "2 parameters stand in robot.json; presets override kp (stiff 300)": for a line in which that is told.
+  // A line for people: "2 parameters stand in robot.json; presets override kp (stiff 300)".
   std::string told(std::size_t saved, const std::vector<PresetOverride>& overridden) const;
 
  private:
@@ -50,7 +51,7 @@ class ConfigurationText {
 
   std::filesystem::path file_;
   std::string robot_;
-  std::map<std::pair<std::string, std::string>, double> presets_;  // what was saved in them, by preset and parameter
+  std::map<std::pair<std::string, std::string>, double> presets_;  // values saved in presets, by preset and parameter
   std::mutex mutex_;
   std::string text_;
 };

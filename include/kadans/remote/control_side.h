@@ -1,5 +1,5 @@
-// The control thread's part of an instance: hands its row to whoever wants it, and to the record while there is one.
-// Two relaxed loads a port and tick while nobody looks.
+// The control thread's part of an instance: passes its row of signals to the ports that want it, and to the record
+// while there is one. While nobody wants rows, it costs two relaxed loads for each port and tick.
 #pragma once
 
 #include <atomic>
@@ -13,15 +13,15 @@ namespace kadans {
 
 class ControlSide final : public RecordSink {
  public:
-  // The instance must outlive it. All its ports are open by the first tick.
+  // The instance must outlive this object. All ports must be open before the first tick.
   explicit ControlSide(Instance& instance) noexcept : instance_(instance) {}
 
   // Control thread.
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
   void warm() noexcept override;
 
-  // One thread at a time. From the next tick on, or the one that goes on, rows go there; nullptr: nowhere. The sink
-  // must outlive the loop: a row may still be on its way.
+  // Call it on one thread at a time. Rows go to `sink` from the current or the next tick on; nullptr: nowhere. The sink
+  // must outlive the loop, because a row may still be on its way.
   void record_to(RecordSink* sink) noexcept { sink_.store(sink, std::memory_order_release); }
 
  private:

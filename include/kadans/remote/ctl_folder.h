@@ -1,13 +1,14 @@
-// Where a running instance is found: a folder with three sockets, one a role. Who may open a socket has its role, so
-// ls -l shows who may do what, and chmod and chgrp change it:
+// The folder by which clients find a running instance. It holds three sockets, one for each role. A user who may open a
+// socket has its role. So ls -l shows the rights, and chmod and chgrp change them:
 //
 //   read      0666          look: status, lists, values, faults, watch
 //   operate   0660 GROUP    also: play, stop, switch, clear faults, emergency stop, record
 //   develop   0600 [GROUP]  also: parameters, reload, console
 //
-// The folder is, unless somebody names one: $XDG_RUNTIME_DIR/kadans; where there is none /run/kadans for root (a
-// service has it by RuntimeDirectory=kadans), /tmp/kadans-UID for others. Who looks for an instance looks in all of
-// these, in this order, then in /run/kadans. A file `lock` in it is held as long as its instance lives.
+// When no folder is named, it is $XDG_RUNTIME_DIR/kadans. Without this variable it is /run/kadans for root (a service
+// gets it by RuntimeDirectory=kadans), and /tmp/kadans-UID for other users, or ~/.cache/kadans when another user has
+// taken that name. Clients look in all of these, in this order, and then in /run/kadans. A file `lock` in the folder is
+// held as long as the instance lives.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ enum class Role : std::uint8_t { read, operate, develop };
 inline constexpr std::array<const char*, 3> role_names{"read", "operate", "develop"};
 inline const char* name(Role role) noexcept { return role_names[static_cast<std::size_t>(role)]; }
 
-// Of a new instance; where clients look.
+// The default folder of a new instance, and the folders in which clients look.
 std::filesystem::path ctl_folder_for_server();
 std::vector<std::filesystem::path> ctl_folders_for_clients();
 
@@ -31,12 +32,12 @@ class CtlSockets {
  public:
   struct Settings {
     std::filesystem::path folder;
-    std::string operators, developers;  // groups; "" = as the process
+    std::string operators, developers;  // groups; "": the group of the process
   };
-  // Makes the folder and listens. What a dead instance left is taken over. Throws InputError when the folder is another
-  // instance's, is not ours, or a group is not known.
+  // Makes the folder and listens. Sockets that a dead instance left are replaced. Throws InputError when the folder is
+  // in use by a running instance, when it belongs neither to this user nor to root, or when a group is unknown.
   explicit CtlSockets(const Settings& settings);
-  ~CtlSockets();  // takes them away
+  ~CtlSockets();  // removes the sockets
   CtlSockets(const CtlSockets&) = delete;
   CtlSockets& operator=(const CtlSockets&) = delete;
 

@@ -1,4 +1,4 @@
-// A client's end of ctl_server.h: finds an instance, sends lines, gets lines. It waits as long as it is told to.
+// The client of ctl_server.h: finds an instance, sends lines and receives lines.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@ namespace kadans {
 
 class CtlLink {
  public:
-  // `where`: a folder with sockets, or one socket; "" = where an instance may be. Takes the lowest role that suffices
-  // and is granted. Throws InputError that says where it looked and what it found.
+  // `where` is a folder with sockets, or one socket; "": the folders of ctl_folder.h. It connects with the lowest
+  // sufficient role that the system grants. Throws InputError that says where it looked and what it found.
   CtlLink(const std::filesystem::path& where, Role needed);
   ~CtlLink();
   CtlLink(const CtlLink&) = delete;
@@ -20,7 +20,8 @@ class CtlLink {
 
   // Throws InputError when the instance is gone.
   void send(const std::string& line);
-  // A line without its end; nothing: none came in time, or a signal did. Throws InputError when the instance is gone.
+  // Returns a line without its newline; nullopt when no line came within timeout_ms, or when a signal interrupted the
+  // wait. Throws InputError when the instance is gone.
   std::optional<std::string> receive(int timeout_ms);
 
  private:
@@ -28,7 +29,7 @@ class CtlLink {
 
   int socket_ = -1;
   std::string in_;
-  std::string denied_, stale_;  // what was found instead
+  std::string denied_, stale_;  // sockets that refused: no permission; nobody listens
 };
 
 }  // namespace kadans

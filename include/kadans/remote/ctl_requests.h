@@ -1,5 +1,5 @@
-// What the lines of ctl_server.h mean: each is answered at once, or becomes an order whose answer becomes the line.
-// Server thread.
+// Handles the request lines of ctl_server.h. A request is answered at once, or it becomes an order and its answer
+// becomes the line. Server thread.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +22,21 @@ class CtlRequests {
   CtlRequests(const CtlRequests&) = delete;
   CtlRequests& operator=(const CtlRequests&) = delete;
 
-  // The line that answers; "" when session.order says what it waits for.
+  // Returns the answering line; "" when the request became an order, whose number is session.order.
   std::string take(CtlSession& session, const std::string& line);
-  // The answer has come, or, without one, will not come any more.
+  // Returns the line for an answer that has come. `answer` is nullptr when the wait was given up.
   std::string answered(CtlSession& session, const Answer* answer);
-  // Whether it only waits to be told what plays.
+  // True when the session only waits for a report of the behaviors.
   bool reports(const CtlSession& session) const;
-  // The newest sample for who watches; "" when there is no newer one.
+  // The newest sample of the watched signals; "" when there is no newer one.
   std::string sample(CtlSession& session);
-  // The session ends.
+  // To be called when the session ends.
   void forget(const CtlSession& session);
-  // Empties the port, once in a while.
+  // Empties the port; to be called now and then.
   void upkeep();
 
  private:
-  struct Seen {  // of one fault
+  struct Seen {  // how often a fault was seen
     std::uint32_t count = 0;
     Fault last;
   };
@@ -54,8 +54,8 @@ class CtlRequests {
   Instance& instance_;
   InstancePort& port_;
   const CtlCounts& counts_;
-  std::map<std::uint64_t, OrderRequest> asked_;  // by session
-  std::vector<std::uint64_t> leaving_;           // whose consoles are to be closed
+  std::map<std::uint64_t, OrderRequest> asked_;  // the pending request of each session
+  std::vector<std::uint64_t> leaving_;           // clients whose consoles must be closed
   std::map<std::pair<FaultCode, std::uint16_t>, Seen> faults_;
 };
 

@@ -1,13 +1,15 @@
-// Serves `kadans ctl` and whoever speaks as it does: JSON objects, one a line, over the sockets of ctl_folder.h. A
-// thread of its own at normal priority, which touches nothing of the engines but through its port (instance.h).
+// Serves `kadans ctl` and other clients with the same protocol: JSON objects, one on each line, over the sockets of
+// ctl_folder.h. It has a thread of its own at normal priority, which reaches the engines only through its port
+// (instance.h).
 //
 //   {"verb":"set","name":"posture.l_knee.kp_Nm_per_rad","value":50}
 //   {"ok":true,"name":"posture.l_knee.kp_Nm_per_rad","before":40,"now":50}
 //   {"ok":false,"error":"..."}
 //
-// docs/ctl.md lists the verbs. A line has at most 64 kB; a client has one request under way at a time. Who sends half a
-// line, or does not read, for too long is dropped and counted; who finds no place is told so. Of each role there may be
-// so many clients that those of another still find room.
+// docs/ctl.md lists the verbs. A line has at most 64 kB, and a client has one request under way at a time. A client
+// that leaves a line unfinished for too long, or does not read for too long, is dropped and counted. A client that
+// finds no place is refused with a message. The number of clients is bounded for each role, so clients of one role
+// cannot keep out those of another.
 #pragma once
 
 #include <array>
@@ -29,14 +31,14 @@ namespace kadans {
 class CtlServer {
  public:
   struct Settings {
-    std::array<std::size_t, 3> clients_max{32, 16, 16};  // by role
+    std::array<std::size_t, 3> clients_max{32, 16, 16};  // for each role
     std::int64_t half_line_max_ns = 5'000'000'000;
     std::int64_t unread_max_ns = 5'000'000'000;
-    std::int64_t answer_max_ns = 10'000'000'000;  // of the behavior thread
-    std::int64_t report_max_ns = 2'000'000'000;   // when it is only asked what plays
+    std::int64_t answer_max_ns = 10'000'000'000;  // time for the behavior thread to answer
+    std::int64_t report_max_ns = 2'000'000'000;   // the same for a report of the behaviors
   };
 
-  // Before the loop; opens a port. Instance and sockets must outlive it.
+  // Make it before the loop; it opens a port. `instance` and `sockets` must outlive it.
   CtlServer(Instance& instance, const CtlSockets& sockets, const Settings& settings);
   ~CtlServer();  // stops
   CtlServer(const CtlServer&) = delete;

@@ -1,5 +1,5 @@
-// Listens to what is said while an order is carried out, so that the answer can tell; passes everything on. Behavior
-// thread.
+// Collects the log messages while an order is carried out, so that the answer can repeat them. It passes everything on.
+// Behavior thread.
 #pragma once
 
 #include <string>
@@ -30,7 +30,7 @@ class EchoLog final : public BehaviorLog {
     if (!listens_) lines_.clear();
     listens_ = true;
   }
-  // What was said since; listens no more.
+  // Returns the messages since listen(), and stops listening.
   std::vector<Line> take() {
     listens_ = false;
     return std::move(lines_);

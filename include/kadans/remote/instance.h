@@ -1,16 +1,15 @@
-// A running instance, a robot or a simulation, as it is seen from outside: what ctl, the live server and whatever else
-// serves clients know of it.
+// A running instance (a robot or a simulation) as servers see it: the ctl server, the live server and any other.
 //
-// Who serves clients does so on a thread of its own and opens a port before the loop. Through it come the newest
-// values, the events and the answers; orders go the other way. It never touches what the engines work on: the tables
-// (catalog) do not change once the loop runs, everything else crosses by storages and rings that block nobody.
+// A server has a thread of its own and opens a port before the loop. Through the port it gets the newest values, the
+// events and the answers, and sends orders. It never touches the data that the engines work on. The tables (catalog) do
+// not change once the loop runs; everything else crosses threads by storages and rings that never block.
 //
 //   control thread   control_side.h     rows of signals to the ports that want them
 //   behavior thread  behavior_side.h    carries out orders, between its ticks
 //   record thread    record_side.h      starts and stops records
 //   supervisor       publish(), tell()  status, words, transitions, faults
 //
-// A simulation on one thread plays all of these parts in turn.
+// A simulation on one thread does the work of all these threads in turn.
 #pragma once
 
 #include <array>
@@ -36,15 +35,15 @@ namespace kadans {
 
 struct RecordStatus {
   bool goes_on = false;
-  bool failed = false;  // its disk did
+  bool failed = false;  // writing to the disk failed
   std::uint64_t rows = 0, bytes = 0;
   std::uint32_t dropped = 0;
   std::array<char, 256> file{};
-  std::uint32_t flights = 0;       // records that the flight recorder wrote
-  std::array<char, 256> flight{};  // the last of them
+  std::uint32_t flights = 0;       // number of records that the flight recorder wrote
+  std::array<char, 256> flight{};  // file of the last one
 };
 
-// Published by the supervisor some twenty times a second.
+// Published by the supervisor about twenty times a second.
 struct InstanceStatus {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
@@ -60,19 +59,20 @@ class InstancePort {
  public:
   explicit InstancePort(std::size_t signals) : row_(signals) {}
 
-  // All of it: the client's thread.
+  // Call all methods on the thread that serves the clients.
   InstanceStatus status() noexcept { return status_.newest(); }
-  // The newest row of the catalog's signals, each n-th of which was wanted. 0: none any more.
+  // want_signals: get each n-th row of the catalog's signals from now on; 0: none. signals: the newest of these rows.
   void want_signals(std::uint32_t every_ticks) noexcept { row_.want(every_ticks); }
   LatestRow::Reading signals() noexcept { return row_.read(); }
-  // Transitions and words of behaviors; false when none waits.
+  // Takes the next transition or message of a behavior, or the next fault. False when none is waiting.
   [[nodiscard]] bool next(Event& event) { return events_.pop(INT64_MAX, event); }
   [[nodiscard]] bool next(Fault& fault) noexcept { return faults_.try_pop(fault); }
 
-  // The order's number, from 1; 0: refused, too many wait for their answers.
+  // Returns the order's number, from 1; 0: refused, because too many orders wait for their answers.
   std::uint64_t send(Order order);
   [[nodiscard]] bool next(Answer& answer);
-  // Whoever asked is gone or waits no more: the order is not carried out, unless it is being already. Its answer comes.
+  // Withdraws an order whose client is gone or no longer waits. It is not carried out, unless that has already begun.
+  // An answer comes in any case.
   void withdraw(std::uint64_t order) noexcept {
     behaviors_.withdraw(order);
     records_.withdraw(order);
@@ -103,11 +103,11 @@ class Instance {
     std::filesystem::path configuration;  // of the robot; absolute, "": none
     std::filesystem::path root;           // of the project
     PlayFolders folders;
-    std::filesystem::path records;  // folder of records that are asked for
+    std::filesystem::path records;  // folder in which ordered records are written
     double control_period_s = 0.001, behavior_period_s = 0.01;
   };
-  // When all signals are declared. Catalog and stop must outlive it. Throws InputError when the configuration cannot be
-  // read.
+  // Make it when all signals are declared. `catalog` and `stop` must outlive it. Throws InputError when the
+  // configuration cannot be read.
   Instance(Facts facts, const Catalog& catalog, EmergencyStop& stop)
       : facts_(std::move(facts)),
         catalog_(catalog),
@@ -115,23 +115,24 @@ class Instance {
         configuration_(facts_.configuration, facts_.folders.robot),
         console_row_(catalog.signals.size()) {}
 
-  // Any thread. Of the catalog: names, units, ranges, and parameters.newest(id).
+  // Any thread. Of the catalog, other threads may use only names, units, ranges, and parameters.newest(id).
   const Facts& facts() const noexcept { return facts_; }
   const Catalog& catalog() const noexcept { return catalog_; }
-  // Threads that serve clients.
+  // For threads that serve clients.
   ConfigurationText& configuration() noexcept { return configuration_; }
-  // Any thread, without asking anybody: the robot damps from the next tick on, then is off, until faults are cleared.
+  // Any thread; works without the behavior thread. The robot damps from the next tick on and is then off, until the
+  // faults are cleared.
   void stop_now(const std::string& who) noexcept { stop_.ask(who); }
-  void clear_faults() noexcept { stop_.lift(); }  // the emergency stop, too
+  void clear_faults() noexcept { stop_.lift(); }  // also lifts the emergency stop
 
-  // Any thread. The number of the control set; throws InputError with the nearest name.
+  // Any thread. Returns the number of the control set. Throws InputError with the nearest name.
   std::uint32_t set_named(const std::string& name) const;
 
-  // Before the loop. Throws std::logic_error when there are ports_max.
+  // Before the loop. Throws std::logic_error when ports_max are open.
   InstancePort& open_port();
   const std::vector<std::unique_ptr<InstancePort>>& ports() const noexcept { return ports_; }
 
-  // Behavior thread: the newest row for consoles.
+  // Behavior thread: the newest row of signals for consoles.
   void want_console_row(bool wanted) noexcept { console_row_.want(wanted ? 1 : 0); }
   LatestRow::Reading console_row() noexcept { return console_row_.read(); }
 
@@ -151,7 +152,7 @@ class Instance {
   std::vector<std::unique_ptr<InstancePort>> ports_;
 };
 
-// "position_limit at l_knee: 2.1, limit 2"
+// "position_limit at l_knee: 2.1, limit 2": a fault as text.
 std::string fault_text(const Fault& fault, const RobotModel& model);
 
 }  // namespace kadans

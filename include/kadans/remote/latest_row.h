@@ -1,9 +1,10 @@
-// The newest row of numbers from one writer to one reader: as exchange/latest.h, for a length that is known only when
-// the storage is made, and with a wish: nothing is copied unless the reader asked for it.
+// The newest row of numbers, from one writer thread to one reader thread. It works as exchange/latest.h, but the length
+// is given at run time, and nothing is copied unless the reader has asked for it by want().
 //
-// Three rows, of which the writer holds one, the reader holds one, and the third is in the middle; each side swaps its
-// own with the middle in one atomic exchange. Wait-free on both sides; what nobody read is overwritten. Memory order is
-// that of Latest; the wish orders nothing, since a row that nobody wants any more does no harm.
+// There are three rows: the writer holds one, the reader holds one, and the third is in the middle. Each side swaps its
+// own row with the middle one in one atomic exchange. It is wait-free on both sides, and a row that was not read is
+// overwritten. The memory order is that of Latest. want() is relaxed, because a row that is no longer wanted does no
+// harm.
 #pragma once
 
 #include <algorithm>
@@ -22,9 +23,9 @@ class BasicLatestRow {
   struct View {
     std::uint64_t tick = 0;
     std::int64_t time_ns = 0;
-    std::span<const Number> values;  // empty: nothing came yet
+    std::span<const Number> values;  // empty: no row has come yet
   };
-  // The row that the reader looks at, for as long as this lives: who reads again meanwhile finds the same one.
+  // Holds the row that the reader uses. While it lives, further calls of read() return the same row.
   class Reading {
    public:
     Reading(const Reading&) = delete;
@@ -46,10 +47,10 @@ class BasicLatestRow {
     for (Slot& slot : slots_) slot.values.resize(size);
   }
 
-  // Reader. Every n-th row from now on; 0: none.
+  // Reader: asks for every n-th row from now on; 0: none.
   void want(std::uint32_t every) noexcept { Memory::at(every_).store(every, std::memory_order_relaxed); }
 
-  // Writer. A row of another length is left out.
+  // Writer. A row of another length is ignored.
   void publish(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept {
     const std::uint32_t every = Memory::at(every_).load(std::memory_order_relaxed);
     Slot& slot = slots_[write_slot_];
@@ -84,7 +85,7 @@ class BasicLatestRow {
   alignas(64) std::uint32_t write_slot_ = 0;
   alignas(64) Word middle_{1};
   alignas(64) std::uint32_t read_slot_ = 2;
-  std::uint32_t readings_ = 0;  // that live
+  std::uint32_t readings_ = 0;  // Readings that are alive
   bool any_ = false;
 };
 using LatestRow = BasicLatestRow<>;

@@ -1,10 +1,10 @@
-// What a live server tells, as channels of the Foxglove WebSocket protocol: the topics of a record under the same names
-// and in the same encoding (signal_topics.h), what general viewers look for (joint states, transform of the base,
-// URDF), and events.
+// The channels of a live server in the Foxglove WebSocket protocol: the topics of a record with the same names and the
+// same encoding (signal_topics.h), messages for general viewers (joint states, transform of the base, URDF), and
+// events.
 //
-// Nothing here is a queue for a client. A channel of values keeps its newest message and counts how many there were; a
-// channel of events keeps the newest `events_kept`. Who reads compares counts: the slow skip values and, far behind,
-// the oldest events. One thread: the server's.
+// There is no queue for a client. A channel of values keeps its newest message and counts all messages; a channel of
+// events keeps the newest `events_kept`. A client compares counts, so a slow client skips values, and when it is far
+// behind also the oldest events. Server's thread only.
 #pragma once
 
 #include <cstddef>
@@ -33,11 +33,11 @@ struct LiveChannel {
 
   std::string topic, encoding, schema_name, schema_encoding, schema;
   bool events = false;
-  std::uint64_t count = 0;             // of messages so far
+  std::uint64_t count = 0;             // number of messages so far
   std::deque<LiveMessage> messages{};  // the newest
 
-  // The message after the `seen` first ones, or the oldest that is still there; nullptr: there is none. `seen` counts
-  // it and what was skipped.
+  // Returns the message after the first `seen` ones, or the oldest that is still kept; nullptr when there is none.
+  // `seen` is advanced past it and past the skipped messages.
   const LiveMessage* next(std::uint64_t& seen) const noexcept;
   void put(std::uint64_t time_ns, std::span<const std::byte> payload);
 };
@@ -47,13 +47,13 @@ class LiveChannels {
   LiveChannels(const Instance& instance, const RobotTexts& texts);
 
   const std::vector<LiveChannel>& all() const noexcept { return channels_; }
-  // Names, units and sentences of each topic's fields: the server's metadata.
+  // The names, units and sentences of each topic's fields, for the server's metadata.
   const std::map<std::string, std::string>& signals() const noexcept { return signals_; }
 
   void take(const LatestRow::View& row);
   void take(const Event& event);
   void take(const Fault& fault, std::int64_t time_ns);
-  void take_behaviors(const std::string& json);  // behaviors_description, in place of those before
+  void take_behaviors(const std::string& json);  // text of behaviors_description; replaces the earlier one
   void take_timing(const std::string& json, std::int64_t time_ns);
   void take_drives(const std::string& json, std::int64_t time_ns);  // nothing when it is as before
 

@@ -1,13 +1,13 @@
-// One client of a live server, without its socket: what it says comes in by text() and binary(), what there is to tell
-// it goes out by next(), whenever the socket has room. Foxglove WebSocket protocol (foxglove.sdk.v1 and
-// foxglove.websocket.v1, which are the same in all that is used here).
+// One client of a live server, without its socket. Its messages come in by text() and binary(); next() gives the
+// outgoing messages whenever the socket has room. Foxglove WebSocket protocol (foxglove.sdk.v1 and
+// foxglove.websocket.v1, which are the same in everything that is used here).
 //
-// Replies wait in a queue of at most `replies_max_bytes`; a client that asks and does not read is given up, and so is
-// the one that lets most wait when all clients together pass LiveHub::replies_max_bytes. All else is read from the
-// channels when there is room for it, so a slow client keeps nothing waiting but its own picture.
+// Replies wait in a queue of at most `replies_max_bytes`. A client that asks and does not read is closed. When the
+// replies of all clients together pass LiveHub::replies_max_bytes, the client with the most waiting bytes is closed.
+// All other messages are taken from the channels when the socket has room, so a slow client delays only itself.
 //
-// Nothing that a client says ends more than the client: what cannot be read is answered, and an exception makes it
-// hopeless. Who writes (parameters, orders) came with the token. Server's thread.
+// Input of a client can end only that client: unreadable input is answered with an error, and an exception closes the
+// connection. Only a client with the token may write (parameters, orders). Server's thread.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ class LiveClient {
     std::vector<std::byte> bytes;
   };
 
-  // Says who the server is and what there is. `id` from 1.
+  // Queues the introduction of the server and its channels. `id` counts from 1.
   LiveClient(LiveHub& hub, std::uint64_t id, bool writes, std::string who);
   ~LiveClient();
   LiveClient(const LiveClient&) = delete;
@@ -44,15 +44,15 @@ class LiveClient {
   void text(std::string_view json) noexcept;
   void binary(std::span<const std::byte> bytes) noexcept;
   void take(std::uint32_t call, const Answer& answer) noexcept;
-  // After each beat of the hub.
+  // To be called after each beat of the hub.
   void tell_changes() noexcept;
 
-  // False: nothing to tell now.
+  // False when there is nothing to send now.
   [[nodiscard]] bool next(Outgoing& out);
-  // Does not read what it asked for, or could not be served: to be closed.
+  // True when the connection must be closed: the client does not read its replies, or an exception occurred.
   bool hopeless() const noexcept { return hopeless_; }
   std::size_t reply_bytes() const noexcept { return reply_bytes_; }
-  bool writes() const noexcept { return writes_; }  // it has the token
+  bool writes() const noexcept { return writes_; }  // the client has the token
   void give_up() noexcept;
 
  private:
@@ -62,9 +62,9 @@ class LiveClient {
   };
   struct Call {
     bool service = false, save = false;
-    std::string preset{};  // of a save
+    std::string preset{};  // for a save
     std::uint32_t service_call = 0;
-    std::string parameter{}, parameter_request{};  // its name; the client's id
+    std::string parameter{}, parameter_request{};  // the parameter's name; the client's id of the request
     double value = 0;
   };
 
@@ -98,7 +98,7 @@ class LiveClient {
   std::uint64_t id_;
   bool writes_;
   std::string who_;
-  std::map<std::uint32_t, Subscription> subscriptions_;  // by the client's number
+  std::map<std::uint32_t, Subscription> subscriptions_;  // by the client's subscription id
   std::uint32_t last_served_ = 0;
   std::set<std::string, std::less<>> watched_;
   std::size_t watched_bytes_ = 0;

@@ -1,5 +1,5 @@
-// What all clients of a live server share: the instance's port, the channels, the parameters as they were last told,
-// and the orders that wait for their answers. One thread, the server's, drives it by beat().
+// The state that all clients of a live server share: the instance's port, the channels, the last known parameters, and
+// the orders that wait for their answers. The server's thread drives it by beat().
 #pragma once
 
 #include <array>
@@ -20,20 +20,23 @@ namespace kadans {
 
 struct OrderRequest;
 
-// What clients ask of a simulation, from the server's thread to its own. Null where there is none.
+// Carries what clients ask of a simulation (speed, hold, steps, pushes) from the server's thread to the simulation's
+// thread.
 struct LivePace {
   static constexpr std::size_t pushes_max = 8;
   std::atomic<double> speed{1};
   std::atomic<bool> held{false};
-  std::atomic<std::uint32_t> steps{0};  // to take while it is held
-  // Set before the server starts. Throws InputError on a push that is none.
+  std::atomic<std::uint32_t> steps{0};  // steps to take while it is held
+  // To be set before the server starts. Throws InputError for an invalid push.
   std::function<void(const std::string&)> check_push;
 
-  // Server's thread. False: too many wait. Throws what check_push throws.
+  // Server's thread. False: too many pushes wait. Throws what check_push throws.
   [[nodiscard]] bool push(const std::string& what);
-  // An order whose face is `paced`. Throws as push(), or when too many wait.
+  // Carries out an order of OrderInfo::Faces::paced. Throws what push() throws, and InputError when too many pushes
+  // wait.
   void obey(const OrderRequest& request);
-  // The simulation's: "torso=0,2,0", an impulse in Ns; none wait mostly, and then this is one load.
+  // Simulation's thread: takes the waiting pushes, such as "torso=0,2,0", an impulse in Ns. Mostly none wait; then it
+  // costs one atomic load.
   std::vector<std::string> take_pushes();
 
  private:
@@ -45,7 +48,7 @@ struct LivePace {
 class LiveClient;
 
 struct LiveParameter {
-  std::string name;  // of the table, or BEHAVIOR.NAME
+  std::string name;  // a name of the parameter table, or BEHAVIOR.NAME
   double value = 0;
 };
 
@@ -55,48 +58,50 @@ class LiveHub {
     Instance& instance;
     InstancePort& port;
     RobotTexts texts;
-    std::string urdf_file;  // where its meshes are found from
+    std::string urdf_file;  // the URDF's file; meshes are found from its folder
     std::vector<TimingSource> timing;
     LivePace* pace = nullptr;
   };
-  // A viewer is to get 60 rows a second: somewhat more are asked for, and looked for twice as often as they come, so
-  // that a beat that is late by its whole period costs none.
+  // A viewer shall get 60 rows a second. Somewhat more rows are requested, and beats come twice as often as rows, so
+  // that no row is missed when a beat is late by its whole period.
   static constexpr double rows_hz = 70, beats_hz = 2 * rows_hz, idle_hz = 60;
 
-  // Replies that wait for all clients together.
+  // Bound of the waiting replies of all clients together.
   static constexpr std::size_t replies_max_bytes = std::size_t{64} << 20U;
 
   explicit LiveHub(Parts parts);
 
-  // Before the first beat; what is given is read while it runs.
+  // Call it before the first beat. The sources are read while the server runs.
   void watch_timing(std::vector<TimingSource> timing) { p_.timing = std::move(timing); }
-  // Some rate_hz() times a second: takes what the instance has.
+  // To be called about rate_hz() times a second: takes everything new from the instance.
   void beat();
   double rate_hz() const noexcept { return clients_.empty() ? idle_hz : beats_hz; }
 
   const Instance& instance() const noexcept { return p_.instance; }
   const LiveChannels& channels() const noexcept { return channels_; }
-  // What a client is told first, who the server is and what there is. Made once for all clients.
+  // The first message to a client: who the server is and what it offers. The text is shared by all clients.
   const std::string& introduction(bool writes);
   const std::string& advertisement();  // of the channels
   LiveAssets& assets() noexcept { return assets_; }
   const std::vector<LiveParameter>& parameters() const noexcept { return parameters_; }
-  const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // in the last beat
-  const std::string& state() const noexcept { return state_; }                     // JSON: paused, held, speed
-  // Writes parameters that were tuned into the robot's configuration. Throws InputError, std::system_error.
+  const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // changed in the last beat
+  const std::string& state() const noexcept { return state_; }                     // JSON with paused, held, speed
+  // Writes the tuned parameters into the robot's configuration and returns a line for people. Throws what
+  // ConfigurationText::save throws.
   std::string save(const Answer& answer, const std::string& who, const std::string& preset);
   std::uint64_t state_count() const noexcept { return state_count_; }
 
   void enter(std::uint64_t id, LiveClient& client) { clients_[id] = &client; }
-  // Its orders that were not taken up yet expire.
+  // Withdraws the client's orders that have not been taken up.
   void leave(std::uint64_t id);
-  // A client's replies were put into its queue: the client that lets most wait goes when all are too many.
+  // To be called when replies were queued: when all clients' replies together are too many, closes the client with the
+  // most; those without the token go first.
   void bound_replies() noexcept;
-  // `call`: what the client knows its answer by. False: too many orders wait.
+  // `call` is the number by which the client recognises the answer. False: too many orders wait.
   [[nodiscard]] bool send(Order order, std::uint64_t client, std::uint32_t call);
-  // An order has set this parameter.
+  // To be called when an order has set this parameter.
   void settled(const std::string& name, double value);
-  // What no thread is asked for: the emergency stop and the pace. Throws InputError.
+  // Carries out the orders that need no other thread: the emergency stop and the pace. Throws InputError.
   void act(const OrderRequest& request, const std::string& who);
   bool can_pace() const noexcept { return p_.pace != nullptr; }
 
@@ -115,14 +120,14 @@ class LiveHub {
   Parts p_;
   LiveChannels channels_;
   LiveAssets assets_;
-  std::string plays_;                         // what can be played, as introductions_ tell
-  std::array<std::string, 2> introductions_;  // to who reads, to who writes; "": not made yet
+  std::string plays_;                         // the playable behaviors as in introductions_
+  std::array<std::string, 2> introductions_;  // for readers, for writers; "": not made yet
   std::string advertisement_;
   std::map<std::uint64_t, LiveClient*> clients_;
   std::map<std::uint64_t, Caller> waiting_;  // by the order's number
   std::vector<LiveParameter> parameters_, changed_;
   std::vector<LiveParameter> behaviors_now_;
-  std::map<std::string, std::uint64_t> charts_;  // that were told, by behavior
+  std::map<std::string, std::uint64_t> charts_;  // the charts that clients know, by behavior
   std::string state_;
   std::uint64_t state_count_ = 0, beats_ = 0, last_tick_ = 0;
   bool wanted_ = false, report_waits_ = false, paused_ = false;

@@ -1,13 +1,13 @@
-// Serves a running instance, or a record, over one port: our page and its files by HTTP, everything that moves by the
-// Foxglove WebSocket protocol. One thread of its own, at low priority; the engines never wait for it.
+// Serves a running instance or a record over one port: the web page and its files by HTTP, live data by the Foxglove
+// WebSocket protocol. It has one thread of its own at low priority, and the engines never wait for it.
 //
-// It listens on the loopback address unless told otherwise. Who knows the token may write: parameters, orders, the
-// emergency stop. Without it a client reads, if it calls the server by one of its names; a page from another site does
-// not even that (src/remote/live_access.h).
+// It listens on the loopback address unless LiveSettings names another one. A client with the token may write:
+// parameters, orders, the emergency stop. A client without the token may only read, and only if it calls the server by
+// one of its names. A page from another site may not even read (src/remote/live_access.h).
 //
-// Nothing that clients do ends it or grows without bound (docs/security.md has the bounds). Requests are served in a
-// crowd of at most `requests_max`, of which the oldest that has not come with the token goes when another one knocks;
-// so whoever holds connections open keeps nobody out. Readers and those with the token are counted apart.
+// Clients can neither end the server nor make it grow without bound (docs/security.md lists the bounds). At most
+// `requests_max` requests are served at a time. When another one comes, the oldest request without the token is closed,
+// so nobody can keep others out by holding connections open. Readers and writers are counted separately.
 #pragma once
 
 #include <cstdint>
@@ -22,24 +22,26 @@ namespace kadans {
 
 struct LiveSettings {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8765;         // 0: any that is free
-  std::string token;                 // "": a new one
-  std::vector<std::string> hosts{};  // names that clients without the token may call it by, beside its addresses
+  std::uint16_t port = 8765;         // 0: any free port
+  std::string token;                 // "": the server makes a new one
+  std::vector<std::string> hosts{};  // names for clients without the token, beside the server's addresses
 };
 
-// A server without an instance: a record to look at.
+// A server without an instance shows a record.
 struct RecordSite {
   std::string file;  // served as /record.mcap
-  // Of a page that was asked to draw (POST /frames/NAME, with the token): on the server's thread.
+  // Takes the pictures of a page that was asked to draw (POST /frames/NAME, with the token). Called on the server's
+  // thread.
   std::function<void(const std::string& name, const std::string& bytes)> take_frame;
 };
 
 class LiveServer {
  public:
-  // Connections at a time: of requests (a page's files, a record), clients without and with the token.
+  // The greatest number of connections at a time: requests (a page's files, a record), clients without and with the
+  // token.
   static constexpr std::size_t requests_max = 64, readers_max = 200, writers_max = 36;
 
-  // Opens the port. Throws InputError when it is taken. `hub` may be null; what is given must outlive the server.
+  // Opens the port. Throws InputError when the port is taken. `hub` may be nullptr; else it must outlive the server.
   LiveServer(LiveSettings settings, LiveHub* hub, RecordSite site = {});
   ~LiveServer();  // stops
   LiveServer(const LiveServer&) = delete;

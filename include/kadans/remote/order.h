@@ -1,4 +1,4 @@
-// What somebody outside asks of a running instance, and what comes back; order_queue.h says how they travel.
+// An order of a client to a running instance, and its answer. order_queue.h says how they cross threads.
 #pragma once
 
 #include <cstddef>
@@ -16,26 +16,26 @@ namespace kadans {
 struct ParameterChange {
   std::string name;
   double before = 0, now = 0;
-  std::string chunk{};  // the file that declares it, of a behavior's
+  std::string chunk{};  // for a behavior's parameter: the file that declares it
 };
 
 struct Order {
   enum class Kind : std::uint8_t {
     // Behavior thread.
-    report,    // what plays: Answer::behaviors
+    report,    // Answer::behaviors = what plays
     describe,  // Answer::text = behaviors_description
-    play,      // `text` = list; behind what plays
-    replace,   // the same in its place
+    play,      // `text` = list; it is appended to what plays
+    replace,   // `text` = list; it replaces what plays
     pause,
     resume,
     stop,
-    reload,         // `text` = name; "" = all that play
+    reload,         // `text` = name; "": all playing behaviors
     switch_set,     // `text` = name
-    set_point,      // `text` = "gaze.x_m=1.2,gaze.y_m=0.3", in one transaction; `value` = to be reached in so many s
-    set_parameter,  // `text` = name, of the table or BEHAVIOR.NAME; `value`
-    undo,           // takes the newest set_parameter back
-    changes,        // Answer::changes: what set_parameter changed since the start or the last `saved`
-    saved,          // `changes` stand in the configuration now
+    set_point,      // `text` = "gaze.x_m=1.2,gaze.y_m=0.3", in one transaction; `value` = duration in s
+    set_parameter,  // `text` = name in the table, or BEHAVIOR.NAME; `value`
+    undo,           // reverts the newest set_parameter
+    changes,        // Answer::changes = changes by set_parameter since the start or the last `saved`
+    saved,          // `changes` have been written into the configuration
     clear_faults,
     // `text` = joints by a pattern, "" = all; as the orders to drives (frames.h).
     enable_drives,
@@ -50,13 +50,13 @@ struct Order {
     // Record thread.
     record_start,  // `text` = file
     record_stop,
-    record_dump,  // `text` = file; what the flight recorder has
+    record_dump,  // `text` = file; writes what the flight recorder holds
   };
   Kind kind = Kind::report;
   std::string text{};
   double value = 0;
   std::string who{};         // for the log: "uid 1000 (develop)"
-  std::uint64_t client = 0;  // whose console
+  std::uint64_t client = 0;  // the client whose console it is
   std::vector<ParameterChange> changes{};
 };
 
@@ -74,21 +74,21 @@ struct BehaviorReport {
   std::string name, state, outcome, error;
   std::uint32_t lane = 0;
   bool over = false;
-  std::uint64_t chart = 0;  // changes with its states and transitions
+  std::uint64_t chart = 0;  // a number that changes when the chart's states or transitions change
   std::vector<ScriptParameter> parameters;
 };
 
 struct Answer {
   std::uint64_t number = 0;  // of the order
   bool done = false;
-  std::string text;  // not done: why; else what there is to say
+  std::string text;  // when not done: the reason; else a message
   std::vector<BehaviorReport> behaviors{};
   bool paused = false;
   std::vector<ParameterChange> changes{};
-  std::vector<ParameterChange> set{};  // of `changes`: also what stands in the configuration already
-  std::vector<std::string> words{};    // of a completion, in place of what begins at `begin`
+  std::vector<ParameterChange> set{};  // for the order `changes`: also those that are already saved
+  std::vector<std::string> words{};    // of a completion; they replace the text from `begin` on
   std::size_t begin = 0;
-  bool incomplete = false, writes = false, leaves = false;  // a console's
+  bool incomplete = false, writes = false, leaves = false;  // of a console
 };
 
 using OrderCase = BasicOrderCase<Order, Answer>;

@@ -1,11 +1,11 @@
-// The way of an order from whoever asks to the thread that carries it out, and back. It travels as a case: made by the
-// client's thread, carried out and answered by the thread that owns what it changes, freed where it was made. The rings
-// carry pointers, so no side waits for the other and an order may be as long as it is.
+// Carries an order from the client's thread to the thread that carries it out, and back. The order travels as a case:
+// the client's thread makes it, the thread that owns the changed data carries it out and answers it, and the client's
+// thread frees it. The rings carry pointers, so no side waits for the other, and an order may have any length.
 //
-// Memory order: a case belongs to the client until it is in the ring of those asked, then to the thread that carries
-// out, and to the client again when it is in the ring of those answered; the rings order all that. Meanwhile the client
-// looks at nothing of it but the answer's number, which nobody changes. Who decides, by taking up or by withdrawing,
-// tells the other one bit and nothing else, so that exchange is relaxed: that it is one exchange is all that counts.
+// Memory order: a case belongs to the client until it is in the ring `asked_`, then to the executing thread, and again
+// to the client when it is in the ring `answered_`. The rings order these hand-overs. In between, the client reads only
+// the answer's number, which nobody changes. Taking up and withdrawing exchange one bit and publish no other data. So a
+// relaxed exchange suffices: it only decides which of the two came first.
 #pragma once
 
 #include <cstddef>
@@ -19,16 +19,16 @@
 
 namespace kadans {
 
-// Whoever asked may withdraw an order until it is taken up: it expires with its client.
+// An order and its answer. The client may withdraw an order until it is taken up, so an order expires with its client.
 template <typename Order, typename Answer, typename Memory = MachineMemory>
 class BasicOrderCase {
  public:
   Order order;
   Answer answer;
 
-  // The thread that carries out, once. False: it was withdrawn.
+  // Executing thread, once. False: the order was withdrawn.
   [[nodiscard]] bool take_up() noexcept { return decide(); }
-  // Client's thread. False: it is taken up already.
+  // Client's thread. False: the order has already been taken up.
   bool withdraw() noexcept { return decide(); }
 
  private:
@@ -37,7 +37,7 @@ class BasicOrderCase {
   typename Memory::template Word<bool> decided_{false};
 };
 
-// At most `orders_waiting_max` are on their way.
+// The greatest number of orders that are on their way.
 inline constexpr std::size_t orders_waiting_max = 15;
 
 // `Case` is a BasicOrderCase whose answer has a number and a text.
@@ -45,7 +45,7 @@ template <typename Case, typename Memory = MachineMemory>
 class BasicOrderQueue {
  public:
   BasicOrderQueue() = default;
-  // When neither thread uses it any more.
+  // To be destroyed when neither thread uses it any more.
   ~BasicOrderQueue() {
     for (Cases* cases : {&asked_, &answered_}) {
       for (Case* left = nullptr; cases->try_pop(left);) delete left;
@@ -54,28 +54,28 @@ class BasicOrderQueue {
   BasicOrderQueue(const BasicOrderQueue&) = delete;
   BasicOrderQueue& operator=(const BasicOrderQueue&) = delete;
 
-  // Client's thread. False: too many wait.
+  // Client's thread. False: too many orders wait.
   [[nodiscard]] bool ask(std::unique_ptr<Case> order) {
     if (on_their_way_.size() == orders_waiting_max) return false;
     on_their_way_.push_back(order.get());
-    if (asked_.try_push(order.get())) return order.release() != nullptr;  // now the ring's
+    if (asked_.try_push(order.get())) return order.release() != nullptr;  // the ring owns it now
     on_their_way_.pop_back();
     return false;
   }
-  // Client's thread: the order of this number is not carried out, unless it is being already.
+  // Client's thread: the order of this number is not carried out, unless that has already begun.
   void withdraw(std::uint64_t number) noexcept {
     for (Case* order : on_their_way_) {
       if (order->answer.number == number) (void)order->withdraw();
     }
   }
-  // Client's thread. nullptr: none.
+  // Client's thread. nullptr: no order has been answered.
   std::unique_ptr<Case> answered() noexcept {
     Case* order = nullptr;
     if (answered_.try_pop(order)) std::erase(on_their_way_, order);
     return std::unique_ptr<Case>(order);
   }
 
-  // The thread that carries out. nullptr: none; what was withdrawn goes back unanswered.
+  // Executing thread. nullptr: no order is waiting. Withdrawn orders go back without being carried out.
   std::unique_ptr<Case> take() noexcept {
     for (Case* order = nullptr; asked_.try_pop(order);) {
       std::unique_ptr<Case> taken(order);
@@ -86,7 +86,7 @@ class BasicOrderQueue {
     return nullptr;
   }
   void answer(std::unique_ptr<Case> order) noexcept {
-    if (answered_.try_push(order.get())) (void)order.release();  // there is room for all that were asked
+    if (answered_.try_push(order.get())) (void)order.release();  // there is room for all orders that were asked
   }
 
  private:

@@ -1,4 +1,4 @@
-// The page of web/, built and compressed, inside the program. Empty when the program was built without it.
+// The web page of web/, built, compressed and embedded in the program. Empty when the program was built without it.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@ struct PageFile {
 
 const std::vector<PageFile>& page_files() noexcept;
 
-// What a browser gets in the page's place.
+// The text that a browser gets instead of the missing page.
 inline constexpr std::string_view page_is_missing =
     "This program was built without its page. To get it: install nodejs and npm, run scripts/page, and build kadans "
     "again.\n";

@@ -1,8 +1,9 @@
-// The record thread's part of an instance: writes what waits, and starts and stops records while the loop goes on.
+// The record thread's part of an instance: writes the waiting rows and events, and starts and stops records while the
+// loop runs.
 //
-// The recorder is made with the first record, or at the start where there is a flight recorder, and stays, so a row
-// that is on its way when a record ends finds it still there; it is thrown away when the next one begins. A file is
-// never overwritten, but by the one named when the run began, and lies in the instance's folder of records.
+// The recorder is made with the first record, or at the start when there is a flight recorder. It then lives to the
+// end, so it can still take a row that is on its way when a record ends; such a row is thrown away when the next record
+// begins. Records that are ordered later lie in the instance's folder of records and never overwrite a file.
 #pragma once
 
 #include <atomic>
@@ -19,7 +20,7 @@
 
 namespace kadans {
 
-// Hands on what behaviors say while there is a record. Behavior thread, but for to().
+// Passes the behaviors' events to the record while there is one. Behavior thread, except for to().
 class RecordLog final : public BehaviorLog {
  public:
   void to(BehaviorLog* log) noexcept { log_.store(log, std::memory_order_release); }
@@ -43,24 +44,24 @@ struct RecordPlan {
 
 class RecordSide final : public Task {
  public:
-  // All must outlive it. `facts` stand in every record, under "run".
+  // The references must outlive this object. `facts` are written into every record under "run".
   RecordSide(Instance& instance, ControlSide& control, RecordLog& log, TextMap facts)
       : instance_(instance), control_(control), log_(log), facts_(std::move(facts)) {}
 
   // Before the loop.
   void describe_with(RobotTexts texts) { texts_ = std::move(texts); }
   void record_as(RecordPlan plan) { plan_ = std::move(plan); }
-  // The last step before the loop: the flight recorder begins to look.
+  // The last step before the loop: starts the flight recorder.
   void begin();
-  // Record thread, or before the loop and after it. Throws InputError when there can be none.
+  // start and stop: record thread, or before or after the loop. start throws InputError when the file cannot be made.
   void start(const std::string& file);
-  [[nodiscard]] bool stop();  // false: error() says why the record is not complete
-  // Any thread: the robot is about to be let go. No flight record any more.
+  [[nodiscard]] bool stop();  // false: the record is not complete, error() says why
+  // Any thread: the robot is about to be released. From now on no fault starts a flight record.
   void expect_end() noexcept { ending_.store(true, std::memory_order_relaxed); }
-  // After the loop: stop(), and the flight record that is still to be written.
+  // After the loop: calls stop() and writes the flight record that is still due.
   [[nodiscard]] bool end();
   std::string error() const;  // of the record, else of the flight record
-  // Before the loop: somebody else has a record that goes on to the end.
+  // Before the loop: another part of the program writes a record, `own`, that goes on to the end of the run.
   void leave_to(RecordSink& own, const std::string& file);
   bool beat(const Beat&) override;
 
@@ -69,7 +70,7 @@ class RecordSide final : public Task {
     if (Recorder* recorder = told_.load(std::memory_order_acquire); recorder != nullptr) recorder->fault(fault);
   }
   RecordStatus status() noexcept { return status_.newest(); }
-  // After the loop; nullptr: there was no record.
+  // Call after the loop; nullptr: there was no record.
   const Recorder* recorder() const noexcept { return recorder_.get(); }
 
  private:
@@ -92,9 +93,9 @@ class RecordSide final : public Task {
   std::int64_t time_ns_ = 0, timing_told_ns_ = 0;
   std::atomic<bool> ending_{false};
   std::unique_ptr<Recorder> recorder_;
-  std::atomic<Recorder*> told_{nullptr};  // the same, for the supervisor
+  std::atomic<Recorder*> told_{nullptr};  // the same recorder, for the supervisor
   std::string file_;                      // "": none is open
-  bool others_ = false;                   // and it is not ours
+  bool others_ = false;                   // the open file is that of leave_to()
   Latest<RecordStatus> status_;
 };
 

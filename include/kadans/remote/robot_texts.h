@@ -1,4 +1,4 @@
-// What viewers need of a robot before its first number.
+// The texts about a robot that viewers need before the first value.
 #pragma once
 
 #include <string>

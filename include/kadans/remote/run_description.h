@@ -1,9 +1,8 @@
-// What a viewer must know of a run before the first number makes sense: the robot's name and feet, control sets with
-// their objects, parameters with unit and range, and the charts of the behaviors, their states numbered as
-// behavior.<name>.state counts them. One JSON text: the first message on /description in a record, the asset
-// "description.json" of a live run.
+// Describes a run for viewers as one JSON text: the robot's name and feet, control sets with their objects, parameters
+// with unit and range, and the charts of the behaviors. Their states have the same numbers as the signal
+// behavior.<name>.state. A record and a live server send the text on /description.
 //
-// Made from the tables; nothing here knows a concrete control object or behavior.
+// It is made from the tables; this code knows no concrete control object or behavior.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +14,13 @@
 
 namespace kadans {
 
-// Before the loop, or between two behavior ticks: it reads parameters' values and charts. Without a host, of behaviors
-// that play in a process of their own, their charts are not told.
+// Call it before the loop or between two behavior ticks, because it reads the values of parameters and the charts.
+// Without a host (behaviors in a process of their own) the charts are left out.
 std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host);
-// Its "behaviors" alone, an array: what changes when other behaviors play, or new versions. Between two behavior ticks.
+// The array "behaviors" of that text alone, which changes when other behaviors or new versions play. Call it between
+// two behavior ticks.
 std::string behaviors_description(const ScriptHost* host);
-// A number that is another one when the chart is. Behavior thread.
+// A number that differs for different charts. Behavior thread.
 std::uint64_t chart_sign(const Chart& chart) noexcept;
 
 }  // namespace kadans

@@ -1,4 +1,5 @@
-// The truth of a model, for the record: on the control thread, whose row it becomes part of, after the tick.
+// Updates the truth signals of a model for the record. It runs on the control thread after the tick, because its
+// signals are part of the control thread's row.
 #pragma once
 
 #include "kadans/engine/control_engine.h"
@@ -9,7 +10,7 @@ namespace kadans {
 
 class TruthTask final : public BesideTick {
  public:
-  // Both must outlive it.
+  // Both references must outlive this object.
   TruthTask(TruthSignals& truth, const ControlEngine& control) noexcept : truth_(truth), control_(control) {}
   void beside_tick(std::int64_t time_ns) override;
 

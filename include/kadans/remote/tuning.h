@@ -1,4 +1,5 @@
-// What somebody changed from outside: the way back, step by step, and what the configuration does not say yet.
+// The history of parameter changes from outside: the steps for undo, and the changes that are not yet saved in the
+// configuration.
 #pragma once
 
 #include <map>
@@ -13,17 +14,17 @@ class TuningHistory {
  public:
   static constexpr std::size_t steps_max = 1000;
 
-  // A parameter was set. `lasting`: it has a place in the configuration.
+  // Notes that a parameter was set. `lasting`: the parameter has a place in the configuration.
   void note(const ParameterChange& change, bool lasting);
-  // The newest step, as it was made; nullptr when there is none. It stays until drop().
+  // The newest step; nullptr when there is none. It stays until drop().
   const ParameterChange* newest() const noexcept { return steps_.empty() ? nullptr : &steps_.back(); }
-  // The newest step was taken back.
+  // Removes the newest step after it was undone.
   void drop();
-  // These values stand in the configuration now.
+  // Notes that these values are now saved in the configuration.
   void saved(const std::vector<ParameterChange>& changes);
-  // Against the configuration, by name.
+  // The differences from the configuration, sorted by name.
   std::vector<ParameterChange> unsaved() const;
-  // What was set since the start and is not as it was then, saved or not, by name.
+  // The differences from the values at the start, saved or not, sorted by name.
   std::vector<ParameterChange> set() const;
 
  private:

@@ -1,9 +1,9 @@
-// What is wrong with the sensors of the robot as a whole: the inertial measurement unit, the feet, and those that its
-// configuration names.
+// Finds faults of the sensors of the robot as a whole: the inertial measurement unit, the feet, and the sensors that
+// its configuration names.
 //
-// A sensor that is alive has noise. One that never repeated itself for a while, and then does for some readings, is
-// stuck; a model without noise, which always repeats itself, is not. A sensor is not missed that the robot does not
-// have: `imu` of the settings, and the feet that the sensor frame counts.
+// A working sensor has noise. A sensor whose readings all changed for a while, and then repeat for some readings, is
+// stuck; a model without noise, which always repeats itself, is not. A sensor that the robot does not have is not
+// watched: `imu` of the settings says this for the IMU, the sensor frame's count for the feet.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -18,10 +18,11 @@
 
 namespace kadans {
 
-// Tells a repeating reading from a living one.
+// Finds a sensor that repeats its reading although it changed before.
 class RepeatWatch {
  public:
-  // True from the reading on that is the `most`-th in a row like the one before, if the sensor had lived.
+  // True from the `most`-th reading in a row that equals the one before, if the sensor's readings had changed until
+  // then.
   bool same(bool repeated, std::uint32_t most) noexcept {
     if (!repeated) {
       same_ = 0;

@@ -1,6 +1,7 @@
-// How soon each fault is found: a promise, in ticks, that the tests hold the runtime to. Counted from the first tick
-// whose sensors, actuation or time show the fault; 1 is that tick itself.
+// How soon each fault is found: a promise in ticks, which the tests check. Ticks count from the first one whose
+// sensors, actuation or time show the fault; 1 is that tick itself.
 //
+// clang-format off
 //   fault                                              ticks
 //   ------------------------------------------------   ------------------------------------------------------------
 //   position_limit, velocity_limit                     1, of the estimated state
@@ -16,18 +17,18 @@
 //   sensor_stuck                                       stuck_ticks + 1, once the motor has moved or pulled
 //   imu_stuck, foot_stuck                              imu_stuck_ticks + 1, foot_stuck_ticks + 1
 //   drive_fault, drive_hot, sample_old                 1, of the sample that says so
-//   drive_not_enabled                                  drives.enable_s of ticks + 1, while it is asked for torque
-//   supply_low, supply_high                            supply.time_s of ticks + 1
+//   drive_not_enabled                                  drives.enable_s in ticks + 1, while it is asked for torque
+//   supply_low, supply_high                            supply.time_s in ticks + 1
 //   emergency_input                                    1
-//   heartbeat_lost                                     heartbeat_timeout_s of ticks + 1
+//   heartbeat_lost                                     heartbeat_timeout_s in ticks + 1
 //   tick_overrun                                       1
 //   overruns                                           overruns_in_a_row_max
 //   tilt                                               1, of the estimated orientation
-//   fall                                               fall.time_s of ticks + 1
+//   fall                                               fall.time_s in ticks + 1
 //   impact                                             1, while falling
 //   command_refused, command_old                       1, of the transaction's turn in the queue
 //   joints_lost                                        1, of the last joint's rung
-//
+// clang-format on
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// What the drives say of themselves: a fault of their own, that they are not enabled, how hot they are, how old their
-// samples; and what they have in common, the supply and the emergency stop's own button. It only finds; what follows is
-// the ladder's matter. What is not told (not a number, no time) is no fault, but for a supply that has limits.
+// Finds faults that the drives report: a fault of their own, not enabled, too hot, samples too old; and faults of what
+// they have in common: the supply, and the emergency stop's own button. It only finds them; the ladder reacts. A value
+// that is not reported (NaN, no time) is no fault, except for a supply that has limits.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -17,7 +17,7 @@ class DriveWatch {
  public:
   struct Input {
     const JointSample& sample;
-    bool asked;             // for anything but off, by what was written in the last tick
+    bool asked;             // what was written in the last tick asks for something other than off
     std::int64_t frame_ns;  // of the sensor frame
     double dt_s;
   };
@@ -32,7 +32,7 @@ class DriveWatch {
            bit_if(sample.temperature_C >= settings.hot_C, drive_hot) |
            bit_if(sample.time_ns != 0 && age_s(in) > settings.sample_age_max_s, sample_old);
   }
-  // Value, limit and the maker's words of a fault that look() has just found; others are left alone.
+  // Value, limit and the maker's words of a fault that look() has just found; other faults are not changed.
   void describe(const SafetySettings& settings, const Input& in, Fault& fault) const noexcept;
 
  private:
@@ -51,7 +51,7 @@ class SupplyWatch {
  private:
   SupplySettings settings_;
   double supply_V_ = 0;            // of the last frame
-  double low_s_ = 0, high_s_ = 0;  // for so long
+  double low_s_ = 0, high_s_ = 0;  // how long it has been too low, too high
 };
 
 }  // namespace kadans

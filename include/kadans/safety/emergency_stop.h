@@ -1,13 +1,13 @@
-// The emergency stop. Anybody asks for it, on any thread, without waiting; the safety layer takes it in the tick in
-// which it arrives: a fault like others, named, with the words of who asked. The robot damps from that tick on and is
-// off safety.damp_s later. It stays so until somebody outside lifts it; no command of a behavior does.
+// The emergency stop. Any thread may ask for it, without waiting. The safety layer takes it in the tick in which it
+// arrives, as a fault with a name like others; the fault carries the words of who asked. The robot damps from that tick
+// on and is off safety.damp_s later. It stays off until somebody outside lifts the stop; no command of a behavior does.
 //
-// The same way down ends every run. Then nothing failed, so it is no fault, and nothing takes it back.
+// Every run ends in the same way: damp, then off. Then nothing failed, so it is no fault, and nothing takes it back.
 //
-// Memory order: the words belong to whoever moved their stage from none, until he says that they are there; then to the
-// control thread, until it says that there are none. Asking is released after them and acquired before they are looked
-// at, so who asks alone is always named. Each order is needed: tests/interleavings weakens one after the other and
-// finds what breaks.
+// Memory order: the words belong to the thread that moved their stage from `none`, until it moves the stage to `there`.
+// Then they belong to the control thread, until it moves the stage back to `none`. The request is released after the
+// words are written and acquired before they are read, so if only one asks, its words are always found. Each order is
+// needed: tests/interleavings weakens one after the other and finds what breaks.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,8 @@ namespace kadans {
 template <typename Words, typename Memory = MachineMemory>
 class BasicEmergencyStop {
  public:
-  // Any thread, wait-free. Of those who ask in one tick the first is named; nobody when he is still writing.
+  // Any thread, wait-free. If several ask in one tick, the fault has the words of the first; it has none while the
+  // first is still writing them.
   void ask(const Words& who) noexcept {
     Stage stage = none;
     if (Memory::at(stage_).compare_exchange_strong(stage, being_written, std::memory_order_acquire,
@@ -29,17 +30,18 @@ class BasicEmergencyStop {
       who_ = who;
       Memory::at(stage_).store(there, std::memory_order_release);
     }
-    // It counts, be the words there or not. A mere store would hide what another who asks has released just before: his
-    // words would be left, and whoever asks next, be it minutes later, would be called by them.
+    // The request counts, whether the words are there or not. It is an exchange, because a plain store would hide what
+    // another asker released just before: the words of that one would be left over and be taken for the words of the
+    // next one, even minutes later.
     (void)Memory::at(asked_).exchange(true, std::memory_order_release);
   }
-  // Any thread, wait-free: all faults are cleared, this one among them. Who asks in the same tick is heard, then this
-  // is not. It carries nothing, so its order is relaxed.
+  // Any thread, wait-free: clears all faults, this one among them. When somebody asks for a stop in the same tick, the
+  // stop counts and the lift does not. It carries no data, so its order is relaxed.
   void lift() noexcept { Memory::at(lifted_).store(true, std::memory_order_relaxed); }
   // Any thread: the run is over, the robot goes down and stays down.
   void leave() noexcept { Memory::at(leaving_).store(true, std::memory_order_relaxed); }
 
-  // Control thread: somebody asked since the last time.
+  // Control thread: whether somebody has asked since the last call.
   [[nodiscard]] bool take(Words& who) noexcept {
     if (!Memory::at(asked_).load(std::memory_order_relaxed)) return false;
     if (!Memory::at(asked_).exchange(false, std::memory_order_acquire)) return false;
@@ -50,7 +52,7 @@ class BasicEmergencyStop {
     }
     return true;
   }
-  // Control thread: likewise, of lift().
+  // Control thread: whether lift() was called since the last call.
   [[nodiscard]] bool take_lift() noexcept {
     return Memory::at(lifted_).load(std::memory_order_relaxed) &&
            Memory::at(lifted_).exchange(false, std::memory_order_relaxed);

@@ -1,4 +1,4 @@
-// Whether the runtime itself keeps its promises: the heartbeat of the behavior engine, and ticks in time.
+// Finds faults of the runtime itself: no heartbeat of the behavior engine, and late ticks.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -15,7 +15,7 @@ class EngineWatch {
   explicit EngineWatch(const SafetySettings& settings) noexcept
       : heartbeat_timeout_s_(settings.heartbeat_timeout_s), in_a_row_max_(settings.overruns_in_a_row_max) {}
 
-  // `missed` ticks were skipped before this one. A count of late ticks in a row stands until the next one in time.
+  // `missed` ticks were skipped before this one. The count of late ticks in a row is kept until a tick comes in time.
   FaultMask look(double heartbeat_age_s, std::uint32_t missed) noexcept {
     using enum FaultCode;
     heartbeat_age_s_ = heartbeat_age_s;

@@ -1,11 +1,12 @@
 // Whether the robot stands, leans, falls or lies.
 //
-//   upright  until roll, pitch or the rate of turning is beyond its limit for time_s: then it falls
-//   falling  torque is a share of what it is else, so that joints give way; impacts are recorded; until it has turned
-//            slower than rest_rate for rest_s: then it lies
-//   fallen   torque comes back, to get up, as fast as it does for a joint that damped (recover_s); until the robot has
-//            been well within the limits for rest_s. Falling again from here takes the rate alone, since a robot that
-//            gets up is beyond the angles.
+//   upright  Ends when roll, pitch or the rate of turning is beyond its limit for time_s: then the robot falls.
+//   falling  Torque is reduced to a share, so that joints give way; impacts are recorded. Ends when the robot turned
+//            slower than rest_rate for rest_s: then it lies.
+//   fallen   Torque comes back, to get up, as fast as for a joint that damped (recover_s). Ends when the robot has been
+//            well within the limits for rest_s. Here only the rate shows another fall, because a robot that gets up is
+//            beyond the angles.
+//
 // The limits are those of small humanoids in the RoboCup leagues: 60 degrees of roll, 45 of pitch, 7 rad/s for 40 ms.
 //
 // One owner, the control thread; nothing here allocates or throws.
@@ -32,7 +33,7 @@ class FallWatch {
 
   Phase phase() const noexcept { return phase_; }
   const std::uint32_t& phase_number() const noexcept { return phase_number_; }
-  // Of every torque; 1 but while falling and for a while after it.
+  // Share of every torque: 1, except while falling and for a while afterwards.
   double share() const noexcept { return share_; }
   const double& impact_m_s2() const noexcept { return impact_m_s2_; }  // the largest of the last fall
 
@@ -45,7 +46,7 @@ class FallWatch {
   Phase phase_ = Phase::upright;
   std::uint32_t phase_number_ = 0;
   double share_ = 1;
-  double for_s_ = 0;  // what would end the phase has lasted
+  double for_s_ = 0;  // how long the condition that ends the phase has lasted
   double impact_m_s2_ = 0;
 };
 

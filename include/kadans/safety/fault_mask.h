@@ -1,4 +1,4 @@
-// A set of fault codes, a bit each: what a watch found in a tick.
+// A set of fault codes, one bit each: what a watch found in a tick.
 #pragma once
 
 #include <bit>

@@ -1,10 +1,12 @@
-// What is left of the torque asked for one joint: within its limit, derated when warm, no further into the soft stops,
-// no further beyond the speed limit, within its power, and no faster than its rate.
+// Cuts the torque that is asked of one joint: to the torque limit, derated when the motor is warm; so that it pushes no
+// further into a soft stop and no further beyond the speed limit; to the power limit and the rate limit.
 //
-// The limits are an interval that the torque is cut to, so the order in which they come does not matter; the rate comes
-// first, so that none of them waits for it. In the drive's own modes (position, velocity, impedance) it makes the
-// torque and keeps its own limit; here the position asked stays within the position limits, the speed asked within the
-// speed limit and, into a soft stop, fades as torque does, and the torque added is cut as above.
+// The limits form an interval to which the torque is cut, so their order does not matter. The rate limit alone comes
+// first, so that it delays none of the others.
+//
+// In position, velocity and impedance mode the drive makes the torque and keeps its own limit. Here the position asked
+// is kept within the position limits and the speed asked within the speed limit; into a soft stop the speed fades as
+// torque does. The torque added is cut as above.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -22,15 +24,15 @@ class JointLimiter {
   struct Input {
     const JointState& state;
     double derating;  // share of the torque limit that the winding allows
-    double recovery;  // share of what is left that a joint has which comes back; no fault when it cuts
+    double recovery;  // share of that, while a joint comes back from damp or off; no fault when it cuts
     double last_Nm;   // torque written in the last tick
-    double change_s;  // in which the torque asked may have changed from last_Nm
+    double change_s;  // the time in which the torque asked may have changed from last_Nm
   };
 
   JointLimiter() = default;
   JointLimiter(const SafetySettings& settings, const JointLimits& limits) noexcept;
 
-  // `actuation` is finite. Cuts it in place; returns which limits cut.
+  // `actuation` must be finite. Cuts it in place; returns the faults of the limits that cut it.
   FaultMask limit(const Input& input, JointActuation& actuation) noexcept {
     return actuation.mode == ActuationMode::effort && free(input, actuation.effort_Nm) ? 0 : cut(input, actuation);
   }
@@ -60,7 +62,7 @@ class JointLimiter {
   double velocity_max_rad_s_ = 0, velocity_fade_rad_s_ = 0;
   double lower_rad_ = 0, upper_rad_ = 0, zone_rad_ = 0, stiffness_Nm_per_rad_ = 0;
   double damping_Nms_per_rad_ = 0;
-  // Of the last cut, to describe it; of a set-point what was asked and what it became.
+  // Of the last cut, for describe(); of a set-point what was asked and what was given.
   double asked_Nm_ = 0;
   FaultMask of_set_point_ = 0;
   double asked_rad_ = 0, given_rad_ = 0, asked_rad_s_ = 0, given_rad_s_ = 0;

@@ -1,13 +1,15 @@
-// What is wrong with one joint: its sensor, its state and what is asked of it, looked at in every tick. It only finds;
-// what follows is the ladder's matter.
+// Finds faults of one joint in every tick: of its sensor, its state and what is asked of it. It only finds them; the
+// ladder reacts.
 //
-// A reading jumps when it is further from the last one than twice the speed limit allows for in the time between them.
-// A reading is stuck when it stays exactly the same for stuck_ticks readings although the motor moved; standing still
-// alone is no fault, since a resolution that is finite repeats itself. Behind a spring the motor moves by torque /
-// spring while the joint is pressed against something, so that much of its way counts for nothing; what is left, in the
-// mean over a time in which the rotor swings on its spring more than once, is the joint's own. A rigid drive has no
-// second encoder: there the reading is also stuck when the motor is made to pull harder and harder. What is asked of a
-// joint that damps or is off is not done, so it tells nothing.
+// A reading jumps when it is more than jump_rad further from the last one than twice the speed limit allows in the time
+// between them.
+//
+// A reading is stuck when it stays exactly the same for stuck_ticks readings although the motor moved. Standing still
+// alone is no fault, because an encoder of finite resolution repeats its readings. With a spring the motor moves by
+// torque / spring while the joint is pressed against something; this part of its way does not count. The rest, smoothed
+// because the rotor swings on its spring, is the joint's own way. A rigid drive has no second encoder: there a reading
+// is also stuck when what is asked of the motor changes much. What is asked of a joint that damps or is off is not
+// done, so it does not count.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -32,7 +34,7 @@ class JointWatch {
     const SensorState& health;
     const JointActuation& asked;
     double written_Nm;  // in the last tick
-    bool follows;       // in the last tick what was asked was done, within limits
+    bool follows;       // in the last tick the joint did what was asked, within limits
     double dt_s;
   };
 
@@ -48,14 +50,15 @@ class JointWatch {
   double derating() const noexcept { return derating_; }
 
  private:
-  static constexpr double swing_s = 0.05;  // a rotor of 0.04 kg m2 on 100 Nm/rad swings in 0.13 s
+  static constexpr double swing_s = 0.05;  // of the smoothing; a rotor of 0.04 kg m2 on 100 Nm/rad swings in 0.13 s
   FaultMask look_at_reading(const Input& input) noexcept;
   bool stuck(const Input& input) noexcept;
-  // What the motor was told, as one number that a joint follows: torque, or else the position.
+  // What was asked of the motor, as one number that the joint follows: the position in modes that have one, else
+  // torque.
   static double demand(const Input& input) noexcept {
     return has_position(input.asked.mode) ? input.asked.position_rad : input.written_Nm;
   }
-  // Where the joint is as its motor tells it: before the spring, but for what its torque deflects that.
+  // The joint's position by its motor: the motor's position less the spring's deflection by its torque, smoothed.
   double by_motor_rad(const Input& input) noexcept {
     if (spring_Nm_per_rad_ == 0) return input.sample.motor_position_rad;
     const double deflection_rad = input.sample.motor_effort_Nm / spring_Nm_per_rad_;
@@ -75,7 +78,7 @@ class JointWatch {
 
   ThermalModel thermal_;
   double derating_ = 1;
-  bool seen_ = false;                       // any reading
+  bool seen_ = false;                       // there was a reading
   double reading_rad_ = 0;                  // the last one
   double step_rad_ = 0, step_max_rad_ = 0;  // from the one before it, and what was possible
   double since_s_ = 0;                      // since the last one
@@ -95,7 +98,7 @@ inline FaultMask JointWatch::look(const Input& in) noexcept {
   if (passive_) return found;  // nothing to take away
   found |= bit_if(!(in.state.position_rad >= lowest_rad_ && in.state.position_rad <= highest_rad_), position_limit) |
            bit_if(!(std::abs(in.state.velocity_rad_s) <= fastest_rad_s_), velocity_limit);
-  // By the motor's own torque: what the ground loads onto a spring heats nothing.
+  // Counts the motor's own torque: a load of the ground on the spring heats nothing.
   thermal_.step(std::max(std::abs(in.written_Nm), std::abs(in.sample.motor_effort_Nm)), in.dt_s);
   derating_ = 1;
   return thermal_.temperature_C() <= warm_C_ ? found : found | derate();

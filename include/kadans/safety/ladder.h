@@ -1,8 +1,8 @@
 // Where one joint, or the robot, stands on the degradation ladder, and why.
 //
-// Going down is immediate: each fault asks for a rung and the worst counts. Going up needs each rung's faults to be
-// over for their exit time, so that a value that flickers about its limit makes one fault and not a thousand; and a
-// rung that is latched stays until it is cleared.
+// Going down is immediate: each fault asks for a rung and the worst counts. A rung is left when its faults have been
+// over for their exit time, so that a value that flickers about its limit makes one fault and not a thousand. A rung
+// that is latched stays until it is cleared.
 //
 // One owner, the control thread; nothing here allocates or throws.
 #pragma once
@@ -16,9 +16,10 @@ namespace kadans {
 
 class Ladder {
  public:
-  // All faults of this tick. `rung` picks the joint's or the robot's part of a reaction. Returns those that are new.
+  // `faults`: all faults of this tick. `rung` picks the joint's or the robot's part of a reaction. Returns the faults
+  // that are new.
   FaultMask update(FaultMask faults, double dt_s, const Reactions& reactions, SafetyLevel Reaction::*rung) noexcept;
-  // Down to `level` until cleared.
+  // Goes down to `level` until cleared.
   void latch(SafetyLevel level) noexcept;
   void clear() noexcept { *this = {}; }
 

@@ -1,14 +1,15 @@
-// The safety layer: between what control objects computed and what the plant is told. It looks at the sensors, the
-// state and the actuation of the last tick and lets the robot do less, rung by rung: normal, limited, hold, damp, off.
+// The safety layer stands between what the control objects computed and what the plant is told. It checks the sensors,
+// the state and the actuation of the last tick, and reduces what the robot may do, rung by rung: normal, limited, hold,
+// damp, off.
 //
-// Watches find what is wrong (joint_watch.h, drive_watch.h, body_watch.h, fall_watch.h, engine_watch.h), how soon
-// stands in detection.h. Reactions say which rung follows (reaction.h), ladders keep it until it may be left
-// (ladder.h). Somebody may want it down, too (emergency_stop.h). What is asked of a joint that still works is cut to
-// its limits (joint_limiter.h); an actuation that is not finite is never written, whatever the configuration says.
+// Watches find faults (joint_watch.h, drive_watch.h, body_watch.h, fall_watch.h, engine_watch.h); detection.h says how
+// soon. Reactions say which rung follows (reaction.h), ladders keep the rung until it may be left (ladder.h). An
+// emergency stop also brings the robot down (emergency_stop.h). What is asked of a joint that still works is cut to its
+// limits (joint_limiter.h). An actuation that is not finite is never written, whatever the configuration says.
 //
 // A joint that comes back from damp or off, by itself or because faults were cleared, gets its torque back over
-// recover_s; came_back() says so in that tick, and whoever computes set-points starts anew from the measured state, as
-// at a switch of control sets: where the joint was to go before it gave way is no longer asked for.
+// recover_s. came_back() says so in that tick: the control objects then start anew from the measured state, as at a
+// switch of control sets. What was asked of the joint before is dropped.
 //
 // One owner, the control thread; check() neither allocates, locks nor throws.
 #pragma once
@@ -52,7 +53,7 @@ struct SafetyInput {
 
 class Safety {
  public:
-  // Throws std::invalid_argument unless there is one sane set of limits a joint of the model.
+  // Throws std::invalid_argument unless there is one valid set of limits per joint of the model.
   Safety(const SafetySettings& settings, const RobotModel& model);
 
   // Before the loop. safety.level, .robot_level, .faults, .fall, .impact_m_s2, .missed_ticks and, by joint,
@@ -61,21 +62,21 @@ class Safety {
 
   // Limits the actuation in place, so that what remains may be written, and reports into `status`.
   void check(const SafetyInput& input, ActuationFrame& actuation, SafetyStatus& status) noexcept;
-  // For rehearsals: becomes as `other`, a safety layer of the same robot, is; but for the log, which stays its own.
-  // Does not allocate.
+  // For rehearsals: takes over the state of `other`, a safety layer of the same robot; the log stays its own. Does not
+  // allocate.
   void imitate(const Safety& other) noexcept;
-  // Notes a fault that somebody else found; its reaction follows in the next check.
+  // Notes a fault that another part found; its reaction follows in the next check.
   void raise(const Fault& fault) noexcept;
-  // For whoever wants the robot down; it outlives clear() and imitate().
+  // Brings the robot down when asked; clear() and imitate() do not change it.
   EmergencyStop& emergency_stop() noexcept { return stop_; }
-  // Lifts all latches: the next check judges anew. Nothing while the emergency stop holds: that one is lifted first.
+  // Lifts all latches: the next check judges anew. No effect while the emergency stop holds: that is lifted first.
   void clear() noexcept;
   bool stopped() const noexcept { return stopped_; }  // by the emergency stop, or its button
-  // In the last check, or by clearing since: joints that damped or were off follow again what is asked of them. What is
-  // computed for the next tick must start from the measured state.
+  // Whether, in the last check or by a clear() since, joints that damped or were off began to follow again what is
+  // asked of them. What is computed for the next tick must then start from the measured state.
   bool came_back() const noexcept { return came_back_; }
 
-  // Faults as they happen, for another thread to pop. A full log drops, first_fault stays.
+  // Faults as they happen, for another thread to pop. A full log drops faults; first_fault stays.
   FaultLog& log() noexcept { return log_; }
   const SafetySettings& settings() const noexcept { return settings_; }
   SafetyLevel robot_level() const noexcept { return robot_.level(); }
@@ -120,7 +121,7 @@ class Safety {
   std::array<FootWatch, max_feet> feet_{};
   std::array<Ladder, max_feet> foot_ladders_{};  // only to report each foot's faults once
   std::array<ChannelWatch, max_channels> channels_{};
-  std::array<Ladder, max_channels> channel_ladders_{};  // likewise
+  std::array<Ladder, max_channels> channel_ladders_{};  // the same for each sensor channel
   ImuWatch imu_;
   FallWatch fall_;
   EngineWatch engine_;
@@ -130,13 +131,13 @@ class Safety {
   FaultMask pending_ = 0;     // raised by others since the last check
   FaultMask cut_ = 0;         // of any joint, in the last tick
   std::uint32_t lost_ = 0;    // joints that damp or are off by themselves
-  double lasting_s_ = 0;      // of what escalates
+  double lasting_s_ = 0;      // how long what escalates has lasted
   double last_dt_s_ = 0;      // of the last check
-  double change_s_ = 0;       // in which the torque asked may have changed
+  double change_s_ = 0;       // the time in which the torque asked may have changed
   bool came_back_ = false;
   EmergencyStop stop_;
   FaultWords stopped_by_{};
-  bool stopped_ = false;  // by it, until it is lifted
+  bool stopped_ = false;  // by the emergency stop, until it is lifted
   std::uint16_t lifts_ = 0;
   std::uint32_t fault_count_ = 0;
   Fault first_fault_;

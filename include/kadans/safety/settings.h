@@ -21,8 +21,8 @@ struct JointLimits {
   double spring_Nm_per_rad = 0;         // between motor and joint, each with an encoder; 0: rigid
 };
 
-// The last piece before a position limit. Torque that pushes on fades to none across it; beyond the limit a spring
-// pulls back.
+// The zone before a position limit. Torque towards the limit fades to 0 across it; beyond the limit a spring pulls
+// back.
 struct SoftStopSettings {
   double zone_rad = 0.03;
   double stiffness_Nm_per_rad = 100;
@@ -37,9 +37,9 @@ struct ThermalSettings {
 };
 
 struct SensorWatchSettings {
-  double jump_rad = 0.01;               // beyond what twice the speed limit allows for in the time between two readings
+  double jump_rad = 0.01;               // beyond what twice the speed limit allows in the time between two readings
   std::uint32_t stuck_ticks = 25;       // readings exactly the same ...
-  double stuck_motion_rad = 0.05;       // ... while the motor moved so far, or was told to,
+  double stuck_motion_rad = 0.05;       // ... while the motor moved this far, or was told to,
   double stuck_effort_share = 0.3;      // ... or, without a spring, the torque asked changed by this share of its limit
   bool imu = true;                      // false: the robot has none
   std::uint32_t imu_stuck_ticks = 25;   // readings exactly the same of a sensor whose noise has been seen
@@ -47,19 +47,19 @@ struct SensorWatchSettings {
   double gyro_max_rad_s = 35;           // what it can measure
   double acceleration_max_m_s2 = 2000;  // what it can measure
   std::uint32_t foot_stuck_ticks = 25;
-  double foot_force_max_N = 20000;  // what one sensor can measure; below the negative of a hundredth is wrong too
+  double foot_force_max_N = 20000;  // what one sensor can measure; below -1 % of it is a fault, too
 };
 
-// What the drives say of themselves.
+// When a drive's own report is a fault.
 struct DriveWatchSettings {
-  double enable_s = 0.5;            // that one may take until it is enabled, once it is asked for torque
+  double enable_s = 0.5;            // how long a drive may take until it is enabled, once it is asked for torque
   double hot_C = 90;                // too hot, by its own sensor
-  double sample_age_max_s = 0.025;  // of what it measured, when the sensor frame is made
+  double sample_age_max_s = 0.025;  // of its sample, when the sensor frame is made
 };
 
 struct SupplySettings {
   double lowest_V = 0, highest_V = 0;  // of the drives' supply; 0: not watched
-  double time_s = 0.05;                // that it must last: a start of many motors is no fault
+  double time_s = 0.05;                // how long it must last: the start of many motors is no fault
 };
 
 struct FallSettings {
@@ -67,14 +67,14 @@ struct FallSettings {
   double pitch_max_rad = 0.7854;
   double rate_max_rad_s = 7;
   double time_s = 0.04;
-  double soft_share = 0.25;       // of every torque on the way down; 1: as usual
+  double soft_share = 0.25;       // share of every torque while falling; 1: as usual
   double rest_rate_rad_s = 0.17;  // fallen: turns slower than this for rest_s; then torque is back, to get up
   double rest_s = 0.5;
-  double impact_max_m_s2 = 100;  // specific force on the way down that is worth a record
+  double impact_max_m_s2 = 100;  // a larger specific force while falling is recorded as an impact
 };
 
 struct SafetySettings {
-  std::vector<JointLimits> joints;     // one a joint
+  std::vector<JointLimits> joints;     // one per joint
   double position_margin_rad = 0.05;   // beyond a limit before it is a fault
   double velocity_margin = 1.5;        // times the limit before it is a fault
   double damping_Nms_per_rad = 2.0;    // of a joint that damps
@@ -92,7 +92,7 @@ struct SafetySettings {
   DriveWatchSettings drives;
   SupplySettings supply;
   FallSettings fall;
-  DriveWords drive_words = nullptr;  // of the plant; none: codes are told as numbers
+  DriveWords drive_words = nullptr;  // of the plant; nullptr: codes are told as numbers
   Reactions reactions = default_reactions();
   std::vector<SensorChannel> channels{};
   std::vector<std::uint16_t> foot_joints{};  // the joint that carries each foot, for messages; may be empty

@@ -1,5 +1,5 @@
-// Temperature of a motor's winding, which nobody measures: heat in proportion to the torque squared, lost through a
-// first-order lag (I2t). At the continuous torque it settles at hot_C.
+// A model of the temperature of a motor's winding, which is not measured: heat in proportion to the torque squared,
+// lost through a first-order lag (I2t). At the continuous torque it settles at hot_C.
 //
 // One owner, the control thread; step neither allocates nor throws.
 #pragma once
@@ -20,7 +20,7 @@ class ThermalModel {
         rate_per_s_(1 / time_constant_s),
         temperature_C_(settings.ambient_C) {}
 
-  // A torque that is not finite counts as none. dt_s well below the time constant.
+  // A torque that is not finite counts as 0. dt_s must be well below the time constant.
   void step(double effort_Nm, double dt_s) noexcept {
     const double heat_C = heating_C_per_Nm2_ * effort_Nm * effort_Nm;
     const double settled_C = ambient_C_ + (std::isfinite(heat_C) ? heat_C : 0);

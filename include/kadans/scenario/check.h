@@ -1,5 +1,4 @@
-// Judges one demand of a scenario, tick by tick: always, never, eventually, at the end, within a time after something
-// happened, settled for good.
+// Judges one check of a scenario tick by tick: always, never, eventually, at_end, within, settles (scenario_check.h).
 #pragma once
 
 #include <limits>
@@ -12,27 +11,27 @@ namespace kadans {
 struct CheckResult {
   std::string name;
   bool passed = false;
-  // The worst seen (always, never), the one that fulfilled it (eventually), the last (at_end, within), the time that it
-  // took in s (settles).
+  // always, never: the worst value; eventually: the value nearest to or deepest in the demand; at_end, within: the last
+  // value; settles: the time in s until it settled.
   double value = 0;
-  double at_s = 0;       // when
-  std::string note;      // what `value` cannot say: "its `when` never became true"
+  double at_s = 0;       // time of that value
+  std::string note;      // what `value` cannot express: "its `when` never became true"
   std::string wanted{};  // "-0.01 .. 0.01", "never >= 0.6", "at the end joint.knee.position_rad > 0"
 };
 
-// What was wanted, with the note: "<= 0.05; never looked at".
+// The demand with the note: "<= 0.05; never looked at".
 inline std::string demand(const CheckResult& check) {
   return check.wanted + (check.wanted.empty() || check.note.empty() ? "" : "; ") + check.note;
 }
-// Behind the value that was found: ", wanted <= 0.05; never looked at".
+// The text to put after the value that was found: ", wanted <= 0.05; never looked at".
 inline std::string wanted_clause(const CheckResult& check) {
   return (check.wanted.empty() && check.note.empty() ? "" : ", wanted ") + demand(check);
 }
 
 class Check {
  public:
-  // What a tick shows of the demand. `value` is the signal's, or that of the condition's first one; `excess` how far
-  // outside the demand, at or below 0 when it holds.
+  // What one tick shows. `value` is the value of the signal, or of the condition's first signal. `excess` is the
+  // distance outside the demand; it is 0 or negative when the demand holds.
   struct Observation {
     double value = 0;
     double excess = 0;
@@ -41,7 +40,7 @@ class Check {
 
   explicit Check(ScenarioCheck check) : check_(std::move(check)) {}
 
-  // After each control tick, time never going back.
+  // To be called after each control tick; time must not run backwards.
   void update(double time_s, const Observation& seen) noexcept;
   CheckResult result() const;
   const ScenarioCheck& config() const noexcept { return check_; }
@@ -58,11 +57,11 @@ class Check {
   double value_ = 0, excess_ = 0;
   double at_s_ = 0;
   // within, settles
-  bool when_ = false;                                            // in the tick before
+  bool when_ = false;                                            // value of `when` in the tick before
   bool started_ = false;                                         // `when` was true once
-  bool waiting_ = false;                                         // it is not yet fulfilled ...
-  double began_s_ = 0;                                           // ... since then
-  double outside_s_ = -std::numeric_limits<double>::infinity();  // last time that it did not hold
+  bool waiting_ = false;                                         // the demand is not yet fulfilled ...
+  double began_s_ = 0;                                           // ... since this time
+  double outside_s_ = -std::numeric_limits<double>::infinity();  // last time at which the demand did not hold
   double last_s_ = 0;
   bool failed_ = false;
 };

@@ -1,4 +1,4 @@
-// All that a scenario demands of a run: looks at every row of signals and gives the verdict at the end.
+// All checks of a scenario: looks at the row of signals of every tick and gives the results at the end.
 #pragma once
 
 #include <memory>
@@ -14,19 +14,19 @@ namespace kadans {
 
 class Checks {
  public:
-  // Looks the signals up and compiles the conditions; throws InputError with everything that is wrong. `file` is where
-  // the checks were read, for messages; the table must outlive this.
+  // Looks the signals up and compiles the conditions. Throws InputError with all mistakes. `file` is the file from
+  // which the checks were read, for messages. The table must outlive this object.
   explicit Checks(const SignalTable& signals, const std::vector<ScenarioCheck>& checks = {},
                   const std::string& file = {});
 
-  // After each control tick.
+  // To be called after each control tick.
   void update(double time_s, std::span<const double> row) noexcept;
   std::vector<CheckResult> results() const;
-  const std::string& error() const noexcept { return conditions_.error(); }  // of a condition that went wrong
+  const std::string& error() const noexcept { return conditions_.error(); }  // of a condition that failed
 
   std::size_t size() const noexcept { return judged_.size(); }
   const ScenarioCheck& config(std::size_t index) const { return judged_.at(index).check.config(); }
-  // What the check looks at: for pictures of a failure.
+  // The signals that the check uses, for pictures of a failure.
   std::vector<SignalId> signals_of(std::size_t index) const;
 
  private:

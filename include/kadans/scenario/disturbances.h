@@ -1,5 +1,5 @@
-// What a scenario does to a run from outside, in every step at its time: pushes on the robot, behavior ticks that do
-// not come, control ticks that are missed.
+// The disturbances that a scenario applies to a run from outside: pushes on the robot, missing behavior ticks, missed
+// control ticks.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ namespace kadans {
 
 class Disturbances {
  public:
-  // Throws InputError for names that the robot does not have.
+  // Throws InputError for a link that the robot does not have.
   Disturbances(const ScenarioConfig& scenario, const RobotModel& model);
 
-  // Before each step.
+  // To be called before each step.
   void apply(Lockstep& lockstep, World& world);
 
  private:
   Pushes pushes_;
-  std::vector<ScenarioFault> faults_;  // of behaviors and clock
-  std::vector<bool> happened_;         // of each fault
+  std::vector<ScenarioFault> faults_;  // only those of behaviors and clock
+  std::vector<bool> happened_;         // for each fault: it has begun
 };
 
 }  // namespace kadans

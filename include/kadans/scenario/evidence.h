@@ -1,5 +1,5 @@
-// What a failed check looked like: keeps the signals of all checks while a run goes, and gives those of a failed one
-// around its moment.
+// Evidence of failed checks: it keeps the signals of all checks during a run, and gives those of a failed check around
+// the moment of its failure.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ class Evidence final : public RunObserver {
   Evidence(const Checks& checks, const SignalTable& signals);
 
   void tick(double time_s, std::span<const double> row) override;
-  // A second before and after the moment at which each failed check was at its worst, three signals at most.
+  // For each failed check, at most three of its signals from one second before to one second after CheckResult::at_s.
   std::vector<EvidenceTrace> around(const std::vector<CheckResult>& results) const;
 
  private:

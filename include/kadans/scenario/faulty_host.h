@@ -1,5 +1,5 @@
-// Behaviors that fail on time, seen from the control engine: their tick does not come, or what they ask for is lost,
-// late or nonsense on its way. Stands between the behavior engine and the host that plays. Behavior thread.
+// Injects faults into the commands of behaviors at planned times: they are lost, late or not finite. It stands between
+// the behavior engine and the host that runs the behaviors. Behavior thread.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class FaultyHost final : public BehaviorHost {
   struct Fault {
     Kind kind = Kind::lost;
     std::int64_t from_ns = 0, until_ns = 0;  // not included
-    std::size_t ticks = 0;                   // of late: behavior ticks
+    std::size_t ticks = 0;                   // for late: the delay in behavior ticks
   };
 
   explicit FaultyHost(BehaviorHost& host) : host_(host), queue_(std::make_unique<CommandQueue>()), own_(*queue_) {}

@@ -1,7 +1,7 @@
-// A world whose robot has sensors and drives that fail on time: a world around another one that spoils what is read
-// from its robot and what is written to it. Everything else passes through.
+// Injects faults into sensors, drives and supply at planned times. It is a world around another world: it changes what
+// is read from the robot and what is written to it. Everything else passes through.
 //
-// The thread that owns the model adds faults; read and write neither allocate nor throw.
+// Call add() and clear() on the thread that owns the model. read() and write() neither allocate nor throw.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@ namespace kadans {
 
 enum class SensorFaultKind : std::uint8_t {
   silent,      // no new reading
-  stuck,       // new readings, with the value of the first
-  offset,      // `size` added
-  noise,       // `size` added at random: half to all of it, of either sign, a draw a reading
-  jump,        // `size` added to one reading
+  stuck,       // new readings with the value that the sensor had when the fault began
+  offset,      // `size` is added
+  noise,       // a random value is added to each reading: half to all of `size`, of either sign
+  jump,        // `size` is added to one reading
   not_finite,  // NaN
 };
 enum class SensorPlace : std::uint8_t { joint, imu, foot, channel };
@@ -29,8 +29,8 @@ struct SensorFault {
   std::size_t index = 0;  // of the joint, foot or channel
   std::int64_t from_ns = 0;
   std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
-  double size = 0;  // joint: rad of the joint's position; IMU: rad/s about x; foot: N on the first sensor;
-                    // channel: its own unit
+  double size = 0;  // joint: rad, its position; IMU: rad/s about x; foot: N on the first sensor;
+                    // channel: in its own unit
 };
 
 enum class ActuatorFaultKind : std::uint8_t {
@@ -55,7 +55,7 @@ struct ActuatorFault {
 };
 
 struct SupplyFault {
-  bool button = false;  // somebody presses the emergency stop; else the supply has `supply_V`
+  bool button = false;  // the emergency stop is pressed; else the supply voltage is `supply_V`
   double supply_V = 0;
   std::int64_t from_ns = 0;
   std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
@@ -63,7 +63,7 @@ struct SupplyFault {
 
 class FaultyPlant final : public OneRobotWorld {
  public:
-  // Keeps a reference. The seed is the run's.
+  // Keeps a reference to `world`. `seed` is the seed of the run.
   FaultyPlant(World& world, std::uint64_t seed) noexcept
       : world_(world), plant_(world.robot()), random_(seed, "sensor faults") {}
 
@@ -72,7 +72,7 @@ class FaultyPlant final : public OneRobotWorld {
   void add(const SensorFault& fault) { faults_.push_back({fault, {}, false}); }
   void add(const ActuatorFault& fault);
   void add(const SupplyFault& fault) { supply_faults_.push_back(fault); }
-  // Sensors, drives and supply are sound again.
+  // Removes all faults of sensors, drives and supply.
   void clear() noexcept {
     faults_.clear();
     actuator_faults_.clear();
@@ -91,7 +91,7 @@ class FaultyPlant final : public OneRobotWorld {
  private:
   struct Planned {
     SensorFault fault;
-    SensorFrame first;  // what was read when it began
+    SensorFrame first;  // what was read when the fault began
     bool begun;
   };
   struct PlannedActuator {

@@ -1,9 +1,10 @@
-// How far the eyes of a control object of type "gaze" really are from its target, as signals:
+// The true error of the eyes of a control object of type "gaze", as signals:
 //
-//   plant.<object>.left_error_rad, right_error_rad, error_rad    angle between an eye's x axis and the target; the
-//   larger
+//   plant.<object>.left_error_rad, right_error_rad   angle between an eye's x axis and the direction to the target
+//   plant.<object>.error_rad                         the larger of the two
 //
-// From the model's joint angles, not the measured ones, so that checks see what the control side cannot.
+// The error is computed from the model's joint angles, not from the measured ones, so checks see what the control side
+// cannot.
 #pragma once
 
 #include <array>
@@ -21,10 +22,10 @@ class GazeTruth {
   struct Eyes {
     std::string object, left, right;  // the control object, the eyes' links
   };
-  // Finds the object's target among the catalog's signals.
+  // Looks the object's target up in the catalog's signals.
   GazeTruth(const TruthSource& plant, const Catalog& catalog, const Eyes& eyes);
 
-  // This must stay where it is from then on.
+  // Declares the signals. This object must not move from then on.
   void declare(SignalTable& table);
   void update(std::span<const double> row) noexcept;
 

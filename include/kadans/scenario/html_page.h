@@ -1,5 +1,5 @@
-// A page that needs nothing but itself: styles and pictures inside, no request to anybody, light or dark as its reader
-// has it. For reports.
+// A self-contained HTML page for reports: it holds its styles and pictures, makes no requests, and follows the reader's
+// light or dark setting.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace kadans {
 
-// Safe between tags and in attributes.
+// Escapes a text for use between tags and in attributes.
 std::string html_text(std::string_view text);
 std::string base64(std::string_view bytes);
-// A whole document. `style` follows that of all pages.
+// A whole document. `style` is CSS that is added after the style of all pages.
 std::string html_page(const std::string& title, const std::string& body, const std::string& style = {});
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// The numbers that a run is judged by beyond its checks, gathered while it goes.
+// Computes the metrics of a run (metric_config.h) while it goes.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@ namespace kadans {
 
 struct MetricValue {
   std::string name;
-  double value = 0;  // NaN: there is none
+  double value = 0;  // NaN: the metric has no value
 };
 
 class Metrics final : public RunObserver {
  public:
-  // Looks the signals up and compiles the conditions; throws InputError with everything that is wrong in `file`. The
-  // table must outlive this.
+  // Looks the signals up and compiles the conditions. Throws InputError with all mistakes; `file` is the file from
+  // which the metrics were read. The table must outlive this object.
   Metrics(const SignalTable& signals, const std::vector<MetricConfig>& metrics, const std::string& file);
 
   void tick(double time_s, std::span<const double> row) override;
@@ -27,15 +27,15 @@ class Metrics final : public RunObserver {
  private:
   struct Gathered {
     MetricConfig config;
-    std::size_t index = 0;  // signal, or condition
+    std::size_t index = 0;  // of the signal or of the condition
     std::uint64_t ticks = 0;
-    double value = 0;  // greatest, least, sum, sum of squares, last; of times: when
+    double value = 0;  // by kind: greatest, least, sum, sum of squares, last value, or the time
   };
   void add(Gathered& metric, double time_s, double value) const noexcept;
 
   SignalExpressions conditions_;
   std::vector<Gathered> metrics_;
-  bool broken_ = false;  // a condition went wrong: no metric of a condition has a value
+  bool broken_ = false;  // a condition failed: then no metric with a condition has a value
 };
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// The faults that a scenario plans, put around the parts that fail.
+// Makes the wrappers that inject a scenario's faults into the plant and into the behaviors' commands.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace kadans {
 
-// Around the plant: its sensors and drives that fail, and the delay of its actuation. Nothing when none does. Throws
-// InputError for joints and feet that the robot does not have.
+// Wraps the world when the scenario has faults of sensors, drives or supply, or a delay of the actuation; else returns
+// nullptr. Throws InputError for names that the robot does not have.
 std::unique_ptr<FaultyPlant> make_faulty_plant(const ScenarioConfig& scenario, const PlantVariant& variant,
                                                const EngineSettings& engine, std::uint64_t seed, World& world);
 
-// Around the behaviors, when commands fail on their way.
+// Wraps the host of the behaviors when the scenario has faults of commands; else returns nullptr.
 std::unique_ptr<FaultyHost> make_faulty_host(const ScenarioConfig& scenario, BehaviorHost& host);
 
 }  // namespace kadans

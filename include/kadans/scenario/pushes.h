@@ -1,4 +1,4 @@
-// The pushes of a scenario, put on the model at their times.
+// Applies the pushes of a scenario to the model at their times.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace kadans {
 
 class Pushes {
  public:
-  // Throws InputError for a link that the robot does not have. `file`: where the pushes were read.
+  // Throws InputError for a link that the robot does not have. `file` is the file from which the pushes were read.
   Pushes(const std::vector<ScenarioPush>& pushes, const RobotModel& model, const std::string& file);
 
-  // Before the step of the plant that begins at this time and lasts dt_s. The impulse of a push comes out right however
-  // its times lie to the steps': each step gets the mean force over its time.
+  // To be called before the step of the plant that begins at time_s and lasts dt_s. Each step gets the mean force over
+  // its time, so the total impulse is right even when a push begins or ends within a step.
   void apply(World& world, double time_s, double dt_s) const;
 
  private:

@@ -1,15 +1,16 @@
-// What may be set or drawn for a run: the plant's physics, its sensors, where it starts, and the parameters of the
-// control objects, each a number under a name.
+// Quantities: the named numbers that may be set or drawn for a run. They are the plant's physics, its sensors, its
+// start, and the parameters of the control objects.
 //
 //   ground.friction                      joint.<joint>.torque_scale, damping_scale, coulomb_scale, spring_scale
 //   link.<link>.mass_scale, friction     joint.<joint>.start_rad (added), encoder_noise_rad
 //   start.roll_rad, pitch_rad, yaw_rad   imu.gyro_noise_rad_s, gyro_bias_rad_s, accelerometer_noise_m_s2, ...
 //   sensor.<name>.value, noise
 //   foot.<link>.noise_N                  control.<object>.<parameter>, and <parameter>_scale
-//   actuation.delay_s                    between what the control engine writes and what the drives do
+//   actuation.delay_s                    delay from the control engine's write to the drives' reaction
 //
-// Only the plant changes, never what the control side believes of it: a heavier link is a heavier link that nobody told
-// the controller of. Names may be patterns ("joint.*_knee.torque_scale"). Before the run; not for the tick.
+// A quantity of the plant changes the plant alone, never the control side's model of it: the controller does not know
+// that a link is heavier. Names may be patterns ("joint.*_knee.torque_scale"). Use this before the run, not in the
+// tick.
 #pragma once
 
 #include <array>
@@ -23,13 +24,13 @@
 
 namespace kadans {
 
-// A quantity by its full name, and the value that it got.
+// The full name of a quantity and the value that it got.
 struct QuantityValue {
   std::string name;
   double value = 0;
 };
 
-// The robot as this run's plant has it.
+// The robot as this run's plant simulates it.
 struct PlantVariant {
   RobotModel model;
   PlantSettings plant;
@@ -38,7 +39,8 @@ struct PlantVariant {
 
 class Quantities {
  public:
-  // Keeps references. What is set again replaces what was set before: a scale is of the value that was found here.
+  // Keeps references. A quantity that is set again replaces the earlier value: a scale always multiplies the value that
+  // the constructor found.
   Quantities(PlantVariant& variant, Catalog& catalog);
   Quantities(const Quantities&) = delete;
   Quantities& operator=(const Quantities&) = delete;
@@ -46,11 +48,11 @@ class Quantities {
   // Full names, in a fixed order.
   const std::vector<std::string>& names() const noexcept { return names_; }
 
-  // Sets what `pattern` chooses. Adds a problem at the places of the entry when it chooses nothing or the value is out
-  // of range.
+  // Sets all quantities that the entry's pattern chooses, and adds them to `done`. Adds a problem when the pattern
+  // chooses nothing or the value is out of range.
   void set(const NumberEntry& entry, std::vector<QuantityValue>& done, Problems& problems);
-  // Draws for what the variation's pattern chooses. Each name has a random stream of its own: what else varies in the
-  // run makes no difference to it.
+  // Draws values for the quantities that the variation's pattern chooses. Each name has a random stream of its own, so
+  // its value does not depend on what else varies in the run.
   void draw(const Variation& variation, std::uint64_t seed, std::vector<QuantityValue>& done, Problems& problems);
 
  private:
@@ -71,7 +73,7 @@ class Quantities {
 
   std::vector<std::string> names_;
   std::vector<Quantity> quantities_;
-  std::array<double, 3> turn_rad_{};  // of the start: roll, pitch, yaw
+  std::array<double, 3> turn_rad_{};  // of the start pose: roll, pitch, yaw
 };
 
 }  // namespace kadans

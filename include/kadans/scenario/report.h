@@ -1,4 +1,4 @@
-// What a run has to say: for people, and as one JSON object for machines.
+// The report of a run: as text for people, and as one JSON object for machines.
 #pragma once
 
 #include <string>
@@ -12,30 +12,30 @@
 
 namespace kadans {
 
-// What belongs to a run beside its result.
+// What a report needs beside the result of the run.
 struct ReportContext {
   const RunLog& log;
   const RobotModel& model;
-  std::vector<QuantityValue> quantities;  // that were set or drawn
+  std::vector<QuantityValue> quantities;  // quantities that were set or drawn
   std::vector<MetricValue> metrics{};
   std::vector<EvidenceTrace> evidence;  // of the checks that failed
   std::string record;                   // file, or ""
-  std::vector<std::uint64_t> hashes{};  // of the state, at times that somebody asked for
+  std::vector<std::uint64_t> hashes{};  // state hashes at the times that the command line asked for
   std::string branch{};                 // name, or ""
-  std::vector<std::string> lost{};      // what was to be left behind and is not, or not whole
+  std::vector<std::string> lost{};      // output files that could not be written, or not completely
 };
 
 // {scenario, seed, passed, checks [{name, passed, value, at_s, wanted, note}], duration_s, realtime_factor,
 // control_ticks, behavior_ticks, state_hash, tick_ns {median, p99, max}, queue {sent, refused}, faults [], errors [],
 // record, quantities {}, metrics {}, hashes [], branch, transitions [], evidence [{check, signal, unit, from_s, to_s,
-// values}]}, on one line; hashes and branch only when there are any, the transitions and the evidence only when the run
-// did not pass. Numbers that are not finite become null.
+// values}]}, on one line. Hashes and branch stand there only when there are any, transitions and evidence only when the
+// run did not pass. Numbers that are not finite become null.
 std::string json_report(const RunResult& result, const ReportContext& context);
 
 struct ReportStyle {
   bool color = false;
   bool unicode = true;
-  bool verbose = false;  // all log lines
+  bool verbose = false;  // with all log lines
 };
 
 // A signal drawn in the report.

@@ -1,4 +1,4 @@
-// One run of a scenario on the virtual clock, from the first tick to the verdict.
+// One run of a scenario on the virtual clock, from the first tick to the result.
 #pragma once
 
 #include <cstdint>
@@ -24,27 +24,27 @@ struct RunParts {
   RunLog& log;
   Disturbances* disturbances = nullptr;
   JoystickSource* joystick = nullptr;
-  // Signals that tell of the behaviors' own upkeep: they stay out of the state hash, since memory depends on the
-  // machine.
+  // Signals about the interpreter's own needs (memory, instructions, pauses). They are not part of the state hash,
+  // because memory depends on the machine.
   SignalId upkeep_first = 0;
   std::size_t upkeep_count = 0;
 };
 
-// Where a run stands between two ticks.
+// The progress of a run between two ticks.
 struct RunMark {
-  std::uint64_t ticks = 0;       // that are over
-  std::int64_t time_ns = 0;      // when the next one begins
-  std::uint64_t state_hash = 0;  // over all that is over
+  std::uint64_t ticks = 0;       // completed ticks
+  std::int64_t time_ns = 0;      // time at which the next tick begins
+  std::uint64_t state_hash = 0;  // over all completed ticks
 };
 
-// Looks on while a run goes. The row holds all signals of the tick.
+// Observes a run while it goes. `row` holds all signals of the tick.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void tick(double time_s, std::span<const double> row) = 0;
-  // What the safety layer found in a tick.
+  // Called for each fault that the safety layer found.
   virtual void fault(const Fault& fault) { (void)fault; }
-  // After each tick and its step of the plant; what it changes holds from the next tick on.
+  // Called after each tick and its step of the plant. Changes that it makes take effect in the next tick.
   virtual void between_ticks(const RunMark& mark) { (void)mark; }
   virtual bool stop_asked() const { return false; }
 };
@@ -56,7 +56,7 @@ struct TickCost {
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
-  bool passed = false;  // every check, no error of a behavior, not stopped early
+  bool passed = false;  // every check passed, no behavior had an error, the run was not stopped early
   bool interrupted = false;
   std::string error;  // why the run ended early; "" when it did not
   std::vector<CheckResult> checks;
@@ -67,10 +67,11 @@ struct RunResult {
   std::uint64_t state_hash = 0;
   TickCost tick;
   std::uint64_t commands_sent = 0, commands_refused = 0;
-  std::vector<Fault> faults;  // in the order they came, at most fault_log_capacity a tick
+  std::vector<Fault> faults;  // in the order of time, at most fault_log_capacity in a tick
 };
 
-// Runs for duration_s. `observers` may be empty. A plant that fails ends the run with an error in the result.
+// Runs for duration_s of simulated time. `observers` may be empty. When the plant throws, the run ends and the result
+// holds the error.
 RunResult run_scenario(const RunParts& parts, double duration_s, Checks& checks,
                        const std::vector<RunObserver*>& observers);
 

@@ -1,5 +1,5 @@
-// What the behaviors of a run said and did, kept for its report; handed on to a recorder when there is one. Of a run
-// that does not end only the newest are kept.
+// Keeps the transitions and log lines of a run's behaviors for its report, and passes them on to a recorder when there
+// is one. The number that is kept is bounded, for runs without an end.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct LogLine {
 
 class RunLog final : public BehaviorLog {
  public:
-  // Keeps at least `kept_max` transitions and as many lines, at most twice that.
+  // Keeps the newest `kept_max` transitions and as many lines, at most twice as many.
   explicit RunLog(BehaviorLog* next = nullptr, std::size_t kept_max = SIZE_MAX / 2)
       : next_(next), kept_max_(kept_max) {}
 
@@ -29,7 +29,7 @@ class RunLog final : public BehaviorLog {
 
   const std::vector<Transition>& transitions() const noexcept { return transitions_; }
   const std::vector<LogLine>& lines() const noexcept { return lines_; }
-  bool has_errors() const noexcept { return errors_; }  // also among those that are not kept any more
+  bool has_errors() const noexcept { return errors_; }  // also when their lines are no longer kept
 
  private:
   BehaviorLog* next_;

@@ -1,19 +1,19 @@
-// What a model knows for certain, as signals: for checks and pictures, never for control.
+// The true state of a simulated robot as signals, for checks and pictures, never for control.
 //
-//   plant.base.height_m, x_m, y_m, tilt_rad, yaw_rad, speed_m_s     the base frame in the world
-//   plant.base.jump_m           its way in this step beyond what its speed explains: a teleport
-//   plant.foot.<link>.force_N, slip_m                                slip: way along the ground since the foot settled
-//   plant.limits.position_rad   how far the worst joint is inside its limits; negative beyond them
-//   plant.limits.motor_torque_share   the largest torque of a motor, as a share of its joint's limit. What the motor
-//                                     cannot give at its speed counts as used up: at most 1, or the plant cheats
-//   plant.limits.torque_share   the largest torque that a transmission puts on its joint, as a share of its limit. More
-//                               than 1 when a limb hits something: the rotor behind it must be stopped, too
-//   plant.limits.speed_share    the largest joint velocity, as a share of its limit. More than 1 when something turns
-//                               the joint faster than its motor could: no motor pushes on there
-//   plant.limits.overspeed_s    how long now, without a break, a joint has been so
-//   reference.base.height_m     where the base would be if every joint stood at its set-point
-//   reference.base.error_m      plant.base.height_m minus that
-// and those of world_signals.h, and of gaze_truth.h for eyes that are watched.
+//   plant.base.height_m, x_m, y_m, tilt_rad, yaw_rad, speed_m_s     of the base frame in the world
+//   plant.base.jump_m           distance that the base moved in this step beyond what its speed explains: a teleport
+//   plant.foot.<link>.force_N, slip_m   slip: horizontal distance from the place where the foot settled
+//   plant.limits.position_rad   distance of the worst joint from its limits; negative when it is beyond them
+//   plant.limits.motor_torque_share   the largest torque of a motor, as a share of its joint's limit. Torque that the
+//                                     motor cannot give at its speed counts as used. Above 1 the plant is wrong
+//   plant.limits.torque_share   the largest torque of a transmission on its joint, as a share of the limit. It is above
+//                               1 when a limb hits something, because the rotor behind it must be stopped, too
+//   plant.limits.speed_share    the largest joint velocity, as a share of its limit. It is above 1 when something turns
+//                               the joint faster than its motor could; no motor accelerates it any more then
+//   plant.limits.overspeed_s    for how long a joint has now been above its limit without a break
+//   reference.base.height_m     the height of the base if every joint were at its set-point
+//   reference.base.error_m      plant.base.height_m minus reference.base.height_m
+// It also declares the signals of world_signals.h, and those of gaze_truth.h for eyes that are watched.
 #pragma once
 
 #include <array>
@@ -33,8 +33,9 @@ namespace kadans {
 
 class TruthSignals {
  public:
-  // Declares the signals in the catalog. `feet` are the links named in the plant's settings, with the points of each
-  // sole that touch the ground. Keeps references to model, plant and catalog. Slip counts from settle_s on.
+  // The constructor declares the signals in the catalog and keeps references to plant, model and catalog. `feet` are
+  // the foot links of the plant's settings, each with the points of its sole that touch the ground. Slip is measured
+  // from settle_s on.
   struct Foot {
     std::string link;
     std::vector<Vec3> sole_m;  // in the link's frame
@@ -42,10 +43,11 @@ class TruthSignals {
   TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
                const WorldSettings& world = {});
 
-  // Before the run.
+  // Call before the run.
   void watch(Catalog& catalog, const GazeTruth::Eyes& eyes);
 
-  // After each step of the plant. `row` holds the signals of the last control tick: the set-points are read from it.
+  // Call after each step of the plant. `row` holds the signals of the last control tick; the set-points are read from
+  // it.
   void update(double time_s, std::span<const double> row) noexcept;
 
  private:
@@ -74,7 +76,7 @@ class TruthSignals {
   Kinematics kinematics_;
   State state_;
   std::array<double, max_joints> overspeed_s_{};
-  std::optional<double> last_s_;  // of the step before, and then:
+  std::optional<double> last_s_;  // time of the step before; its base position and speed follow
   Vec3 last_m_{};
   double last_m_s_ = 0;
   std::vector<FootState> feet_;
@@ -85,7 +87,7 @@ class TruthSignals {
     SignalId signal;
   };
   std::array<std::vector<Reference>, max_joints> references_;
-  std::array<SignalId, max_joints> writers_{};  // which objects have a share in the joint
+  std::array<SignalId, max_joints> writers_{};  // signals that say which objects have a share in the joint
   std::array<double, max_joints> position_rad_{};
 };
 

@@ -1,9 +1,10 @@
-// What touches what, and where the objects of the world are, as signals:
+// Contacts and the positions of the world's objects, as signals:
 //
 //   plant.contact.other_links      links of the robot, other than feet, that press on the ground or an object
 //   plant.self_penetration_m       largest overlap of two links of the robot
-//   world.<name>.force_N, links    of the robot on the object, and how many of its links press
-//   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    of an object that can move
+//   world.<name>.force_N, links    force of the robot on the object, and number of its links that press
+//   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    position, velocity and tilt of an object that can
+//   move
 #pragma once
 
 #include <span>
@@ -15,7 +16,7 @@ namespace kadans {
 
 class WorldSignals {
  public:
-  // Declares the signals. `feet` are the links' numbers.
+  // Declares the signals. `feet` are the indices of the foot links.
   WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet);
 
   void update(const PlantTruth& truth) noexcept;

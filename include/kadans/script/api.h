@@ -1,5 +1,5 @@
-// What behaviors can call and read, as a table: editor stubs and the reference are made from it, and a test holds it
-// against what the sandbox really binds.
+// The table of everything that behaviors can call and read. Editor stubs and the reference are made from it, and a test
+// compares it with what the sandbox really binds.
 #pragma once
 
 #include <filesystem>
@@ -13,17 +13,19 @@ namespace kadans {
 
 struct ApiEntry {
   const char* owner;  // "kadans", "m", "object", "motion", "s", "joint", "base", "rate", "foot", ...
-  const char* name;   // a function's with its arguments: "move(pose, options)"
-  const char* type;   // of a field, or what a function returns
+  const char* name;   // a function's name has its arguments: "move(pose, options)"
+  const char* type;   // type of a field, or of what a function returns
   const char* doc;    // one sentence, with the unit
 };
 std::span<const ApiEntry> script_api();
 
-// A ---@meta file for lua-language-server: the table, and this robot's objects, set-points, presets, poses and joints.
+// A ---@meta file for lua-language-server with the table and this robot's objects, set-points, presets, poses and
+// joints.
 std::string lua_stubs(const Catalog& catalog);
-// The table for people, in Markdown.
+// The table as Markdown for people.
 std::string api_reference();
-// What a loaded behavior really has: "kadans.pose", "m.wait", "object.move", "joint.position_rad". Throws InputError.
+// The names that a loaded behavior really has: "kadans.pose", "m.wait", "object.move", "joint.position_rad". Throws
+// InputError.
 std::vector<std::string> bound_names(const std::filesystem::path& root, const std::filesystem::path& behavior,
                                      const Catalog& catalog);
 

@@ -1,6 +1,6 @@
-// What the behavior thread tells of a behavior to the record: numbers that each stand alone, so that relaxed atomics
-// do; the behavior thread stores them after each tick, the control thread reads them when it gathers the signals. In
-// lockstep both are one thread and a run repeats: the pause of the collector is wall time and stays 0 there.
+// The status of a behavior for the record. The behavior thread stores the numbers after each tick, and the control
+// thread reads them when it gathers the signals. Each number stands alone, so relaxed atomics suffice. In lockstep both
+// threads are one and a run repeats bit for bit; so the collector's pause, which is wall time, stays 0 there.
 #pragma once
 
 #include <atomic>
@@ -12,15 +12,15 @@
 namespace kadans {
 
 struct BehaviorStatus {
-  std::atomic<std::uint32_t> heap_bytes{0};    // of its Lua state
+  std::atomic<std::uint32_t> heap_bytes{0};    // used by its Lua state
   std::atomic<std::uint32_t> instructions{0};  // of the last tick, in steps of a thousand
-  std::atomic<std::uint32_t> gc_pause_ns{0};   // of the collector after the last tick; only where wall time counts
+  std::atomic<std::uint32_t> gc_pause_ns{0};   // of the collector after the last tick; 0 on virtual time
   std::atomic<std::uint32_t> state{0};         // number of the innermost active state in its chart
-  std::atomic<std::uint32_t> reloads{0};       // new versions taken
+  std::atomic<std::uint32_t> reloads{0};       // number of new versions taken
 
-  // Before the loop. Declares behavior.<name>.heap_bytes and so on; the name must be new to the table.
+  // Before the loop. Declares behavior.<name>.heap_bytes and so on. The name must not be in the table yet.
   void declare(SignalTable& signals, const std::string& name) const;
-  // The same under the name, or, when that is taken, under the first of name_2, name_3 ... that is free.
+  // The same, but a name that is taken is replaced by the first free one of name_2, name_3 ...
   void declare_numbered(SignalTable& signals, const std::string& name) const;
 };
 

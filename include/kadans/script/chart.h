@@ -1,8 +1,8 @@
-// A behavior's state machine, flat: made once from the author's tables, run without looking at them again.
+// A behavior's state machine as flat arrays. It is made once from the author's tables and then runs without them.
 //
-// States stand in document order (a state before its children, its subtree in one piece), so that "is inside" is two
-// comparisons, entering goes up the numbers and leaving down. State 0 is the behavior itself. A called behavior is
-// grafted in below the state that calls it, with a machine of its own: vars, arguments, names.
+// States are in document order: a state stands before its children, and its subtree is contiguous. So the test "is
+// inside" takes two comparisons, entering goes up the numbers, and leaving goes down. State 0 is the behavior itself. A
+// called behavior is inserted below the state that calls it, with a machine of its own: vars, arguments, names.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ inline constexpr EventId run_done_event = 0;  // "run.done"
 
 struct Chart {
   enum class Kind : std::uint8_t { state, parallel, region, final_state, history };
-  static constexpr int no_function = -2;  // as LUA_NOREF
+  static constexpr int no_function = -2;  // the same as LUA_NOREF
   static constexpr std::int32_t no_parameter = -1;
 
   struct State {
@@ -31,13 +31,13 @@ struct Chart {
     std::string chunk;
     int line = 0;
     Kind kind = Kind::state;
-    bool deep = false;           // history
-    bool endless = false;        // means to stay: no way out is no mistake
-    bool outcome_given = false;  // final states: the author wrote it
-    bool machine_root = false;   // a behavior, the played one or a called one
+    bool deep = false;           // of a history state
+    bool endless = false;        // meant to stay: a missing way out is no mistake
+    bool outcome_given = false;  // of a final state: the author wrote the outcome
+    bool machine_root = false;   // root of a behavior, the played one or a called one
     StateIndex parent = no_state;
     StateIndex end = 0;             // one past the last state inside
-    StateIndex initial = no_state;  // child entered by default; history: where it leads when there is none yet
+    StateIndex initial = no_state;  // child entered by default; of a history state: the target without a history
     std::uint16_t machine = 0;
     std::uint16_t first_transition = 0, transition_count = 0;
     std::uint16_t first_always = 0, always_count = 0;
@@ -47,7 +47,7 @@ struct Chart {
   };
   struct Transition {
     StateIndex source = 0, target = no_state;
-    StateIndex domain = 0;  // what is inside it and active is left
+    StateIndex domain = 0;  // active states inside it are left
     int when = no_function, action = no_function;
     EventId on = no_event;
     bool timed = false;
@@ -59,29 +59,29 @@ struct Chart {
   struct Machine {
     std::string name;
     StateIndex root = 0;
-    int vars = no_function, arguments = no_function;  // registry: what is declared
-    int given = no_function;                          // registry: what the caller gives
-    int migrate = no_function;                        // registry: makes vars of those of another version
-    std::string controls;                             // "": its caller's
-    std::string call_chunk;                           // where it is called
+    int vars = no_function, arguments = no_function;  // registry: as declared
+    int given = no_function;                          // registry: values given by the caller
+    int migrate = no_function;                        // registry: converts vars of another version
+    std::string controls;                             // name of its control set; "": its caller's
+    std::string call_chunk;                           // file that calls it
     int call_line = 0;
     int version = 0;
   };
 
   std::string name;
   std::vector<State> states;
-  std::vector<Transition> transitions;  // those of a state in one piece
+  std::vector<Transition> transitions;  // those of one state are contiguous
   std::vector<Machine> machines;
   std::vector<std::string> events{"run.done"};
 
-  bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // or the same
+  bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // true also for the ancestor itself
     return state >= ancestor && state < states[ancestor].end;
   }
   StateIndex size() const noexcept { return static_cast<StateIndex>(states.size()); }
   EventId intern(std::string_view event);
   EventId find_event(std::string_view event) const noexcept;
 
-  // Finds what the names mean, and every mistake.
+  // Resolves all names and finds every mistake.
   void resolve(std::vector<InputProblem>& problems);
 };
 

@@ -1,5 +1,5 @@
-// A chart as a picture: Graphviz dot, or a Mermaid state diagram. Nested states stand inside their parents, parallel
-// regions beside each other; a transition says what takes it: its event, its time, "[when]" for a guard, and why.
+// Draws a chart as Graphviz dot or as a Mermaid state diagram. Nested states are inside their parents, parallel regions
+// beside each other. The label of a transition shows its event, its time, "[when]" for a guard, and its reason.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace kadans {
 
-// `parameters` name the times that come from k.params.
+// `parameters` gives the names of times that come from k.params.
 std::string dot_graph(const Chart& chart, const std::vector<ScriptParameter>& parameters);
 std::string mermaid_graph(const Chart& chart, const std::vector<ScriptParameter>& parameters);
 
-// What takes it, in words: "run.done", "after settle_s, [when] (lost balance)".
+// The label of a transition: "run.done", "after settle_s, [when] (lost balance)".
 std::string transition_label(const Chart& chart, const Chart::Transition& transition,
                              const std::vector<ScriptParameter>& parameters);
 

@@ -1,17 +1,21 @@
-// Runs a chart, one tick at a time.
+// Runs a chart, one tick at a time. A tick works against one snapshot:
 //
-// A tick, against one snapshot: each innermost active state looks for a transition among the `always` of the states
-// around it, from the outside in; then each that found none among their transitions, from the inside out, in the order
-// written. Of transitions that would leave the same state the first stays, unless a later one starts further inside
-// (SCXML, section D, removeConflictingTransitions); so an `always` of any region goes before what is no `always`. All
-// exits run, innermost and last first, then the actions, then all entries, outermost and first first. Then `during`,
-// then the coroutines of `run`. So a tick takes one step: what it causes is seen in the next.
+//   1. Each innermost active state looks for an enabled transition among the `always` of itself and of the states
+//   around
+//      it, from the outside in.
+//   2. Each that found none looks among their other transitions, from the inside out, in the order written.
+//   3. Of transitions that would leave the same state the first one is taken, unless a later one starts further inside
+//      (SCXML, section D, removeConflictingTransitions). So an `always` of any region goes before other transitions.
+//   4. All exits run, innermost and last first, then the actions, then all entries, outermost and first first.
+//   5. The `during` functions run, then the coroutines of `run`.
 //
-// Events wait in a bounded queue; a tick looks at the oldest. One that nobody takes is dropped and counted, but it
-// stays while transitions without event are taken.
+// So a tick takes one step, and its effects are seen in the next tick.
 //
-// tick() and stop() call into Lua and raise through this: no function here holds what needs a destructor. They allocate
-// nothing beyond what the script does.
+// Events wait in a bounded queue, and a tick looks at the oldest one. An event that no transition takes is dropped and
+// counted. It stays in the queue while transitions without an event are taken.
+//
+// tick() and stop() call into Lua, and its errors unwind through them. So no function here holds an object that needs a
+// destructor. They allocate nothing beyond what the script allocates.
 #pragma once
 
 #include <array>
@@ -30,15 +34,15 @@ struct Motion;
 class StepMeter;
 class WarmUp;
 
-// Registry references of what the functions are given.
+// Registry references of the values that are passed to the chart's functions.
 struct RunnerTables {
   struct Machine {
     int handle = Chart::no_function;   // m
-    int content = Chart::no_function;  // the table behind it
+    int content = Chart::no_function;  // the table behind m
   };
   std::vector<Machine> machines;
   int snapshot = Chart::no_function;  // s
-  int threads = Chart::no_function;   // keeps coroutines
+  int threads = Chart::no_function;   // keeps the coroutines alive
   int time_key = Chart::no_function;  // "time_s"
 };
 
@@ -50,43 +54,45 @@ class TransitionSink {
 
 class ChartRunner {
  public:
-  // Before the first tick. All must outlive the runner.
+  // Make it before the first tick. All references must outlive the runner.
   ChartRunner(const Chart& chart, const RunnerTables& tables, TransitionSink& sink);
 
   void tick(lua_State* state, std::int64_t now_ns);
   // Leaves all active states, `exit` innermost first.
   void stop(lua_State* state, std::int64_t now_ns);
 
-  // False when the queue is full: counted.
+  // False when the queue is full; this is counted.
   bool post(EventId event) noexcept;
 
-  // A reload: `map` says which state of this chart each state of the old one is, or no_state. Before the first tick.
-  // What is active, its time, histories and waiting events are taken over; a coroutine cannot be: `run` begins anew,
-  // unless it was over. Where an active state is gone, the next tick enters the initial state around it.
+  // For a reload, before the first tick. `map` gives for each state of the old chart the state of this chart, or
+  // no_state. Active states, their time, histories and waiting events are taken over. A coroutine cannot be taken over:
+  // `run` begins anew, unless it was over. When an active state no longer exists, the next tick enters the initial
+  // state of the state around it.
   void take_over(lua_State* state, const ChartRunner& old, const std::vector<StateIndex>& map);
-  // The same through another process: keep() before it ends, restore() here before the first tick, then, once the
-  // machines have their vars, start_runs(). False: the bytes are none of keep()'s; the runner is of no use then.
+  // The same from another process: that process calls keep() before it ends; this one calls restore() before the first
+  // tick, and start_runs() once the machines have their vars. False: the bytes do not come from keep(); then the runner
+  // cannot be used.
   void keep(ByteWriter& bytes) const;
   [[nodiscard]] bool restore(ByteReader& bytes);
   void start_runs(lua_State* state);
   void be_at(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
-  // Evaluates the guards of all active states, for what they raise.
+  // Evaluates the guards of all active states to find errors that they raise.
   void try_guards(lua_State* state);
   // Leaves these states, `exit` innermost first.
   void leave_marked(lua_State* state, const std::vector<bool>& marks, std::int64_t now_ns);
-  // Tells the sink which states are gone.
+  // Tells the sink which states no longer exist.
   void report_gone(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept;
-  // The next tick enters again what leave_marked() left.
+  // The next tick enters the states again that leave_marked() left.
   void enter_again(const std::vector<bool>& marks) noexcept;
 
-  // What every tick needs.
+  // Adds the memory that every tick needs.
   void add_to(WarmUp& list) const noexcept;
 
   bool started() const noexcept { return started_; }
   bool finished() const noexcept { return finished_; }
   EventId outcome() const noexcept { return run_[0].outcome; }
   bool active(StateIndex state) const noexcept { return run_[state].active; }
-  StateIndex innermost() const noexcept;  // active, the first of several; 0 before the first tick
+  StateIndex innermost() const noexcept;  // active state, the first when there are several; 0 before the first tick
   double state_time_s(StateIndex state) const noexcept;
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }
   // What runs now, for waiting: set by the bindings just before they yield.
@@ -103,7 +109,7 @@ class ChartRunner {
     std::int64_t entered_ns = 0;
     lua_State* thread = nullptr;
     bool thread_started = false;
-    Motion* motion = nullptr;  // waited for
+    Motion* motion = nullptr;  // the motion that it waits for
     std::int64_t wake_ns = 0;
   };
   enum class Guard : std::uint8_t { unknown, no, yes };
@@ -159,8 +165,8 @@ class ChartRunner {
   std::vector<StateRun> run_;
   std::vector<StateIndex> active_;            // in document order
   std::vector<std::uint16_t> selected_;       // transitions
-  std::vector<Guard> guards_;                 // one a transition, this tick's
-  std::vector<std::vector<bool>> histories_;  // one a state; empty where none
+  std::vector<Guard> guards_;                 // one for each transition, for this tick
+  std::vector<std::vector<bool>> histories_;  // one for each state; empty when it has no history
   std::vector<bool> remembered_;
   std::array<EventId, 32> events_{};
   std::uint32_t event_first_ = 0, event_count_ = 0;
@@ -168,7 +174,7 @@ class ChartRunner {
   std::int64_t now_ns_ = 0;
   bool started_ = false, finished_ = false;
   bool entering_ = false;  // some state is marked to be entered
-  bool filling_ = false;   // the next tick enters what a reload left empty, and takes no transition
+  bool filling_ = false;   // the next tick only enters what a reload left empty; it takes no transition
   Motion* wait_motion_ = nullptr;
   std::int64_t wait_ns_ = 0;
 };

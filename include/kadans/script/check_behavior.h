@@ -1,4 +1,4 @@
-// What is wrong with a behavior, found without running it.
+// Finds mistakes in a behavior without running it.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace kadans {
 
-// Loads the file and what it requires and calls, and checks it against the catalog. Empty: nothing is wrong.
+// Loads the file and all files that it requires and calls, and checks them against the catalog. Empty: no mistakes.
 std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
                                          const Catalog& catalog);
 
-// What a file of Lua is: tests by its name, *_test.lua, the others by what they return.
+// The kind of a Lua file. Tests have names *_test.lua; the other kinds are told by the value that the file returns.
 enum class ScriptKind : std::uint8_t { behavior, module, test };
 struct CheckedScript {
   ScriptKind kind = ScriptKind::module;
   std::vector<InputProblem> problems;
 };
 
-// Loads the file, of whatever kind, and checks it. Without a catalog a behavior is not checked any further than that.
+// Loads a file of any kind and checks it. Without a catalog a behavior is only loaded.
 CheckedScript check_script(const std::filesystem::path& root, const std::filesystem::path& file,
                            const Catalog* catalog);
 
-// Of several that say the same of the same line one is left; by file and line.
+// Sorts the problems by file and line, and removes duplicates on the same line.
 void tell_once(std::vector<InputProblem>& problems);
 
 }  // namespace kadans

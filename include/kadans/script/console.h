@@ -1,11 +1,12 @@
-// A console: takes a line, gives text. A line is Lua, evaluated between two ticks in an environment of its own and
-// under its own budget, or a command that begins with a colon. It reads until `:write`: then m.<object> commands the
-// control objects, each line one transaction. Where lines come from and time goes on is the owner's business.
+// A console: takes a line and returns text. A line is Lua, or a command that begins with a colon. Lua is evaluated
+// between two ticks in an environment of its own with a budget of its own. The console only reads until `:write`; then
+// m.<object> commands the control objects, and each line is one transaction. The owner brings the lines and lets time
+// go on.
 //
-// What Lua sees besides the sandbox: s (as behaviors do), signals.<name>, parameters.<name> of the control objects,
-// behaviors.<name>.{state, outcome, error, parameters}, m, k (require "kadans"). Globals stay from line to line.
+// Besides the sandbox Lua sees: s (as behaviors do), signals.<name>, parameters.<name> of the control objects,
+// behaviors.<name>.{state, outcome, error, parameters}, m, and k (require "kadans"). Globals stay from line to line.
 //
-// Behavior thread, between its ticks. Nothing here throws but the constructor.
+// Behavior thread, between its ticks. Only the constructor throws.
 #pragma once
 
 #include <filesystem>
@@ -34,7 +35,7 @@ class Console {
                         .tick_wall_ns = 200'000'000,
                         .memory_bytes = std::size_t{16} << 20};
   };
-  // What a line sees and commands.
+  // What a line reads, and where its commands go.
   struct View {
     const Snapshot& snapshot;
     std::span<const double> signals;     // a row of the catalog's table
@@ -43,24 +44,24 @@ class Console {
   };
   struct Reply {
     std::string text;         // without a newline at its end
-    bool error = false;       // the text says what is wrong
-    bool incomplete = false;  // the next line goes on with this one
+    bool error = false;       // the text is an error message
+    bool incomplete = false;  // the next line continues this one
     bool quit = false;
-    double run_s = 0;  // to be simulated before the next line
+    double run_s = 0;  // time to be simulated before the next line
   };
   struct Completion {
-    std::size_t begin = 0;  // of the word in the text
+    std::size_t begin = 0;  // where the word begins in the text
     std::vector<std::string> words;
   };
 
-  // Catalog and host must outlive it. Throws InputError, std::bad_alloc.
+  // `catalog` and `host` must outlive it. Throws InputError, std::bad_alloc.
   Console(const Settings& settings, const Catalog& catalog, ScriptHost& host);
   ~Console();
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
   Reply evaluate(std::string_view line, const View& view) noexcept;
-  // What the word at the end of the text may become.
+  // The completions of the word at the end of the text.
   Completion complete(std::string_view text) noexcept;
   bool writes() const noexcept;
 

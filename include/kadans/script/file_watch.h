@@ -1,6 +1,6 @@
-// Tells that somebody saved a script: inotify on folders, so that editors that write a new file and rename it over the
-// old one are seen too. It says only that something changed and is quiet again; what changed is for the reader to find
-// out, by comparing texts. One thread, never blocks.
+// Tells when somebody has saved a script. It uses inotify on folders, so it also sees editors that write a new file and
+// rename it over the old one. It only says that something changed and is quiet again; the caller finds out what changed
+// by comparing texts. One thread; never blocks.
 #pragma once
 
 #include <filesystem>
@@ -15,14 +15,14 @@ class FileWatch {
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
-  // False: the folder cannot be watched. Asking again is cheap.
+  // False: the folder cannot be watched. Adding a folder again is cheap.
   bool add(const std::filesystem::path& folder);
 
-  // True once after a Lua file was closed by its writer or moved into place and no other was since the last call.
+  // True once, when a Lua file was closed by its writer or moved into place and none has changed since the last call.
   bool poll() noexcept;
 
  private:
-  bool drain() const noexcept;  // whether anything came
+  bool drain() const noexcept;  // true when any event came
 
   int fd_;
   std::set<std::filesystem::path> folders_;

@@ -1,16 +1,17 @@
-// The memory of one Lua state, counted and limited. Over the limit a reserve of an eighth still serves, so that the
-// script can be stopped at its next instruction, with its line, rather than somewhere inside the interpreter.
+// The memory of one Lua state, counted and limited. A reserve of an eighth above the limit is still granted. So the
+// script can be stopped at its next instruction, and its line is known, rather than somewhere inside the interpreter.
 //
-// Small blocks are cut one after the other from arenas of whole pages, kept until the state ends. What every tick
-// needs, the interpreter's own state first, has an arena of its own: a tick at 100 Hz finds nothing in the caches, and
-// waits for memory and page tables, not for instructions. Blocks of whole cache lines begin at one.
+// Small blocks are cut one after the other from arenas of whole pages, which are kept until the state ends. The blocks
+// that every tick needs, first of all the interpreter's own state, have an arena of their own. The reason: a tick at
+// 100 Hz finds nothing in the caches, and its time goes into waiting for memory and page tables, not into instructions.
+// Blocks of whole cache lines are aligned to cache lines.
 //
-// Strings have a bound of their own, since one instruction (.., <, + on digits) may go through a whole string. Lua
-// builds them in a buffer that doubles: a block that grows to a power of two is that buffer, no stack or table (these
-// hold a few slots more).
+// Strings have a bound of their own, because one instruction (.., <, + on digits) may go through a whole string. Lua
+// builds strings in a buffer that doubles its size. So a block that grows to a power of two is that buffer, and no
+// stack or table (these have a few slots more).
 //
-// A table that loses a key and gets another, again and again, is made anew each time: that takes no memory but time. So
-// what is allocated from forgive() on is limited too, to four times what may be in use.
+// A table that again and again loses a key and gets another one is allocated anew each time. This needs time but no
+// memory. So the bytes allocated since forgive() are limited, too, to four times the limit.
 #pragma once
 
 #include <array>
@@ -27,18 +28,19 @@ class LuaHeap {
   LuaHeap(const LuaHeap&) = delete;
   LuaHeap& operator=(const LuaHeap&) = delete;
 
-  // nullptr when refused: Lua raises "not enough memory". Shrinking is never refused; freeing always works.
+  // Returns nullptr when refused; then Lua raises "not enough memory". Shrinking and freeing are never refused.
   void* reallocate(void* block, std::size_t old_bytes, std::size_t new_bytes) noexcept;
 
   std::size_t used_bytes() const noexcept { return used_; }
   std::size_t limit_bytes() const noexcept { return limit_; }
-  std::uint64_t allocated_bytes() const noexcept { return allocated_; }  // ever
-  // Whether what is allocated from now on is for every tick. Such blocks stand side by side, in tick_memory().
+  std::uint64_t allocated_bytes() const noexcept { return allocated_; }  // since the beginning
+  // Says whether blocks that are allocated from now on are used in every tick. Such blocks are placed together in
+  // tick_memory().
   void for_ticks(bool yes) noexcept { for_ticks_ = yes; }
   std::span<const std::byte> tick_memory() const noexcept { return {tick_first_, tick_.next}; }
   const std::byte* tick_end() const noexcept { return tick_.next; }
 
-  // The largest block there ever was: no table, function or stack of the state is larger.
+  // The largest block so far: no table, function or stack of the state is larger.
   std::size_t largest_block_bytes() const noexcept { return largest_; }
 
   bool exceeded() const noexcept { return exceeded_; }
@@ -51,8 +53,8 @@ class LuaHeap {
   struct Free {
     Free* next;
   };
-  struct Arena;   // a list, to free them
-  struct Fresh {  // what is left of an arena
+  struct Arena;   // a linked list, to free them
+  struct Fresh {  // the unused part of an arena
     std::byte* next = nullptr;
     std::byte* end = nullptr;
   };
@@ -69,8 +71,8 @@ class LuaHeap {
   std::array<Free*, small_bytes_max / small_step_bytes> free_{};  // by size class
   Arena* arenas_ = nullptr;
   Fresh fresh_, tick_;
-  std::byte* tick_first_ = nullptr;  // also the first block of all, the interpreter's state
-  bool for_ticks_ = true;            // at first: what a state begins with
+  std::byte* tick_first_ = nullptr;  // also the first block, the interpreter's state
+  bool for_ticks_ = true;            // true at first: the state's initial contents
   std::size_t limit_, block_;
   std::size_t used_ = 0, largest_ = 0;
   std::uint64_t allocated_ = 0, renewal_end_ = UINT64_MAX;

@@ -1,8 +1,8 @@
-// One Lua state, closed in: its own memory, a budget, only the library functions that cannot harm (sandbox.cpp lists
-// them), and `require` for "kadans", the project's behaviors/lib and the script's own folder.
+// One sandboxed Lua state. It has its own memory, a budget, only harmless library functions (sandbox.cpp lists them),
+// and a `require` for "kadans", the project's behaviors/lib and the script's own folder.
 //
-// LuaJIT's compiler is off, since a budget must hold (compiled loops run no hooks). The collector is stopped; collect()
-// steps it, in the slack after a tick. One thread at a time.
+// LuaJIT's compiler is off, because compiled loops run no hooks and the budget would not hold. The garbage collector
+// does not run by itself; collect() runs it in the free time after a tick. One thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace kadans {
 struct LuaCore;
 class WarmUp;
 
-// Takes what scripts print.
+// Takes the lines that scripts print.
 class ScriptVoice {
  public:
   virtual ~ScriptVoice() = default;
@@ -38,14 +38,14 @@ class ScriptVoice {
 class LuaState {
  public:
   struct Settings {
-    std::filesystem::path root;    // of the project; files are named relative to it in messages
-    std::filesystem::path folder;  // the script's own, searched by `require` before <root>/behaviors/lib
-    std::string name;              // of the random stream
+    std::filesystem::path root;    // of the project; messages name files relative to it
+    std::filesystem::path folder;  // the script's folder; `require` searches it before <root>/behaviors/lib
+    std::string name;              // name of the random stream
     std::uint64_t seed = 1;
     ScriptLimits limits;
     ScriptVoice* voice = nullptr;
   };
-  // A loaded file: kept to find lines for messages, and to know what a reload must watch.
+  // A loaded file, kept to find lines for messages and to know the files of a reload.
   struct Source {
     std::string chunk;  // relative to the root
     std::filesystem::path path;
@@ -63,25 +63,26 @@ class LuaState {
   const std::vector<Source>& sources() const noexcept { return sources_; }
   const ScriptError& error() const noexcept;
 
-  // Runs function(state, argument pushed as light userdata) under a budget. False: error() says why.
-  // What the function returns is dropped; errors unwind through it, so it holds nothing that needs a destructor.
+  // Runs function(state, argument pushed as light userdata) under a budget. False: error() says why. Its results are
+  // dropped. Errors unwind through the function, so it must not hold objects that need a destructor.
   [[nodiscard]] bool call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
                           std::int64_t wall_ns) noexcept;
 
-  // Compiles a file, text only, and leaves the function on the stack of `state`. False: the message is there.
+  // Compiles a text file and leaves the function on the stack of `state`. False: the error message is on the stack.
   bool load_file(lua_State* state, const std::filesystem::path& path);
-  // Where `require` finds a module; empty when nowhere.
+  // The file in which `require` finds a module; empty when there is none.
   std::filesystem::path find_module(std::string_view name) const;
-  // The first line from `from` on that holds `text` between quotes or as a word; `from` itself when none does.
+  // The first line from `from` on that contains `text` in quotes or as a word; `from` when there is none.
   int line_of(std::string_view chunk, int from, std::string_view text) const;
-  // What that takes at most.
+  // The instructions that this search takes at most.
   double search_instructions(std::string_view chunk) const noexcept;
 
-  // Steps the collector, in proportion to what was allocated since the last call; to the end once three quarters of the
-  // memory are in use. Where time is limited it takes as long as a tick may at most, and goes on the next time.
+  // Runs the collector in proportion to the bytes that were allocated since the last call; to the end of its cycle when
+  // three quarters of the memory are in use. With a limit of time it runs at most as long as a tick may, and continues
+  // in the next call.
   void collect() noexcept;
   std::size_t used_bytes() const noexcept;
-  // What every call() needs, of the state and of the interpreter.
+  // Adds the memory of the state and of the interpreter that every call() needs.
   void add_to(WarmUp& list) const noexcept;
 
  private:
@@ -90,7 +91,7 @@ class LuaState {
   Settings settings_;
   std::unique_ptr<LuaCore> core_;
   lua_State* lua_ = nullptr;
-  std::span<const std::byte> foundation_;  // what the interpreter keeps of itself
+  std::span<const std::byte> foundation_;  // the interpreter's own data
   std::vector<Source> sources_;
   std::uint64_t collected_at_ = 0;
 };

@@ -1,8 +1,9 @@
-// What the behaviors have sent on its way: for each set-point its target and when it arrives there, by the behaviors'
-// clock. Known from the transactions as they are committed, so that whoever halts the robot needs no behavior's help.
+// The motions that behaviors have started: for each set-point its target and its time of arrival, by the behaviors'
+// clock. They are taken from the committed transactions, so the robot can be halted without the help of any behavior.
 //
-// A set-point of a velocity that is not zero, and a trapezoid without a duration, are under way until another takes
-// their place: to rest where one rests, and to go to where one is, does no harm. Behavior thread only.
+// A velocity set-point that is not zero, and a trapezoid without a duration, count as under way until another command
+// replaces them. This is harmless: to stop a joint that rests, or to send it where it is, has no effect. Behavior
+// thread only.
 #pragma once
 
 #include <cstdint>
@@ -20,16 +21,16 @@ class ByteWriter;
 
 class MotionsUnderWay {
  public:
-  explicit MotionsUnderWay(const Catalog& catalog);  // which must outlive it
+  explicit MotionsUnderWay(const Catalog& catalog);  // `catalog` must outlive it
 
   void note(std::span<const Command> transaction, std::int64_t now_ns);  // throws std::bad_alloc
   void forget() noexcept;
   bool any(std::int64_t now_ns) const noexcept;
-  // What is under way, as bytes and back, for another process.
+  // Writes the motions under way as bytes, and reads them back in another process.
   void keep(ByteWriter& bytes, std::int64_t now_ns) const;
   void restore(ByteReader& bytes);
-  // Adds to the transaction that all of them stay where they are, coming to rest; or that they go on to their targets,
-  // in the time that was left. False: there was no place for it.
+  // rest adds commands to the transaction that bring all motions to rest where they are. go_on adds commands that
+  // continue them to their targets in the time that was left. False: there was no place for them.
   [[nodiscard]] bool rest(std::int64_t now_ns, CommandSender& commands) const noexcept;
   [[nodiscard]] bool go_on(std::int64_t now_ns, CommandSender& commands) const noexcept;
 
@@ -38,7 +39,7 @@ class MotionsUnderWay {
     Command command;
     std::int64_t end_ns = 0;
   };
-  using Motion = std::vector<Leg>;  // one after the other
+  using Motion = std::vector<Leg>;  // its legs, one after the other
   static bool under_way(const Motion& motion, std::int64_t now_ns) noexcept {
     return !motion.empty() && motion.back().end_ns > now_ns;
   }
@@ -48,9 +49,9 @@ class MotionsUnderWay {
 
   const Catalog& catalog_;
   SetPartition partition_;
-  SetMask active_;               // as far as what was sent tells
-  std::vector<Motion> motions_;  // one a set-point
-  std::vector<bool> velocity_;   // the set-point is one
+  SetMask active_;               // as far as the sent commands tell
+  std::vector<Motion> motions_;  // one for each set-point
+  std::vector<bool> velocity_;   // true for a velocity set-point
 };
 
 }  // namespace kadans

@@ -1,5 +1,6 @@
-// Where the robot goes when a script failed: the control set holds its last set-points, then, after a while, moves to
-// a pose of the configuration. Joints that a behavior which still plays may move are left to it.
+// Moves the robot to a pose of the configuration after a script has failed. At first the control set holds its last
+// set-points; after after_s the motion begins. Objects that a still playing behavior may move are left to that
+// behavior.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +18,20 @@ class ByteWriter;
 class SafePosture {
  public:
   struct Settings {
-    std::string pose;      // "": the robot stays as it is
-    double after_s = 0.5;  // since the failure
-    double time_s = 1.5;   // of the motion
+    std::string pose;      // "": the robot keeps its last set-points
+    double after_s = 0.5;  // time since the failure
+    double time_s = 1.5;   // duration of the motion
   };
-  // Throws InputError on an unknown pose. The catalog must outlive it.
+  // Throws InputError on an unknown pose. `catalog` must outlive it.
   SafePosture(Settings settings, const Catalog& catalog);
 
-  // Behavior thread. A behavior failed that may have moved these objects.
+  // Behavior thread. To be called when a behavior failed that may have moved these objects.
   void failed(std::int64_t now_ns, ObjectMask objects) noexcept;
   bool due(std::int64_t now_ns) const noexcept { return waiting_ && now_ns >= due_ns_; }
-  // Sends the motion for those of them that are active and not `kept`. Tries again in the next tick when the queue is
-  // full.
+  // Sends the motion for those of the objects that are active and not in `kept`. When the queue is full, due() stays
+  // true for another try in the next tick.
   void move(const Snapshot& snapshot, CommandSender& commands, ObjectMask kept) noexcept;
-  // Who failed is back, or it is for another process to go on; as bytes and back.
+  // forget: the failed behaviors are back. keep and restore: the state as bytes, for another process that continues.
   void forget() noexcept { waiting_ = false, concerned_ = 0; }
   void keep(ByteWriter& bytes) const;
   void restore(ByteReader& bytes) noexcept;

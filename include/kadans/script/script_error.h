@@ -1,4 +1,4 @@
-// Why a script stopped. Fixed buffers: it is filled while Lua is raising, out of memory perhaps.
+// Why a script stopped. It has fixed buffers, because it is filled while Lua raises, perhaps when it is out of memory.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@ struct ScriptError {
   bool set = false;
   int line = 0;  // 0: unknown
   std::array<char, 128> file{};
-  std::array<char, 768> message{};  // without the place
+  std::array<char, 768> message{};  // without file and line
   std::array<char, 3072> traceback{};
 
   void clear() noexcept { *this = ScriptError{}; }
-  // Takes "file:line: message" apart.
+  // Splits "file:line: message" into its parts.
   void set_message(const char* text) noexcept;
   void set_traceback(const char* text) noexcept;
   void set_place(const char* chunk, int at_line) noexcept;

@@ -1,10 +1,10 @@
-// Plays behaviors: a list (play_list.h) that the supervisor can lengthen, replace, pause and stop. Every behavior has a
-// Lua state of its own, so one that fails stops its lane and nothing else; what it moved goes to the safe posture.
+// Plays behaviors: a list (play_list.h) that the supervisor can extend, replace, pause and stop. Every behavior has a
+// Lua state of its own, so a failure stops only the behavior's lane; the objects that it moved go to the safe posture.
 //
-// Orders take effect at the beginning of a tick: those given beforehand, with a time, so that a run repeats, and those
-// that somebody gives meanwhile. What an order names is loaded before it counts, so a wrong list is refused whole and
-// nothing moves; so is one whose control sets share a joint with those of another lane. Files are read again when an
-// order says so, or when somebody saved them.
+// Orders take effect at the beginning of a tick. Events are orders given beforehand with a time, so that a run repeats;
+// other orders come while it runs. The files of an order are loaded first, so a wrong list is refused as a whole and
+// nothing moves. A list whose control sets share a joint with those of another lane is refused, too. Files are read
+// again when an order says so, or when somebody has saved them.
 #pragma once
 
 #include <cstdint>
@@ -31,49 +31,51 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   };
   struct Settings {
     std::filesystem::path root;  // of the project
-    std::vector<PlayItem> play;  // files absolute, or from the root
+    std::vector<PlayItem> play;  // with absolute files, or files relative to the root
     std::uint64_t seed = 1;
     ScriptLimits limits{};
     std::vector<std::string> feet{"left", "right"};
     std::vector<Event> events{};  // in any order
     SafePosture::Settings safe{};
-    // What keep() of another process's host left: plays that in place of `play`, and goes on where it was. Read within
-    // the constructor and the first tick.
+    // Bytes from keep() of another process's host: the host plays these instead of `play` and continues where that one
+    // ended. They are read in the constructor and in the first tick.
     std::span<const std::byte> kept{};
   };
-  // Loads all behaviors, those of events too; throws InputError with every file's problems. Catalog and log must
-  // outlive the host.
+  // Loads all behaviors, also those of events. Throws InputError with the problems of all files. `catalog` and `log`
+  // must outlive the host.
   ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log);
   ~ScriptHost() override;
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
   void prepare(const Snapshot& newest) noexcept override;
-  // What may be wrong in it: a file, an argument, a behavior that does not play.
+  // Throws InputError for a wrong file or argument, a clash of control sets, or an unknown behavior.
   void order(const PlayOrder& order) override;
-  // Behavior thread, between ticks: what somebody else has just committed, so that a pause halts its motions too.
+  // Behavior thread, between ticks: notes commands that another sender has just committed, so that a pause halts their
+  // motions, too.
   void note(const Snapshot& snapshot, const CommandSender& commands) noexcept { pause_.note(snapshot, commands); }
 
-  // Behavior thread, between ticks: what plays and where it is. "", or why something cannot be kept: nobody can go
-  // on with these bytes then.
+  // Behavior thread, between ticks: writes the state of everything that plays as bytes. Returns "", or why it is
+  // impossible; then the bytes cannot be used.
   std::string keep(ByteWriter& bytes, std::int64_t time_ns);
-  // After the first tick: why it could not go on with what was kept; "" when it did.
+  // After the first tick: why the host could not continue from the kept bytes; "" when it could.
   const std::string& lost() const noexcept { return lost_; }
 
-  // Before the loop. Reloads what somebody saves; throws std::runtime_error when nothing can be watched.
+  // Before the loop. From now on saved files are reloaded. Throws std::runtime_error when nothing can be watched.
   void watch();
-  // Before the loop. Declares play.*, and behavior.<name>.* of all that was loaded; a name that plays twice gets a
+  // Before the loop. Declares play.* and behavior.<name>.* for all loaded behaviors. A name that plays twice gets a
   // number.
   void declare_signals(SignalTable& signals) const;
 
-  bool in_safe_posture() const noexcept { return safe_.moved(); }  // sent there after a failure
+  bool in_safe_posture() const noexcept { return safe_.moved(); }  // the robot was sent there after a failure
   bool paused() const noexcept { return pause_.paused(); }
-  bool finished() const noexcept { return list_.over(); }  // every lane is at its end, or stopped
+  bool finished() const noexcept { return list_.over(); }  // every lane has ended
   const PlayStatus& status() const noexcept { return list_.status(); }
-  std::vector<std::string> names() const;  // of what was loaded and is not forgotten
-  // All that it may read: behaviors with their modules, those of events and what events reload too. Before the loop.
+  std::vector<std::string> names() const;  // names of the loaded behaviors that are still in the list or in events
+  // Before the loop. All files that it may read: behaviors with their modules, also those of events, and files that
+  // events reload.
   std::vector<std::filesystem::path> files() const;
 
-  // What plays, waits or played, in order; what events bring is there from then on.
+  // The list: behaviors that play, wait or have played, in order. Behaviors of an event are in it from the event on.
   std::size_t size() const noexcept { return list_.entries().size(); }
   Behavior& behavior(std::size_t index) noexcept { return *list_.entries()[index].behavior; }
   const Behavior& behavior(std::size_t index) const noexcept { return *list_.entries()[index].behavior; }
@@ -81,7 +83,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   std::uint32_t lane(std::size_t index) const noexcept { return list_.entries()[index].lane; }
 
  private:
-  struct Due {  // an order with what it names, loaded
+  struct Due {  // an order with its loaded behaviors
     std::int64_t at_ns = 0;
     PlayOrder order;
     std::vector<PlayList::Entry> loaded{};
@@ -92,7 +94,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   void step(PlayList::Entry& entry, const Snapshot& snapshot, CommandSender& commands) noexcept;
   void report_failure(const Behavior& behavior, std::int64_t time_ns) noexcept;
   ObjectMask objects_played_with() const noexcept;
-  // Why the loaded ones cannot play beside what is there: "" when they can.
+  // Why the loaded behaviors cannot play beside those in the list; "" when they can.
   std::string clash(const std::vector<PlayList::Entry>& loaded) const;
 
   // script_host_keeping.cpp

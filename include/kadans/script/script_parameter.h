@@ -1,4 +1,4 @@
-// A tunable of a behavior, declared in k.params: shown, ranged, and changed while the behavior runs.
+// A tunable parameter of a behavior, declared in k.params. It has a range and can be changed while the behavior runs.
 #pragma once
 
 #include <string>

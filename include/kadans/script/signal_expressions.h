@@ -1,9 +1,9 @@
 // Conditions on signals, written in Lua: "plant.base.height_m > 0.6 and abs(base.pitch_rad) < 0.2".
 //
-// A dotted name is a signal; "plant." may be left out where no other signal bears the shorter name. With "last." in
-// front it is the signal's value one tick before (in the first tick, of that tick). time_s is the time, the functions
-// of `math` are known without their table. All conditions of a run live in one closed-in Lua state, are compiled once
-// and evaluated together, each tick under one budget. One thread at a time.
+// A dotted name is a signal; "plant." may be left out when no other signal has the shorter name. With the prefix
+// "last." it is the signal's value one tick before (in the first tick the value of that tick). time_s is the time. The
+// functions of `math` can be used without its name. All conditions of a run are in one sandboxed Lua state. They are
+// compiled once and evaluated together, each tick under one budget. One thread at a time.
 #pragma once
 
 #include <memory>
@@ -24,21 +24,21 @@ struct ExpressionError {
 
 class SignalExpressions {
  public:
-  // The table must outlive this.
+  // The table must outlive this object.
   explicit SignalExpressions(const SignalTable& signals);
   ~SignalExpressions();
   SignalExpressions(const SignalExpressions&) = delete;
   SignalExpressions& operator=(const SignalExpressions&) = delete;
 
-  // Before the run. Compiles a condition and gives its index, or says what is wrong with it.
+  // Before the run. Compiles a condition and gives its index. False: `error` says what is wrong.
   [[nodiscard]] bool add(std::string_view text, std::size_t& index, ExpressionError& error);
-  // In the order in which they stand in the text, each once.
+  // The signals in the order of the text, each once.
   std::span<const SignalId> signals_of(std::size_t index) const { return conditions_.at(index).signals; }
   std::size_t size() const noexcept { return conditions_.size(); }
 
-  // Evaluates all conditions on a row of the table. False: one of them went wrong, see error().
+  // Evaluates all conditions on a row of the table. False: one of them failed, see error().
   [[nodiscard]] bool evaluate(double time_s, std::span<const double> row) noexcept;
-  // Of the last evaluation.
+  // The result of the last evaluation.
   bool holds(std::size_t index) const { return conditions_.at(index).holds != 0; }
   const std::string& error() const noexcept { return error_; }
 
@@ -46,7 +46,7 @@ class SignalExpressions {
   struct Condition {
     std::string text;
     std::vector<SignalId> signals;
-    int function = 0;  // in the registry
+    int function = 0;  // registry reference
     char holds = 0;
   };
   struct State;
@@ -56,7 +56,7 @@ class SignalExpressions {
   const SignalTable& signals_;
   std::unique_ptr<State> state_;
   std::vector<Condition> conditions_;
-  std::vector<SignalId> used_;  // by any condition
+  std::vector<SignalId> used_;  // used by any condition
   std::string error_;
 };
 

@@ -1,4 +1,4 @@
-// Little-endian fields in memory, as MCAP and CDR want them: one side appends, the other takes and never trusts.
+// Little-endian fields in memory, as MCAP and CDR need them. ByteWriter appends, ByteReader takes and trusts nothing.
 #pragma once
 
 #include <bit>
@@ -45,7 +45,7 @@ class ByteWriter {
   void set(std::size_t offset, T value) noexcept {
     std::memcpy(buffer_.data() + offset, &value, sizeof value);
   }
-  // `count` more bytes to be filled in by the caller; the span holds until the next call.
+  // Appends `count` bytes that the caller fills in; the span is valid until the next call.
   std::span<std::byte> grow(std::size_t count) {
     buffer_.resize(buffer_.size() + count);
     return std::span(buffer_).last(count);
@@ -61,8 +61,8 @@ class ByteWriter {
   std::vector<std::byte> buffer_;
 };
 
-// Takes fields from the front of bytes from outside. What is not there is read as zero or empty and ok() turns false
-// for good; a length is never believed beyond the bytes that are left.
+// Takes fields from the front of bytes from outside. A field that is not there is read as zero or empty, and ok() is
+// false from then on. A length beyond the bytes that are left is not accepted.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) noexcept : left_(bytes) {}

@@ -1,5 +1,5 @@
-// The fixed sizes of everything that crosses a seam: the tick never allocates, so its frames are as large as the
-// largest robot. Counts in the frames say how much of them is in use.
+// The fixed sizes of everything that crosses a seam. The tick never allocates, so its frames are as large as the
+// largest robot; counts in the frames say how much of them is in use.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace kadans {
 inline constexpr std::size_t max_joints = 64;
 inline constexpr std::size_t max_feet = 4;
 inline constexpr std::size_t sensors_per_foot = 4;  // heel/toe x inner/outer
-inline constexpr std::size_t max_channels = 32;     // sensors beside joints, IMU and feet
+inline constexpr std::size_t max_channels = 32;     // sensors other than joints, IMU and feet
 inline constexpr std::size_t max_objects = 32;      // control objects, over all control sets
 inline constexpr std::size_t max_control_sets = 32;
 inline constexpr std::size_t max_setpoints_shown = 128;  // in a snapshot

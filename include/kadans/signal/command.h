@@ -12,14 +12,14 @@
 namespace kadans {
 
 enum class CommandKind : std::uint8_t {
-  transaction,    // header: `count` commands follow, `sequence` numbers the transaction from 1, `time_ns` it was made
+  transaction,    // header: `count` commands follow, `sequence` is its number from 1, `time_ns` when it was made
   set_parameter,  // index = ParameterId, value
   set_point,      // index = SetpointId, value to be reached in duration_s (0 = at once)
-  cancel_motion,  // index = SetpointId: stays where its motion is now, coming to rest
+  cancel_motion,  // index = SetpointId: comes to rest where its motion is now
   switch_set,     // index = control set
   clear_faults,
-  trapezoid,  // index = SetpointId, value to be reached in duration_s (0 = as soon as may be), velocity, acceleration:
-              // limits
+  trapezoid,  // index = SetpointId, value to be reached in duration_s (0 = as soon as possible); velocity and
+              // acceleration are limits
   via_point,  // index = SetpointId, value to be passed duration_s after the point before; count = its number, 0 begins
   order_drive,  // index = joint, count = DriveOrder; of persons alone
 };

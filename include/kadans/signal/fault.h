@@ -1,6 +1,6 @@
 // Fault codes: what went wrong, where and when. A fault names the limit behind it and the key of the robot's
-// configuration that sets this limit, so that a person can look it up. What follows from a fault is the safety layer's
-// reaction (safety/reaction.h); when each is found stands in safety/detection.h.
+// configuration that sets this limit, so that a person can look it up. safety/reaction.h says what follows from a
+// fault, safety/detection.h how soon each is found.
 #pragma once
 
 #include <array>
@@ -52,14 +52,14 @@ enum class FaultCode : std::uint16_t {
   joints_lost,     // too many joints damp or are off
   emergency_stop,  // somebody asked for it
   // Of a drive.
-  drive_fault,        // says that something is wrong with it
+  drive_fault,        // reports a fault of its own
   drive_not_enabled,  // is asked for torque, and is off, ready or homing
-  drive_hot,          // says so
-  sample_old,         // what it says was measured too long ago
+  drive_hot,          // reports too high a temperature
+  sample_old,         // its sample was measured too long ago
   // Of what the drives have in common.
   supply_low,
   supply_high,
-  emergency_input,  // somebody presses the button
+  emergency_input,  // somebody presses the emergency stop's button
   // Of a sensor that the configuration names.
   channel_silent,
   channel_range,  // outside what it may read
@@ -73,11 +73,11 @@ const char* configuration_key(FaultCode code) noexcept;
 
 inline constexpr std::uint16_t no_joint = 0xffff;
 
-// What a fault's numbers cannot say: who asked for it, what the drive's maker calls it. Ends with a zero.
+// What a fault's numbers cannot say: who asked for the stop, what the drive's maker calls the code. Ends with a zero.
 using FaultWords = std::array<char, 40>;
 FaultWords fault_words(std::string_view text) noexcept;  // cut where it is longer
 
-// What the maker of a drive calls its code; "" for one that is none of its. Any thread, at any time.
+// The maker's words for a drive's code; "" for an unknown code. Any thread, at any time.
 using DriveWords = std::string_view (*)(std::uint32_t code) noexcept;
 
 struct Fault {
@@ -86,7 +86,7 @@ struct Fault {
   alignas(8) std::uint64_t tick = 0;  // of the control engine
   double value = 0;                   // what was seen
   double limit = 0;                   // what was allowed
-  FaultWords words{};                 // in place of the two where there are none to tell
+  FaultWords words{};                 // instead of value and limit, for faults that have none
 };
 static_assert(sizeof(Fault) == 72 && alignof(Fault) == 8 && offsetof(Fault, tick) == 8, "the same on 32-bit machines");
 

@@ -2,7 +2,7 @@
 // processes as they are, and alignas(8) makes their layout the same on 32-bit machines, where a double in a struct
 // would need only 4. Joints are numbered as in the robot's model; only the first `joint_count` entries count.
 //
-// A frame is as large as the largest robot; copy_used() copies what counts of it, and leaves the rest of `to` as it is.
+// A frame is as large as the largest robot; copy_used() copies only the entries that count.
 #pragma once
 
 #include <algorithm>
@@ -20,26 +20,26 @@ namespace kadans {
 using Vec3 = std::array<double, 3>;  // x, y, z
 using Quat = std::array<double, 4>;  // w, x, y, z; rotates body coordinates into world coordinates
 
-// Between two times that somebody else tells, who may tell anything.
+// Between two times from outside, which may have any value: the difference wraps around and does not overflow.
 inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   return 1e-9 * static_cast<double>(
                     static_cast<std::int64_t>(static_cast<std::uint64_t>(to_ns) - static_cast<std::uint64_t>(from_ns)));
 }
 
-// What a drive says of itself. Only one that is enabled does what it is asked.
+// The state that a drive reports. Only an enabled drive does what it is asked.
 enum class DriveState : std::uint8_t { off, ready, enabled, homing, fault };
 const char* name(DriveState state) noexcept;
 
-// What one joint's sensors and its drive say. `sequence` grows by one with each new reading, so silence can be told
-// from standstill.
+// What one joint's sensors and its drive report. `sequence` grows by one with each new reading, so that silence can be
+// told from standstill.
 struct alignas(8) JointSample {
   double position_rad = 0;        // at the joint, behind the gear and the spring
   double motor_position_rad = 0;  // before the spring, reflected to the joint
   double motor_effort_Nm = 0;     // from the motor's current, reflected to the joint
   std::uint32_t sequence = 0;
-  std::uint32_t code = 0;    // the maker's own, of what is wrong with the drive; 0: nothing
+  std::uint32_t code = 0;    // the maker's own code for what is wrong with the drive; 0: nothing
   std::int64_t time_ns = 0;  // of the reading, on the frame's clock; 0: the frame's time
-  float temperature_C = std::numeric_limits<float>::quiet_NaN();  // of the drive or its motor; NaN: it does not say
+  float temperature_C = std::numeric_limits<float>::quiet_NaN();  // of the drive or its motor; NaN: not reported
   DriveState drive = DriveState::enabled;
   bool homed = true;    // its position counts from where the joint's does
   bool braked = false;  // its brake holds the joint
@@ -95,7 +95,7 @@ constexpr bool has_position(ActuationMode mode) noexcept {
   return mode == ActuationMode::position || mode == ActuationMode::impedance;
 }
 
-// What a drive is asked for. Which fields count is the mode's matter:
+// What a drive is asked for. The mode says which fields count:
 //   off       no torque
 //   effort    effort_Nm
 //   position  position_rad, velocity_rad_s as feed-forward, effort_Nm added
@@ -143,7 +143,7 @@ struct alignas(8) ActuationFrame {
   DriveRequests drives{};
 };
 
-// The first `count` entries, or all that there are.
+// Copies the first `count` entries, or all that there are.
 template <typename T, std::size_t N>
 void copy_first(const std::array<T, N>& from, std::size_t count, std::array<T, N>& to) noexcept {
   std::copy_n(from.begin(), std::min(count, N), to.begin());

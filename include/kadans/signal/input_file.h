@@ -9,12 +9,12 @@ namespace kadans {
 
 inline constexpr std::size_t input_file_max_bytes = std::size_t{16} << 20U;
 
-// The bytes of a regular file. Never waits for one that is a pipe, never reads one without end: devices, pipes and
-// folders are refused, and nothing is read beyond `size_max_bytes`. Throws InputError: not there, no file, too large,
-// unreadable. Any thread but the control thread.
+// The bytes of a regular file. Devices, pipes and folders are refused, and nothing is read beyond `size_max_bytes`: so
+// it never waits for a pipe and never reads without end. Throws InputError: not there, no file, too large, unreadable.
+// Any thread but the control thread.
 std::string read_input_file(const std::filesystem::path& file, std::size_t size_max_bytes = input_file_max_bytes);
 
-// Throws as read_input_file() does, without reading: for who reads a file piece by piece.
+// Throws as read_input_file() does, without reading: for code that reads a file piece by piece.
 void check_input_file(const std::filesystem::path& file);
 
 }  // namespace kadans

@@ -1,5 +1,5 @@
-// What a joystick says: where its axes are, which buttons are held. One that is not there, or was pulled out, is
-// centred with no button held.
+// The state of a joystick: where its axes are and which buttons are held. A joystick that is not there, or was
+// unplugged, is centred with no button held.
 #pragma once
 
 #include <array>

@@ -3,8 +3,7 @@
 
 namespace kadans {
 
-// The same run gives the same hash on processors of one name; on others the last bits
-// of sines and cosines may differ.
+// The same run gives the same hash on processors of one name; on others the last bits of sines and cosines may differ.
 constexpr const char* machine_name() noexcept {
 #if defined(__x86_64__)
   return "x86_64";

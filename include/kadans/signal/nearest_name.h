@@ -18,7 +18,7 @@ std::string nearest_name(std::string_view wrong, std::span<const std::string> ca
 // ", did you mean 'NAME'?" or "" when nothing is near: to be appended to a message.
 std::string did_you_mean(std::string_view wrong, std::span<const std::string> candidates);
 
-// The names of what has one: candidates.
+// The names of all elements, as candidates.
 template <typename Named>
 std::vector<std::string> names_of(const std::vector<Named>& all) {
   std::vector<std::string> names;

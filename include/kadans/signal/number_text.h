@@ -1,4 +1,5 @@
-// Numbers as text and back, one way everywhere: no locale decides, and half a number is none, nor is nan.
+// Numbers as text and back, in the same way everywhere: the locale has no influence. A text that is a number only in
+// part is no number, and neither is nan.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +26,7 @@ std::string printed(const char* pattern, Values... values) {
 // A hash as 16 digits.
 inline std::string hash_text(std::uint64_t hash) { return printed("%016llx", static_cast<unsigned long long>(hash)); }
 
-// The number that the whole of the text is, a finite one; integers to a base.
+// The finite number that the whole text is, integers to a base; nothing when it is none.
 template <typename Number, typename... Base>
 std::optional<Number> number_of(std::string_view text, Base... base) {
   Number number{};

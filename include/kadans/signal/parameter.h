@@ -1,6 +1,6 @@
-// The parameter table: every tunable of the control side, declared once. Names are for people, configuration and
+// The parameter table: every tunable of the control layer, declared once. Names are for people, configuration and
 // scripts; the tick addresses parameters by number. The value itself lives in its owner, a control object or a filter,
-// where the control thread alone may touch it; the table keeps a copy of what was set last for all other threads.
+// where only the control thread may touch it. For all other threads the table keeps a copy of what was set last.
 #pragma once
 
 #include <cmath>
@@ -30,8 +30,9 @@ struct Parameter {
 class ParameterTable {
  public:
   // Before the loop. `value` is the owner's variable and is set to the initial value; it must outlive the table's use.
-  // `owner` is told apart by the engine (the control object's index). Throws std::invalid_argument on a name taken,
-  // an empty range, or an initial value that is outside it or not finite. A name refused leaves the table as it was.
+  // `owner` tells owners apart for the engine (the control object's index). Throws std::invalid_argument on a name that
+  // is taken, an empty range, or an initial value that is outside it or not finite. A name that is refused leaves the
+  // table as it was.
   ParameterId add(Parameter parameter, double* value, std::uint32_t owner = 0);
 
   // Any thread: whether the id is known and the value finite and within the range.

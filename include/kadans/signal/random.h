@@ -1,6 +1,7 @@
-// Random numbers that repeat. Every use has a stream of its own, named, so that adding one disturbs no other; all
-// streams of a run come from the run's one seed. The same seed gives the same numbers everywhere; one normal number in
-// seventy asks for an exponential or a logarithm, which the program has of its own (src/signal/portable_math.cpp).
+// Random numbers that repeat. Every use has a named stream of its own, so that a new stream disturbs no other. All
+// streams of a run come from the run's one seed. The same seed gives the same numbers everywhere: one normal number in
+// seventy needs an exponential or a logarithm, and for these the program has its own functions
+// (src/signal/portable_math.cpp).
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@ namespace kadans {
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view name) noexcept;
-  // The generator at a state of its own, as published; not all words 0.
+  // Begins at a given state of the generator; not all words may be 0.
   explicit RandomStream(const std::array<std::uint64_t, 4>& state) noexcept : state_(state) {}
 
   std::uint64_t next() noexcept;

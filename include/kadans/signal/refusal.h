@@ -1,5 +1,5 @@
-// Why the control engine refused a transaction: the command that was wrong, and what was wrong with it. The newest few
-// stand in the snapshot, so that who sent one learns of it.
+// Why the control engine refused a transaction: the command that was wrong, and what was wrong with it. The newest
+// refusals are in the snapshot, so that the sender learns of them.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace kadans {
 
 enum class RefusalReason : std::uint8_t {
   none,
-  malformed,     // no command that there is
-  unknown,       // a parameter, set-point or control set that there is not
+  malformed,     // not a known kind of command
+  unknown,       // a parameter, set-point or control set that does not exist
   out_of_range,  // of the parameter or set-point, or not finite
-  motion,        // its duration or limits, or the set-point cannot be led along one
+  motion,        // wrong duration or limits, or the set-point cannot be led along a motion
   too_old,       // the whole transaction
   robot_held,
   joint_held,
@@ -27,7 +27,7 @@ struct alignas(8) Refusal {
   RefusalReason reason = RefusalReason::none;
   std::uint16_t joint = no_joint;  // the one that is held
   std::uint32_t index = 0;         // as in the command
-  alignas(8) double value = 0;     // likewise
+  alignas(8) double value = 0;     // as in the command
 };
 static_assert(std::is_trivially_copyable_v<Refusal> && sizeof(Refusal) == 24);
 

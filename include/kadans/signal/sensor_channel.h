@@ -1,5 +1,5 @@
-// What a robot senses beside its joints, its IMU and its feet: a distance, a voltage, a switch, a force. A channel is
-// an entry of the robot's configuration; the plant fills it, and records, checks, faults and behaviors know it by its
+// A sensor of a robot other than its joints, its IMU and its feet: a distance, a voltage, a switch, a force. A channel
+// is an entry of the robot's configuration. The plant fills it; records, checks, faults and behaviors know it by its
 // name.
 #pragma once
 

@@ -24,17 +24,17 @@ struct Setpoint {
   std::uint32_t owner = 0;    // the control object's index
   std::uint32_t channel = 0;  // the object's own number for it
   std::uint32_t joint = 0;    // the joint it moves, or no_joint
-  bool follows = false;       // its object can be led along a motion that others plan
+  bool follows = false;       // its object can be led along a motion that the engine plans
 };
 
-// Where a set-point is on its way and how it moves there: its unit, per s, per s2.
+// Where a set-point is on its way and how it moves there: in its unit, per s and per s2.
 struct SetpointState {
   double value = 0, velocity = 0, acceleration = 0;
 };
 
 class SetpointTable {
  public:
-  // Before the loop. Throws std::invalid_argument on a name taken or an empty range.
+  // Before the loop. Throws std::invalid_argument on a name that is taken or an empty range.
   SetpointId add(Setpoint setpoint);
   void set_follows(SetpointId id) { entries_.at(id).follows = true; }
 

@@ -1,4 +1,4 @@
-// Commands that are told to people work when they are pasted into a shell.
+// Quotes words, so that commands that are told to people work when they are pasted into a shell.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ inline std::string shell_quoted(const std::string& word) {
   return text + "'";
 }
 
-// As it is, or in single quotes when the shell would take it for something else.
+// As it is, or in single quotes when the shell would give it another meaning.
 inline std::string shell_word(const std::string& word) {
   const bool plain = word.find_first_not_of(
                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"

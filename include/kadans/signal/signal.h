@@ -1,5 +1,5 @@
 // The signal table: every recorded quantity, declared once with a name and a unit. The control thread gathers all of
-// them into one row of numbers a tick; recorder, checks, viewers and scripts know them by name.
+// them into one row of numbers per tick. Recorder, checks, viewers and scripts know them by name.
 #pragma once
 
 #include <atomic>
@@ -24,7 +24,7 @@ struct Signal {
 class SignalTable {
  public:
   // Before the loop. The source is read by the control thread and must outlive the table's use.
-  // Throws std::invalid_argument on a name taken.
+  // Throws std::invalid_argument on a name that is taken.
   SignalId add(Signal signal, const double* source);
   SignalId add(Signal signal, const bool* source);
   SignalId add(Signal signal, const std::uint8_t* source);

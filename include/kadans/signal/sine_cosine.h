@@ -1,16 +1,16 @@
 // Sine and cosine of one angle by plain arithmetic, the same bits with every compiler and on every processor. The sin,
-// cos and sincos that the program defines (src/signal/portable_math.cpp) are this function; what turns a dozen joints a
-// tick includes it.
+// cos and sincos that the program defines (src/signal/portable_math.cpp) are this function. Code that needs it for a
+// dozen joints per tick includes it here, so that it is inlined.
 //
-// The angle is taken modulo a quarter turn, which leaves at most 45 degrees. A quarter turn is three numbers, of which
-// the first two have at most 33 bits: their multiples are exact, and what is left of the angle is known in two numbers
-// (W. Cody and W. Waite, Software Manual for the Elementary Functions, 1980), also of that which comes nearest to a
-// multiple, 29 quarter turns to 6e-19 rad. There the Taylor series to the 17th power is exact to double precision. Its
-// terms are summed in pairs, which makes the chains of dependence short; the second number comes in by the first
-// derivative.
+// The angle is taken modulo a quarter turn, which leaves at most 45 degrees. A quarter turn is the sum of three
+// numbers. The first two have at most 33 bits, so their multiples are exact, and the rest of the angle is known as the
+// sum of two numbers (W. Cody and W. Waite, Software Manual for the Elementary Functions, 1980). This also holds for
+// the angle that comes nearest to a multiple: it misses 29 quarter turns by 6e-19 rad. For the rest the Taylor series
+// to the 17th power is exact to double precision. Its terms are summed in pairs, which makes the chains of dependent
+// operations short; the second number comes in by the first derivative.
 //
-// Error below 0.8 units in the last place. A slower function answers for angles of more than ten thousand radians and
-// for what is not finite.
+// Error below 0.8 units in the last place. Angles of more than ten thousand radians, and values that are not finite, go
+// to a slower function.
 #pragma once
 
 #include <cmath>
@@ -22,12 +22,12 @@ struct SineCosine {
   double sine, cosine;
 };
 
-// Of any number, to one unit in the last place; NaN of what is not finite.
+// For any number, to one unit in the last place; NaN for values that are not finite.
 SineCosine sine_cosine_anywhere(double angle_rad) noexcept;
 
 namespace sine_cosine_series {
 
-// Of high + low, |high| at most an eighth of a turn and |low| within its last place.
+// For high + low, with |high| at most an eighth of a turn and |low| within its last place.
 [[gnu::always_inline]] inline SineCosine near_zero(double high, double low) noexcept {
   constexpr double s3 = -1.0 / 6, s5 = 1.0 / 120, s7 = -1.0 / 5040, s9 = 1.0 / 362880, s11 = -1.0 / 39916800,
                    s13 = 1.0 / 6227020800, s15 = -1.0 / 1307674368000, s17 = 1.0 / 355687428096000;

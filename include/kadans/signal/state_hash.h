@@ -11,7 +11,7 @@ namespace kadans {
 
 class StateHash {
  public:
-  // Any integer; what it is worth counts, not how wide its type is.
+  // Any integer: its value counts, not the width of its type.
   template <std::integral Integer>
   void add(Integer value) noexcept {
     hash_ ^= static_cast<std::uint64_t>(value);

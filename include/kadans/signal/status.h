@@ -20,7 +20,7 @@ enum class SafetyLevel : std::uint8_t { normal, limited, hold, damp, off };
 inline constexpr std::size_t safety_levels = 5;
 const char* name(SafetyLevel level) noexcept;
 
-// How the trunk is: it lies, or does not; falling is upright still, but on the way down.
+// The posture of the trunk: upright, or lying on one of four sides; falling: still upright, but on the way down.
 enum class Posture : std::uint8_t { upright, prone, supine, left, right, falling };
 inline constexpr std::size_t posture_count = 6;
 const char* name(Posture posture) noexcept;
@@ -40,8 +40,8 @@ struct alignas(8) FootStatus {
   double cop_x_m = 0, cop_y_m = 0;  // centre of pressure in the foot's frame; holds without contact
 };
 
-// Where the ground bears the robot: over all feet in contact. In the heading frame: below the base frame's origin, x
-// forward along the ground where the base points, z up.
+// How the ground supports the robot, over all feet in contact. In the heading frame: the origin is below the base
+// frame's origin, x points forward along the ground where the base points, z up.
 struct alignas(8) SupportStatus {
   double force_N = 0;               // sum over the feet in contact; 0 without contact
   double cop_x_m = 0, cop_y_m = 0;  // centre of pressure; holds without contact
@@ -50,7 +50,7 @@ struct alignas(8) SupportStatus {
 struct SafetyStatus {
   SafetyLevel level = SafetyLevel::normal;
   bool stopped = false;           // by the emergency stop, until it is lifted
-  std::uint16_t lifts = 0;        // times that somebody outside cleared all faults; begins anew beyond its range
+  std::uint16_t lifts = 0;        // how often somebody outside cleared all faults; wraps around
   std::uint32_t fault_count = 0;  // since the start or the last clearing
   Fault first_fault;              // kept until cleared
 };
@@ -65,7 +65,7 @@ struct alignas(8) RobotStatus {
   std::array<double, max_channels> channels{};  // the last finite readings; NaN before the first
 };
 
-// What the drives and their supply say of themselves; as in the sensor frame.
+// What the drives and their supply report, as in the sensor frame.
 struct DriveStatus {
   float temperature_C = std::numeric_limits<float>::quiet_NaN();
   std::uint32_t code = 0;
@@ -80,7 +80,7 @@ struct alignas(8) PowerStatus {
   std::array<DriveStatus, max_joints> drives{};  // by joint
 };
 
-// What control objects tell of themselves to the behaviors.
+// What the behaviors see of a control object.
 struct alignas(8) ObjectStatus {
   bool active = false;
   alignas(8) double motion_remaining_s = 0;  // until the last of its set-points is reached; 0 at rest
@@ -92,7 +92,7 @@ struct SetpointStatus {
   double velocity = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Control sets, a bit each, in the order of the configuration.
+// Control sets, one bit each, in the order of the configuration.
 using SetMask = std::uint32_t;
 static_assert(max_control_sets <= 32);
 
@@ -107,10 +107,10 @@ struct alignas(8) Snapshot {
   JointStates joints;
   RobotStatus status;
   std::uint32_t object_count = 0;
-  std::uint32_t setpoint_count = 0;  // that are shown
+  std::uint32_t setpoint_count = 0;  // of those that are shown
   std::array<ObjectStatus, max_objects> objects{};
   std::array<SetpointStatus, max_setpoints_shown> setpoints{};  // by SetpointId
-  std::array<Refusal, refusals_shown> refusals{};               // the newest ones, by count modulo their number
+  std::array<Refusal, refusals_shown> refusals{};               // the newest; number n is at n modulo refusals_shown
   JoystickState joystick;
   PowerStatus power;
 };
@@ -150,6 +150,6 @@ static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 && sizeof(Sa
               sizeof(ObjectStatus) == 16 && alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 112 && offsetof(Snapshot, joints) == 32);
 static_assert(sizeof(DriveStatus) == 12 && sizeof(PowerStatus) == 16 + 12 * max_joints);
-static_assert(sizeof(Snapshot) == 5776);  // whoever adds to it adds to copy_used()
+static_assert(sizeof(Snapshot) == 5776);  // a new field also belongs in copy_used()
 
 }  // namespace kadans

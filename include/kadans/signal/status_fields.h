@@ -1,5 +1,5 @@
-// The fields of the snapshot that have a name: one table, from which records and checks have their signals, behaviors
-// their `s`, the reference its text, and tests of behaviors what they may set.
+// The fields of the snapshot that have a name, in one table. Records and checks take their signals from it, behaviors
+// their `s`, the reference its text, and tests of behaviors the fields that they may set.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace kadans {
 
-// Where a field stands, of one of a few types; a number to whoever reads or writes it.
+// A reference to a field of one of a few types, which reads and writes it as a number.
 class StatusPlace {
  public:
   StatusPlace(double& at) noexcept : number_(&at) {}  // NOLINT(google-explicit-constructor): a field's own type
@@ -29,7 +29,7 @@ class StatusPlace {
 
   double value() const noexcept;
   void set(double value) const noexcept;  // within the field's range
-  // A signal that gathers it. Of numbers, flags and counts alone.
+  // Declares a signal that gathers it. For numbers, flags and counts only.
   void declare(SignalTable& table, Signal signal) const;
 
  private:
@@ -50,8 +50,8 @@ struct StatusField {
   const char* name;  // in `s`: "roll_rad"
   const char* unit;
   const char* doc;                                           // without its unit and a full stop
-  StatusPlace (*at)(Snapshot& snapshot, std::size_t index);  // nullptr: time_s, which is the reader's own
-  const char* signal = nullptr;                              // in records, where it has another name than in `s`
+  StatusPlace (*at)(Snapshot& snapshot, std::size_t index);  // nullptr: time_s, which each reader has itself
+  const char* signal = nullptr;                              // its name in records, when that differs from `s`
   // Of a choice: the name of each value; how many there are.
   const char* (*choice)(std::size_t value) = nullptr;
   std::size_t choices = 0;
@@ -63,11 +63,11 @@ struct StatusField {
 
 // Part by part, in the order in which records have them.
 std::span<const StatusField> status_fields() noexcept;
-// And those of the sensors that a robot's configuration names, which must outlive them.
+// The fields of the sensors that a robot's configuration names; the sensors must outlive them.
 std::vector<StatusField> status_fields(const std::vector<SensorChannel>& sensors);
 
 // Declares the fields of a part as signals "topic.name". The snapshot must outlive the table's use. Throws
-// std::invalid_argument on a name taken.
+// std::invalid_argument on a name that is taken.
 void declare_part(SignalTable& table, StatusField::Part part, const std::string& topic, const Snapshot& snapshot,
                   std::size_t index = 0);
 

@@ -1,4 +1,5 @@
-// Text from outside, names of files, what scripts say, need not be UTF-8. What is written for others has to be.
+// Text from outside, such as names of files and what scripts say, need not be UTF-8. Text that is written for others
+// has to be.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,7 @@
 
 namespace kadans {
 
-// Bytes of the character at `at`, 0 when it is none (RFC 3629: shortest forms, no surrogates).
+// Number of bytes of the character at `at`; 0 when it is not valid (RFC 3629: shortest forms, no surrogates).
 std::size_t utf8_length(std::string_view text, std::size_t at) noexcept;
 // Where the text stops being UTF-8; npos when it is UTF-8 throughout.
 std::size_t find_invalid_utf8(std::string_view text) noexcept;

@@ -1,5 +1,5 @@
-// What behaviors do and say, on its way into a record: transitions and messages, from the behavior thread to the
-// thread that drains the record. Never blocks: what does not fit is dropped and counted.
+// A queue of the behaviors' transitions and messages, from the behavior thread to the thread that drains the record. It
+// never blocks: events that do not fit are dropped and counted.
 #pragma once
 
 #include <atomic>
@@ -20,12 +20,12 @@ namespace kadans {
 struct Event {
   enum class Kind : std::uint8_t { message, transition };
   Kind kind = Kind::message;
-  Transition transition;  // time_ns and behavior count for both kinds
+  Transition transition;  // both kinds use its time_ns and behavior
   BehaviorLog::Severity severity = BehaviorLog::Severity::info;
   std::string text;
 };
 
-// The JSON that viewers read, and the JSON schemas that go with it: foxglove.Log, kadans.Transition and kadans.Fault.
+// The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition and kadans.Fault.
 std::string json_of(const Event& event);
 std::string json_of(const Fault& fault, const std::string& joint, std::int64_t time_ns);
 extern const char* const log_schema;
@@ -40,7 +40,7 @@ class EventLog final : public BehaviorLog {
   void transition(const Transition& transition) override;
   void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
 
-  // Draining thread only. False when nothing up to `time_ns` waits.
+  // Draining thread only. False when no event up to `time_ns` is waiting.
   [[nodiscard]] bool pop(std::int64_t time_ns, Event& event);
 
   std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }  // any thread

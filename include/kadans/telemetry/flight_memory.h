@@ -1,9 +1,10 @@
-// The newest rows of a run, packed into memory of a fixed size: what a flight recorder keeps.
+// The memory of a flight recorder: the newest rows of a run, compressed, in a fixed number of bytes.
 //
-// Rows gather in a block of 0.1 s. A full block is turned: by signal, each value in single precision as the difference
-// of its bits from those of the row before, first the lowest bytes of all rows, then the next. What stands still or
-// moves slowly so becomes zeros, and zstd does the rest: 30 s of TULip's 220 signals at 1 kHz take 7 MB, a third of
-// what a record would. Packed blocks lie in a ring of bytes, the oldest make way. Ticks and times keep all their bits.
+// Rows are collected in blocks of 100 (0.1 s at 1 kHz). A full block is transposed: it stores signal by signal. Each
+// value is in single precision, as the difference of its bits from the bits of the row before; the lowest bytes of all
+// rows come first, then the next bytes. So a signal that stands still or moves slowly becomes mostly zeros, and zstd
+// compresses them: 30 s of TULip's 220 signals at 1 kHz take 7 MB, a third of a record. Packed blocks lie in a ring
+// buffer of bytes, and the oldest blocks are dropped. Ticks and times keep all their bits.
 //
 // One thread at a time.
 #pragma once
@@ -21,7 +22,7 @@ namespace kadans {
 
 struct FlightSettings {
   double kept_s = 0;                          // 0: no flight recorder
-  std::size_t bytes = std::size_t{8} << 20U;  // of packed rows; less than kept_s stays where they do not suffice
+  std::size_t bytes = std::size_t{8} << 20U;  // for packed rows; when they do not suffice, less than kept_s is kept
 };
 
 class FlightMemory {
@@ -32,7 +33,7 @@ class FlightMemory {
     std::vector<double> values;  // row by row
   };
 
-  // Takes its memory at once.
+  // Allocates its memory in the constructor.
   FlightMemory(std::size_t signals, const FlightSettings& settings);
   ~FlightMemory();
   FlightMemory(const FlightMemory&) = delete;
@@ -41,10 +42,10 @@ class FlightMemory {
   void add(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   void seal();  // ends the block
 
-  // Blocks count from 0; those from first() to end() are there.
+  // Blocks are numbered from 0; those in [first(), end()) are stored.
   std::uint64_t first() const noexcept { return end_ - blocks_.size(); }
   std::uint64_t end() const noexcept { return end_; }
-  // False: it is there no more, or memory is damaged.
+  // False when the block is no longer stored, or its memory is damaged.
   [[nodiscard]] bool read(std::uint64_t block, Rows& rows) const;
   std::size_t packed_bytes() const noexcept;
 
@@ -64,7 +65,7 @@ class FlightMemory {
   std::int64_t kept_ns_;
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
   std::vector<std::byte> store_, planes_, packed_;
-  std::size_t head_ = 0;  // where the next block goes
+  std::size_t head_ = 0;  // offset of the next block
   std::deque<Block> blocks_;
   std::uint64_t end_ = 0;
   std::vector<std::uint64_t> ticks_, times_;  // of the open block

@@ -1,11 +1,12 @@
-// The last seconds of a run, always in memory, written to a record of their own when a fault latches.
+// Flight recorder: keeps the last seconds of a run in memory and writes them to a record of their own when a fault
+// latches.
 //
-// It sees every row and event that the recorder drains, whatever record goes on. When safety.level rises to hold or
-// beyond, a dump is due `aftermath` later, so that what followed is in it; not again before as much time as is kept has
-// passed. Its caller gives the file. The dump is written a few blocks a step, so that the thread that drains does not
-// stay away; rows go on into memory meanwhile. Values are in single precision.
+// It gets every row and event that the recorder drains, also when no record is open. When safety.level rises to hold or
+// beyond, a dump becomes due `aftermath` later, so that it shows what followed. A rise within kept_s after the last
+// such rise is ignored. The caller names the file. Each step() writes a few blocks, so that the draining thread is not
+// held up; meanwhile new rows go into memory. Values are in single precision.
 //
-// One thread at a time: the one that drains.
+// Use it on the draining thread only.
 #pragma once
 
 #include <cstddef>
@@ -25,26 +26,26 @@ namespace kadans {
 
 class FlightRecorder {
  public:
-  // `record`: how a dump is written; its rates do not count, all signals are kept in each tick. `signals` must outlive
-  // it.
+  // `record` says how a dump is written; its rates are ignored, because all signals are kept in each tick. `signals`
+  // must outlive this object.
   FlightRecorder(const SignalTable& signals, const FlightSettings& settings, const RecorderSettings& record);
 
   void row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   void event(const Event& event);
   void fault(const Fault& fault, std::int64_t time_ns);
 
-  // A latched fault is waiting for its file. `at_once`: what follows does not come any more.
+  // True when a dump is due: call begin(). `at_once` does not wait for the aftermath, because the run has ended.
   bool due(bool at_once = false) const noexcept {
     return latched_ns_ && !busy() && (at_once || last_ns_ >= *latched_ns_ + aftermath_ns);
   }
-  // The ladder's rungs tell of no fault from here on: the run ends.
+  // From now on a rise of safety.level makes no dump due, because the run is ending.
   void watch_no_more() noexcept { watching_ = false; }
-  // Begins a dump of what is kept. False: error() says why.
+  // Begins a dump of the rows in memory. False: error() says why.
   [[nodiscard]] bool begin(const std::string& file);
-  // To be described; only while busy().
+  // The record of the dump, for its descriptions. Only while busy().
   RecordWriter& dump() noexcept { return *dump_; }
-  void step();    // writes some of it
-  void finish();  // all that is left
+  void step();    // writes a part of the dump
+  void finish();  // writes the rest of it
   bool busy() const noexcept { return dump_ != nullptr; }
 
   const std::string& file() const noexcept { return file_; }    // of the last dump; "": none

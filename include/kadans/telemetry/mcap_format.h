@@ -1,5 +1,5 @@
-// The names of the MCAP format (https://mcap.dev/spec, version 0): a file is the magic, records and the magic again; a
-// record is its opcode (u8), the length of its body (u64) and the body.
+// The constants of the MCAP format (https://mcap.dev/spec, version 0). A file is the magic, records, and the magic
+// again. A record is its opcode (u8), the length of its body (u64) and the body.
 #pragma once
 
 #include <cstddef>

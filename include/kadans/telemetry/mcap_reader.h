@@ -1,9 +1,9 @@
-// Reads MCAP from the front, message by message, as far as the file goes.
+// Reads an MCAP file from the front, message by message, as far as the file goes.
 //
-// A record of a run that was killed ends anywhere; what stands before is delivered, then problem() says where and why
-// it stopped. Nothing in the file is trusted: a length is believed only within the bytes that are there, a chunk is
-// unpacked only up to max_chunk_bytes, every CRC that is given is checked. Compressions: none and zstd.
-// One thread at a time.
+// A record of a run that was killed may end at any byte. The reader delivers the messages before that point; then
+// problem() says where and why it stopped. The reader trusts nothing in the file: a length must fit the bytes that
+// exist, a chunk is unpacked only up to max_chunk_bytes, and every CRC that is given is checked. It knows the
+// compressions none and zstd. One thread at a time.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ struct McapMessage {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
   std::int64_t time_ns = 0;
-  std::span<const std::byte> payload;  // holds until the reader moves on
+  std::span<const std::byte> payload;  // valid until the next call of next()
 };
 
 struct McapAttachment {
@@ -46,21 +46,21 @@ struct McapAttachment {
 
 class McapReader {
  public:
-  static constexpr std::uint64_t max_chunk_bytes = 64U << 20U;    // packed or not
-  static constexpr std::uint64_t max_record_bytes = 256U << 20U;  // of any other record that is kept
+  static constexpr std::uint64_t max_chunk_bytes = 64U << 20U;    // compressed or not
+  static constexpr std::uint64_t max_record_bytes = 256U << 20U;  // of any other record that is stored
 
   // Throws InputError when the file cannot be read or is no MCAP file.
   explicit McapReader(const std::string& path);
 
   // The next message in the order of the file. False at the end, or at the first problem.
   [[nodiscard]] bool next(McapMessage& message);
-  // Whether the file was read to a proper end. If not, and next() has returned false, problem() says what is wrong.
+  // True when the file was read to a proper end. If it is false after next() has returned false, problem() says why.
   bool complete() const noexcept { return complete_; }
   const std::string& problem() const noexcept { return problem_; }  // "FILE: byte N: what"
 
   std::uint64_t file_bytes() const noexcept { return file_size_; }
 
-  // As far as the file has been read.
+  // Counts the part of the file that has been read.
   struct Packing {
     std::uint64_t chunks = 0, packed_bytes = 0, unpacked_bytes = 0;
     std::string compression;  // of the last chunk: "", "zstd"

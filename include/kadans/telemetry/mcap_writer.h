@@ -1,12 +1,12 @@
-// Writes MCAP, the log file that the tools of robotics read (https://mcap.dev/spec).
+// Writes MCAP, the log file format that robotics tools read (https://mcap.dev/spec).
 //
-// Messages gather in a chunk in memory. When it holds chunk_period_ns of log time or chunk_bytes, it is compressed,
-// given its CRC and appended to the file in one block together with its message indexes. Each chunk repeats the
-// schemas and channels of its messages, so a file cut short at any byte, by a full disk or a killed process, still
-// streams up to the last whole chunk. close() adds the summary by which readers seek.
+// Messages are collected in a chunk in memory. When the chunk holds chunk_period_ns of log time or chunk_bytes, it is
+// compressed, gets its CRC, and is appended to the file in one block together with its message indexes. Each chunk
+// repeats the schemas and channels of its messages. So a file that is cut short at any byte, by a full disk or a killed
+// process, can be read up to the last whole chunk. close() adds the summary that lets readers seek.
 //
-// One thread at a time. Errors of the disk are a state: calls return false, error() says why, the file keeps what was
-// whole. The same calls make the same bytes: nothing in the file comes from a clock or the machine.
+// One thread at a time. Disk errors are a state, not exceptions: calls return false, error() says why, and the file
+// keeps its whole chunks. The same calls make the same bytes: nothing in the file comes from a clock or the machine.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ namespace kadans {
 struct McapSettings {
   std::int64_t chunk_period_ns = 500'000'000;  // of log time
   std::size_t chunk_bytes = 1U << 20U;         // before compression
-  int compression_level = 1;                   // of zstd, 1..19; 0 = not compressed
+  int compression_level = 1;                   // of zstd, 1..19; 0: not compressed
 };
 
 class McapWriter {
@@ -39,10 +39,10 @@ class McapWriter {
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  // Replaces a file of that name. Once per writer.
+  // Replaces an existing file. Call it once per writer.
   [[nodiscard]] bool open(const std::string& path);
 
-  // At any time after open(). Numbers count from 1; schema 0 is a channel without schema.
+  // May be called at any time after open(). Numbers count from 1; schema 0 means a channel without schema.
   std::uint16_t add_schema(std::string name, std::string encoding, std::string text);
   std::uint16_t add_channel(std::string topic, std::string encoding, std::uint16_t schema, TextMap metadata = {});
 
@@ -53,12 +53,12 @@ class McapWriter {
   [[nodiscard]] bool add_metadata(const std::string& name, const TextMap& values);
 
   [[nodiscard]] bool flush();  // ends the chunk now
-  [[nodiscard]] bool close();  // false when anything since open() failed; harmless a second time
+  [[nodiscard]] bool close();  // false when any call since open() failed; a second close() does nothing
 
   bool is_open() const noexcept { return file_.is_open(); }
   const std::string& error() const noexcept { return file_.error(); }
   std::uint64_t file_bytes() const noexcept { return file_.size(); }
-  std::uint64_t messages() const noexcept { return messages_; }  // written, those of the open chunk included
+  std::uint64_t messages() const noexcept { return messages_; }  // messages written, those of the open chunk included
 
  private:
   struct Schema {
@@ -73,7 +73,7 @@ class McapWriter {
     std::uint64_t messages = 0;
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // of the open chunk: log time, offset
   };
-  struct Chunk {  // what the summary will tell of the chunk that is being written
+  struct Chunk {  // the summary's data about the chunk that is being written
     std::uint64_t start_ns = 0, end_ns = 0, offset = 0, length = 0, index_length = 0, packed = 0, unpacked = 0;
     std::string_view compression;
     std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes;  // channel, offset in the file
@@ -112,12 +112,12 @@ class McapWriter {
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
 
   ByteWriter records_;  // of the open chunk
-  ByteWriter block_;    // what goes to the file in one piece
+  ByteWriter block_;    // the bytes that go to the file in one piece
   std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
   std::uint32_t chunk_number_ = 1;
 
   std::uint64_t messages_ = 0, start_ns_ = 0, end_ns_ = 0;
-  ByteWriter chunk_indexes_;  // for the summary, as they will stand there: a record of hours has ten thousands
+  ByteWriter chunk_indexes_;  // already encoded for the summary: a record of some hours has tens of thousands of them
   std::uint32_t chunks_ = 0;
   std::vector<Attachment> attachments_;
   std::vector<Metadata> metadata_;

@@ -1,9 +1,10 @@
-// A record against a run that should repeat it: every signal that the record holds, in every tick, bit for bit. As for
-// the state hash, -0 and 0 are one value, and so is every NaN; a record in single precision is compared in that.
+// Compares a record with a run that should repeat it: every signal of the record, in every tick, bit for bit. As in the
+// state hash, -0 and 0 are one value, and all NaN are one value. A record in single precision is compared in single
+// precision.
 //
-// A topic that stood still has no message each tick (record_writer.h): what it held before is compared then. The record
-// is read along as the run goes, so its length does not matter. What the interpreter needs for a behavior
-// (memory, instructions, pauses of its collector) is not the robot's, and is not compared.
+// A topic that stands still has no message in some ticks (record_writer.h); then its last values are compared. The
+// record is read while the run goes, so it may have any length. Signals about the interpreter's own needs (memory,
+// instructions, pauses of the garbage collector) say nothing of the robot and are not compared.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +19,9 @@
 
 namespace kadans {
 
-// -0 and 0 are equal, and so are all NaN.
+// True when equal; -0 equals 0, and NaN equals NaN.
 inline bool same_value(double a, double b) noexcept { return a == b || (a != a && b != b); }
-// What the interpreter needs, by the signal's name.
+// True when the signal's name says that it is about the interpreter's own needs.
 bool is_upkeep(const std::string& name);
 
 struct SignalDifference {
@@ -30,23 +31,24 @@ struct SignalDifference {
 
 class RecordComparison {
  public:
-  // Keeps references; the reader stands at the first message or before.
+  // Keeps references. The reader must not have read a message yet.
   RecordComparison(McapReader& record, const SignalTable& signals);
 
-  // One tick of the run, in order. Does nothing once they have parted or the record is over.
+  // Compares one tick of the run; call it for each tick in order. It does nothing once a difference was found or the
+  // record has ended.
   void compare(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
 
   bool over() const noexcept { return parted_ || ended_; }
   bool parted() const noexcept { return parted_; }
   bool ended() const noexcept { return ended_; }         // the record has no more ticks
-  std::uint64_t tick() const noexcept { return tick_; }  // where they parted
+  std::uint64_t tick() const noexcept { return tick_; }  // the tick of the first difference
   std::int64_t time_ns() const noexcept { return time_ns_; }
-  // Of that tick, in the order of the run's signal table.
+  // The differences in that tick, in the order of the run's signal table.
   const std::vector<SignalDifference>& differences() const noexcept { return differences_; }
 
-  std::uint64_t ticks() const noexcept { return ticks_; }                  // compared and the same
-  std::size_t signals() const noexcept { return compared_; }               // that both have
-  const std::vector<std::string>& gone() const noexcept { return gone_; }  // the record has, the run has not
+  std::uint64_t ticks() const noexcept { return ticks_; }                  // ticks that were compared and equal
+  std::size_t signals() const noexcept { return compared_; }               // signals that both have
+  const std::vector<std::string>& gone() const noexcept { return gone_; }  // signals that only the record has
 
  private:
   struct Topic {

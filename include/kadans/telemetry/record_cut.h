@@ -1,7 +1,8 @@
-// A stretch of a record, and some of its signals, as a record of its own: chunks, CRCs, index, schemas, facts and
-// attachments, so that whatever reads records reads it. What holds when the stretch begins is kept: of signals their
-// last row before, with its own time, since a signal that stands still has none for a while; of descriptions (messages
-// of topics that hold neither rows nor events: URDF, parameters) the last one, at the beginning.
+// Cuts a time span and chosen signals out of a record and writes them as a complete record of their own, with chunks,
+// CRCs, index, schemas, facts and attachments. The new record begins with the state at the beginning of the span. For
+// signals it holds the last row before the span with that row's own time, because a signal that stands still may have
+// no row for a while. For descriptions (topics with neither rows nor events: URDF, parameters) it holds the last
+// message, at the time at which the span begins.
 #pragma once
 
 #include <string>
@@ -13,13 +14,13 @@ namespace kadans {
 
 struct RecordCut {
   TimeSpan span;
-  std::vector<std::string> signals;  // as choose_signals takes them; none: all
+  std::vector<std::string> signals;  // patterns for choose_signals; empty: all signals
 };
 struct CutRecord {
   std::uint64_t messages = 0, file_bytes = 0;
   std::size_t signals = 0;
 };
-// Replaces `to`. Throws InputError when nothing is left, or the file cannot be written.
+// Replaces the file `to`. Throws InputError when the span holds no message, or when the file cannot be written.
 CutRecord cut_record(const RecordOutline& record, const RecordCut& cut, const std::string& to);
 
 }  // namespace kadans

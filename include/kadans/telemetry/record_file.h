@@ -1,8 +1,8 @@
-// A file that only grows, one whole block at a time. Its errors are a state, never an exception: a recorder whose disk
-// is full has nobody to throw at. After a block that did not fit, the file is cut back to the last whole one, and every
-// later block is refused.
+// A file to which whole blocks are appended. Errors are a state, never an exception, because nobody could handle an
+// exception of a recorder whose disk is full. When a block does not fit, the file is cut back to the last whole block,
+// and every later block is refused.
 //
-// Blocks reach the kernel at once, so what was appended outlives the process (not the power).
+// A block is handed to the kernel at once, so it survives the end of the process, but not a loss of power.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ class RecordFile {
   RecordFile(const RecordFile&) = delete;
   RecordFile& operator=(const RecordFile&) = delete;
 
-  // Replaces a file of that name. False: error() says why.
+  // Replaces an existing file. False: error() says why.
   [[nodiscard]] bool open(const std::string& path);
   [[nodiscard]] bool append(std::span<const std::byte> block);
   [[nodiscard]] bool close();  // false when any block, or the closing itself, failed
@@ -29,7 +29,7 @@ class RecordFile {
   bool is_open() const noexcept { return descriptor_ >= 0; }
   std::uint64_t size() const noexcept { return size_; }         // bytes of whole blocks
   std::uint32_t crc() const noexcept { return crc_.value(); }   // of all of them
-  const std::string& error() const noexcept { return error_; }  // "" while all is well; "PATH: why"
+  const std::string& error() const noexcept { return error_; }  // "PATH: why"; "" when there is no error
 
  private:
   bool fail(const char* what);

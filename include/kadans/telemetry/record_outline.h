@@ -1,5 +1,5 @@
-// All that a record tells of itself, from one pass over it: topics with their rates and sizes, facts of the run,
-// states, faults, log, and whether it is whole. Of its rows nothing is kept.
+// The outline of a record, from one pass over the file: topics with their rates and sizes, facts of the run,
+// transitions, faults, log lines, and whether the file is complete. It does not keep the rows.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace kadans {
 struct TopicOutline {
   RecordTopic topic;
   std::uint16_t channel = 0;
-  std::uint64_t messages = 0, bytes = 0;  // bytes: of the messages, before compression
+  std::uint64_t messages = 0, bytes = 0;  // bytes of the messages, before compression
   std::int64_t first_ns = 0, last_ns = 0;
-  std::uint64_t hash = 0;  // over what all messages say, of a topic that holds neither rows nor events
+  std::uint64_t hash = 0;  // over all messages of a topic that holds neither rows nor events
 
   double rate_hz() const noexcept;  // 0: fewer than two messages, or all at one time
 };
@@ -26,11 +26,11 @@ struct TopicOutline {
 struct RecordOutline {
   std::string file;
   bool complete = false;
-  std::string problem;  // of one that is not
+  std::string problem;  // "" when complete
   std::uint64_t file_bytes = 0;
   McapReader::Packing packing;
   std::int64_t first_ns = 0, last_ns = 0;  // of its messages
-  std::uint64_t rows = 0;                  // of the topic that has most
+  std::uint64_t rows = 0;                  // of the topic with the most rows
   std::vector<TopicOutline> topics;        // by channel
   std::vector<Transition> transitions;
   std::vector<Event> log;
@@ -39,14 +39,14 @@ struct RecordOutline {
   std::vector<McapAttachment> attachments;
 
   std::string fact(const std::string& metadata_name, const std::string& key) const;  // "" when it is not there
-  std::string robot() const;  // by the name of its URDF; "" when it has none
+  std::string robot() const;  // the name of the attached URDF; "" when there is none
   std::vector<std::string> signal_names() const;
 };
 
 // Throws InputError when the file cannot be read, is no MCAP file, or holds no message.
 RecordOutline outline_of(const std::string& path);
 
-// A stretch of a record's own time.
+// A span of the record's own time, both ends included.
 struct TimeSpan {
   std::int64_t from_ns = std::numeric_limits<std::int64_t>::min(), to_ns = std::numeric_limits<std::int64_t>::max();
 
@@ -55,13 +55,13 @@ struct TimeSpan {
 
 struct ChosenSignal {
   std::uint16_t channel = 0;
-  std::size_t place = 0;  // in the rows of the channel
+  std::size_t place = 0;  // index in the rows of the channel
   Signal info;
 };
-// By name, by pattern ('*'), or by the front part of names ("joint.l_knee"); in the order asked, each once; all when
-// nothing is asked. Throws InputError that names the nearest.
+// Chooses signals by name, by pattern ('*'), or by the first parts of names ("joint.l_knee"). They come in the order of
+// `patterns`, each once; without patterns all are chosen. Throws InputError with the nearest name.
 std::vector<ChosenSignal> choose_signals(const RecordOutline& record, const std::vector<std::string>& patterns);
-// The channels of topics, the leading '/' may be left out. Throws InputError alike.
+// Chooses the channels of topics. The leading '/' may be left out. Throws InputError with the nearest name.
 std::vector<std::uint16_t> choose_topics(const RecordOutline& record, const std::vector<std::string>& patterns);
 
 }  // namespace kadans

@@ -1,6 +1,6 @@
-// The messages of a record as what they mean, one after the other: rows of signals under their names, events, JSON, and
-// whatever else a channel holds. Topics are told apart by what their channels say of themselves, so a topic of any
-// name, rate or number of signals is read; the record may be of any length. One thread.
+// Reads the messages of a record one after the other and decodes them: rows of named signals, events, JSON, and other
+// payloads. The metadata of its channel says what a topic holds, so topics of any name, rate or number of signals can
+// be read. The record may have any length. One thread.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace kadans {
 struct RecordTopic {
   std::string name;  // "/joint"
   std::string schema, encoding;
-  std::vector<Signal> signals;  // in the order of its rows; empty: it holds no rows
+  std::vector<Signal> signals;  // in the order of the row's values; empty: the topic holds no rows
 
   bool is_json() const noexcept { return encoding == "json"; }
 };
@@ -39,7 +39,7 @@ class RecordRows {
   const RecordTopic& topic() const noexcept { return *topic_; }
   std::int64_t time_ns() const noexcept { return message_.time_ns; }
   std::uint32_t tick() const noexcept { return message_.sequence; }
-  // Of a row, else empty. Holds until next().
+  // The values of a row; empty for other messages. Valid until next().
   std::span<const double> values() const noexcept { return values_; }
   Precision precision() const noexcept { return precision_; }
   std::span<const std::byte> payload() const noexcept { return message_.payload; }
@@ -58,15 +58,15 @@ class RecordRows {
   Precision precision_ = Precision::full;
 };
 
-// What the safety layer found, as /faults tells it.
+// A fault that the safety layer found, as a message on /faults holds it.
 struct RecordedFault {
   std::int64_t time_ns = 0;
   std::string name, joint;  // joint: "" for none
   double value = 0, limit = 0;
-  std::string words;  // in place of the two, where there are some
+  std::string words;  // replace `value` and `limit` when not empty
 };
 
-// A transition or a line of the log; nothing when the message is neither, or damaged.
+// A transition or a log line; nullopt when the message is neither, or when it is damaged.
 std::optional<Event> event_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
 std::optional<RecordedFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
 

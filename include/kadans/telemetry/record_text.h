@@ -1,6 +1,5 @@
-// Rows of a record as text that other tools read: JSON lines of every message, and tables of chosen signals (CSV). Line
-// by line, so that a record of any length flows through. Numbers have as many digits as it takes to read the same
-// number again.
+// Writes a record as text for other tools: every message as JSON lines, or chosen signals as a table (CSV). It works
+// line by line, so the record may have any length. Numbers have enough digits to read back exactly the same number.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +16,14 @@ void append_seconds(std::string& text, std::int64_t time_ns);  // exact: "1.234"
 
 // {"time_s": 1.5, "topic": "/joint", "tick": 1500, "joint.l_knee.position_rad": 0.3, ...} for a row;
 // {"time_s": 1.5, "topic": "/transitions", "behavior": "squat", ...} for a message in JSON, without its own timestamp;
-// "data" for one that is text, "bytes" with their number for any other. What is no number in JSON becomes null.
+// "data" for a message that is text, "bytes" with their number for any other. NaN and infinities become null.
 class JsonLines {
  public:
-  // Topics as choose_topics takes them; none: all. A topic that is not there is known at the end only:
+  // `topics` are patterns as for choose_topics; empty: all. Topics that do not exist are known only at the end:
   // unknown_topics().
   JsonLines(const std::string& path, std::vector<std::string> topics, TimeSpan span);
 
-  [[nodiscard]] bool next(std::string& line);  // without its end
+  [[nodiscard]] bool next(std::string& line);  // without a newline at its end
   const McapReader& reader() const noexcept { return rows_.reader(); }
   std::uint64_t lines() const noexcept { return lines_; }
   std::vector<std::string> unknown_topics() const;
@@ -42,8 +41,9 @@ class JsonLines {
   std::uint64_t lines_ = 0;
 };
 
-// A head with names and units, then a line for each time at which any of the signals has a row, or evenly spaced with
-// `every_ns`. A signal holds its value from one row to the next: topics that are slower, or stand still, have fewer.
+// A header line with names and units, then one line for each time at which any of the signals has a row; with
+// `every_ns` the lines are evenly spaced in time. A signal keeps its value from one row to the next, because topics
+// that are slower or stand still have fewer rows.
 class CsvLines {
  public:
   CsvLines(const std::string& path, std::vector<ChosenSignal> signals, TimeSpan span,
@@ -51,7 +51,7 @@ class CsvLines {
 
   [[nodiscard]] bool next(std::string& line);
   const McapReader& reader() const noexcept { return rows_.reader(); }
-  std::uint64_t lines() const noexcept { return lines_; }  // without the head
+  std::uint64_t lines() const noexcept { return lines_; }  // without the header
 
  private:
   bool next_row();
@@ -66,7 +66,7 @@ class CsvLines {
   std::optional<std::int64_t> every_ns_;
   std::vector<std::optional<double>> cells_;
   bool head_written_ = false, started_ = false, ended_ = false;
-  bool held_ = false;         // a row was read that belongs to a later line
+  bool held_ = false;         // a row that belongs to a later line has been read
   std::int64_t time_ns_ = 0;  // of the next line
   std::int64_t last_ns_ = 0;  // of the last row
   std::uint64_t lines_ = 0;

@@ -1,11 +1,12 @@
-// One record: rows of signals by topics, what viewers understand without configuration, events, in one MCAP file.
+// Writes one record as an MCAP file: rows of signals by topics, events, and messages that viewers understand without
+// configuration.
 //
-// Each signal has its rate, topics are split by rates (signal_topics.h). A topic that stands still is written again
-// only each standstill_ticks; when it moves on, its last row before comes first, so that a line through the messages is
-// the signal, and a row that is not there holds the values of the one before. The sequence number of a message is its
-// tick.
+// Each signal has its own rate, and topics are split by rates (signal_topics.h). A topic whose values stand still is
+// written only every standstill_ticks. When they change, the last row before the change is written first, so that a
+// line drawn through the messages is the signal. A missing row means that the values are those of the row before. The
+// sequence number of a message is its tick.
 //
-// One thread at a time; one file a writer. Calls return false once the file has failed: error() says why.
+// One thread at a time; a writer writes one file. Once the file has failed, calls return false and error() says why.
 #pragma once
 
 #include <cstddef>
@@ -24,34 +25,34 @@
 namespace kadans {
 
 struct RecorderSettings {
-  std::vector<std::uint32_t> every_ticks = {};  // by signal, 0 = not recorded; none given: all in each tick
-  std::uint32_t standstill_ticks = 100;         // 1: each row, whether it changed or not
+  std::vector<std::uint32_t> every_ticks = {};  // for each signal, 0: not recorded; empty: all in each tick
+  std::uint32_t standstill_ticks = 100;         // 1: write each row, whether it changed or not
   Precision precision = Precision::full;
   McapSettings file = {};
-  ViewerSubjects subjects = {};  // none: no channels for viewers
+  ViewerSubjects subjects = {};  // empty: no channels for viewers
   std::uint32_t viewer_every_ticks = 20;
   const ParameterTable* parameters = nullptr;  // must outlive the record; null: not recorded
 };
 
-// Of /description, as JSON Schema.
+// The JSON Schema of /description.
 extern const char* const description_schema;
 
 class RecordWriter {
  public:
   RecordWriter(const SignalTable& signals, const RecorderSettings& settings);
 
-  // Replaces a file of that name.
+  // Replaces an existing file.
   [[nodiscard]] bool open(const std::string& path);
-  // After open(), before the first row: what is needed to make this run again.
+  // After open() and before the first row. Writes what is needed to repeat this run.
   [[nodiscard]] bool describe_run(const RunInputs& inputs) { return write_inputs(file_, inputs); }
-  // After open(). Facts under a name of their own: how the run ended.
+  // After open(). Writes facts under a name, such as how the run ended.
   [[nodiscard]] bool describe(const std::string& name, const TextMap& facts) { return file_.add_metadata(name, facts); }
   // After open(). Attaches the URDF and publishes it on /robot_description, where viewers look for it.
   [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns);
-  // After open(): what remote/run_description.h makes, on /description.
+  // After open(). Writes the text that remote/run_description.h makes on /description.
   [[nodiscard]] bool describe_parts(const std::string& description, std::int64_t time_ns);
 
-  // All signals, in the order of the table. Ticks and times do not run backwards.
+  // `row` holds all signals in the order of the table. Ticks and times must not run backwards.
   [[nodiscard]] bool row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   [[nodiscard]] bool event(const Event& event);
   [[nodiscard]] bool fault(const Fault& fault, std::int64_t time_ns);
@@ -61,16 +62,16 @@ class RecordWriter {
   bool is_open() const noexcept { return file_.is_open(); }
   const std::string& error() const noexcept { return file_.error(); }
   std::uint64_t file_bytes() const noexcept { return file_.file_bytes(); }
-  std::uint64_t stride() const noexcept { return stride_; }  // ticks between rows that are wanted; 0 = none
+  std::uint64_t stride() const noexcept { return stride_; }  // ticks between rows that the file needs; 0: none
 
  private:
   struct Topic {
     SignalTopic signals;
     std::uint16_t channel = 0;
-    std::vector<double> values = {};  // as last written
-    std::uint64_t tick = 0;           // likewise
+    std::vector<double> values = {};  // values of the last row that was written
+    std::uint64_t tick = 0;           // its tick
     bool written = false;
-    bool waits = false;  // the same values came again since, last then:
+    bool waits = false;  // unwritten rows with the same values followed; the last one:
     std::uint64_t waiting_tick = 0;
     std::int64_t waiting_ns = 0;
   };
@@ -88,9 +89,9 @@ class RecordWriter {
   std::uint64_t stride_ = 0;
   McapWriter file_;
   std::uint16_t log_ = 0, transitions_ = 0, faults_ = 0, timing_ = 0, parameters_channel_ = 0;
-  std::vector<double> parameters_;  // as last written
+  std::vector<double> parameters_;  // the values that were last written
   std::vector<double> values_;      // of one message
-  std::vector<std::byte> payload_;  // the same, encoded
+  std::vector<std::byte> payload_;  // the encoded `values_`
   ByteWriter message_;
 };
 

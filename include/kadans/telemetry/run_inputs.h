@@ -1,9 +1,10 @@
-// What a run was made of, kept inside its record so that the run can be made again: its facts (scenario, seed,
-// duration, what the command line set), the program and its libraries, and the files that it read.
+// The inputs of a run. They are stored in its record so that the run can be repeated: its facts (scenario, seed,
+// duration, settings of the command line), the program and its libraries, and the files that it read.
 //
-// In the file: metadata "run" and "program"; metadata "inputs" with the hash of every file by its path; each text as an
-// attachment "inputs/PATH.zst", compressed, that any tool can take out. What is too large or no text (a plug-in, a
-// mesh) is known by its hash alone. All of it stands before the first message, so a record cut short still has it.
+// In the record they are: metadata "run" and "program"; metadata "inputs" with the hash of every file by its path; each
+// text file as a compressed attachment "inputs/PATH.zst", which any tool can extract. A file that is too large or no
+// text (a plug-in, a mesh) is stored as its hash alone. All inputs stand before the first message, so a record that is
+// cut short still has them.
 #pragma once
 
 #include <cstdint>
@@ -30,17 +31,18 @@ struct RunInputs {
   std::vector<InputFile> files;  // by path
 
   bool empty() const noexcept { return files.empty(); }
-  // "" when there is no such fact.
+  // A fact of the run; "" when there is no fact of this name.
   std::string fact(const std::string& name) const;
 };
 
-// Of a text, as text.
+// The hash of a text, as text.
 std::string content_hash(std::string_view text);
 
-// After open(), before the first message.
+// Call it after open() and before the first message.
 [[nodiscard]] bool write_inputs(McapWriter& file, const RunInputs& inputs);
-// As far as the file has been read. Empty when the record has none. Throws InputError when they are damaged, or a path
-// is not in normal form or leads out of the project: so no two of them mean one file.
+// Reads the inputs from the part of the file that the reader has read; empty when the record has none. Throws
+// InputError when they are damaged, or when a path is not in normal form or leads out of the project. So no two paths
+// name the same file.
 RunInputs read_inputs(const McapReader& file, const std::string& path);
 
 }  // namespace kadans

@@ -1,9 +1,10 @@
-// Signals over time as a picture: panels one below the other on one axis of time, the states of behaviors as a strip of
-// named boxes above and as shades behind, faults as lines through all of it.
+// Plots signals over time: panels below each other on a common time axis. The states of behaviors are a strip of named
+// boxes above the panels and shades behind them; faults are vertical lines through everything.
 //
-// A record has more rows than a picture has columns. Of each column the first, lowest, highest and last value are kept:
-// lines drawn through these look as lines through all (Jugel et al., M4, VLDB 2014), so a peak of one tick shows, and
-// the picture's size is bounded whatever the record's. Gnuplot draws it, a program of its own.
+// A record has more rows than a picture has columns. The first, lowest, highest and last value of each column are kept.
+// Lines through these values look the same as lines through all values (Jugel et al., M4, VLDB 2014). So a peak of one
+// tick is visible, and the size of the picture does not grow with the record. The external program gnuplot draws the
+// picture.
 #pragma once
 
 #include <cstddef>
@@ -19,12 +20,12 @@ struct PlotPoint {
   double time_s = 0, value = 0;  // NaN: the line is interrupted
 };
 
-// Thins one signal to so many columns between two times.
+// Reduces one signal to the given number of columns between two times.
 class PlotColumns {
  public:
   PlotColumns(double from_s, double to_s, std::size_t columns) noexcept;
-  void add(double time_s, double value);  // time never goes back
-  std::vector<PlotPoint> points();        // at the end
+  void add(double time_s, double value);  // time must not run backwards
+  std::vector<PlotPoint> points();        // call it once, at the end
 
  private:
   struct Column {
@@ -52,14 +53,14 @@ struct PlotBand {
   double from_s = 0, to_s = 0;
   std::string label;
 };
-struct PlotLane {  // what one behavior, or one of its regions, goes through
+struct PlotLane {  // the states of one behavior or of one of its regions
   std::string name;
   std::vector<PlotBand> bands;
 };
 struct PlotMark {
   double time_s = 0;
   std::string label;
-  bool fault = true;  // else something that was done to the robot
+  bool fault = true;  // else a disturbance, such as a push
 };
 struct SignalPlot {
   std::string title;
@@ -69,33 +70,35 @@ struct SignalPlot {
   std::vector<PlotMark> marks;
 };
 
-// The states in which behaviors were, as lanes: one each, more for one whose regions go on side by side. A state begins
-// with its transition; what was active before the first one is the state that it left.
+// The states of the behaviors as lanes: one lane for each behavior, or one for each region when its chart has parallel
+// regions. A state begins with its transition. Before the first transition, the active state is the one that this
+// transition left.
 std::vector<PlotLane> state_lanes(const std::vector<Transition>& transitions, double from_s, double to_s);
 
-// What a panel is to show. Without a unit of its own: that of its signals.
+// The signals that a panel shall show. Its unit is that of the signals.
 struct PanelWish {
   std::string title;
   std::vector<ChosenSignal> signals;
 };
-// One panel for each unit, in the order in which they first come.
+// One panel for each unit, in the order in which the units first appear.
 std::vector<PanelWish> panels_by_unit(const std::vector<ChosenSignal>& signals);
 
-// Reads the signals out of the record. `columns`: into which each is thinned.
+// Reads the signals from the record and reduces each to `columns` columns.
 SignalPlot plot_of(const RecordOutline& record, const std::vector<PanelWish>& wishes, TimeSpan span,
                    std::size_t columns = 600);
 
 enum class PlotFormat : std::uint8_t { svg, png };
 struct PlotSize {
   int width = 1200;
-  int panel_height = 190;  // grows with the names beside it
+  int panel_height = 190;  // grows when the list of names beside it is long
 };
-// What gnuplot is told.
+// The script for gnuplot.
 std::string gnuplot_script(const SignalPlot& plot, PlotFormat format, PlotSize size = {});
-// The picture's bytes. Throws InputError when there is no gnuplot, with the way to get it, or when it fails.
+// Draws the plot and returns the bytes of the picture. Throws InputError when gnuplot fails or is not installed; then
+// it says how to install it.
 std::string draw(const SignalPlot& plot, PlotFormat format, PlotSize size = {});
 
-// CSS for a page with such an SVG inside: other inks where the reader has it dark.
+// CSS for a page that holds such an SVG: other colors when the reader prefers a dark page.
 std::string dark_plot_style();
 
 }  // namespace kadans

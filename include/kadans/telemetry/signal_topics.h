@@ -1,14 +1,16 @@
-// The signal table as the tools of ROS 2 see it: one topic for the first part of the names, one message field a signal.
+// Maps the signal table to topics and messages of ROS 2: one topic for each first part of the names, one message field
+// for each signal.
 //
 //   joint.l_knee.effort_Nm  ->  topic /joint, type kadans_msgs/msg/Joint, field l_knee.effort_nm
 //
-// Each middle part is a nested message type. All fields are of one number type, so a message is the CDR header and the
-// numbers side by side, in the order of the schema: `signals` says which signal stands where. ROS 2 allows only small
-// letters, digits and single '_' in a field's name: others change, and names that collide so get a number; the
-// description keeps them as they were. A name of one part is the field `value` of its own topic.
+// Each middle part of a name is a nested message type. All fields have the same number type, so a message is the CDR
+// header followed by the numbers in the order of the schema; `signals` says which signal is where. ROS 2 allows only
+// lower-case letters, digits and single '_' in the name of a field. Other characters are changed, and names that become
+// equal get a number; the description keeps the original names. A signal whose name has one part is the field `value`
+// of its own topic.
 //
-// Where signals of one topic are recorded at different rates, those of the fastest stand there, the others each in a
-// topic of their rate: /joint, /joint/every_10.
+// When signals of one topic are recorded at different rates, the topic holds those of the highest rate. Each other rate
+// has a topic of its own: /joint, /joint/every_10.
 #pragma once
 
 #include <cstddef>
@@ -28,12 +30,12 @@ struct SignalTopic {
   std::string type;               // "kadans_msgs/msg/Joint"
   std::string definition;         // ros2msg text, the units and sentences as comments
   std::vector<SignalId> signals;  // in the order of the message
-  std::string description;        // the same order, a line each: name, unit and sentence, separated by tabs
+  std::string description;  // in the same order, one line for each signal: name, unit and sentence, separated by tabs
   std::uint32_t every_ticks = 1;
 };
 
-// Before the loop. The fastest first, then in the order in which the table first names each topic. `every_ticks`: by
-// signal, 0 leaves it out; none given: all in each tick.
+// Call it before the loop. The topics with the highest rate come first, then in the order in which the table first
+// names each topic. `every_ticks` is given for each signal, 0 leaves it out; empty: all in each tick.
 std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision precision,
                                        std::span<const std::uint32_t> every_ticks = {});
 
@@ -45,7 +47,7 @@ inline std::size_t cdr_bytes(std::size_t values, Precision precision) noexcept {
 
 // payload.size() == cdr_bytes(values.size(), precision)
 void write_cdr(std::span<std::byte> payload, std::span<const double> values, Precision precision) noexcept;
-// False, and nothing is read, when the payload is not what write_cdr makes of so many values.
+// False when the payload is not what write_cdr makes of values.size() values; then nothing is read.
 [[nodiscard]] bool read_cdr(std::span<const std::byte> payload, std::span<double> values, Precision precision) noexcept;
 
 }  // namespace kadans

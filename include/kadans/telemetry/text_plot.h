@@ -1,4 +1,4 @@
-// A signal as a small plot in text: braille dots, two by four a character, or plain ASCII.
+// A small plot of a signal as text: braille characters with two by four dots each, or plain ASCII.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct TextPlot {
   double top = 0, bottom = 0;      // values at the upper and lower edge
 };
 
-// Values that are not finite leave a gap. The range is that of the values, widened when they are all alike.
+// Values that are not finite leave a gap. The range is that of the values; it is widened when all values are equal.
 TextPlot text_plot(std::span<const double> values, std::size_t columns, std::size_t rows, bool unicode);
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// Histograms of what ticks and tasks cost, as viewers read them on /timing.
+// Histograms of the durations of ticks and tasks, which viewers read on /timing.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ struct TimingSource {
 };
 
 // {"control tick": {"unit", "low", "high", "counts", "median", "p99", "max", "count", "limits", "within"}}, in
-// microseconds. `within` says how many were at most as long as each of `limits`, always the same ones: the differences
-// between two messages are the histogram of what was between them. Any thread.
+// microseconds. `within` counts the durations up to each of `limits`, which never change. So the difference between two
+// messages is the histogram of the time between them. Any thread.
 std::string timing_json(const std::vector<TimingSource>& sources);
 inline constexpr const char* timing_schema = R"({"title": "kadans.Timing", "type": "object"})";
 

@@ -1,8 +1,8 @@
-// What general viewers understand without configuration, made from a row of signals: joint states, the transform of the
-// base (links follow from the URDF and the joints), the wrench on each sole. A record and the live server send the
-// same.
+// Makes messages that general viewers understand without configuration from a row of signals: joint states, the
+// transform of the base (viewers compute the links from the URDF and the joints), and the wrench on each sole. A record
+// holds the same messages that the live server sends.
 //
-// Before the loop but for write(), which one thread calls.
+// Call all but write() before the loop; write() is called by one thread.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace kadans {
 
-// Names, as in the model and the signal table.
+// Names as in the model and in the signal table.
 struct ViewerSubjects {
   std::vector<std::string> joints;
   std::string base;               // link
@@ -34,9 +34,9 @@ class ViewerMessages {
  public:
   ViewerMessages(const SignalTable& signals, ViewerSubjects subjects);
 
-  // None without subjects.
+  // Empty when there are no subjects.
   const std::vector<ViewerChannel>& channels() const noexcept { return channels_; }
-  // The message of a channel, in place of what `to` holds. The row holds all signals.
+  // Replaces the contents of `to` by the message of a channel. `row` holds all signals.
   void write(std::size_t channel, std::int64_t time_ns, std::span<const double> row, ByteWriter& to);
 
  private:
@@ -63,7 +63,7 @@ class ViewerMessages {
   std::vector<double> values_;
 };
 
-// The URDF for viewers: one message at the start.
+// The URDF for viewers, which is one message at the start.
 ViewerChannel robot_description_channel();
 void write_robot_description(const std::string& urdf, ByteWriter& to);
 

@@ -1,14 +1,14 @@
 // Gain and phase over frequency, measured on the bench with one sine after another (a chirp that waits at each
 // frequency until the answer is steady, so that the numbers are exact and not smeared).
 //
-// measure_loop adds a torque at the joint and looks how much of it the control object takes back. This is the open loop
-// cut at the drive, whatever the law inside, with all delays: from it come the margins.
+// measure_loop adds a torque at the joint and measures how much of it the control object takes back. This is the loop,
+// opened at the drive, with all delays, whatever the law inside. It gives the margins.
 //
 //   const FrequencyResponse loop = measure_loop(bench, {});
 //   CHECK(margins(loop).phase_margin_deg > 40);
 //
-// measure_reference moves the set-point and looks how the joint follows: the closed loop, with its bandwidth. The
-// frequencies are those nearest to the wanted ones of which a whole number of periods fits into whole ticks.
+// measure_reference moves the set-point and measures how the joint follows: the closed loop, with its bandwidth. Each
+// frequency is the one nearest to the wanted one of which a whole number of periods fits into whole ticks.
 #pragma once
 
 #include <iosfwd>
@@ -38,7 +38,7 @@ using FrequencyResponse = std::vector<FrequencyPoint>;
 struct LoopMargins {
   double crossover_Hz = 0;      // where the gain falls below 1, last
   double phase_margin_deg = 0;  // there
-  double delay_margin_s = 0;    // what the loop bears beyond the delays it has
+  double delay_margin_s = 0;    // how much more delay the loop can have before it is unstable
   double gain_margin = 0;       // factor on the loop, where the phase is -180 degrees, beyond the crossover
 };
 

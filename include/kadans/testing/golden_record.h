@@ -1,4 +1,5 @@
-// Signals as they were when somebody looked at them and found them right, kept in a CSV file beside the test.
+// Compares signals with a golden record: signals that somebody looked at and found right, kept in a CSV file beside the
+// test.
 //
 //   GoldenRecord record({"position_rad", "effort_Nm"});
 //   for (...) record.add({bench.position_rad(), bench.torque_Nm()});
@@ -24,8 +25,8 @@ struct GoldenTolerance {
 
 struct GoldenResult {
   bool same = false;
-  std::string message;                // the first difference, or why the file is no use
-  std::vector<double> golden, found;  // the signal that differs, to be drawn
+  std::string message;                // the first difference, or why the file cannot be used
+  std::vector<double> golden, found;  // the signal that differs, for a plot
   explicit operator bool() const noexcept { return same; }
 };
 std::ostream& operator<<(std::ostream& out, const GoldenResult& result);
@@ -34,7 +35,7 @@ class GoldenRecord {
  public:
   explicit GoldenRecord(std::vector<std::string> columns);
 
-  // Throws std::invalid_argument unless there is one value a column.
+  // Throws std::invalid_argument unless there is one value per column.
   void add(std::initializer_list<double> row);
   // Throws std::runtime_error when the file cannot be written.
   GoldenResult compare_to(const std::filesystem::path& file, const GoldenTolerance& tolerance = {}) const;

@@ -1,6 +1,6 @@
 // A test bench for control objects: one joint (one_joint_plant.h), its estimate, and the objects, ticked in the order
-// of the control engine: read, estimate, write what was computed in the last tick, compute. So one tick of delay is in
-// it.
+// of the control engine: read, estimate, write what was computed in the last tick, compute. So the loop contains one
+// tick of delay.
 //
 //   JointBench bench({.plant = {.inertia_kg_m2 = 0.05}}, make_joint_pid);
 //   bench.set("kp_Nm_per_rad", 100);
@@ -10,10 +10,11 @@
 //
 // The robot is a link on a bolted base, its model made to fit the plant. Each object is alone in a control set of its
 // own name; the first is active. There is no safety layer: a torque beyond the limit is limited, an actuation that is
-// not finite is not written, and both are counted. Names are given without what stands before them when that is clear:
+// not finite is not written, and both are counted. A name may be given without its first parts when it is unambiguous:
 // "kp_Nm_per_rad" for "object.joint.kp_Nm_per_rad".
 //
-// One thread. Building it and naming things allocate; tick() does not, as long as the objects do not.
+// One thread. The constructor and the functions that take a name allocate; tick() does not, as long as the objects do
+// not.
 #pragma once
 
 #include <bit>
@@ -54,8 +55,8 @@ class JointBench {
   JointBench(const JointBenchConfig& config, MakeControlObject make);  // one object, named "object"
   JointBench(const JointBenchConfig& config, const std::vector<BenchObject>& objects);
 
-  // All throw std::invalid_argument for a name that is unknown, with the nearest one, or not clear, and for a value out
-  // of range.
+  // All throw std::invalid_argument for a name that is unknown (the message has the nearest one) or ambiguous, and for
+  // a value out of range.
   void set(std::string_view parameter, double value);
   double get(std::string_view parameter) const;
   void set_point(double value, double duration_s = 0);  // the first one of the active object

@@ -6,7 +6,7 @@
 //
 // Joints are integrated in steps of 50 us (semi-implicit Euler, friction implicit: a joint that friction holds stands).
 // An actuation acts `delay_ticks` steps after it was written; it takes one tick more to be computed (joint_bench.h).
-// What is not finite is not obeyed: the drive is off.
+// An actuation that is not finite is not obeyed: the drive is off.
 #pragma once
 
 #include <array>

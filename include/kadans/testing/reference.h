@@ -1,11 +1,11 @@
-// References to track: a value a tick.
+// References to track: one value per tick.
 #pragma once
 
 #include <vector>
 
 namespace kadans::testing {
 
-// offset + amplitude sin(2 pi f t); at t = 0 it stands at the offset, moving.
+// offset + amplitude sin(2 pi f t); at t = 0 it is at the offset and moves.
 std::vector<double> sine_reference(double amplitude, double frequency_Hz, double duration_s, double dt_s,
                                    double offset = 0);
 // A sine whose frequency grows evenly from low_Hz to high_Hz.

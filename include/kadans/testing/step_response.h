@@ -1,10 +1,10 @@
-// How a joint answers a step of its set-point, in the numbers of the trade.
+// How a joint responds to a step of its set-point, in the usual numbers.
 //
 //   const StepResponse response = step_response(bench, {.to = 0.2});
 //   CHECK(response <= StepLimits{.rise_time_s = 0.1, .overshoot_percent = 5});
 //
 // A check that fails prints the response as numbers and as a small plot. Numbers that the response never reached are
-// NaN and keep within no limit.
+// NaN; NaN is within no limit.
 #pragma once
 
 #include <iosfwd>
@@ -24,7 +24,7 @@ struct StepOptions {
 struct StepResponse {
   double from = 0, to = 0;  // rad
   double dt_s = 0;
-  std::vector<double> values;     // position a tick; the first one before the step
+  std::vector<double> values;     // position per tick; the first one before the step
   double rise_time_s = 0;         // from 10 % to 90 % of the way
   double overshoot_percent = 0;   // of the way; 0 when it does not pass the goal
   double peak_time_s = 0;         // of the largest value on the way
@@ -40,7 +40,8 @@ struct StepLimits {
 };
 
 StepResponse step_response(JointBench& bench, const StepOptions& options);
-// Of a recorded signal: values[0] is the one before the step. Throws std::invalid_argument without a step or values.
+// The same for a recorded signal: values[0] is the one before the step. Throws std::invalid_argument without a step or
+// values.
 StepResponse measure_step(std::span<const double> values, double dt_s, double from, double to);
 
 // Whether every number keeps within its limit.

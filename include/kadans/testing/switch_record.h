@@ -17,7 +17,7 @@ class JointBench;
 
 struct SwitchRecord {
   double dt_s = 0;
-  std::vector<double> torque_Nm;  // of the drive, a tick; [0] the last one of the old object
+  std::vector<double> torque_Nm;  // of the drive, per tick; [0] is the last one of the old object
   double first_step_share = 0;    // between the two objects' torques, as a share of the joint's limit
   double largest_step_share = 0;  // from tick to tick, in all of the record
   double converged_s = 0;  // after which the torque stays within 2 % of the limit around where it ends; NaN: never
@@ -29,8 +29,8 @@ struct SwitchLimits {
 };
 
 // Switches to the object of this name and records for duration_s. Torques are compared where one tick meets the next:
-// at the end of the old actuation's last tick and at the beginning of the new one's first. converged_s says something
-// only of a situation that comes to rest.
+// at the end of the old actuation's last tick and at the beginning of the new one's first. converged_s is meaningful
+// only in a situation that comes to rest.
 SwitchRecord record_switch(JointBench& bench, std::string_view object, double duration_s = 0.5);
 
 bool operator<=(const SwitchRecord& record, const SwitchLimits& limits) noexcept;

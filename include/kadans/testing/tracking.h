@@ -24,7 +24,7 @@ struct TrackingLimits {
   double peak_error = std::numeric_limits<double>::infinity();
 };
 
-// The first skip_s are run and not judged.
+// The first skip_s are run but not judged.
 Tracking track(JointBench& bench, std::span<const double> reference, double skip_s = 0);
 
 bool operator<=(const Tracking& tracking, const TrackingLimits& limits) noexcept;

@@ -1,5 +1,5 @@
-// `kadans completion`: what shells need to complete the command line. The commands and options come from the program
-// itself; names of parameters, signals and behaviors from the instance that runs, when somebody asks for them.
+// `kadans completion`: the scripts by which shells complete the command line. Commands and options come from the
+// program itself. Names of parameters, signals and behaviors come from the running instance at the time of completion.
 #include <cstdio>
 #include <sstream>
 #include <string>
@@ -30,14 +30,14 @@ std::string options_of(const CLI::App& app) {
 // One line of a case for each command with its path: "  'ctl fault') echo 'list clear';;".
 void add_cases(const CLI::App& app, const std::string& path, bool options, std::string& text) {
   std::string words = options ? options_of(app) : subcommands_of(app);
-  if (options && path.starts_with("ctl ")) words += " --socket --json";  // as ctl itself, before the verb or after
+  if (options && path.starts_with("ctl ")) words += " --socket --json";  // as for ctl itself, before or after the verb
   if (!words.empty()) text += "    '" + path + "') echo '" + words + "';;\n";
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     add_cases(*command, path + (path.empty() ? "" : " ") + command->get_name(), options, text);
 }
 
-// In zsh `path` is PATH. The part that both shells understand. "$1" is the commands typed so far, then come options for
-// ctl.
+// The part that both shells understand. "$1" holds the commands typed so far; options for ctl follow. In zsh the name
+// `path` is reserved for PATH.
 std::string names_function() {
   std::string text = "\n_kadans_names() {\n  local at=$1\n  shift\n  case $at in\n";
   for (const OrderInfo& order : order_table()) {
@@ -51,7 +51,7 @@ std::string names_function() {
          "  esac 2>/dev/null\n}\n";
 }
 
-// Goes through the words before the one that is completed; leaves the commands and the options that lead to the
+// Goes through the words before the one that is completed. Collects the commands and the options that lead to the
 // instance.
 constexpr const char* walk = R"sh(
   local at= before= word= socket=

@@ -19,12 +19,12 @@
 namespace kadans {
 namespace {
 
-constexpr int reply_ms = 15'000;  // longer than the server waits for its instance
+constexpr int reply_ms = 15'000;  // longer than the server waits for the behavior thread
 
-// A console is a mode of the command line, over two orders of the sockets.
+// A console is a mode of the command line that uses two orders of the sockets.
 constexpr const char *console = "repl", *console_doc = "A console in the running instance";
 
-// "--rate HZ" of a number; "" of what is no option.
+// "--rate" of an argument that is shown as "--rate HZ"; "" when the argument is no option.
 std::string option_name(const OrderArgument& argument) {
   const std::string shown = argument.shown;
   return argument.is_option() ? shown.substr(0, shown.find(' ')) : std::string();
@@ -128,7 +128,7 @@ CLI::App* add_group(CLI::App& ctl, const std::string& group) {
   return to->require_subcommand(1)->fallthrough();
 }
 
-// "record start" is start under record; of a single word the group is "".
+// Splits "record start" into the group "record" and "start"; for a single word the group is "".
 std::pair<std::string, std::string> group_of(const OrderInfo& order) {
   const std::string words = order.words;
   const std::size_t blank = words.find(' ');

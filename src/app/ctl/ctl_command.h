@@ -14,10 +14,10 @@ class App;
 namespace kadans {
 
 struct CtlOptions {
-  std::string socket;  // "" = where an instance may be
+  std::string socket;  // "": the usual places
   bool json = false;
-  bool names = false;                                                               // of a list: nothing but
-  std::optional<long> count;                                                        // of samples; without: until Ctrl-C
+  bool names = false;                                                               // list only the names
+  std::optional<long> count;                                                        // of samples; nullopt: until Ctrl-C
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
 };
 
@@ -29,7 +29,7 @@ struct CompletionOptions {
   std::string shell;  // "bash" or "zsh"
 };
 void add_completion(CLI::App& app, CompletionOptions& options);
-// Prints the script.
+// Prints the completion script.
 int run_completion(const CLI::App& app, const CompletionOptions& options);
 
 }  // namespace kadans

@@ -135,7 +135,7 @@ std::string drives_text(const Json& answer) {
   return text + (answer.at("emergency").get<bool>() ? "the emergency stop's button is pressed\n" : "");
 }
 
-// What presets give other values to, and how to change that.
+// The parameters to which presets give other values, and how to change that.
 std::string overridden_text(const Json& overridden) {
   std::string text, last;
   for (const Json& one : overridden) {

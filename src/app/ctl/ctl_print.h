@@ -1,4 +1,4 @@
-// Answers of a running instance, for people.
+// Prints answers of a running instance for people.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@ namespace kadans {
 
 using Json = nlohmann::ordered_json;
 
-// `words`: the verb on the command line, "record stop". Ends with a newline, or is empty.
+// `words` is the verb on the command line, such as "record stop". The text ends with a newline, or is empty.
 std::string answer_text(const std::string& words, const Json& answer);
 std::string watch_head(const Json& answer);  // with a newline
-std::string watch_line(const Json& sample);  // without
+std::string watch_line(const Json& sample);  // without a newline
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-// A running instance made reachable: its sockets and the thread that serves them.
+// Makes a running instance reachable: its sockets and the thread that serves them.
 #pragma once
 
 #include <optional>
@@ -13,16 +13,16 @@ class App;
 namespace kadans {
 
 struct CtlPlace {
-  std::string folder;  // "" = the usual one
+  std::string folder;  // "": the usual one
   bool wanted = true;
-  std::string operators, developers;  // groups; "" = as the process
+  std::string operators, developers;  // groups; "": the group of the process
 };
 void add_ctl_place(CLI::App& command, CtlPlace& place);
 
 class CtlService {
  public:
-  // Before the loop. At the usual place there may be another instance already: this one then says so and goes on
-  // unreachable. Where a folder was named it throws InputError.
+  // Make it before the loop. When the usual folder is in use by another instance, this one says so and runs without
+  // being reachable. When a folder was named, it throws InputError instead.
   CtlService(const CtlPlace& place, Instance& instance);
 
   void start();

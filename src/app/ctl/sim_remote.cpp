@@ -68,7 +68,7 @@ SimRemote::~SimRemote() {
   live_.stop();
   service_.stop();
   told_.tell(nullptr);
-  (void)record_side_.stop();  // of a run that threw
+  (void)record_side_.stop();  // when the run threw
 }
 
 std::string SimRemote::end_record() { return record_side_.stop() ? "" : record_side_.error(); }
@@ -83,7 +83,7 @@ void SimRemote::begin(RecordSink* own, const std::string& own_file) {
 
 void SimRemote::tick(double, std::span<const double>) {}
 
-// Before the step that begins now.
+// To be called before the step that begins now.
 void SimRemote::push(const RunMark& mark) {
   const double time_s = 1e-9 * static_cast<double>(mark.time_ns);
   for (const std::string& what : pace_.take_pushes()) {

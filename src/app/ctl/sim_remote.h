@@ -1,5 +1,5 @@
-// A simulation seen from outside: the parts of an instance (kadans/remote/instance.h) that are threads in a live run,
-// played in turn by the one thread of the simulation, between its ticks.
+// Makes a simulation reachable from outside. The parts of an instance (kadans/remote/instance.h) that are threads in a
+// live run are executed in turn by the simulation's one thread, between its ticks.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace kadans {
 
-// Tells the instance what is said; before there is one, nobody.
+// Passes events and messages to the instance, once there is one, and to `next`.
 class InstanceLog final : public BehaviorLog {
  public:
   explicit InstanceLog(BehaviorLog* next) noexcept : next_(next) {}
@@ -43,18 +43,18 @@ class SimRemote final : public RunObserver {
     LivePlace live;
     Ros2Place ros2;
   };
-  // All must outlive it. Takes the place of the assembly's record sink: `own` is the simulation's record, if it has
-  // one. `plan`: of records that are asked for.
+  // All references must outlive this object. It replaces the assembly's record sink. `plan` is for records that clients
+  // order.
   SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan,
             const Logs& logs);
   ~SimRemote() override;
   SimRemote(const SimRemote&) = delete;
   SimRemote& operator=(const SimRemote&) = delete;
 
-  // Before the first tick.
+  // Call before the first tick. `own` is the simulation's own record, or nullptr.
   void begin(RecordSink* own, const std::string& own_file);
 
-  // Behind the last tick: closes a record that was asked for. "", or why it is not complete.
+  // Call after the last tick: closes a record that a client has ordered. Returns "", or why it is not complete.
   std::string end_record();
 
   LivePace& pace() noexcept { return pace_; }
@@ -77,7 +77,7 @@ class SimRemote final : public RunObserver {
   LivePace pace_;
   LiveService live_;
   Ros2Service ros2_;
-  std::vector<Pushes> pushes_;  // the newest, of clients
+  std::vector<Pushes> pushes_;  // the newest pushes of clients
   std::uint32_t published_ = 0;
 };
 

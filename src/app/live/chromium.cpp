@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Draws WebGL in software, keeps to itself.
+// Chromium's options: it draws WebGL in software and makes no other connections.
 std::vector<std::string> arguments(const std::string& program, const std::string& url, const fs::path& folder,
                                    int width, int height) {
   std::vector<std::string> list{program,
@@ -26,10 +26,10 @@ std::vector<std::string> arguments(const std::string& program, const std::string
                                 "--no-first-run",
                                 "--hide-scrollbars",
                                 "--disable-dev-shm-usage",
-                                "--remote-debugging-port=0",  // without, it would leave as soon as the page is loaded
+                                "--remote-debugging-port=0",  // without it, Chromium would exit when the page is loaded
                                 "--user-data-dir=" + folder.string(),
                                 "--window-size=" + std::to_string(width) + "," + std::to_string(height)};
-  if (geteuid() == 0) list.emplace_back("--no-sandbox");  // it refuses to be root otherwise
+  if (geteuid() == 0) list.emplace_back("--no-sandbox");  // otherwise it refuses to run as root
   list.push_back(url);
   return list;
 }

@@ -1,4 +1,4 @@
-// A headless Chromium that loads a page, in a process group and with a folder of its own; both are gone with it.
+// A headless Chromium that loads a page. It has a process group and a folder of its own; both end with this object.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace kadans {
 
-// The program: $KADANS_CHROMIUM, or what the PATH has. "": there is none.
+// The path of the program: $KADANS_CHROMIUM, or found in PATH; "": there is none.
 std::string find_chromium();
 
 class Chromium {

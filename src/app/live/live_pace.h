@@ -1,5 +1,5 @@
-// Keeps a simulation at the pace that somebody asked for: a multiple of the wall clock's, changed or held while it
-// runs, or tick by tick.
+// Keeps a simulation at the pace that clients ask for: a multiple of the wall clock, which may change while it runs,
+// held, or tick by tick.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// A running instance served to browsers and viewers: --live.
+// Serves a running instance to browsers and viewers: --live.
 #pragma once
 
 #include <memory>
@@ -16,10 +16,10 @@ class App;
 namespace kadans {
 
 struct LivePlace {
-  std::string port;  // "": not served; "0": any that is free
+  std::string port;  // "": not served; "0": any free port
   std::string address = "127.0.0.1";
-  std::string token;               // "": a new one
-  std::vector<std::string> hosts;  // names beside those of its addresses
+  std::string token;               // "": a new token is made
+  std::vector<std::string> hosts;  // additional names of the server
 
   bool wanted() const noexcept { return !port.empty(); }
   std::uint16_t port_number() const { return static_cast<std::uint16_t>(std::stoul(port)); }
@@ -28,15 +28,16 @@ void add_live_place(CLI::App& command, LivePlace& place);
 void add_live_hosts(CLI::App& command, LivePlace& place);
 
 ViewerSubjects viewer_subjects(const RobotConfig& robot);
-// What viewers need of the assembled robot.
+// The texts about the assembled robot that viewers need.
 RobotTexts robot_texts(const Assembly& assembly);
 
 class LiveService {
  public:
-  // Before the loop: opens the port, throws InputError when it cannot. `pace`: of a simulation, else null.
+  // Make it before the loop: opens the port. Throws InputError when it cannot. `pace` is that of a simulation, else
+  // nullptr.
   LiveService(const LivePlace& place, Instance& instance, const Assembly& assembly, LivePace* pace = nullptr);
 
-  // Says on stderr where it is found.
+  // Starts the server and prints its address on stderr.
   void start(const std::vector<TimingSource>& timing);
   void stop() noexcept;
 

@@ -1,4 +1,4 @@
-// `kadans view` and `kadans render`: a record in the page, for a person, and as pictures.
+// `kadans view` shows a record in the web page; `kadans render` makes pictures of it.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ struct ViewOptions {
   LivePlace live;
 };
 void add_view(CLI::App& app, ViewOptions& options);
-// Serves it until SIGINT or SIGTERM.
+// Serves the record until SIGINT or SIGTERM.
 int run_view(const ViewOptions& options);
 
 struct RenderOptions {
@@ -21,7 +21,7 @@ struct RenderOptions {
   std::optional<double> at_s, every_s;
   bool film = false;
   int frames_per_s = 20;
-  std::string out;  // file, or with every_s folder; "": beside the name of the record, here
+  std::string out;  // file, or a folder with every_s; "": named as the record, in the working directory
   std::string theme = "light", size = "960x720";
 };
 void add_render(CLI::App& app, RenderOptions& options);

@@ -16,12 +16,11 @@
 namespace kadans {
 namespace {
 
-// Its process starts, draws in software and loads a record of any size meanwhile; between two pictures it takes no
-// more.
+// The limit for the first picture, while Chromium starts and loads a record of any size, and between two pictures.
 constexpr std::chrono::seconds patience{120};
 constexpr std::chrono::milliseconds look_for_pictures{200};
 
-// From the server's thread to the one that waits.
+// Carries pictures from the server's thread to the waiting thread.
 class Frames {
  public:
   void take(const std::string& name, const std::string& bytes) {
@@ -39,7 +38,8 @@ class Frames {
   struct Frame {
     std::string name, bytes;
   };
-  // What came; empty: all is done. Throws InputError when the page failed, Chromium is gone, or nothing comes.
+  // The pictures that came; empty: all are done. Throws InputError when the page failed, when Chromium has ended, or
+  // when nothing comes in time.
   std::vector<Frame> next(Chromium& chromium) {
     std::unique_lock lock(mutex_);
     const auto end = std::chrono::steady_clock::now() + patience;
@@ -77,7 +77,7 @@ std::string pictures_missing() {
 void draw_record(const PictureOrder& order,
                  const std::function<void(const std::string& name, std::string bytes)>& take) {
   if (const std::string missing = pictures_missing(); !missing.empty()) throw InputError({.message = missing});
-  (void)McapReader(order.record);  // says by its name what is wrong with it
+  (void)McapReader(order.record);  // throws with the record's name when it is wrong
   Frames frames;
   LiveServer server(
       {.port = 0, .token = "", .hosts = {}}, nullptr,

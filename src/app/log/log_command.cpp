@@ -97,7 +97,7 @@ int run_log(const CLI::App& app, const LogOptions& options) {
                                               {"plot", log_plot},
                                               {"diff", log_diff},
                                               {"cut", log_cut}}};
-  (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that has had enough is no error
+  (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that stops reading is no error
   catch_interrupts();
   const CLI::App* log = app.get_subcommand("log");
   for (const Verb& verb : verbs) {

@@ -72,7 +72,7 @@ void print_first(const RecordDiff& diff) {
     std::printf("  ... and %zu more\n", static_cast<std::size_t>(there) - shown);
 }
 
-// Units cannot be compared; so in the order of how much of its own size a signal differs.
+// Units cannot be compared, so signals are sorted by their difference relative to their own size.
 void print_greatest(const RecordDiff& diff) {
   std::vector<SignalParting> all = diff.partings;
   const auto share = [](const SignalParting& p) {

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The command that makes the run again, "" when there is none: of what a robot did, or of another's record.
+// The command that repeats the run; "" when there is none: a run on the wall clock, or a record of another program.
 std::string again(const RecordOutline& record) {
   if (record.fact("run", "clock") != "virtual") return "";
   if (!record.fact("run", "branch_tick").empty()) return "kadans replay " + shell_word(record.file);

@@ -96,7 +96,7 @@ LineOutput::~LineOutput() {
 
 bool LineOutput::failed() const {
   if (errno == EPIPE && !unfinished_) {
-    if (std::freopen("/dev/null", "w", stdout) != nullptr) return false;  // what stdout still holds is nobody's
+    if (std::freopen("/dev/null", "w", stdout) != nullptr) return false;  // the rest of stdout's buffer is dropped
   }
   throw InputError({.file = name_, .message = "cannot be written: " + std::string(strerror(errno))});
 }

@@ -11,7 +11,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t signals_max = 64;  // nobody tells more lines apart
+constexpr std::size_t signals_max = 64;  // nobody can distinguish more lines
 constexpr std::size_t sketch_columns = 72, sketch_rows = 4;
 
 PlotFormat format_of(const std::string& file) {
@@ -21,7 +21,7 @@ PlotFormat format_of(const std::string& file) {
   throw InputError({.file = file, .message = "a plot's file ends with .svg or .png"});
 }
 
-// One value for each column of dots: the one that is furthest from that before, so that a peak shows.
+// One value for each column of dots: the one that differs most from the column before, so that a peak is visible.
 std::vector<double> evenly(const PlotLine& line, double from_s, double to_s) {
   constexpr std::size_t columns = 2 * sketch_columns;
   std::vector<double> values(columns, std::nan(""));
@@ -38,7 +38,7 @@ std::vector<double> evenly(const PlotLine& line, double from_s, double to_s) {
     }
     before = values[column] = value;
   }
-  // A slow signal holds its value between its rows.
+  // A slow signal keeps its value between its rows.
   for (std::size_t i = 1; i < columns; ++i) {
     if (std::isnan(values[i])) values[i] = values[i - 1];
   }

@@ -1,4 +1,4 @@
-// `kadans log cat` and `kadans log csv`: lines that flow through.
+// `kadans log cat` and `kadans log csv`: print a record line by line.
 #include <cmath>
 
 #include "kadans/telemetry/record_text.h"
@@ -8,7 +8,7 @@
 namespace kadans {
 namespace {
 
-// All lines of it. False: interrupted, or nobody reads on.
+// Prints all lines. False: interrupted, or the reader has stopped reading.
 template <typename Lines>
 bool pour(Lines& lines, LineOutput& output) {
   for (std::string line; lines.next(line);) {

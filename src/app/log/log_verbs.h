@@ -1,5 +1,5 @@
-// The verbs of `kadans log`, and what they share: spans of time, files that are not written over by mistake, lines for
-// whoever reads them.
+// The verbs of `kadans log`, and their common parts: spans of time, output files that are not overwritten by mistake,
+// and output of lines.
 #pragma once
 
 #include <cstdio>
@@ -20,23 +20,23 @@ int log_plot(const LogOptions& options);
 int log_diff(const LogOptions& options);
 int log_cut(const LogOptions& options);
 
-// Of --from and --to. Throws InputError when they do not make a span.
+// The span of --from and --to. Throws InputError when they do not make a span.
 TimeSpan span_of(const LogOptions& options);
 // Throws InputError when the span lies outside the record's time.
 void require_overlap(const RecordOutline& record, TimeSpan span);
-// A record that was cut short is read as far as it goes, and that is told on stderr.
+// Prints on stderr that a record is cut short; it is read as far as it goes.
 void tell_problem(const McapReader& reader);
 void tell_problem(const RecordOutline& record);
 std::string plural(std::uint64_t count, const char* what);
 
-// Throws InputError when the file that is to be written is there already and --force was not given, or is the record.
+// Throws InputError when the output file is the record, or when it exists and --force was not given.
 void require_free(const LogOptions& options);
 
-// Under a temporary name until it is whole; a device or pipe is written to as it is.
+// An output file that has a temporary name until it is complete. A device or pipe is written to directly.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(const std::filesystem::path& file);  // throws InputError
-  ~UnfinishedFile();                                           // removes what was not finished
+  ~UnfinishedFile();                                           // removes an unfinished file
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
@@ -48,7 +48,7 @@ class UnfinishedFile {
   bool finished_ = false;
 };
 
-// Lines into a file or onto stdout, whose reader may have had enough.
+// Writes lines into a file or to stdout, whose reader may stop reading.
 class LineOutput {
  public:
   explicit LineOutput(const std::string& file);  // "": stdout
@@ -56,7 +56,7 @@ class LineOutput {
   LineOutput(const LineOutput&) = delete;
   LineOutput& operator=(const LineOutput&) = delete;
 
-  // False: nobody reads on. Throws InputError when it cannot be written.
+  // False: the reader has stopped reading. Throws InputError when the line cannot be written.
   [[nodiscard]] bool put(std::string_view line);
   void finish();
 

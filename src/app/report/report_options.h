@@ -1,4 +1,4 @@
-// --report: where the pages of runs go, and when they have pictures.
+// --report: the folder for the pages of runs, and when they get pictures.
 #pragma once
 
 #include <string>

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr int pictures = 8;
 
-// The plots, and the robot's name as its record has it.
+// Adds the plots, and the robot's name from the record.
 void add_plot(const RunPage& page, HtmlReport& report) {
   if (page.record.empty()) {
     report.no_plot = report.no_film = "the run left no record";

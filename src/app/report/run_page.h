@@ -1,4 +1,4 @@
-// The page of one run (--report): text from its result, plots and pictures from its record.
+// The page of one run (--report): its text comes from the result, plots and pictures from the record.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,15 @@ namespace kadans {
 struct RunPage {
   const ReportSubject& subject;
   const ScenarioConfig& scenario;
-  std::string name;    // of the run: scenario, and branch when there is one
+  std::string name;    // name of the run: scenario, and branch when there is one
   std::string record;  // file with its signals; "" when there is none
   std::vector<QuantityValue> quantities;
   std::vector<EvidenceTrace> evidence;
-  std::vector<std::string> check_signals;  // of the checks that failed: shown in the plots as well
+  std::vector<std::string> check_signals;  // signals of the failed checks, which the plots show, too
 };
 
-// Writes it into the folder, which is made. What cannot be drawn is left out, and the page says why. Throws InputError
-// when the page cannot be written.
+// Writes the page into the folder, which it makes if need be. Plots or pictures that cannot be drawn are left out, and
+// the page says why. Throws InputError when the page cannot be written.
 std::filesystem::path write_run_page(const RunPage& page, const ReportPlace& place);
 
 }  // namespace kadans

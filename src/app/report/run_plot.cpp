@@ -28,7 +28,7 @@ const std::vector<Usual>& usual_panels() {
   return all;
 }
 
-// As choose_signals, but what is not there is left out.
+// The same as choose_signals, but missing signals are left out.
 std::vector<ChosenSignal> present(const std::vector<ChosenSignal>& all, const std::vector<std::string>& patterns) {
   std::vector<ChosenSignal> chosen;
   for (const std::string& pattern : patterns) {
@@ -47,7 +47,7 @@ struct Mover {
   double range() const noexcept { return high >= low ? high - low : 0; }
 };
 
-// Positions of joints, those that moved most first.
+// The positions of joints; those that moved most come first.
 std::vector<Mover> movers(const RecordOutline& record, const std::vector<ChosenSignal>& all) {
   std::vector<Mover> joints;
   for (const ChosenSignal& signal : all) {
@@ -97,7 +97,7 @@ std::vector<PanelWish> wishes_of(const RecordOutline& record, const std::vector<
 
 void add_marks(const RunPage& page, SignalPlot& plot) {
   const RunResult& run = page.subject.result;
-  plot.marks.clear();  // the run knows its faults whether its record does or not
+  plot.marks.clear();  // the faults are taken from the run, because the record may lack them
   for (const Fault& fault : run.faults) {
     const std::string joint = fault.joint == no_joint ? "" : " " + page.subject.model.joints.at(fault.joint).name;
     const double share =
@@ -110,7 +110,7 @@ void add_marks(const RunPage& page, SignalPlot& plot) {
   std::ranges::stable_sort(plot.marks, {}, &PlotMark::time_s);
 }
 
-// Nothing was wrong, nothing touched: nothing to show.
+// True when all values are 0 (no error, no contact), so that the panel shows nothing.
 bool is_zero(const PlotPanel& panel) {
   return std::ranges::all_of(panel.lines, [](const PlotLine& line) {
     return std::ranges::all_of(line.points, [](const PlotPoint& point) { return point.value == 0; });

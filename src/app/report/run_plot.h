@@ -1,4 +1,4 @@
-// Which signals of a run its report shows, when nobody chose any.
+// Chooses the signals of a run that its report shows.
 #pragma once
 
 #include "kadans/telemetry/signal_plot.h"
@@ -6,8 +6,8 @@
 
 namespace kadans {
 
-// Height, lean, feet, the joints that moved most beside what was commanded, shares of limits, errors; what the failed
-// checks look at. Those that the record has. With the run's faults and pushes.
+// Plots height, lean, feet, the joints that moved most together with their set-points, shares of limits, errors, and
+// the signals of failed checks, as far as the record has them. The run's faults and pushes are marked.
 SignalPlot run_plot(const RecordOutline& record, const RunPage& page);
 
 }  // namespace kadans

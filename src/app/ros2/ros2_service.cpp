@@ -12,7 +12,7 @@
 namespace kadans {
 namespace {
 
-constexpr int domain_max = 232;  // the ports of more would not be ports
+constexpr int domain_max = 232;  // higher numbers would give invalid ports
 
 std::uint32_t domain_of(const Ros2Place& place) {
   if (place.domain != "-1") return static_cast<std::uint32_t>(std::stoul(place.domain));

@@ -1,4 +1,4 @@
-// A running instance on topics of ROS 2: --ros2.
+// Shows a running instance on topics of ROS 2: --ros2.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ class App;
 namespace kadans {
 
 struct Ros2Place {
-  std::string domain;  // "": not wanted; "-1": as the environment says
+  std::string domain;  // "": not wanted; "-1": from ROS_DOMAIN_ID
   double rate_hz = 100;
   bool commands = false;
 
@@ -24,11 +24,11 @@ void add_ros2_place(CLI::App& command, Ros2Place& place);
 
 class Ros2Service {
  public:
-  // Before the loop: joins the domain, throws InputError when it cannot. `pace`: of a simulation, else null.
-  // `avoid_cpu`: the control thread's, -1: none.
+  // Make it before the loop: joins the domain. Throws InputError when it cannot. `pace` is that of a simulation, else
+  // nullptr. `avoid_cpu` is the control thread's CPU; -1: none.
   Ros2Service(const Ros2Place& place, Instance& instance, const Assembly& assembly, LivePace* pace, int avoid_cpu);
 
-  // Says on stderr in which domain.
+  // Begins, and prints the domain on stderr.
   void start();
   void stop() noexcept;
 

@@ -1,4 +1,4 @@
-// kadans-tune, which `kadans tune` becomes.
+// The program kadans-tune, by which `kadans tune` replaces itself.
 #include <cstdio>
 #include <exception>
 

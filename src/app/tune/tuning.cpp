@@ -43,7 +43,7 @@ CmaEs make_search(const TunePlan& plan, const std::vector<TunedAxis>& axes) {
 
 std::uint64_t check_seed(const TunePlan& plan) { return RandomStream(plan.seed, "tune.check").next() >> 11U; }
 
-// All that the search depends on.
+// A hash of everything on which the search depends.
 std::string hash_of(const TunePlan& plan, const std::vector<SweepCase>& runs) {
   ContentHash hash;
   for (const SweepCase& run : runs) hash.add(run.id);
@@ -148,7 +148,7 @@ Tuning::Progress Tuning::wait_for_others(const SweepResults& results, const std:
   return Progress::complete;
 }
 
-// For people and other programs: what is asked in this generation.
+// Writes the candidates of a generation into a file, for people and other programs.
 void Tuning::note_candidates(const std::string& name, const std::vector<std::vector<double>>& candidates) const {
   Json json = Json::array();
   for (const std::vector<double>& values : candidates) {

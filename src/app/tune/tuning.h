@@ -1,5 +1,6 @@
-// A tuning from its plan to the configuration that it found. All that has been evaluated lies in files, a folder a
-// generation, so every process that shares the folder makes the same search and evaluates its part of each generation.
+// A tuning, from its plan to the configuration that it finds. All evaluated results are kept in files, one folder for
+// each generation. So every process that shares the folder makes the same search and evaluates its part of each
+// generation.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +21,8 @@ class Tuning {
 
  private:
   enum class Progress { complete, interrupted, others_missing };
-  // Evaluates this process's part of the cases in a folder below the tuning's and waits for the others'.
+  // Evaluates this process's part of the cases in a folder below the tuning's, and waits for the other processes'
+  // parts.
   Progress evaluate(const std::string& name, const std::vector<SweepCase>& cases, std::vector<CaseRow>& rows);
   Progress wait_for_others(const SweepResults& results, const std::vector<SweepCase>& cases) const;
   Progress search();

@@ -19,13 +19,14 @@ class Body {
   Body(const RobotModel& model, const PlantSettings& settings);
 
   void add_to(ContactWorld& world);
-  // Puts every joint and the base where the settings say; with stand_on_ground the lowest point on what is under it.
+  // Puts every joint and the base where the settings say; with stand_on_ground the lowest point stands on what is under
+  // it.
   void place(const PlantSettings& settings);
 
   btMultiBody& multibody() { return *multibody_; }
   const btMultiBody& multibody() const { return *multibody_; }
   std::size_t link_count() const { return frames_.size(); }
-  // Links and, after them, payloads: what has mass.
+  // The count of what has mass: links and, after them, payloads.
   std::size_t mass_count() const { return static_cast<std::size_t>(multibody_->getNumLinks()) + 1; }
   double mass_kg(std::size_t link) const;
   // Gives the payloads the mass that they have at this time.
@@ -49,7 +50,7 @@ class Body {
   btAlignedObjectArray<btVector3> scratch_origins_;
 };
 
-// Parents with children, and whatever else touches while all joints are at 0.
+// Forbids parents with their children, and all other pairs that touch while all joints are at 0.
 PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings);
 
 }  // namespace kadans::bullet

@@ -1,5 +1,5 @@
 // Where Bullet's frames lie in ours. Bullet moves each link's centre of mass frame (principal axes, see
-// principal_axes.h), the model speaks of link frames at the joints. This is the one place that knows both.
+// principal_axes.h), the model uses link frames at the joints. This is the one place that knows both.
 #pragma once
 
 #include <memory>

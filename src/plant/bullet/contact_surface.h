@@ -1,5 +1,5 @@
-// What two surfaces are together: friction is the product, restitution the greater of both. What bounces counts as a
-// contact only when it touches: held back on its way down it would lose speed before it bounces.
+// The combined properties of two surfaces: friction is the product, restitution the greater of both. A body that
+// bounces has a contact only when it touches: if the solver held it back before, it would lose speed before the bounce.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class ContactSurface {
     point.m_combinedRestitution = restitution_;
     if (restitution_ == 0) return;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
-    point.m_contactERP = bounce_erp;  // pushing out what went in must not add to the bounce
+    point.m_contactERP = bounce_erp;  // pushing an overlap out must not add to the bounce
   }
 
  private:

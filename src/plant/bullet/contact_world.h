@@ -1,5 +1,4 @@
-// Bullet's world with one robot on a plane and whatever else stands there, set up so that it is physics and repeats bit
-// for bit.
+// Bullet's world with one robot on a plane and other objects, set up so that it is physics and repeats bit for bit.
 //
 // What differs from Bullet's defaults, and why:
 // - no split impulse: the multibody solver never applies the split part, so joint limits would vanish;
@@ -9,7 +8,7 @@
 // - the solver starts from the last step's impulses and runs all its iterations (residual threshold 0); in a step in
 //   which a joint runs into its limit it runs limit_iterations_factor times as many, because a light foot between the
 //   ground and an ankle's limit is where the iteration converges slowest.
-// A step follows btDiscreteDynamicsWorld's own order, less what only islands and continuous collision need:
+// A step follows btDiscreteDynamicsWorld's own order, without what only islands and continuous collision need:
 // collide, accelerate (articulated body algorithm), solve contacts and rows, move, update the frames once.
 // Not thread-safe; one world a plant.
 #pragma once
@@ -58,8 +57,8 @@ class ContactWorld {
   void add(RollingRows& rows);
   void add(btMultiBodyConstraint& rows);  // anything else: for Bullet's solver only
 
-  // For the next step: the velocity with which a body that nothing stops meets others. Unless `stays`, the step moves
-  // it.
+  // For the next step: the velocity of a driven body, which nothing stops, in its contacts. The step also moves the
+  // body, unless `stays`.
   void drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays);
   void drive_ground(const btVector3& velocity_m_s);
 

@@ -1,4 +1,4 @@
-// One joint's drive: what it is asked for, what its motor can give, and what of it reaches the joint.
+// One joint's drive: what is commanded, what the motor can give, and what reaches the joint.
 //
 // Motor. Torque is limited to torque_max, and in the direction of motion by the speed-torque line: full torque up to
 // the knee velocity, falling linearly to nothing at velocity_max; braking torque is torque_max at any speed. Near the
@@ -11,8 +11,8 @@
 //     T = k (rotor - joint) + c (rotor velocity - joint velocity)
 // reaches the joint. Velocities are advanced before positions (symplectic Euler), on both sides of the spring, which
 // keeps its energy; the motor's own terms are implicit. Stable while dt^2 k (1/J_rotor + 1/J_joint) < 4 and dt c
-// (1/J_rotor + 1/J_joint) < 2. When the rotor alone needs it, it takes smaller steps while the joint is carried on at
-// its velocity; the mean of T acts on the joint.
+// (1/J_rotor + 1/J_joint) < 2. When only the rotor needs them, the rotor takes smaller steps while the joint moves on
+// at its velocity; the mean of T acts on the joint.
 // Parallel spring and damper act on the joint, always as an implicit row.
 #pragma once
 
@@ -33,7 +33,7 @@ class Drive {
   struct State {
     double rotor_rad = 0, rotor_velocity_rad_s = 0;  // of a series elastic drive
     double motor_torque_Nm = 0;                      // electrical: before rotor inertia and friction
-    double motor_torque_max_Nm = 0;                  // what it could give so, in that direction
+    double motor_torque_max_Nm = 0;                  // the most that it could give at its speed, in that direction
     double joint_torque_Nm = 0;                      // what the drive put on the joint in the last step
   };
 

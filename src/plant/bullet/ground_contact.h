@@ -1,5 +1,5 @@
 // Contact of a body's shapes with the ground's plane, exact: each step the corners of every shape that lie
-// nearest to the plane become its contact points (at most four a shape), normal to the ground and at their true
+// nearest to the plane become its contact points (at most four per shape), normal to the ground and at their true
 // distance. Points still above the ground are contacts too, within contact_distance_m: the solver lets them come down
 // as far as the ground and no further. A corner remembers its impulse from one step to the next, which is where the
 // solver starts from. Bullet's own box against box detector tilts the normal with the foot and lets standing feet

@@ -1,5 +1,5 @@
-// What acts on one joint within the solver, because it must be implicit or unilateral: Bullet's core knows no armature,
-// no joint damping and no usable joint limit.
+// What acts on one joint and must be implicit or one-sided, so that the solver has to do it. Bullet's core has no
+// armature, no joint damping and no usable joint limit.
 //
 // A row is a law for the impulse p on the joint over a step, as a function of the joint velocity v at the step's end:
 //     p = clamp(a - b v, lower, upper)
@@ -14,8 +14,8 @@
 //   dry friction            stiff, v_wanted = 0, limited to dt times the friction torque
 //   joint limit             stiff, one-sided: v may just reach the limit at the step's end; when beyond, a small part
 //                           (limit_erp) of the excess is taken back each step, slowly, so that nothing is thrown out
-// Here they are rows of Bullet's stock solver, all rows of a joint sharing one Jacobian and one articulated-body pass
-// for the response; solver/tree_solver.h takes the laws alone.
+// Here they are rows of Bullet's stock solver. All rows of a joint share one Jacobian and one articulated-body pass for
+// the response. solver/tree_solver.h uses the laws alone.
 #pragma once
 
 #include <array>
@@ -55,8 +55,8 @@ class JointRows final : public btMultiBodyConstraint {
   bool servo_at_limit() const { return servo_at_limit_; }
   void set_servo_at_limit(bool at_limit) { servo_at_limit_ = at_limit; }
 
-  // Runs into its limit, or stands beyond it, so that the solver should look closer. Before the solver, after the
-  // accelerations.
+  // Whether the joint runs into its limit or stands beyond it, so that the solver needs more iterations. Call it after
+  // the accelerations and before the solver.
   bool against_limit(double dt_s) const;
   // What each row did in the last step, as impulses; 0 when it was not active.
   double impulse(Kind kind) const { return active_[kind] ? impulses_at(kind) : 0; }

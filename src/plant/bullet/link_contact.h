@@ -15,7 +15,7 @@ LinkContact link_contact(const Body& body, const btPersistentManifold& manifold)
 
 btVector3 contact_impulse(const btManifoldPoint& point);  // of the last step, on the first body
 
-// Who touches whom after a step of dt_s.
+// Reads what touches what after a step of dt_s.
 void read_contacts(const ContactWorld& world, const Body& body, double dt_s, PlantTruth& truth);
 
 }  // namespace kadans::bullet

@@ -1,6 +1,6 @@
-// Contact with the objects of the world: of the robot's links with them, and of one with another. Who touches where is
-// touch_points.h's; here a point remembers its impulse from one step to the next, as in ground_contact.h. Contact of
-// the robot with itself stays Bullet's own.
+// Contacts with the objects of the world: between the robot's links and objects, and between objects. touch_points.h
+// finds where they touch. Here a point keeps its impulse from one step to the next, as in ground_contact.h. Contacts of
+// the robot with itself are left to Bullet.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
@@ -13,7 +13,7 @@ inline bool in_world(const btCollisionObject& object) { return object.getUserInd
 
 class ObjectContactMaker final : public btCollisionAlgorithmCreateFunc {
  public:
-  // `links` makes what the robot's own links get among each other.
+  // `links` makes the algorithm for contacts between the robot's own links.
   explicit ObjectContactMaker(btCollisionAlgorithmCreateFunc& links) : links_(&links) {}
   void register_with(btCollisionDispatcher& dispatcher);
   btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,

@@ -1,6 +1,6 @@
 // Which links may collide with which. Parent and child never do, nor do pairs that touch when all joints are at 0
 // (links around one point, such as a hip's). Bullet's own parent flag is unreliable: this table alone decides.
-// The table is the robot's; different bodies always may.
+// The table is for the links of the robot; different bodies may always collide.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Do the settings fit the model? Before anything is built.
+// Checks that the settings fit the model, before anything is built.
 #pragma once
 
 #include "kadans/model/robot_model.h"

@@ -1,6 +1,7 @@
 // Resistance against rolling and spinning of one free body: a torque against its angular velocity, at most
-// lever arm * normal force, within the solver so that what rests stays at rest. The normal force is the last step's.
-// A row about each world axis (like friction's two directions, a square and not a circle).
+// lever arm * normal force. It acts within the solver, so that a body at rest stays at rest. The normal force is that
+// of the last step. There is one row about each world axis (as with friction's two directions, the bound is a square
+// and not a circle).
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>

@@ -15,12 +15,12 @@
 
 namespace kadans::bullet {
 
-// Shares a normal force acting at `point` of the sole out over four sensors at its corners: bilinear between heel and
-// toe, inner and outer, so the sum is the force and the centre of pressure is kept inside the corners.
+// Distributes a normal force at a point of the sole over four sensors at its corners: bilinear between heel and toe,
+// inner and outer. So the sum is the force, and the centre of pressure is kept inside the corners.
 std::array<double, sensors_per_foot> foot_pressure(const FootSettings& foot, const btVector3& point_in_link_m,
                                                    double force_N);
 
-// Adds up the ground's contact impulses on each foot. `feet` keeps its links, everything else is written.
+// Adds up the ground's contact impulses on each foot. Keeps the links in `feet` and writes everything else.
 void read_feet(const ContactWorld& world, const Body& body, const std::vector<FootSettings>& settings, double dt_s,
                std::vector<FootLoad>& feet);
 
@@ -32,7 +32,7 @@ class Sensors {
     btVector3 angular_velocity_rad_s, velocity_m_s;  // of the IMU's point, world axes
     btMatrix3x3 base_to_world;
   };
-  // Without a step behind it, dt_s is 0 and the IMU is taken as held still.
+  // Before the first step dt_s is 0, and the IMU counts as at rest.
   void sample(std::int64_t time_ns, double dt_s, const std::vector<Drive>& drives, const btMultiBody& multibody,
               const ImuInput& imu, const std::vector<FootLoad>& feet);
   const SensorFrame& frame() const noexcept { return frame_; }

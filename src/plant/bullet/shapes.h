@@ -18,7 +18,7 @@ class LinkShapes {
 
   bool empty() const { return parts_.empty(); }
   btCollisionShape* shape() { return &compound_; }
-  // The height of the lowest point, the centre of mass frame being at `pose`.
+  // The height of the lowest point when the centre of mass frame is at `pose`.
   double lowest_m(const btTransform& pose) const;
   // The points that would stand on a surface: corners, points of the rims, undersides of spheres.
   std::vector<btVector3> corners(const btTransform& pose) const;

@@ -1,8 +1,8 @@
 // Where two convex shapes touch or soon will: at most four points, nearer than contact_distance_m, exact for boxes and
-// spheres. Two boxes touch face to face wherever they can: the face is the one of least overlap, that of the second box
-// when there is little between them, so that a foot on a box finds the box's own normal, however it tilts. The points
-// are the corners of one face cut off at the outline of the other. A cylinder touches a box's face with its rims; with
-// edges and other cylinders it has one point, Bullet's.
+// spheres. Two boxes touch face to face wherever they can. The face is the one of least overlap, or that of the second
+// box when the two differ little: so a foot on a box finds the box's own normal, however the foot tilts. The points are
+// the corners of one face, cut off at the outline of the other. A cylinder touches a box's face with its rims; with
+// edges and other cylinders it has one point, which Bullet computes.
 //
 // Sources: separating axes and clipping, Ericson, Real-Time Collision Detection, sections 4.4.1 and 5.5.
 #pragma once

@@ -10,11 +10,11 @@
 
 namespace kadans::bullet {
 
-// What a foot stands on does to it.
+// The load on a foot from what it stands on.
 struct FootLoad {
   std::size_t link = 0;
   btVector3 force_N{0, 0, 0};                         // world axes
-  std::array<double, sensors_per_foot> pressure_N{};  // normal force, shared out over the sensors
+  std::array<double, sensors_per_foot> pressure_N{};  // normal force, distributed over the sensors
 };
 
 class TruthReader {

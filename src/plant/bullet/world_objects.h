@@ -1,7 +1,7 @@
-// The objects of the world inside Bullet. What is fixed or driven is a kinematic or static body a box; what moves
-// freely is a multibody of its own, so that it meets the robot in the same solver on the same terms: a ball or a box is
-// a base without joints, a pendulum one link on a fixed base. A driven body's velocity enters its contacts; a step ends
-// where that velocity leads.
+// The objects of the world inside Bullet. A fixed or driven object has one static or kinematic body per box. An object
+// that moves freely is a multibody of its own, so that the solver treats it like the robot: a ball or a box is a base
+// without joints, a pendulum is one link on a fixed base. A driven body's velocity enters its contacts; at the end of a
+// step the body is where this velocity leads.
 #pragma once
 
 #include <memory>
@@ -40,7 +40,7 @@ class WorldObjects {
     WorldObject settings;
     std::vector<Part> parts;                 // the colliders
     btVector3 start_m{0, 0, 0};              // of a fixed or driven one: where its first part was
-    btVector3 velocity_m_s{0, 0, 0};         // likewise; of a conveyor's surface
+    btVector3 velocity_m_s{0, 0, 0};         // of a driven one; of a conveyor: of its surface
     std::unique_ptr<btMultiBody> multibody;  // of a free one
     std::unique_ptr<RollingRows> rolling;
     double held_rad = 0, release_s = 0;  // of a pendulum

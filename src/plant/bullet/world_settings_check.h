@@ -1,4 +1,4 @@
-// Is the world one that can be built around this robot? Before anything is built.
+// Checks that the world can be built around this robot, before anything is built.
 #pragma once
 
 #include "kadans/model/robot_model.h"

@@ -1,5 +1,5 @@
-// The calls of Cyclone DDS that the bridge makes, from a library that is loaded when they are wanted: a program that is
-// not asked for ROS 2 neither needs it nor pays for loading it (with OpenSSL and iceoryx, which it brings along).
+// The functions of Cyclone DDS that the bridge calls. The library is loaded when it is first needed. So a program that
+// does not use ROS 2 neither needs the library nor pays for loading it (and OpenSSL and iceoryx with it).
 #pragma once
 
 #include <dds/dds.h>
@@ -7,7 +7,7 @@
 namespace kadans {
 
 struct DdsApi {
-  // NOLINTBEGIN(readability-identifier-naming): as they are called there
+  // NOLINTBEGIN(readability-identifier-naming): the library's own names
   decltype(&::dds_create_domain) dds_create_domain;
   decltype(&::dds_create_participant) dds_create_participant;
   decltype(&::dds_create_topic) dds_create_topic;
@@ -27,7 +27,7 @@ struct DdsApi {
   // NOLINTEND(readability-identifier-naming)
 };
 
-// Loaded by the first call, stays until the process ends. Throws InputError that says how to get it.
+// The first call loads the library; it stays until the process ends. Throws InputError that says how to install it.
 const DdsApi& dds_api();
 
 }  // namespace kadans

@@ -1,7 +1,7 @@
-// A part in a DDS domain: writers and a reader of topics, gone with it. One thread at a time.
+// A participant of a DDS domain with its writers and readers of topics; all end with this object. One thread at a time.
 //
-// The domain is this machine's loopback device alone, without multicast, unless CYCLONEDDS_URI says otherwise; then
-// what it says holds. Samples of more than a few MB are not even put together.
+// The domain uses only this machine's loopback device without multicast, unless CYCLONEDDS_URI sets something else.
+// Incoming samples of more than a few MB are not assembled.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace kadans {
 
-// As ROS 2 has them by default: reliable, the newest `depth` kept; a late reader gets nothing, or the newest.
+// The defaults of ROS 2: reliable, keep the newest `depth` samples. A reader that joins late gets nothing, or with
+// for_late_readers the newest samples.
 struct DdsQuality {
   std::int32_t depth = 10;
   bool for_late_readers = false;
@@ -19,20 +20,20 @@ struct DdsQuality {
 
 class DdsDomain {
  public:
-  // Throws InputError: no library, a wrong CYCLONEDDS_URI, no such device.
+  // Throws InputError when there is no library, when CYCLONEDDS_URI is wrong, or when there is no such device.
   explicit DdsDomain(std::uint32_t domain);
   ~DdsDomain();
   DdsDomain(const DdsDomain&) = delete;
   DdsDomain& operator=(const DdsDomain&) = delete;
 
-  // Throw InputError.
+  // Both throw InputError.
   dds_entity_t writer(const dds_topic_descriptor_t& type, const std::string& topic, const DdsQuality& quality = {});
   dds_entity_t reader(const dds_topic_descriptor_t& type, const std::string& topic, const DdsQuality& quality = {});
 
-  // False: it could not be written, such as when a reader has not taken what came before for 100 ms.
+  // False when it could not be written, for example because a reader has not taken the earlier samples for 100 ms.
   // NOLINTNEXTLINE(readability-make-member-function-const): it changes what others see
   bool write(dds_entity_t writer, const void* sample) noexcept { return api_.dds_write(writer, sample) >= 0; }
-  // Takes the oldest sample, if one waits and its data are valid, and shows it to `see`. False: none waits.
+  // Takes the oldest waiting sample and calls `see` with it if its data are valid. False: no sample is waiting.
   template <typename Sample, typename See>
   bool take(dds_entity_t reader, See&& see) {
     void* sample = nullptr;

@@ -1,5 +1,5 @@
-// What the bridge has in its DDS domain: the topics of ROS 2 that a robot is seen by, and those of its commands.
-// One thread at a time.
+// The topics of the bridge in its DDS domain: those of ROS 2 that show the robot, and those of its commands. One thread
+// at a time.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,14 @@ namespace kadans {
 
 class Ros2Topics {
  public:
-  // Publishes what does not change: the description, the fixed frames. `robot` must outlive it. Throws InputError.
+  // Publishes what never changes: the description and the fixed frames. `robot` must outlive this object. Throws
+  // InputError.
   Ros2Topics(std::uint32_t domain, const RobotReadings& robot, const std::string& urdf);
 
-  // Joint states, frames, IMU and clock, as the robot's readings are now.
+  // Publishes joint states, frames, IMU and clock with the robot's current readings.
   void publish() noexcept;
 
-  // The next text on /kadans/command; false: none waits.
+  // Takes the next text on /kadans/command; false: none is waiting.
   [[nodiscard]] bool take(std::string& command);
   void answer(const std::string& text) noexcept;
 
@@ -41,7 +42,7 @@ class Ros2Topics {
   Writers to_;
   dds_entity_t commands_;
   std::vector<char*> names_;      // of the joints
-  std::vector<Stamped> stamped_;  // as many as are moving, or fixed
+  std::vector<Stamped> stamped_;  // scratch: the frames of one message
 };
 
 }  // namespace kadans

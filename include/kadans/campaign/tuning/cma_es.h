@@ -1,10 +1,11 @@
-// Seeks the point of the unit cube at which a score is least, a generation of points at a time: CMA-ES (Hansen and
-// Ostermeier, 2001), which learns from the best points of each generation where and along which directions to look
-// next. It asks for no gradient, bears noise, and its generations can be evaluated side by side.
+// Searches the unit cube for the point with the least score, one generation of points at a time: CMA-ES (Hansen and
+// Ostermeier, 2001). The algorithm learns from the best points of each generation where and in which directions to
+// search next. It needs no gradient and tolerates noise, and the points of a generation can be evaluated in parallel.
 //
-// The library's algorithm (pagmo) calls for one score at a time. Its points depend on the seed and on the scores of
-// earlier generations alone, so it is run anew from its beginning for each generation: known scores are answered from
-// memory, the rest is noted until a generation is full. This also makes it resume from nothing but the scores.
+// The library (pagmo) asks for one score at a time. Its points depend only on the seed and on the scores of earlier
+// generations. So it is run again from the beginning for each generation: known scores are answered from memory, and
+// the points whose scores are unknown are collected until a generation is full. For the same reason the scores alone
+// suffice to resume a search.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +27,16 @@ class CmaEs {
   // Throws std::invalid_argument.
   explicit CmaEs(Config config);
 
-  // The points whose scores are wanted next: first the start alone, then generations; none when all are done.
+  // The points whose scores are needed next: first the start alone, then one generation at a time; empty when all
+  // generations are done.
   std::vector<Point> ask() const;
-  // Their scores, in their order. Throws std::invalid_argument when they are not as many.
+  // The scores of the points that ask() returned, in the same order. Throws std::invalid_argument for another number of
+  // scores.
   void tell(const std::vector<double>& scores);
 
   const Point& best() const noexcept { return best_; }
   double best_score() const noexcept { return best_score_; }
-  std::size_t generation() const noexcept { return generation_; }  // that ask() gives
+  std::size_t generation() const noexcept { return generation_; }  // of the points that ask() returns
 
  private:
   Config config_;

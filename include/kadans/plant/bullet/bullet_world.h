@@ -1,4 +1,4 @@
-// The robot as a Bullet multibody on a plane: one new world a plant, so that a run repeats bit for bit.
+// The robot as a Bullet multibody on a plane. Each plant has a new world of its own, so that a run repeats bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ enum class FrictionLaw : std::uint8_t;  // src/plant/bullet/solver/contact_row.h
 
 class BulletWorld final : public OneRobotWorld {
  public:
-  // `seed` feeds every noise. Throws std::invalid_argument naming what in the settings does not fit the model.
+  // `seed` feeds every noise. Throws std::invalid_argument that names the setting that does not fit the model.
   BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed);
   // With another law than the cone for the plant's own solver: how a test compares it with Bullet's.
   BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed, bullet::FrictionLaw friction);

@@ -1,9 +1,9 @@
-// A joystick of the Linux kernel: an event device, /dev/input/event5 or, by a name that stays, one of
+// A joystick as an event device of the Linux kernel: /dev/input/event5 or, by a lasting name, one of
 // /dev/input/by-id/*-event-joystick.
 //
-// at() reads what has come without blocking: a few system calls, so it is for a thread beside the engines. A device
-// that goes away reads as centred; it is looked for again twice a second, so it may be plugged in anew. The calls are
-// those of <linux/input.h> alone: a recording is taken in the same way, so a library for devices would be a second one.
+// at() reads the events that have come, without blocking. It makes a few system calls, so it is for a thread beside the
+// engines. A device that is unplugged reads as centred. It is looked for twice a second, so it may be plugged in again.
+// Only <linux/input.h> is used: recordings are read by the same events, so a device library would add a second way.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ class JoystickDevice final : public JoystickSource {
  public:
   // Throws InputError that says what to do when it is not there, may not be read, or is no joystick.
   explicit JoystickDevice(const JoystickSettings& settings);
-  // Reads a descriptor that it takes over, of a device whose ranges are given: for tests, where there is none.
+  // For tests, where there is no device: reads a descriptor, which it takes over, as a device with these ranges.
   JoystickDevice(const JoystickSettings& settings, int descriptor, const StickRanges& ranges);
   ~JoystickDevice() override;
   JoystickDevice(const JoystickDevice&) = delete;
@@ -36,7 +36,7 @@ class JoystickDevice final : public JoystickSource {
   std::int64_t look_again_ns_ = 0;
 };
 
-// A device or a recording, by what `path` is; `settings.device` does not count. Throws InputError.
+// Opens `path`, a device or a recording; settings.device is ignored. Throws InputError.
 std::unique_ptr<JoystickSource> make_joystick(const JoystickSettings& settings, const std::string& path);
 
 }  // namespace kadans

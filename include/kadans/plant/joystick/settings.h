@@ -12,7 +12,7 @@ namespace kadans {
 struct JoystickAxis {
   std::uint16_t code = 0;   // of the kernel's input events: ABS_X is 0, ABS_Y 1, ABS_RZ 5, ABS_THROTTLE 6
   bool inverted = false;    // the kernel counts y towards the hand, and most throttles backwards
-  double min = 0, max = 0;  // of its values; both 0: what the device, or the recording, says
+  double min = 0, max = 0;  // of its values; both 0: as the device, or the recording, says
 };
 
 struct JoystickSettings {

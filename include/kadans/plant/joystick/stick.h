@@ -1,8 +1,9 @@
-// From input events to a joystick's state: axes from the middle of their range to -1..1, with a dead zone from whose
-// edge they begin at 0; buttons in their order, a joystick's from BTN_JOYSTICK on, a gamepad's from BTN_GAMEPAD on.
+// Turns input events into a joystick's state. Axes are scaled to -1..1 about the middle of their range; in the dead
+// zone they are 0, and they grow from 0 at its edge. Buttons keep their order: a joystick's from BTN_JOYSTICK on, a
+// gamepad's from BTN_GAMEPAD on.
 //
-// What events say counts once they are reported whole (SYN_REPORT). When the kernel says that it dropped some
-// (SYN_DROPPED), the rest up to the next report is passed over, and the owner is asked to read the device anew.
+// Events take effect together, at the next SYN_REPORT. When the kernel dropped events (SYN_DROPPED), the events up to
+// the next report are ignored, and take_dropped() asks the owner to read the device anew.
 //
 // One owner, one thread.
 #pragma once
@@ -14,15 +15,15 @@ namespace kadans {
 
 class Stick {
  public:
-  // Throws std::invalid_argument that names the axis when neither says the range of one of `needed` axes, or when it is
-  // empty. An axis without a range that is not needed stays at 0.
+  // Throws std::invalid_argument that names the axis, when neither the settings nor `ranges` give the range of one of
+  // the first `needed` axes, or when a range is empty. An axis without a range that is not needed stays at 0.
   Stick(const JoystickSettings& settings, const StickRanges& ranges, std::size_t needed = 2);
 
   void take(const StickEvent& event) noexcept;
-  // There is none any more, or not yet; and there is one.
+  // unplug: there is no joystick. plug: there is one.
   void unplug() noexcept { whole_ = draft_ = {}; }
   void plug() noexcept { whole_.connected = draft_.connected = true; }
-  // True once after events were dropped: what is now must be read from the device.
+  // True once after events were dropped: the present state must be read from the device.
   bool take_dropped() noexcept;
 
   const JoystickState& state() const noexcept { return whole_; }
@@ -39,11 +40,11 @@ class Stick {
 class JoystickSource {
  public:
   virtual ~JoystickSource() = default;
-  // How it is at this time on the engine's clock, which does not go back. Does not block.
+  // The state at this time on the engine's clock; the time never goes back. Does not block.
   virtual const JoystickState& at(std::int64_t time_ns) noexcept = 0;
 };
 
-// A recording, played from a time on; it stays as its last event left it. From `lost_ns` on it is unplugged.
+// Plays a recording from from_ns on. After the last event the state stays. From lost_ns on the joystick is unplugged.
 class JoystickPlayer final : public JoystickSource {
  public:
   // Throws InputError, or std::invalid_argument when the recording does not say an axis' range and the settings do not

@@ -39,7 +39,8 @@ struct StickRecording {
 StickRecording read_stick_recording(const std::filesystem::path& file);
 StickRecording read_stick_recording(const std::string& content, const std::string& file);
 
-// What a read of a device brought, as many as are whole; times are the kernel's, -1 where it can be none.
+// Decodes the bytes that a read of a device returned. Returns the number of complete events. Times are the kernel's, -1
+// where a time is impossible.
 std::size_t decode_stick_events(std::span<const std::byte> bytes, std::span<StickEvent> events) noexcept;
 
 }  // namespace kadans

@@ -1,7 +1,8 @@
-// What became of the datagrams of the other side, by their sequence numbers: the newest wins, the rest is counted.
+// Sorts the datagrams of the other side by their sequence numbers: the newest is used, the others are counted.
 //
-// A number that is left out counts as lost until it comes after all, late, within the last 64; a number that came twice
-// is a duplicate. Plain counts, owned by the thread that receives; others read them once it has ended.
+// A number that is skipped counts as lost, until it still comes while it is one of the last 64. A number that comes
+// twice is a duplicate. The counts are plain numbers, owned by the thread that receives; others read them once it has
+// ended.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +14,10 @@ namespace kadans {
 
 struct UdpStatistics {
   std::uint32_t sent = 0;
-  std::uint32_t unsent = 0;     // the system would not take them
+  std::uint32_t unsent = 0;     // the system did not accept them
   std::uint32_t received = 0;   // in order or not, without duplicates
   std::uint32_t lost = 0;       // never came
-  std::uint32_t reordered = 0;  // came behind a newer one: not used
+  std::uint32_t reordered = 0;  // came after a newer one: not used
   std::uint32_t duplicates = 0;
   std::uint32_t late = 0;     // the newest, but too old to count as new
   std::uint32_t refused = 0;  // garbage, another robot's, another session's, a stranger's
@@ -26,7 +27,7 @@ std::vector<PlantCount> counts_of(const UdpStatistics& statistics);
 
 class Arrivals {
  public:
-  // Whether it is newer than all before; a sequence counts from 1.
+  // Whether the datagram is newer than all before; a sequence counts from 1.
   bool is_newest(std::uint64_t sequence, UdpStatistics& statistics) noexcept {
     if (sequence > newest_) {
       const std::uint64_t step = sequence - newest_;

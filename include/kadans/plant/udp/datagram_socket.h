@@ -1,5 +1,5 @@
-// A socket for datagrams, and a batch of what came to it. Receiving and sending never block, allocate or throw: they
-// are all that the tick asks of the system.
+// A socket for datagrams, and a batch of those that it received. Receiving and sending never block, allocate or throw:
+// they are the only system calls in the tick.
 //
 // One owner, one thread at a time.
 #pragma once
@@ -18,7 +18,7 @@ namespace kadans {
 
 struct PeerAddress {
   sockaddr_storage address{};
-  socklen_t size = 0;  // 0: has no name, is at the other end
+  socklen_t size = 0;  // 0: without a name, the other end of a connected socket
 
   bool operator==(const PeerAddress& other) const noexcept;
   std::string text() const;  // "10.0.0.2:7000"
@@ -37,13 +37,14 @@ class DatagramSocket {
   DatagramSocket(DatagramSocket&& other) noexcept;
   DatagramSocket& operator=(DatagramSocket&&) = delete;
 
-  // Sleeps until something came, or for so long. Before the loop only.
+  // Sleeps until a datagram has come, at most this long. Before the loop only.
   void wait(int milliseconds) const noexcept;
-  // How many came, at most batch_max; they stay until the next call.
+  // Takes the datagrams that have come, at most batch_max; returns how many. They stay until the next call.
   std::size_t receive() noexcept;
-  Bytes datagram(std::size_t index) const noexcept;  // one that was too long for any of ours is empty
+  Bytes datagram(std::size_t index) const noexcept;  // empty when it was longer than wire_bytes_max
   const PeerAddress& from(std::size_t index) const noexcept;
-  // False when the system does not take it. Without an address, or with one that has no name, to the other end.
+  // False when the system does not accept it. Without an address, or with one that has no name, it goes to the other
+  // end.
   bool send(Bytes datagram) const noexcept;
   bool send(Bytes datagram, const PeerAddress& to) const noexcept;
 

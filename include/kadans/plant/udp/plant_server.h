@@ -1,10 +1,12 @@
-// The plant's end: a model, or hardware behind the same seam, for one control engine at a time on another machine.
+// The plant's end of the connection: serves a model, or hardware behind the same seam, to one control engine at a time
+// on another machine.
 //
-// The first who greets with the right robot is the peer of a session; whatever comes from elsewhere is refused. Time
-// begins for the plant with the peer's first actuation, so that a model does not fall before it is driven. From then on
-// a beat takes what has come, applies the newest actuation, lets a period pass and sends the sample. Without an
-// actuation for watchdog_s the plant damps its joints itself, as drives do when their bus is silent, until there is one
-// again; after peer_timeout_s, or when the peer says goodbye, the session is over.
+// The first control engine that greets with the right robot becomes the peer of a session; datagrams from elsewhere are
+// refused. The plant's time begins with the peer's first actuation, so that a model does not fall before it is driven.
+// From then on each beat takes the datagrams that have come, applies the newest actuation, lets the time pass and sends
+// a sample. Without an actuation for watchdog_s the plant damps its joints itself, as drives do when their bus is
+// silent, until an actuation comes. The session ends after peer_timeout_s without an actuation, or when the peer says
+// goodbye.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +54,7 @@ class PlantServer final : public PlantEmulator {
   std::uint64_t session_number_ = 0, sent_ = 0;
   std::uint64_t newest_actuation_ = 0;
   std::int64_t silent_ns_ = 0;  // since the newest actuation
-  bool driven_ = false;         // there was one
+  bool driven_ = false;         // there was an actuation
   bool released_ = false;
   ActuationFrame actuation_, damping_;
   SensorFrame sensors_;

@@ -7,11 +7,11 @@
 namespace kadans {
 
 struct UdpSettings {
-  std::string peer;                // "host:port" of the plant; "": said on the command line
-  double connect_timeout_s = 5;    // the control side waits so long for a plant that answers
+  std::string peer;                // "host:port" of the plant; "": given on the command line
+  double connect_timeout_s = 5;    // how long the control side waits for the plant's answer
   double round_trip_max_s = 0.01;  // readings that answer an actuation older than this are not new
-  double watchdog_s = 0.02;        // the plant's side damps the joints after so long without an actuation
-  double peer_timeout_s = 1;       // and lets the peer go after so long
+  double watchdog_s = 0.02;        // without an actuation for this long the plant's side damps the joints
+  double peer_timeout_s = 1;       // without an actuation for this long it ends the session
   double damping_Nms_per_rad = 2;  // of that watchdog; the robot's safety.damping_Nms_per_rad, no key of its own
 };
 

@@ -1,11 +1,13 @@
-// The control side's end of a plant on another machine.
+// The control side's end of the connection to a plant on another machine.
 //
-// A tick reads all that has come and uses the newest sample; when none came, or the newest answers an actuation that is
-// too old, the last sample is held as it is. Its readings are then not new ones, so the estimator counts how long each
-// sensor has been silent and the safety layer goes by that: up to safety.silent_ticks_max ticks pass as if nothing
-// were, then the sensors are silent and the ladder follows. Age is counted in actuations sent, so neither side needs
-// the other's clock, and ticks that the control thread itself missed make nothing old. When more than a few samples
-// came at once, after a gap, the newest of them may have lain for long behind a full buffer: the next tick's counts.
+// Each tick reads all datagrams that have come and uses the newest sample. When none has come, or the newest answers an
+// actuation that is too old, the last sample is kept as it is. Its readings are then not new: the estimator counts how
+// long each sensor has been silent, and the safety layer uses that count. Up to safety.silent_ticks_max ticks have no
+// effect; then the sensors are silent and the ladder follows.
+//
+// Age is counted in actuations sent. So neither side needs the other's clock, and ticks that the control thread itself
+// missed make no sample older. When more than a few samples come at once, after a gap, even the newest may have waited
+// long in a full buffer: it is not used, the next tick's sample is.
 //
 // One owner, the control thread; read and write make one or two system calls each that do not block.
 #pragma once
@@ -22,21 +24,22 @@ namespace kadans {
 
 class UdpPlant final : public Plant {
  public:
-  // `session` tells this run from others: draw it. Throws std::invalid_argument.
+  // `session` distinguishes this run from others: draw it at random. Throws std::invalid_argument.
   UdpPlant(const UdpSettings& settings, const PlantLayout& layout, DatagramSocket socket, std::uint64_t session);
   ~UdpPlant() override;  // closes
 
   // Greets the plant until it welcomes us and a first sample is here.
   bool open(bool (*give_up)() noexcept = nullptr) override;
-  // The same in steps: whether it is done; throws when the plant refuses for good.
+  // open in steps: greet() sends a greeting (false: not sent); welcomed() says whether open is done, and throws when
+  // the plant refuses for good.
   bool greet();
   bool welcomed();
-  // Before the loop: plant.link.*, what became of the datagrams.
+  // Before the loop: the signals plant.link.*, which count the datagrams.
   void declare_signals(SignalTable& table) const override;
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
-  void close() noexcept override;  // the plant need not wait for us
+  void close() noexcept override;  // says goodbye, so that the plant need not wait for its timeout
 
   std::vector<PlantCount> link_counts() const override { return counts_of(statistics_); }
   const UdpStatistics& statistics() const noexcept { return statistics_; }  // control thread, or after it

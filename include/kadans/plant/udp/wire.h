@@ -5,6 +5,7 @@
 //   payload   by kind
 //   u32       CRC-32 over all before it
 //
+// clang-format off
 //   kind       from      payload
 //   hello      control   greeting: i64 period_ns, u32 joints, u32 feet, 32 characters of the robot's name
 //   welcome    plant     greeting
@@ -15,14 +16,16 @@
 //                        sequence, u32 code, i64 time_ns, f32 temperature_C, u8 drive, u8 homed, u8 braked; a foot: 4
 //                        f64, u32; a sensor: f64, u32
 //   bye        control   none
+// clang-format on
 //
-// `layout` is a hash of the names of joints, feet and sensors in their order, so that robots that differ refuse each
-// other. `session` is drawn by the control side for each run: what is left of an earlier one is refused. `sequence`
-// counts the datagrams of one side from 1. `time_ns` is the plant's clock on both sides: of the sampling, and of the
-// newest sample that the control side had when it sent an actuation. `answered` is the newest actuation that the sample
-// was made under. A greeting looks the same in every version.
+// `layout` is a hash of the names of joints, feet and sensors in their order, so that different robots refuse each
+// other. The control side draws a new `session` at random for each run, so that datagrams of an earlier run are
+// refused. `sequence` counts the datagrams of one side from 1. `time_ns` is always the plant's clock: in sensors the
+// time of the sampling, in an actuation that of the newest sample that the control side had. `answered` is the sequence
+// number of the newest actuation that the plant had when it took the sample. A greeting looks the same in every
+// version.
 //
-// Encoding and decoding allocate nothing and throw nothing; what comes from outside is believed only after check().
+// Encoding and decoding neither allocate nor throw. Nothing from outside is used before check().
 #pragma once
 
 #include <array>
@@ -39,7 +42,7 @@ namespace kadans {
 
 inline constexpr std::uint16_t wire_version = 2;
 inline constexpr std::size_t wire_head_bytes = 40, wire_robot_bytes = 32;
-// No datagram of ours is longer.
+// No datagram is longer than this.
 inline constexpr std::size_t wire_bytes_max =
     wire_head_bytes + 9 + 52 + 9 + 47 * max_joints + 36 * max_feet + 12 * max_channels + 4;
 
@@ -58,12 +61,12 @@ struct WireHead {
 struct WireGreeting {
   std::int64_t period_ns = 0;
   std::uint32_t joints = 0, feet = 0;
-  std::array<char, wire_robot_bytes> robot{};  // what is left of it is 0
+  std::array<char, wire_robot_bytes> robot{};  // the name; 0 after it
 };
 
 struct SensorsOnWire {
   std::uint64_t answered = 0;  // sequence of an actuation; 0: none yet
-  bool released = false;       // the plant's watchdog has the joints
+  bool released = false;       // the plant's watchdog damps the joints
 };
 
 using Datagram = std::array<std::byte, wire_bytes_max>;
@@ -77,29 +80,29 @@ class PlantWire {
   std::uint64_t layout() const noexcept { return layout_; }
   const WireGreeting& greeting() const noexcept { return greeting_; }
 
-  // The datagram, in `into`.
+  // Each writes a datagram to `into` and returns the part that it takes.
   Bytes greet(const WireHead& head, Datagram& into) const noexcept;  // hello, welcome, refusal
   Bytes bye(const WireHead& head, Datagram& into) const noexcept;
   Bytes actuation(const WireHead& head, const ActuationFrame& frame, Datagram& into) const noexcept;
   Bytes sensors(const WireHead& head, const SensorsOnWire& more, const SensorFrame& frame,
                 Datagram& into) const noexcept;
 
-  // Garbage has the wrong magic, length or sum, or a kind, mode or state that is none.
+  // Garbage has a wrong magic number, length or checksum, or an unknown kind, mode or state.
   enum class Check : std::uint8_t { good, garbage, other_version, other_layout };
   Check check(Bytes datagram, WireHead& head) const noexcept;
-  // Of a datagram that was good (a greeting: that was no garbage).
+  // For a datagram that check() found good (a greeting: not garbage).
   static WireGreeting greeting_in(Bytes datagram) noexcept;
   void actuation_in(Bytes datagram, ActuationFrame& frame) const noexcept;
   SensorsOnWire sensors_in(Bytes datagram, SensorFrame& frame) const noexcept;
 
  private:
-  std::size_t length(WireKind kind) const noexcept;  // 0: of none
+  std::size_t length(WireKind kind) const noexcept;  // 0 for WireKind::none
   std::byte* put_head(const WireHead& head, Datagram& into) const noexcept;
   static Bytes seal(Datagram& into, const std::byte* end) noexcept;
 
   std::uint64_t layout_ = 0;
   WireGreeting greeting_;
-  std::uint32_t sensors_ = 0;  // as `layout_` says
+  std::uint32_t sensors_ = 0;  // count
 };
 
 }  // namespace kadans

@@ -1,8 +1,9 @@
-// What a robot's row of signals says to somebody who knows joints, frames and an IMU, but no signals: positions,
-// velocities and efforts by joint, the pose of the base in the world, each frame of the URDF in its parent's.
+// Translates a robot's row of signals into joints, frames and IMU values: positions, velocities and efforts of the
+// joints, the pose of the base in the world, and the pose of each frame of the URDF in its parent frame.
 //
-// The base is where the model has it, where there is a model, else where it is estimated: heading and height, at the
-// origin. Roll and pitch, and the rates, are always the estimate; the acceleration is what the IMU measured.
+// The position and heading of the base are the true ones when the plant is a model. Otherwise heading and height are
+// the estimate, and x and y are 0. Roll, pitch and the rates are always the estimate. The acceleration is the IMU's
+// measurement.
 #pragma once
 
 #include <array>
@@ -18,12 +19,12 @@ namespace kadans {
 
 class RobotReadings {
  public:
-  // When all signals are declared; the catalog must outlive it. Throws InputError on a wrong URDF.
+  // Make it when all signals are declared. The catalog must outlive it. Throws InputError on a wrong URDF.
   RobotReadings(const Catalog& catalog, const std::string& urdf);
 
   void take(const LatestRow::View& row) noexcept;
 
-  std::int64_t time_ns() const noexcept { return time_ns_; }  // since the run began
+  std::int64_t time_ns() const noexcept { return time_ns_; }  // time since the run began
   const std::vector<std::string>& joints() const noexcept { return joints_; }
   const std::vector<double>& position_rad() const noexcept { return position_rad_; }
   const std::vector<double>& velocity_rad_s() const noexcept { return velocity_rad_s_; }
@@ -31,7 +32,7 @@ class RobotReadings {
   const Quat& orientation() const noexcept { return orientation_; }
   const Vec3& angular_velocity_rad_s() const noexcept { return angular_velocity_rad_s_; }
 
-  // Along the base's axes, gravity included. Where no IMU said anything yet nothing is known.
+  // Along the base's axes, gravity included. It is not known before the first reading of an IMU.
   const Vec3& acceleration_m_s2() const noexcept { return acceleration_m_s2_; }
   bool acceleration_known() const noexcept { return acceleration_m_s2_ != Vec3{}; }
 
@@ -39,7 +40,8 @@ class RobotReadings {
     std::string parent, child;
     Pose pose;
   };
-  // "world" to the base, then all that joints move; and what stays where it is.
+  // moving: first the base in "world", then all frames that joints move. fixed: the frames that do not move in their
+  // parent.
   const std::vector<Frame>& moving() const noexcept { return moving_; }
   const std::vector<Frame>& fixed() const noexcept { return fixed_; }
   const std::string& base() const noexcept { return moving_.front().child; }
@@ -57,7 +59,7 @@ class RobotReadings {
   std::vector<double> position_rad_, velocity_rad_s_, effort_Nm_;
   Quat orientation_{1, 0, 0, 0};
   Vec3 angular_velocity_rad_s_{}, acceleration_m_s2_{};
-  std::vector<UrdfFrame> driven_;  // of moving_, without the base
+  std::vector<UrdfFrame> driven_;  // the frames of moving_ without the base
   std::vector<Frame> moving_, fixed_;
 };
 

@@ -1,11 +1,12 @@
-// Orders to an instance as texts, one JSON object each, and their answers: what somebody without a connection of his
-// own sends, over a topic. The verbs are those of the service /kadans/command of the live server.
+// Orders to an instance and their answers as texts, one JSON object each, for clients that have a topic instead of a
+// connection of their own. The verbs are those of the service /kadans/command of the live server.
 //
 //   {"id": 7, "verb": "play", "text": "squat", "value": 0}      id, text and value may be left out
-//   {"id": 7, "verb": "play", "done": true, "text": "..."}      when it is done; or not: text says why
+//   {"id": 7, "verb": "play", "done": true, "text": "..."}      the answer; when done is false, text says why
 //
-// Whatever comes is answered or refused, once. At most 15 orders are on their way; all is done on one thread, the
-// caller's. Nobody proves who he is on a topic, so nothing is obeyed unless whoever started the run allows it.
+// Each text is answered or refused once. At most 15 orders are on their way. Everything runs on one thread, the
+// caller's. Senders on a topic are not authenticated, so nothing is obeyed unless the person who started the run has
+// allowed it.
 #pragma once
 
 #include <cstddef>
@@ -26,21 +27,21 @@ struct OrderRequest;
 class TextCommands {
  public:
   static constexpr std::size_t text_max_bytes = 16 * 1024;
-  static constexpr std::int64_t patience_ns = 10'000'000'000;  // then an order that nobody took up is withdrawn
+  static constexpr std::int64_t patience_ns = 10'000'000'000;  // then an order that was not taken up is withdrawn
 
   struct Parts {
     Instance& instance;
-    InstancePort& port;  // its orders and answers are ours alone
+    InstancePort& port;  // this object alone uses its orders and answers
     LivePace* pace = nullptr;
     bool allowed = false;
-    std::string refusal;  // when not: how it would be
+    std::string refusal;  // when not allowed: says how to allow it
     std::string who;      // for the log
   };
   explicit TextCommands(Parts parts) : p_(std::move(parts)) {}
 
-  // The answer, when there is one at once.
+  // Takes an order. Returns the answer when there is one at once.
   [[nodiscard]] std::optional<std::string> take(std::string_view json);
-  // The next answer to an order that was on its way.
+  // Returns the next answer to an order that was on its way.
   [[nodiscard]] std::optional<std::string> next();
 
  private:

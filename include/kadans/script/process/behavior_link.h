@@ -1,14 +1,14 @@
-// The memory that the runtime shares with the process in which behaviors are played, one for each such process: who is
-// killed in the midst of a push or a write leaves it half done, and nobody else ever looks at it.
+// The memory that the runtime shares with the process in which behaviors play. Each such process gets a new one. When a
+// process is killed in the middle of a write, the half-written memory is never read by another process.
 //
-// The two take turns. The runtime writes a request and rings; the process ticks its behaviors, writes its answer, names
-// the request's number in it last of all, and rings (exchange/turn.h). So nothing here is written and read at once
-// as long as both keep the rules, and what an unfinished answer holds counts as if it were not there. The runtime does
-// not rely on it: it reads nothing from here that it wrote itself, and takes copies of what the process wrote before it
-// looks at them (child_answer.h). For this reason the snapshot goes through plain memory and not through Latest, whose
-// writer keeps the index of its slot beside the slots.
+// The two sides take turns. The runtime writes a request and rings the doorbell. The process ticks its behaviors,
+// writes its answer, writes the request's number into it last of all, and rings (exchange/turn.h). As long as both keep
+// the rules, nothing is written and read at the same time, and an unfinished answer does not count. The runtime does
+// not rely on the rules: it never reads back what it wrote itself, and it copies what the process wrote before it uses
+// it (child_answer.h). For this reason the snapshot goes through plain memory and not through Latest, whose writer
+// keeps the index of its slot beside the slots.
 //
-// Trivially copyable, no pointers. Both ends are the same program, so its layout is.
+// Trivially copyable, without pointers. Both sides run the same program, so the layout is the same.
 #pragma once
 
 #include <array>
@@ -22,10 +22,10 @@
 
 namespace kadans {
 
-// What plays and where it is (ScriptHost::keep), with a hash that half of it would not have.
+// The state of the behaviors (ScriptHost::keep), with a hash by which incomplete bytes are detected.
 struct KeptState {
   static constexpr std::size_t bytes_max = std::size_t{64} << 10U;
-  static constexpr std::uint32_t none = UINT32_MAX;  // as size: it cannot be kept
+  static constexpr std::uint32_t none = UINT32_MAX;  // as `size`: the state cannot be kept
 
   std::uint32_t size = 0;
   alignas(8) std::uint64_t hash = 0;
@@ -40,32 +40,32 @@ struct BehaviorLink {
 
   // Written by the runtime before the process starts.
   struct Setup {
-    std::int32_t priority = 0;  // of SCHED_FIFO; 0: usual
+    std::int32_t priority = 0;  // of SCHED_FIFO; 0: normal scheduling
     std::int32_t cpu_to_leave = -1;
     std::uint32_t locks_memory = 0;
     std::uint32_t on_wall_clock = 0;            // ScenarioConfig::on_wall_clock
-    alignas(8) std::uint64_t memory_bytes = 0;  // more than it has when it begins to play; 0: no limit
-    KeptState kept;                             // of the process before; size 0: there is nothing to go on with
+    alignas(8) std::uint64_t memory_bytes = 0;  // memory limit beyond what it has when it begins to play; 0: no limit
+    KeptState kept;                             // state from the process before; size 0: none
   };
-  // Written by the process once, then it rings.
+  // Written by the process once; then it rings.
   struct Ready {
     Turn<> is;                                 // 1
-    alignas(8) std::uint64_t fingerprint = 0;  // of its catalog
+    alignas(8) std::uint64_t fingerprint = 0;  // fingerprint of its catalog
     std::uint32_t count = 0;
-    std::array<Name, behaviors_max> names{};  // whose status it tells
+    std::array<Name, behaviors_max> names{};  // names of the behaviors whose status it reports
   };
   struct Request {
-    Turn<> number;                    // from 1
-    std::uint32_t last_sequence = 0;  // transactions of the answer are numbered from the next
+    Turn<> number;                    // counts from 1
+    std::uint32_t last_sequence = 0;  // the answer's transactions are numbered from the next number on
     std::uint32_t room = 0;           // for commands, headers included
     std::uint32_t order_size = 0;
     std::array<std::byte, order_bytes> order{};
     Snapshot snapshot;
   };
   struct Answer {
-    Turn<> number;                                // the request's
-    Numbers play{};                               // PlayStatus, in its order
-    std::array<Numbers, behaviors_max> status{};  // BehaviorStatus, likewise
+    Turn<> number;                                // number of the request
+    Numbers play{};                               // the numbers of PlayStatus, in its order
+    std::array<Numbers, behaviors_max> status{};  // the numbers of BehaviorStatus, in its order
     std::uint32_t kept_changed = 0;
     KeptState kept;
   };
@@ -75,11 +75,11 @@ struct BehaviorLink {
   Request request;
   Answer answer;
   CommandQueue commands;                         // of the answer
-  Ring<std::byte, std::size_t{1} << 18U> lines;  // what behaviors say: a u32 size, then that many bytes
+  Ring<std::byte, std::size_t{1} << 18U> lines;  // log lines of the behaviors: a u32 size, then that many bytes
 };
 static_assert(std::is_trivially_copyable_v<BehaviorLink>);
 
-// As first byte of a line, beside BehaviorLog's severities.
+// The first byte of a line that is a transition; other lines have a severity of BehaviorLog there.
 inline constexpr std::uint8_t transition_line = 16;
 
 }  // namespace kadans

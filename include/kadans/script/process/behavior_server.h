@@ -1,5 +1,5 @@
-// The far end of ProcessHost, in the process in which behaviors are played: waits for a request, ticks the host,
-// answers. Between the two it does nothing. One thread.
+// The counterpart of ProcessHost in the process in which behaviors play: waits for a request, ticks the host, answers.
+// Between an answer and the next request it only waits. One thread.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@
 
 namespace kadans {
 
-// What behaviors say, into the shared memory; what does not fit is dropped, counted and told of.
+// Writes the log lines of behaviors into the shared memory. Lines that do not fit are dropped and counted, and the
+// count is logged.
 class SpokenLines final : public BehaviorLog {
  public:
   explicit SpokenLines(BehaviorLink& link) : link_(link) {}
@@ -32,11 +33,11 @@ class SpokenLines final : public BehaviorLog {
 
 class BehaviorServer {
  public:
-  // The host's log must be `lines`, or lead there. The catalog is that of the host.
+  // The host's log must be `lines`, or pass its lines on to it. `catalog` is the host's catalog.
   BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, SpokenLines& lines, const Catalog& catalog);
 
-  // Until the runtime lets go of the doorbell; returns the process's exit code: 0, or 1 when the host cannot go on with
-  // what was kept.
+  // Serves until the runtime closes the doorbell. Returns the exit code of the process: 0, or 1 when the host cannot
+  // continue from the kept state.
   int serve();
 
  private:
@@ -53,7 +54,7 @@ class BehaviorServer {
   Snapshot snapshot_;
   ByteWriter kept_;
   std::vector<std::byte> kept_last_;
-  std::string unkept_;  // why the state cannot be kept, said last
+  std::string unkept_;  // the last logged reason why the state cannot be kept
   std::uint32_t done_ = 0;
 };
 

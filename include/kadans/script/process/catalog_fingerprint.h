@@ -1,5 +1,6 @@
-// Whether two processes mean the same by the numbers of parameters, set-points, control sets and objects: each reads
-// the robot's files itself, and somebody may have changed them in between. Ranges and poses count, values do not.
+// A fingerprint by which two processes check that they use the same numbers for parameters, set-points, control sets
+// and objects. Each process reads the robot's files itself, and the files may have changed in between. Ranges and poses
+// are part of it, values of parameters are not.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
-// What a process that plays behaviors wrote into the shared memory, as the runtime takes it: it may be dying, or
-// hostile, and may change anything at any moment. Each number is read once, bounded, and used from the copy; bytes are
-// copied out before they are looked at; indices of the storages there only ever point into them (Ring masks them). What
-// commands mean is for the control engine to judge, as it does with those of a thread.
+// Reads what the behaviors' process wrote into the shared memory. The process may be dying or hostile, and may change
+// anything at any moment. So each number is read once, bounded, and used from the copy. Bytes are copied before they
+// are read. Indices of rings can only point into the rings (Ring masks them). The control engine checks the commands,
+// as it does with those of a thread.
 //
-// Behavior thread. False from any of these: the process does not keep the rules.
+// Behavior thread. A function that returns false means: the process breaks the rules.
 #pragma once
 
 #include <cstdint>
@@ -25,16 +25,16 @@ class ChildAnswer {
 
   static bool is_ready(BehaviorLink& link) noexcept;
   static std::uint64_t fingerprint(BehaviorLink& link) noexcept;
-  // Nothing when there is a name that is none.
+  // nullopt when one of the names is invalid.
   static std::optional<std::vector<std::string>> names(BehaviorLink& link);
   static bool answers(BehaviorLink& link, std::uint32_t number) noexcept;
 
-  // Takes the transactions of the answer out of the link; send_on() sends them, as made at this time.
+  // Takes the answer's transactions out of the link. send_on() sends them with `time_ns` as their time.
   [[nodiscard]] bool take_commands(BehaviorLink& link);
   void send_on(CommandSender& commands, std::int64_t time_ns) const noexcept;
-  // Tells the log what was said, as said at this time.
+  // Passes the lines to the log with `time_ns` as their time.
   [[nodiscard]] bool tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t time_ns);
-  // Replaces `kept` when it changed; nothing in it: it cannot be kept.
+  // Replaces `kept` when it changed; nullopt: the state cannot be kept.
   [[nodiscard]] bool take_kept(BehaviorLink& link, std::optional<std::vector<std::byte>>& kept);
   static void take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept;
 

@@ -1,5 +1,6 @@
-// When a process that died is started again: the first time at once, then later and later, and not any more when it
-// dies too often without having proved itself in between. Times are of the engine's clock.
+// Decides when a process that died is started again: the first time at once, then after growing delays, and no more
+// when it dies too often in a row. A process that has answered enough ticks begins a new row. Times are of the engine's
+// clock.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +12,9 @@ namespace kadans {
 class RestartPolicy {
  public:
   struct Settings {
-    std::uint32_t deaths_max = 8;         // in a row: then it stays down
-    std::uint32_t proved_ticks = 10;      // answered: the next death is the first of a row
-    std::int64_t delay_ns = 100'000'000;  // before the third start of a row; then twice as long each time
+    std::uint32_t deaths_max = 8;         // deaths in a row after which it stays down
+    std::uint32_t proved_ticks = 10;      // answered ticks after which the next death is the first of a row
+    std::int64_t delay_ns = 100'000'000;  // before the second restart of a row; then twice as long each time
     std::int64_t delay_max_ns = 2'000'000'000;
   };
   explicit RestartPolicy(const Settings& settings) noexcept : settings_(settings) {}
@@ -21,7 +22,7 @@ class RestartPolicy {
   void answered() noexcept {
     if (++ticks_ == settings_.proved_ticks) in_a_row_ = 0;
   }
-  // When to start the next one; nothing: it stays down.
+  // Returns when to start the next process; nullopt: it stays down.
   std::optional<std::int64_t> died(std::int64_t now_ns) noexcept {
     ticks_ = 0;
     ++deaths_;

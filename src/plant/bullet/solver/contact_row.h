@@ -1,15 +1,16 @@
 // One point of contact in the solver: an impulse along the normal that only pushes, and friction across it within a
 // cone.
 //
-// Each body in the contact that is a tree has y of the three directions along its link's path (tree_factor.h); what is
-// static or driven has none and enters with its velocity. A = sum of y y^T, 3 x 3, is what an impulse does to the
+// Each body in the contact that is a tree has y of the three directions, along its link's path (tree_factor.h). A
+// static or driven body has no y and enters with its velocity. A = sum of y y^T, 3 x 3, says how an impulse changes the
 // contact's own velocity. The normal law is Bullet's: the velocity at the step's end is at least -distance / dt while
 // apart, and erp * depth / dt, or what the restitution asks for, when overlapping.
 //
-// An iteration, all other impulses staying: the normal impulse first, then friction about the normal impulse it has
-// now. Friction tries to hold: exactly, both directions at once. If that takes more than friction * normal, it slides:
-// a step against the sliding velocity, as long as the stiffest direction of A allows, and back onto the cone. Where
-// that comes to rest the impulse lies on the cone and opposite to the sliding.
+// An iteration keeps all other impulses. It computes the normal impulse first, then the friction for this normal
+// impulse. Friction first tries to hold: exactly, in both directions at once. If that takes more than friction *
+// normal, the contact slides: friction takes a step against the sliding velocity, as long as the stiffest direction of
+// A allows, and then goes back onto the cone. When the iterations have converged, the impulse lies on the cone,
+// opposite to the sliding.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ enum class FrictionLaw : std::uint8_t { cone, pyramid };
 struct ContactBody {
   Tree* tree = nullptr;  // or null
   int link = -1;
-  btVector3 velocity_m_s{0, 0, 0};  // of what is no tree; nothing driven turns
+  btVector3 velocity_m_s{0, 0, 0};  // of a body that is no tree; driven bodies do not turn
 };
 
 struct ContactTiming {

@@ -1,8 +1,8 @@
 // A law of one joint that is not linear, or one of a free body's axes: a row of one number in the solver's iteration.
 //
 // The law is that of joint_rows.h: p = clamp(a - b v, lower, upper), or v = wanted within the limits of p when it is
-// stiff. With y of the degree of freedom (tree_factor.h) and d = y . y, an iteration sets p to what fulfils the law
-// while all other impulses stay: p += (a - b v - p) / (1 + b d), or p += (wanted - v) / d, clamped.
+// stiff. With y of the degree of freedom (tree_factor.h) and d = y . y, an iteration sets p so that the law is
+// fulfilled while all other impulses stay: p += (a - b v - p) / (1 + b d), or p += (wanted - v) / d, clamped.
 #pragma once
 
 #include "joint_law.h"

@@ -1,5 +1,5 @@
-// Where the rows of one step keep their numbers: handed out in order, all given back at once. It grows when a step
-// needs more than any before; what was handed out stays where it is.
+// Memory for the numbers of one step's rows. It is handed out in order and given back all at once. It grows when a step
+// needs more than any step before; memory that was handed out stays where it is.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Spatial vectors and rigid-body inertia in world axes about one common origin: no frame ever has to be changed.
+// Spatial vectors and rigid-body inertia in world axes about one common origin, so that no change of frame is needed.
 // Featherstone, Rigid Body Dynamics Algorithms (RBDA), chapter 2. Units: rad, m, s, kg, N.
 #pragma once
 
@@ -22,7 +22,7 @@ inline btScalar dot(const Motion& m, const Wrench& w) { return m.angular.dot(w.m
 
 inline Wrench wrench_at(const btVector3& point_m, const btVector3& force) { return {point_m.cross(force), force}; }
 
-// How a motion vector that moves with a body of velocity v changes (RBDA 2.31), and likewise a wrench (RBDA 2.32).
+// The rate of change of a motion vector that moves with a body of velocity v (RBDA 2.31), and of a wrench (RBDA 2.32).
 inline Motion carried(const Motion& v, const Motion& m) {
   return {v.angular.cross(m.angular), v.angular.cross(m.linear) + v.linear.cross(m.angular)};
 }

@@ -2,15 +2,15 @@
 // the base's centre of mass.
 //
 // With the velocities u (base and joints), a step of dt solves
-//     M (u_new - u) = dt (tau - h) + a - B u_new + J^T p,
-// M the joint-space inertia by the composite rigid body method (RBDA table 6.2), tau the joints' torques, h what
-// gravity, pushes, centrifugal and Coriolis terms ask for, by a recursive Newton-Euler pass with zero acceleration
-// (RBDA table 5.1). a - B u_new are the implicit laws of the joints (damping, rotor inertia, springs, drives;
-// joint_rows.h): B is diagonal and simply adds to M. J^T p are the impulses of contacts and other rows. With M + B =
-// L^T D L and G from tree_factor.h, the unknown is z = G (M + B) (u_new - u): it begins as G (dt (tau - h) + a - B u),
-// each row adds y p, and u_new = u + G^T z.
+//     M (u_new - u) = dt (tau - h) + a - B u_new + J^T p.
+// M is the joint-space inertia by the composite rigid body method (RBDA table 6.2). tau are the joints' torques. h are
+// the forces of gravity, pushes, centrifugal and Coriolis terms, by a recursive Newton-Euler pass with zero
+// acceleration (RBDA table 5.1). a - B u_new are the implicit laws of the joints (damping, rotor inertia, springs,
+// drives; joint_rows.h): B is diagonal and is simply added to M. J^T p are the impulses of contacts and other rows.
+// With M + B = L^T D L and G from tree_factor.h, the unknown is z = G (M + B) (u_new - u): it begins as G (dt (tau - h)
+// + a - B u), each row adds y p, and u_new = u + G^T z.
 //
-// In a step: begin_step, add_implicit for each joint that has such laws, factorise, rows, accelerate, end_step.
+// Calls in a step: begin_step, add_implicit for each joint with implicit laws, factorise, rows, accelerate, end_step.
 #pragma once
 
 #include <array>
@@ -34,16 +34,16 @@ class Tree {
   // An impulse at_rest - slope * velocity_new on the joint of this degree of freedom.
   void add_implicit(int dof, btScalar at_rest, btScalar slope);
   void factorise();
-  void accelerate();  // no more rows: from here on new_velocity() is known
+  void accelerate();  // after the last row; from here on new_velocity() is known
   btScalar new_velocity(int dof) const { return velocity(dof) + z_[static_cast<std::size_t>(dof)]; }
   void end_step();  // gives the new velocities to the body
 
-  // How fast a point of the link at this wrench's line moves along it, as the step began.
+  // How fast a point of the link on this wrench's line moves along the line, at the beginning of the step.
   btScalar velocity_along(int link, const Wrench& wrench) const { return dot(state(link).velocity, wrench); }
   btScalar velocity(int dof) const { return body_->getVelocityVector()[dof]; }
   // y = G J^T along the link's path, J of three wrenches on the link; a fourth column is 0.
   void response(int link, const std::array<Wrench, 3>& wrenches, std::array<btScalar, 4>* y) const;
-  // Likewise along the path of the degree of freedom, of an impulse on it.
+  // The same for an impulse on a degree of freedom, along its path.
   void response(int dof, btScalar* y) const;
 
   btScalar* z() { return z_.data(); }
@@ -53,8 +53,8 @@ class Tree {
   struct LinkState {
     Motion axis;  // of the link's joint
     Motion velocity, acceleration;
-    Wrench force;            // to move it without accelerating any joint; then with all that it carries
-    SpatialInertia inertia;  // likewise
+    Wrench force;            // that moves it without accelerating any joint; later with all that it carries
+    SpatialInertia inertia;  // of the link; later with all that it carries
   };
 
   LinkState& state(int link) { return links_[static_cast<std::size_t>(link + 1)]; }

@@ -2,12 +2,13 @@
 //
 // M has an entry only where one degree of freedom carries the other, and M = L^T D L with L as sparse as M itself:
 // going from the leaves to the base, eliminating row k touches only rows of degrees of freedom on k's path (RBDA 6.5
-// and table 6.3). Stored is, for each degree of freedom, its row along its path (tree_shape.h), diagonal last. As the
-// path of the p-th on k's path is the start of k's own path, all inner loops run over dense arrays.
+// and table 6.3). For each degree of freedom its row along its path is stored (tree_shape.h), diagonal last. The path
+// of the p-th degree of freedom on k's path is the beginning of k's own path, so all inner loops run over dense arrays.
 //
 // Solving is done in halves. With G = D^-1/2 L^-T, M^-1 = G^T G, so
 //     y = G J^T  gives  J M^-1 J^T = y . y,
-// and y lives on the path of the link that J speaks of: a row of a contact needs a dozen numbers, not the whole robot.
+// and y has entries only on the path of the link that J belongs to: a row of a contact needs a dozen numbers, not the
+// whole robot.
 // Impulses p of many rows add up in z = sum of y p, and one second half, G^T z, turns them into joint velocities.
 #pragma once
 

@@ -1,10 +1,11 @@
-// Which degrees of freedom move what: the constant part of a multibody's joint-space inertia.
+// Which degrees of freedom move which links: the constant structure of a multibody's joint-space inertia.
 //
 // The base has degrees of freedom 0..5: its angular velocity, then the velocity of its centre of mass, in world axes.
 // Each joint of one degree of freedom follows, in the order of the links; a fixed joint has none. The path of a degree
-// of freedom is the list of all that carry it, from the base to itself; the path of a link is that of its joint. A path
-// begins with the base's six, and each start of a path is a path itself: that of the degree of freedom it ends with.
-// That makes a row of the joint-space inertia, which has entries only along the path, a dense array (tree_factor.h).
+// of freedom is the list of all degrees of freedom that carry it, from the base to itself; the path of a link is that
+// of its joint. A path begins with the base's six. Each beginning of a path is a path itself: that of its last degree
+// of freedom. A row of the joint-space inertia has entries only along its path, so it can be stored as a dense array
+// (tree_factor.h).
 #pragma once
 
 #include <vector>
@@ -22,7 +23,7 @@ struct Path {
 
 class TreeShape {
  public:
-  // Joints of several degrees of freedom have no place here.
+  // False for a body with a joint of several degrees of freedom.
   static bool fits(const btMultiBody& body);
   explicit TreeShape(const btMultiBody& body);
 

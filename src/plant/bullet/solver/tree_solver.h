@@ -6,16 +6,16 @@
 // that are linear never become rows: they add to the inertia's diagonal.
 //
 // A servo (position or velocity mode, limited to the drive's torque) is linear while it stays within its limits. It is
-// taken as such unless it was at its limit in the last step; should one turn out beyond its limits, the step is solved
-// again with every servo as a row.
+// treated as linear unless it was at its limit in the last step. If a servo then turns out to be beyond its limits, the
+// step is solved again with every servo as a row.
 //
 // Projected Gauss-Seidel: rows of joints first, then contacts in the order of Bullet's manifolds, starting from the
 // last step's impulses, until an iteration changes no velocity by more than `tolerance` or the iterations are used up.
 //
-// It covers what the plant's worlds are made of: any number of multibodies with joints of one degree of freedom,
-// against each other, themselves and what is static or driven. Once anything else was added - a rigid body that moves
-// freely, a joint of several degrees of freedom and the rows on it, a constraint that closes a loop - covers() is
-// false, and the stock solver serves after an articulated-body pass.
+// It covers what the plant's worlds consist of: any number of multibodies with joints of one degree of freedom, in
+// contact with each other, themselves and static or driven bodies. Once anything else was added - a rigid body that
+// moves freely, a joint of several degrees of freedom and the rows on it, a constraint that closes a loop - covers() is
+// false, and the stock solver is used after an articulated-body pass.
 #pragma once
 
 #include <memory>
@@ -41,7 +41,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
 
   explicit TreeSolver(const Options& options) : options_(options) {}
 
-  // All that takes part must be added before the first step, and only that may be in the world.
+  // Everything in the world must be added before the first step.
   void add(btMultiBody& body);
   void add(const btCollisionObject& collider);
   void add(JointRows& rows);
