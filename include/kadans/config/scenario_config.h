@@ -43,6 +43,7 @@ struct ScenarioConfig {
   std::string doc;
   std::string robot;             // path of the robot's configuration, resolved
   std::string plant = "bullet";  // a type of plant_type.h; in a file a model
+  TextPlace plant_place;         // in a file that names one
   std::string peer;              // not in the file: where the drives of one that is no model are; "": the robot's own
   double duration_s = 0;
   std::uint64_t seed = 1;
@@ -70,6 +71,7 @@ PlayFolders folders_of(const ScenarioConfig& scenario);
 
 // Throws InputError with everything that is wrong. The files that it names are there, but not yet read; whether the
 // signals exist is for whoever has the table: refuse_unknown(file, {check.signal, check.signal_place}, "signal", ...).
+// When its robot has plug-ins, whether one of them brings an unknown plant is for whoever loads them.
 ScenarioConfig read_scenario_config(const std::filesystem::path& file);
 ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file);
 

@@ -14,6 +14,7 @@ namespace kadans {
 
 struct WorldConfig {
   WorldSettings settings;
+  TextPlace place;                       // in a file that has one
   std::vector<TextPlace> payload_links;  // where each payload's link is named
 };
 
