@@ -8,7 +8,7 @@ function(kadans_sdk_version out header)
   while(open)
     list(POP_FRONT open name)
     set(file "${PROJECT_SOURCE_DIR}/include/${name}")
-    if(name IN_LIST seen OR NOT EXISTS "${file}")  # OUT itself does not count
+    if(name IN_LIST seen OR out MATCHES "/${name}$")  # OUT itself does not count
       continue()
     endif()
     list(APPEND seen "${name}")
