@@ -21,7 +21,7 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/kadansConfigVersion.cmak
 install(FILES "${PROJECT_BINARY_DIR}/kadansConfig.cmake" "${PROJECT_BINARY_DIR}/kadansConfigVersion.cmake"
               cmake/KadansDependencies.cmake cmake/KadansPlugin.cmake DESTINATION "${package_dir}")
 
-install(DIRECTORY include/kadans DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(DIRECTORY include/kadans "${PROJECT_BINARY_DIR}/include/kadans" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 foreach(folder IN ITEMS models behaviors config)
   if(EXISTS "${PROJECT_SOURCE_DIR}/${folder}")
     install(DIRECTORY ${folder} DESTINATION "${CMAKE_INSTALL_DATADIR}/kadans")

@@ -1,10 +1,19 @@
-# kadans_plugin(NAME SOURCES file... [LINKS target...]): a shared library NAME.so of control objects, to be named under
-# "plugins" in a robot's configuration. It has its own copy of what it uses of Kadans, and exports nothing but its entry.
-# So it fits every program with the same version of the seam (kadans/control/plugin.h).
+# kadans_plugin(NAME SOURCES file... [LINKS target...]): a shared library NAME.so of control objects and types of plants, to
+# be named under "plugins" in a robot's configuration. It brings its own copy of what it uses of Kadans and shows nothing
+# but its descriptor; kadans/control/plugin.h says why, and what it fits. LINKS may name layers without a state that a
+# process has once.
 function(kadans_plugin name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
+  set(layers exchange signal model plant plant_ideal plant_udp estimate safety control engine realtime)
+  foreach(target IN LISTS arg_LINKS)
+    string(REGEX REPLACE "^kadans(::|_)" "" layer "${target}")
+    if(NOT layer STREQUAL target AND NOT layer IN_LIST layers AND NOT layer MATCHES "^(flags|warnings)$")
+      message(FATAL_ERROR "plug-in ${name} links ${target}, which a process has once; it may link these of Kadans: ${layers}")
+    endif()
+  endforeach()
   add_library(${name} MODULE ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE kadans::control ${arg_LINKS})
   target_link_options(${name} PRIVATE -Wl,-Bsymbolic -Wl,--exclude-libs,ALL -Wl,-z,now)
   set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
+

@@ -94,7 +94,7 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
     vary(seed);
     make_plant(seed);
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
-    robot_.config.safety.drive_words = plant_type(robot_.config.plant_types, scenario_.plant).drive_words();
+    robot_.config.safety.drive_words = plant_type().drive_words();
     estimator_ =
         std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
     safety_ = std::make_unique<Safety>(robot_.config.safety, robot_.config.model);
@@ -150,6 +150,24 @@ void Assembly::start_in_pose() {
   for (const auto& [joint, position_rad] : pose->position_rad) variant_.plant.position_rad[joint] = position_rad;
 }
 
+const PlantType& plant_type_named(const RobotConfig& robot, const std::string& file, const PlacedName& name,
+                                  bool (PlantType::*is)() const noexcept) {
+  const std::vector<std::string> names = plant_type_names(robot.plant_types, is);
+  if (std::ranges::find(names, name.name) == names.end()) refuse_unknown(file, name, "type of plant", names);
+  return kadans::plant_type(robot.plant_types, name.name);
+}
+
+// A file names a model, the command line whatever drives.
+const PlantType& Assembly::plant_type() const {
+  const TextPlace place = scenario_.plant_place, world = scenario_.world.place;
+  const PlantType& type =
+      place.line > 0 ? plant_type_named(robot_.config, scenario_.file, {scenario_.plant, place}, &PlantType::is_model)
+                     : plant_type_named(robot_.config, "--plant", {scenario_.plant, place});
+  if (world.line > 0 && !type.has_objects())
+    refuse(scenario_.file, world, "world: the plant " + scenario_.plant + " has none");
+  return type;
+}
+
 PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
   PlantSite site{.file = robot.file,
                  .layout = {.robot = robot.name,
@@ -165,7 +183,7 @@ PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
 }
 
 void Assembly::make_plant(std::uint64_t seed) {
-  const PlantType& type = plant_type(robot_.config.plant_types, scenario_.plant);
+  const PlantType& type = plant_type();
   if (!type.is_model()) {
     elsewhere_ = type.make_plant(plant_site(robot_.config, scenario_.peer));
     return;

@@ -188,7 +188,7 @@ int main(int argc, char** argv) { return kadans::run_program(argc, argv); }
 
 inline constexpr std::string_view plugin_template =
     R"(// "@type@" as a plug-in: name @type@.so under "plugins" in the robot's configuration.
-#include <kadans/control/plugin_glue.h>
+#include <kadans/control/plugin.h>
 
 #include "@type@.h"
 

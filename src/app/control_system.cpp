@@ -40,6 +40,7 @@ std::unique_ptr<ControlObject> make_object(const Robot& robot, const ObjectConfi
   const ObjectSetup setup{config.model, object.joints, options_of(object), drives};
   try {
     std::unique_ptr<ControlObject> made = (*make)(setup);
+    if (!made) throw std::invalid_argument("its type made no object");
     refuse_unasked(config, object, setup.options.asked());
     return made;
   } catch (const OptionError& error) {
@@ -81,18 +82,20 @@ std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
 
 Robot read_robot(const std::filesystem::path& file, const PluginGate& gate) {
   Robot robot;
+  std::vector<MakePlantType> plants;
   add_shipped_types(robot.types);
   robot.types.add_registered();
   for (const PluginFile& plugin : read_plugin_files(file)) {
     if (!gate.lets_in(plugin.file))
       refuse(file.string(), plugin.place, "plug-in " + plugin.file.string() + " is not loaded: " + gate.remedy);
     try {
-      load_plugin(plugin.file, robot.types);
+      load_plugin(plugin.file, robot.types, plants);
+      (void)plant_types(plants);  // tells of a name that is taken
     } catch (const std::invalid_argument& error) {
       refuse(file.string(), plugin.place, error.what());
     }
   }
-  robot.config = read_robot_config(file, robot.types.names());
+  robot.config = read_robot_config(file, robot.types.names(), plants);
   return robot;
 }
 

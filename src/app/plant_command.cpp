@@ -68,7 +68,7 @@ class PlantService {
   std::unique_ptr<World> make() const {
     const RobotConfig& config = robot_.config;
     try {
-      return plant_type(config.plant_types, options_.plant).make_world({config.model, config.plant, options_.seed});
+      return served_.make_world({config.model, config.plant, options_.seed});
     } catch (const std::invalid_argument& error) {
       throw InputError({.file = config.file, .message = error.what()});
     }
@@ -129,8 +129,10 @@ class PlantService {
 
   const PlantOptions& options_;
   Robot robot_;
+  const PlantType& served_ = plant_type_named(robot_.config, "--plant", {options_.plant, {}}, &PlantType::is_model);
   std::unique_ptr<PlantEmulator> emulator_ =
-      plant_type(robot_.config.plant_types, options_.as).make_emulator(plant_site(robot_.config, ""), options_.listen);
+      plant_type_named(robot_.config, "--as", {options_.as, {}}, &PlantType::is_protocol)
+          .make_emulator(plant_site(robot_.config, ""), options_.listen);
 };
 
 }  // namespace
@@ -141,10 +143,17 @@ void add_plant(CLI::App& app, PlantOptions& options) {
   plant->add_option("--listen", options.listen, "Where it listens: \":7100\" on every address of this machine")
       ->required()
       ->type_name("HOST:PORT");
-  plant->add_option("--plant", options.plant, "What is served (default: bullet)")
-      ->check(CLI::IsMember(plant_type_names(&PlantType::is_model)));
-  plant->add_option("--as", options.as, "In which type's protocol (default: udp)")
-      ->check(CLI::IsMember(plant_type_names(&PlantType::is_protocol)));
+  const auto names = [](bool (PlantType::*is)() const noexcept) {
+    return CLI::detail::join(plant_type_names(is), ", ");
+  };
+  plant
+      ->add_option("--plant", options.plant,
+                   "What is served (default: bullet): " + names(&PlantType::is_model) + ", or a plug-in's model")
+      ->type_name("TYPE");
+  plant
+      ->add_option("--as", options.as,
+                   "In whose protocol (default: udp): " + names(&PlantType::is_protocol) + ", or a plug-in's type")
+      ->type_name("TYPE");
   plant->add_option("--seed", options.seed, "Seed of the model's noise (default: 1)")
       ->type_name("N")
       ->check(any_seed());

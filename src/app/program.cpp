@@ -30,8 +30,9 @@ void add_run(CLI::App& app, RunOptions& options) {
   CLI::App* run =
       app.add_subcommand("run", "Drive a robot, or a model of it, on the wall clock until SIGINT or SIGTERM");
   run->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
-  run->add_option("--plant", options.plant, "What is driven (default: bullet):" + plant_type_docs())
-      ->check(CLI::IsMember(plant_type_names()));
+  run->add_option("--plant", options.plant,
+                  "What is driven (default: bullet):" + plant_type_docs() + "; or a plug-in's")
+      ->type_name("TYPE");
   run->add_option("--peer", options.peer,
                   "Where the drives are, or `kadans plant` (default: as the configuration says)")
       ->type_name("HOST:PORT");

@@ -121,6 +121,10 @@ class LiveRun {
                  assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
 
   int run() {
+    if (options_.virtual_time && assembly_.world() == nullptr) {
+      throw InputError(
+          InputProblem{.file = "--threads-on-virtual-time", .message = "a plant that is no model has its own time"});
+    }
     refuse_faulty_behaviors(scenario_, assembly_.catalog());
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
@@ -361,10 +365,6 @@ class LiveRun {
 
 int run_live(const RunOptions& options) {
   require_kind(options.robot, JsonKind::robot);
-  if (options.virtual_time && !plant_type(plant_types(), options.plant).is_model()) {
-    print_error("--threads-on-virtual-time: a plant that is no model has its own time");
-    return exit_usage;
-  }
   if (!options.virtual_time && !rights_suffice(plant_priority, options.soft)) return exit_usage;
   LiveRun run(options);
   catch_interrupts();

@@ -49,7 +49,7 @@ void RobotReader::read(Fields& f) {
   f.string("based_on", base, "another robot's configuration; this file says only what is different");
   f.string("name", config_.name, "the robot's name", Need::required);
   f.strings("plugins", config_.plugins, {1, plugins_max},
-            "shared libraries that bring types of control objects, from the project root");
+            "shared libraries that bring types of control objects and of plants, from the project root");
   load_model(f);
   f.object("engine", "periods and bounds of the engines",
            [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
@@ -105,11 +105,12 @@ std::vector<std::size_t> RobotReader::joints(std::string_view pattern, TextPlace
 }
 
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
-                                   std::span<const std::string> object_types) {
+                                   std::span<const std::string> object_types, std::span<const MakePlantType> plants) {
   RobotConfig config;
+  config.plant_types = plant_types(plants);
   config.file = config.record.signals.file = file;
   const BasedJson json = parse_based_json(text, file);
-  if (!json.bases.empty()) (void)read_robot_config(json.bases.front(), object_types);
+  if (!json.bases.empty()) (void)read_robot_config(json.bases.front(), object_types, plants);
   Problems problems(file);
   RobotReader reader(config, problems, object_types);
   read_fields(json.value, problems, [&](Fields& f) { reader.read(f); });
@@ -117,8 +118,9 @@ RobotConfig read_robot_config_text(const std::string& text, const std::string& f
   return config;
 }
 
-RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types) {
-  return read_robot_config_text(read_input_file(file), file.string(), object_types);
+RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types,
+                              std::span<const MakePlantType> plants) {
+  return read_robot_config_text(read_input_file(file), file.string(), object_types, plants);
 }
 
 std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot) {

@@ -149,6 +149,7 @@ void RobotReader::plant(Fields& f) {
       type->fields(fields);
     });
   }
+  if (object_types_.empty() && !config_.plugins.empty()) f.leave_others();  // a plug-in's type would ask for them
   for (std::size_t i = 0; i < plant.drives.size(); ++i) {
     config_.estimate.spring_Nm_per_rad[i] = config_.safety.joints[i].spring_Nm_per_rad =
         plant.drives[i].spring_Nm_per_rad;

@@ -5,6 +5,7 @@
 
 #include "kadans/config/based_on.h"
 #include "kadans/config/project_root.h"
+#include "kadans/config/robot_config.h"
 #include "kadans/plant/plant_type.h"
 
 namespace kadans {
@@ -13,8 +14,16 @@ namespace {
 // What plays the robot, and what it cannot play.
 void plant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   const std::vector<std::string> models = plant_type_names(&PlantType::is_model);
+  constexpr std::string_view doc = "what plays the robot";
   auto chosen = static_cast<std::size_t>(std::ranges::find(models, scenario.plant) - models.begin());
-  f.choice("plant", chosen, models, "what plays the robot");
+  std::string named;
+  if (f.has("plant")) scenario.plant_place = f.place("plant");
+  const bool known = !f.reading() || !f.string("plant", named, doc) || std::ranges::count(models, named) > 0;
+  if (!known && !scenario.robot.empty() && !read_plugin_files(scenario.robot).empty()) {
+    scenario.plant = named;
+    return;
+  }
+  f.choice("plant", chosen, models, doc);
   scenario.plant = models[chosen];
   if (plant_type(plant_types(), scenario.plant).has_objects() || !f.has("world")) return;
   std::string others;

@@ -201,6 +201,7 @@ void add(const Fields& f, const Entry& entry, WorldConfig& world) {
 
 void world_fields(Fields& f, WorldConfig& world, Problems& problems) {
   std::vector<std::string> names;
+  if (f.has("world")) world.place = f.place("world");
   f.list("world", {0, max_world_objects}, "what is around the robot, and what it carries", [&](Fields& e) {
     Entry entry;
     const bool known = EntryReader(e, entry, problems).read();

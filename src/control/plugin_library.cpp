@@ -1,97 +1,131 @@
 #include "kadans/control/plugin_library.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
+#include <fstream>
 #include <span>
 #include <stdexcept>
 
 #include <dlfcn.h>
+#include <link.h>
 
-#include "plugin_object.h"
+#include "kadans/control/plugin.h"
 
 namespace kadans {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::uint32_t types_max = 64;
 constexpr std::size_t name_max = 64;
-using Entry = const Plugin* (*)();
 
-[[noreturn]] void refuse_plugin(const std::filesystem::path& file, const std::string& why) {
+[[noreturn]] void refuse_plugin(const fs::path& file, const std::string& why) {
   throw std::invalid_argument("plug-in " + file.string() + ": " + why);
 }
 
-Entry open_library(const std::filesystem::path& file) {
-  void* library = dlopen(std::filesystem::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
+template <typename T>
+bool read_at(std::ifstream& stream, std::uint64_t offset, T& value) {
+  stream.seekg(static_cast<std::streamoff>(offset));
+  return static_cast<bool>(stream.read(reinterpret_cast<char*>(&value), sizeof value));
+}
+
+// The loader maps what the library's headers promise; where the file ends earlier the process would die of SIGBUS. What
+// else is wrong with a file the loader says itself.
+void refuse_cut_off(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return;
+  const std::uint64_t bytes = fs::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  ElfW(Ehdr) head{};
+  if (!read_at(stream, 0, head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0) return;
+  if (head.e_ident[EI_CLASS] != (sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32)) return;
+  for (std::uint64_t i = 0; i < head.e_phnum; ++i) {
+    ElfW(Phdr) segment{};
+    const bool there = read_at(stream, head.e_phoff + i * head.e_phentsize, segment);
+    const bool whole = there && segment.p_offset <= bytes && segment.p_filesz <= bytes - segment.p_offset;
+    if (!there || (segment.p_type == PT_LOAD && !whole))
+      refuse_plugin(file, "is cut off after " + std::to_string(bytes) + " bytes: copy or build it again");
+  }
+}
+
+const PluginDescriptor& descriptor_in(const fs::path& file) {
+  refuse_cut_off(file);
+  void* const library = dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) refuse_plugin(file, std::string("cannot be loaded: ") + dlerror());
-  void* entry = dlsym(library, "kadans_plugin");
-  if (entry == nullptr) refuse_plugin(file, "exports no function kadans_plugin, so it is no plug-in of Kadans");
-  return reinterpret_cast<Entry>(entry);
+  const void* const symbol = dlsym(library, "kadans_plugin");
+  if (symbol == nullptr) refuse_plugin(file, "exports no kadans_plugin, so it is no plug-in of Kadans");
+  return *static_cast<const PluginDescriptor*>(symbol);
 }
 
-void check_sizes(const std::filesystem::path& file, const Plugin& plugin) {
-  constexpr Plugin own = plugin_sizes();
-  if (plugin.abi_version != own.abi_version) {
-    refuse_plugin(file, "is made for version " + std::to_string(plugin.abi_version) +
-                            " of the seam, this program has " + std::to_string(own.abi_version) + ": build it again");
-  }
-  const struct {
-    const char* what;
-    std::uint32_t size, wanted;
-  } sizes[] = {{"Plugin", plugin.plugin_size, own.plugin_size},
-               {"PluginType", plugin.type_size, own.type_size},
-               {"PluginSetup", plugin.setup_size, own.setup_size},
-               {"PluginLink", plugin.link_size, own.link_size},
-               {"PluginJoint", plugin.joint_size, own.joint_size},
-               {"PluginInput", plugin.input_size, own.input_size},
-               {"PluginDeclaration", plugin.declaration_size, own.declaration_size},
-               {"JointStates", plugin.joint_states_size, own.joint_states_size},
-               {"RobotStatus", plugin.robot_status_size, own.robot_status_size},
-               {"ActuationFrame", plugin.actuation_frame_size, own.actuation_frame_size},
-               {"Snapshot", plugin.snapshot_size, own.snapshot_size}};
-  for (const auto& size : sizes) {
-    if (size.size == size.wanted) continue;
-    refuse_plugin(file, std::string("was built with another ") + size.what + ": " + std::to_string(size.size) +
-                            " bytes, this program has " + std::to_string(size.wanted));
+std::vector<std::string_view> parts_of(std::string_view build) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t comma = build.find(", ");
+    parts.push_back(build.substr(0, comma));
+    if (comma == std::string_view::npos) return parts;
+    build.remove_prefix(comma + 2);
   }
 }
 
-bool right_name(const char* name) {
-  if (name == nullptr || strnlen(name, name_max + 1) > name_max || *name == '\0') return false;
-  return std::all_of(name, name + std::strlen(name),
-                     [](char c) { return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
+// What of a build is not so in the other.
+std::string differing(std::string_view build, std::string_view other) {
+  const std::vector<std::string_view> own = parts_of(build), others = parts_of(other);
+  std::string text;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (own.size() == others.size() && own[i] == others[i]) continue;
+    text += (text.empty() ? "" : ", ") + std::string(own[i]);
+  }
+  return text;
 }
 
-bool complete(const PluginType& type) {
-  return type.create != nullptr && type.destroy != nullptr && type.declare != nullptr && type.start != nullptr &&
-         type.step != nullptr && type.set_parameter != nullptr && type.parameters_changed != nullptr &&
-         type.set_point != nullptr && type.cancel_motion != nullptr && type.motion_remaining_s != nullptr &&
-         type.read_signals != nullptr && type.update != nullptr;
+void check_build(const fs::path& file, const PluginDescriptor& plugin) {
+  constexpr PluginDescriptor own;
+  constexpr const char* remedy =
+      ": build it again with the headers and libraries of this program's package, its compiler and its flags";
+  if (std::memcmp(plugin.magic, own.magic, sizeof own.magic) != 0)
+    refuse_plugin(file,
+                  "exports a kadans_plugin of another kind than this program's, " KADANS_SDK + std::string(remedy));
+  const std::string_view build(plugin.build, strnlen(plugin.build, sizeof plugin.build)), here(own.build);
+  if (build != here) {
+    refuse_plugin(
+        file, "was built with " + differing(build, here) + ", this program with " + differing(here, build) + remedy);
+  }
+  if (plugin.size != own.size) {
+    refuse_plugin(file, "says that its descriptor has " + std::to_string(plugin.size) + " bytes, this program's has " +
+                            std::to_string(own.size) + remedy);
+  }
+}
+
+bool right_name(std::string_view name) {
+  return !name.empty() && name.size() <= name_max &&
+         std::ranges::all_of(name, [](char c) { return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
+}
+
+std::string name_of(const fs::path& file, const PluginType& type) {
+  if (type.make_plant == nullptr) return type.name == nullptr ? "" : type.name;
+  const std::unique_ptr<PlantType> made = type.make_plant();
+  if (!made) refuse_plugin(file, "makes no type of plant where it promises one");
+  return std::string(made->name());
 }
 
 }  // namespace
 
-void load_plugin(const std::filesystem::path& file, ControlObjectTypes& types) {
-  const Entry entry = open_library(file);
-  const Plugin* plugin = nullptr;
-  try {
-    plugin = entry();
-  } catch (...) {
-    refuse_plugin(file, "threw when it was asked what it brings");
+void load_plugin(const fs::path& file, ControlObjectTypes& types, std::vector<MakePlantType>& plants) {
+  const PluginDescriptor& plugin = descriptor_in(file);
+  check_build(file, plugin);
+  if (plugin.types == nullptr || plugin.count < 1 || plugin.count > types_max) {
+    refuse_plugin(
+        file, "brings " + std::to_string(plugin.count) + " types, 1.." + std::to_string(types_max) + " are possible");
   }
-  if (plugin == nullptr) refuse_plugin(file, "does not say what it brings");
-  check_sizes(file, *plugin);
-  if (plugin->types == nullptr || plugin->type_count < 1 || plugin->type_count > types_max) {
-    refuse_plugin(file, "brings " + std::to_string(plugin->type_count) + " types, 1.." + std::to_string(types_max) +
-                            " are possible");
-  }
-  for (const PluginType& type : std::span(plugin->types, plugin->type_count)) {
-    if (!right_name(type.name)) refuse_plugin(file, "names a type with other than 1..64 of a-z, 0-9 and _");
-    if (!complete(type)) refuse_plugin(file, "lacks a function of type " + std::string(type.name));
+  for (const PluginType& type : std::span(plugin.types, plugin.count)) {
+    const std::string name = name_of(file, type);
+    if (!right_name(name)) refuse_plugin(file, "names a type with other than 1..64 of a-z, 0-9 and _");
+    if (type.make_plant != nullptr) {
+      plants.push_back(type.make_plant);
+      continue;
+    }
     try {
-      types.add(
-          type.name, [&type](const ObjectSetup& setup) { return std::make_unique<PluginObject>(type, setup); },
-          "the plug-in");
+      types.add(name, type.make_object, "the plug-in");
     } catch (const std::invalid_argument& error) {
       refuse_plugin(file, error.what());
     }

@@ -21,14 +21,15 @@ std::unique_ptr<PlantEmulator> PlantType::make_emulator(const PlantSite&, const 
   fail(*this, " speaks no protocol");
 }
 
-RegisteredPlantType::RegisteredPlantType(Make make) noexcept
+RegisteredPlantType::RegisteredPlantType(MakePlantType make) noexcept
     : make_(make), next_(std::exchange(newest_registered, this)) {}
 
-void RegisteredPlantType::add_all(PlantTypes& types) {
+void RegisteredPlantType::add_all(PlantTypes& types, std::span<const MakePlantType> others) {
   const auto name = [](const auto& type) { return type->name(); };
   const auto shipped = static_cast<std::ptrdiff_t>(types.size());
   for (const auto* one = newest_registered; one != nullptr; one = one->next_) types.push_back(one->make_());
   std::ranges::sort(types.begin() + shipped, types.end(), {}, name);  // no linker's order
+  for (const MakePlantType make : others) types.push_back(make());
   PlantTypes all = types;
   std::ranges::sort(all, {}, name);
   const auto twice = std::ranges::adjacent_find(all, {}, name);
@@ -39,6 +40,14 @@ const PlantType& plant_type(const PlantTypes& types, std::string_view name) {
   const auto found = std::ranges::find(types, name, [](const auto& type) { return type->name(); });
   if (found == types.end()) throw std::out_of_range("no plant of type " + std::string(name));
   return **found;
+}
+
+std::vector<std::string> plant_type_names(const PlantTypes& types, bool (PlantType::*is)() const noexcept) {
+  std::vector<std::string> names;
+  for (const auto& type : types) {
+    if (is == nullptr || (*type.*is)()) names.emplace_back(type->name());
+  }
+  return names;
 }
 
 }  // namespace kadans

@@ -72,7 +72,21 @@ TEST_CASE("A type's fields are its settings, and those of another robot stay as 
   CHECK_THROWS_AS((void)plant_type(others, "udp").make_plant({}), InputError);
 }
 
+TEST_CASE("Types that others make come last") {
+  class OtherType final : public PlantType {
+   public:
+    std::string_view name() const noexcept override { return "another"; }
+    std::string_view doc() const noexcept override { return "of a plug-in"; }
+  };
+  const MakePlantType others[] = {[]() -> std::unique_ptr<PlantType> { return std::make_unique<OtherType>(); }};
+  CHECK(plant_type_names(plant_types(others)) ==
+        std::vector<std::string>{"bullet", "ideal", "udp", "bench", "another"});
+  CHECK(plant_type_names(plant_types(others), &PlantType::is_protocol) == std::vector<std::string>{"udp"});
+}
+
 TEST_CASE("Two types of one name are refused") {
+  const MakePlantType again[] = {make_bench_type};
+  CHECK_THROWS_WITH_AS(plant_types(again), "two types of plants have the name bench", std::invalid_argument);
   PlantTypes types = plant_types();
   CHECK_THROWS_WITH_AS(RegisteredPlantType::add_all(types), "two types of plants have the name bench",
                        std::invalid_argument);

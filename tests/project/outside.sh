@@ -18,6 +18,17 @@ for program in "$work"/build/run_*; do
   "$program"
 done
 
+# driven COMMAND...: a run on the bench that says at its end in JSON how often it wrote, and that it closed the bus.
+driven() {
+  local said
+  said=$("$@") || { echo "failed: $*"; exit 1; }
+  echo "$said"
+  grep -Eq '"written": ?[0-9]{3,}' <<<"$said" && grep -Eq '"closed": ?[1-9]' <<<"$said" || { echo "not driven: $*"; exit 1; }
+}
+if [ -x "$work/build/bench_program" ]; then
+  driven "$work/build/bench_program"
+fi
+
 # What `kadans new control-object` writes builds and passes as it stands, as a program and as a plug-in.
 if [ -x "$work/moved/bin/kadans" ]; then
   "$work/moved/bin/kadans" new control-object first_try
@@ -32,11 +43,18 @@ if [ -x "$work/moved/bin/kadans" ]; then
     "$name/build/${name}_test"
   done
   first_try/build/kadans_first_try check "$work/moved/share/kadans/config/tulip/robot.json"
-  test -f second_try/build/second_try.so
 fi
 
 share="$work/moved/share/kadans"
 if [ -x "$work/moved/bin/kadans" ]; then
+  mkdir "$share/plugins"
+  cp "$work/build/bench_plugin.so" second_try/build/second_try.so "$share/plugins"
+  cat >"$share/config/tulip/benched.json" <<'EOF'
+{ "based_on": "config/tulip/robot.json", "plugins": ["plugins/bench_plugin.so", "plugins/second_try.so"],
+  "plant": { "bench": { "period_s": 0.001 } } }
+EOF
+  "$work/moved/bin/kadans" check --plugins "$share/config/tulip/benched.json"
+  driven "$work/moved/bin/kadans" run "$share/config/tulip/benched.json" --plant bench --soft --json --no-ctl --duration 1
   "$work/moved/bin/kadans" --version
   "$work/moved/bin/kadans" check "$share/config/scenarios/squat.json"
   # Too short to squat: 1 says that not all checks passed, which is right.

@@ -145,7 +145,9 @@ class Fields {
   std::string path(std::string_view name) const;  // "plant.drives["*_knee"].viscous_Nms_per_rad"
   const std::string& path() const noexcept { return path_; }
 
-  // To be called after the last field: refuses the keys that no field asked for.
+  // Keys of this object that no field asks for are somebody else's.
+  void leave_others() noexcept { any_key_ = true; }
+  // After the last field: refuses the keys that no field asked for.
   void finish();
 
  private:

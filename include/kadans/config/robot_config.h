@@ -53,7 +53,7 @@ struct SafeConfig {
 struct RobotConfig {
   std::string file;
   std::string name;
-  std::vector<PlacedName> plugins;  // shared libraries with types of control objects, as written
+  std::vector<PlacedName> plugins;  // shared libraries with types of control objects and of plants, as written
   RobotModel model;
   EngineSettings engine;
   PlantSettings plant;
@@ -74,20 +74,22 @@ struct RobotConfig {
   RecordConfig record;
 };
 
-// Throws InputError with all mistakes, those of the URDF included. `object_types` are the types of control objects that
-// the program knows; when it is empty, types are not checked, for the plug-ins that may bring them are not loaded.
-RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types);
+// Throws InputError with everything that is wrong, the URDF's mistakes included. `object_types`: the types of control
+// objects that the program knows; none: any, and the settings of any type of plant, where the file names plug-ins: what
+// they would bring is not asked. `plants`: types that its plug-ins brought.
+RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types,
+                              std::span<const MakePlantType> plants = {});
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
-                                   std::span<const std::string> object_types);
+                                   std::span<const std::string> object_types,
+                                   std::span<const MakePlantType> plants = {});
 
 // A plug-in that the file names; its file exists.
 struct PluginFile {
   std::filesystem::path file;
   TextPlace place;
 };
-// Reads the plug-ins alone, because they must be loaded before the types of control objects are known. Throws
-// InputError when the file is no JSON or names a plug-in that does not exist. read_robot_config reports all other
-// mistakes.
+// The plug-ins alone: they must be loaded before the types are known. Throws InputError when the
+// file is no JSON or names a plug-in that is not there; other mistakes are read_robot_config's to tell.
 std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot);
 
 // Sets the configured parameters in the tables of `catalog` and fills the objects' presets. The catalog's objects must

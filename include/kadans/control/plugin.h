@@ -1,127 +1,114 @@
-// The seam to plug-ins: control objects in a shared library that was built apart from the program, perhaps by another
-// compiler. Only plain data and C functions cross it; the frames are those of kadans/signal, whose layout is fixed. A
-// plug-in exports one function:
+// Plug-ins: types of control objects and of plants in a shared library that a robot's configuration lists under
+// "plugins". In one source file of a library that CMake's kadans_plugin() builds:
 //
-//   extern "C" const kadans::Plugin* kadans_plugin();
+//   KADANS_PLUGIN(kadans::plugin_type<make_spring>("spring"), kadans::plugin_type<make_bench_type>())
 //
-// Nobody writes these tables by hand: KADANS_PLUGIN (plugin_glue.h) makes them from a ControlObject. The program reads
-// them with load_plugin (plugin_library.h).
+// where make_spring is a std::unique_ptr<kadans::ControlObject> (const kadans::ObjectSetup&), and make_bench_type a
+// std::unique_ptr<kadans::PlantType> ().
 //
-// A change here, or in a frame's layout, needs a new plugin_abi_version. The program compares the version and the sizes
-// before it calls anything else.
+// The program gets the object itself and calls it as one of its own. So a plug-in can do whatever an object can that is
+// built in, and what its functions throw arrives as it was thrown. In return both must be built alike: the library
+// exports one symbol, kadans_plugin, a descriptor that says how it was built. The program compares that with its own
+// build before it believes anything else, and refuses a library that differs (plugin_library.h).
 //
-// Threads: update in the behavior thread, the rest as in control_object.h. Strings are valid during the call only.
+// Where the plug-in's functions come from: a plug-in links the package's static libraries and hides what it takes from
+// them. The program shows no functions but its mathematics (src/signal/portable_math.cpp), so nothing of Kadans is
+// bound across: the two sides meet in virtual functions, in data and in the C++ library, which both share. Therefore a
+// plug-in also fits a program of your own that links Kadans. What a process has once does not work from a plug-in:
+// - KADANS_REGISTER_CONTROL_OBJECT and KADANS_REGISTER_PLANT_TYPE fill a list that only the plug-in has: name the types
+//   in KADANS_PLUGIN.
+// - Bullet's memory, the types of plants, scripts and the program itself: kadans_plugin() refuses to link them.
+// - read_urdf() keeps other calls out of urdfdom, but not those of the program: call it where PlantType and Plant are
+//   called off the tick, not in a thread of your own.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 
-#include "kadans/signal/frames.h"
-#include "kadans/signal/status.h"
+#include "kadans/control/control_object.h"
+#include "kadans/control/sdk_version.h"
+#include "kadans/plant/plant_type.h"
+#include "kadans/signal/machine_name.h"
+
+// How this was built, as far as it decides what objects look like in memory: parts in words, separated by ", ". Flags
+// such as NDEBUG and _GLIBCXX_ASSERTIONS change no object, so they may differ.
+#define KADANS_WORDS(text) KADANS_WORDS_OF(text)
+#define KADANS_WORDS_OF(text) #text
+#if defined(__clang__)
+#define KADANS_BUILD_COMPILER "clang " KADANS_WORDS(__clang_major__)
+#else
+#define KADANS_BUILD_COMPILER "gcc " KADANS_WORDS(__GNUC__)
+#endif
+#if defined(_LIBCPP_VERSION)
+#define KADANS_BUILD_LIBRARY "libc++ " KADANS_WORDS(_LIBCPP_VERSION) ", string ABI " KADANS_WORDS(_LIBCPP_ABI_VERSION)
+#else
+#define KADANS_BUILD_LIBRARY \
+  "libstdc++ " KADANS_WORDS(_GLIBCXX_RELEASE) ", string ABI " KADANS_WORDS(_GLIBCXX_USE_CXX11_ABI)
+#endif
+#if defined(_GLIBCXX_DEBUG)
+#define KADANS_BUILD_CONTAINERS "containers that check"
+#else
+#define KADANS_BUILD_CONTAINERS "containers that do not check"
+#endif
+// As Eigen decides it, included before or not: by hand, else by the vectors that the compiler may use.
+#if defined(EIGEN_MAX_ALIGN_BYTES)
+#define KADANS_BUILD_ALIGNMENT KADANS_WORDS(EIGEN_MAX_ALIGN_BYTES)
+#elif defined(EIGEN_DONT_ALIGN)
+#define KADANS_BUILD_ALIGNMENT "0"
+#elif defined(__AVX512F__)
+#define KADANS_BUILD_ALIGNMENT "64"
+#elif defined(__AVX__)
+#define KADANS_BUILD_ALIGNMENT "32"
+#else
+#define KADANS_BUILD_ALIGNMENT "16"
+#endif
+#define KADANS_BUILD                                                                                               \
+  KADANS_SDK ", " KADANS_BUILD_COMPILER ", " KADANS_BUILD_LIBRARY ", " KADANS_BUILD_CONTAINERS ", " KADANS_MACHINE \
+             ", pointers of " KADANS_WORDS(__SIZEOF_POINTER__) " bytes, Eigen aligned to " KADANS_BUILD_ALIGNMENT
 
 namespace kadans {
 
-inline constexpr std::uint32_t plugin_abi_version = 2;
-
-struct PluginLink {
-  const char* name;
-  double mass_kg;
-  double com_m[3];
-  double inertia_kg_m2[6];  // xx, yy, zz, xy, xz, yz
-};
-
-struct alignas(8) PluginJoint {
-  const char* name;
-  std::uint32_t type;    // JointType
-  std::uint32_t parent;  // a link's number
-  std::uint32_t mimics;  // a joint's number, or no_joint
-  alignas(8) double position_m[3];
-  double orientation[4];  // w, x, y, z
-  double axis[3];
-  double lower_rad, upper_rad, effort_max_Nm, velocity_max_rad_s, damping_Nms_per_rad, friction_Nm;
-  double mimic_multiplier, mimic_offset;
-};
-
-struct PluginOption {
-  const char* name;
-  const char* text;
-};
-
-struct PluginSetup {
-  void* program;
-  void (*asked)(void* program, const char* option);  // the object knows this option, given or not
-  const PluginOption* options;                       // as given
-  const char* robot;
-  const PluginLink* links;
-  const PluginJoint* joints;
-  const std::uint32_t* driven;  // the joints that the object drives
-  std::uint32_t option_count, link_count, joint_count, driven_count;
-};
-
-struct alignas(8) PluginInput {
-  const JointStates* joints;
-  const RobotStatus* status;
-  const ActuationFrame* last;
-  alignas(8) std::int64_t time_ns;
-  double dt_s;
-};
-
-// How the plug-in tells the program the parameters, set-points and signals of its object. Each kind is numbered from 0,
-// in the order of the calls.
-struct PluginDeclaration {
-  void* program;
-  void (*parameter)(void* program, const char* name, const char* unit, double min, double max, double initial,
-                    const char* doc);
-  void (*setpoint)(void* program, const char* name, const char* unit, double min, double max, const char* doc,
-                   std::uint32_t channel, std::uint32_t joint);
-  void (*signal)(void* program, const char* name, const char* unit, const char* doc);
-};
-
-struct PluginError {
-  char text[512];  // ends with a 0
-};
-
-// One type of control object. No function may be missing.
+// One type: `make_object` and its name, or `make_plant`, whose name the type itself says.
 struct PluginType {
-  const char* name;
-  void* (*create)(const PluginSetup*, PluginError*);  // nullptr: refused, error says why
-  void (*destroy)(void* object);
-  std::int32_t (*declare)(void* object, const PluginDeclaration*, PluginError*);  // 0: refused, error says why
-  void (*start)(void* object, const PluginInput*);
-  void (*step)(void* object, const PluginInput*, ActuationFrame*);
-  void (*set_parameter)(void* object, std::uint32_t parameter, double value);
-  void (*parameters_changed)(void* object);
-  void (*set_point)(void* object, std::uint32_t channel, double value, double duration_s);
-  void (*cancel_motion)(void* object, std::uint32_t channel);
-  double (*motion_remaining_s)(void* object);
-  void (*read_signals)(void* object, double* values);  // one value per signal
-  void (*update)(void* object, const Snapshot*);
+  const char* name = nullptr;
+  std::unique_ptr<ControlObject> (*make_object)(const ObjectSetup&) = nullptr;
+  MakePlantType make_plant = nullptr;
 };
 
-struct Plugin {
-  std::uint32_t abi_version;
-  // sizeof of the types that cross the seam, as the plug-in was compiled.
-  std::uint32_t plugin_size, type_size, setup_size, link_size, joint_size, input_size, declaration_size;
-  std::uint32_t joint_states_size, robot_status_size, actuation_frame_size, snapshot_size;
-  std::uint32_t type_count;
-  const PluginType* types;
+struct PluginDescriptor {
+  // These three stand where they do for ever. `size` is the descriptor's, `build` ends with a 0.
+  char magic[16] = "kadans plug-in";
+  std::uint32_t size = sizeof(PluginDescriptor);
+  char build[236] = KADANS_BUILD;
+  // The rest is believed when the build is the program's.
+  std::uint32_t count = 0;
+  const PluginType* types = nullptr;
 };
+static_assert(offsetof(PluginDescriptor, size) == 16 && offsetof(PluginDescriptor, build) == 20 &&
+              offsetof(PluginDescriptor, count) == 256);
 
-// The first lines of a Plugin, filled as this translation unit was compiled.
-constexpr Plugin plugin_sizes() noexcept {
-  return {.abi_version = plugin_abi_version,
-          .plugin_size = sizeof(Plugin),
-          .type_size = sizeof(PluginType),
-          .setup_size = sizeof(PluginSetup),
-          .link_size = sizeof(PluginLink),
-          .joint_size = sizeof(PluginJoint),
-          .input_size = sizeof(PluginInput),
-          .declaration_size = sizeof(PluginDeclaration),
-          .joint_states_size = sizeof(JointStates),
-          .robot_status_size = sizeof(RobotStatus),
-          .actuation_frame_size = sizeof(ActuationFrame),
-          .snapshot_size = sizeof(Snapshot),
-          .type_count = 0,
-          .types = nullptr};
+template <std::unique_ptr<ControlObject> (*make)(const ObjectSetup&)>
+constexpr PluginType plugin_type(const char* name) noexcept {
+  return {.name = name, .make_object = make};
+}
+template <MakePlantType make>
+constexpr PluginType plugin_type() noexcept {
+  return {.make_plant = make};
+}
+
+template <std::size_t count>
+constexpr PluginDescriptor plugin_of(const PluginType (&types)[count]) noexcept {
+  return {.count = count, .types = types};
 }
 
 }  // namespace kadans
+
+extern "C" __attribute__((visibility("default"))) const kadans::PluginDescriptor kadans_plugin;
+
+// The descriptor is a constant: none of the plug-in's code runs to make it.
+#define KADANS_PLUGIN(...)                                              \
+  namespace {                                                           \
+  constexpr ::kadans::PluginType kadans_plugin_types[] = {__VA_ARGS__}; \
+  }                                                                     \
+  constinit const ::kadans::PluginDescriptor kadans_plugin = ::kadans::plugin_of(kadans_plugin_types);

@@ -1,21 +1,25 @@
-// Plug-ins: types of control objects in a shared library. plugin.h is the interface, plugin_glue.h makes a plug-in.
+// Loads plug-ins (plugin.h).
 //
-// A library that does not fit is refused with a reason: it is no library, exports no kadans_plugin, was built for
-// another version of the seam or with frames of another size, lacks a function, or brings a type whose name is taken.
-// The program does not trust a library's objects. An object that throws while the loop runs is not called again: its
-// joints get NaN from then on, and the safety layer damps them (signal `failed`). A library shares the program's
-// memory; nothing here protects against one that writes where it should not.
+// A library that does not fit is refused with a reason: it is none, was cut off, exports no kadans_plugin, was built
+// otherwise than this program, names a type in a way that no type has, or one that there is already. Its constructors
+// of static objects have run by then: to load a library is to run it, so who only looks at files does not call this.
 //
-// Before the loop. A library stays loaded until the program ends.
+// What it brings shares the program's memory and threads, and is bound by what ControlObject and PlantType promise, as
+// all that is built in: an exception that leaves a noexcept function ends the process.
+//
+// Before the loop. A library stays loaded until the program ends, one that was refused too.
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "kadans/control/control_object_types.h"
+#include "kadans/plant/plant_type.h"
 
 namespace kadans {
 
-// Adds the library's types. Throws std::invalid_argument: "plug-in FILE: what is wrong".
-void load_plugin(const std::filesystem::path& file, ControlObjectTypes& types);
+// Adds the library's types. Throws std::invalid_argument: "plug-in FILE: what is wrong", and what a type of plant
+// throws when it is made.
+void load_plugin(const std::filesystem::path& file, ControlObjectTypes& types, std::vector<MakePlantType>& plants);
 
 }  // namespace kadans

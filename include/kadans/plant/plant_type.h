@@ -6,13 +6,14 @@
 //
 //   KADANS_REGISTER_PLANT_TYPE(make_bench_type);  // std::unique_ptr<kadans::PlantType> make_bench_type();
 //
-// docs/hardware.md says how to write one.
+// and a plug-in brings them to any program (kadans/control/plugin.h). docs/hardware.md says how one is written.
 //
 // Before the loop, one thread. The plants and emulators that a type makes state their threads themselves.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -119,26 +120,28 @@ class PlantType {
   virtual std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const;
 };
 
+using MakePlantType = std::unique_ptr<PlantType> (*)();
 using PlantTypes = std::vector<std::shared_ptr<PlantType>>;
 
-// The types of this program, each with its default settings: the shipped ones by name, then the registered ones. Throws
-// std::invalid_argument when two have the same name.
-PlantTypes plant_types();
-// The type of this name. Throws std::out_of_range when there is none.
+// Those of this program, each with its default settings: the shipped ones by name, then those that were registered,
+// then those that `others` make, which plug-ins bring. Throws std::invalid_argument when two have one name.
+PlantTypes plant_types(std::span<const MakePlantType> others = {});
+// One that is there. Throws std::out_of_range.
 const PlantType& plant_type(const PlantTypes& types, std::string_view name);
 
-// Names of the types for which `is` holds; without `is`, of all.
+// Names of the types for which `is` holds; of all. Those of this program, or among `types`.
 std::vector<std::string> plant_type_names(bool (PlantType::*is)() const noexcept = nullptr);
+std::vector<std::string> plant_type_names(const PlantTypes& types, bool (PlantType::*is)() const noexcept = nullptr);
 
 // An entry in the list of the types that were registered before main(). Only the macro makes one.
 class RegisteredPlantType {
  public:
-  using Make = std::unique_ptr<PlantType> (*)();
-  explicit RegisteredPlantType(Make make) noexcept;
-  static void add_all(PlantTypes& types);
+  explicit RegisteredPlantType(MakePlantType make) noexcept;
+  // And behind them what `others` make.
+  static void add_all(PlantTypes& types, std::span<const MakePlantType> others = {});
 
  private:
-  Make make_;
+  MakePlantType make_;
   RegisteredPlantType* next_;
 };
 

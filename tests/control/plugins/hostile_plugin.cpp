@@ -1,5 +1,4 @@
-// Plug-ins that do not keep to the seam, one a library: HOSTILE says which.
-#include <cmath>
+// Plug-ins that break their promise, one a library: HOSTILE_... says which.
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -7,28 +6,12 @@
 
 #include <unistd.h>
 
-#include "kadans/control/plugin_glue.h"
+#include "kadans/control/plugin.h"
 #include "spring.h"
 
 namespace {
 
 using namespace kadans;
-
-[[maybe_unused]] PluginType spring(const char* name) { return plugin_type<make_spring>(name); }
-
-[[maybe_unused]] Plugin* good() {
-  static PluginType types[] = {spring("hostile")};
-  static Plugin plugin = plugin_sizes();
-  plugin.type_count = 1;
-  plugin.types = types;
-  return &plugin;
-}
-
-[[maybe_unused]] PluginType& type_of(Plugin* plugin) { return const_cast<PluginType&>(plugin->types[0]); }
-
-[[maybe_unused]] std::unique_ptr<ControlObject> make_nothing(const ObjectSetup&) { return nullptr; }
-
-struct [[maybe_unused]] NoException {};
 
 // For ever; who tests it hears of it.
 [[maybe_unused]] void hang() {
@@ -36,11 +19,70 @@ struct [[maybe_unused]] NoException {};
   for (;;) pause();
 }
 
+[[maybe_unused]] void crash() { std::raise(SIGSEGV); }
+
+enum class Where { step, update };
+
+// Does nothing, but for `strike` after 0.1 s.
+template <Where where, void (*strike)()>
+class Bomb final : public ControlObject {
+ public:
+  void declare(Declaration&) override {}
+  void start(const ControlInput&) noexcept override {}
+  void step(const ControlInput& input, ActuationFrame&) noexcept override {
+    if (where == Where::step && input.time_ns >= 100'000'000) strike();
+  }
+  void set_point(std::uint32_t, double, double) noexcept override {}
+  void cancel_motion(std::uint32_t) noexcept override {}
+  double motion_remaining_s() const noexcept override { return 0; }
+  void update(const Snapshot& snapshot) override {
+    if (where == Where::update && snapshot.time_ns >= 100'000'000) strike();
+  }
+};
+
+template <Where where, void (*strike)()>
+std::unique_ptr<ControlObject> make_bomb(const ObjectSetup&) {
+  return std::make_unique<Bomb<where, strike>>();
+}
+
+struct OwnException : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+[[maybe_unused]] std::unique_ptr<ControlObject> make_nothing(const ObjectSetup&) { return nullptr; }
+[[maybe_unused]] std::unique_ptr<PlantType> make_no_plant() { return nullptr; }
+[[maybe_unused]] std::unique_ptr<ControlObject> refuse_option(const ObjectSetup&) {
+  throw OptionError("loop", "of no use here");
+}
+[[maybe_unused]] std::unique_ptr<ControlObject> throw_own(const ObjectSetup&) { throw OwnException("boo"); }
+
+[[maybe_unused]] constexpr PluginType springs[] = {plugin_type<make_spring>("hostile")};
+
+// The descriptor of a plug-in of one spring, changed by hand.
+[[maybe_unused]] constexpr PluginDescriptor of_springs() { return plugin_of(springs); }
+
+#if defined(HOSTILE_BUILD)
+// As if part HOSTILE_BUILD of the build were another one.
+constexpr PluginDescriptor of_another_build() {
+  PluginDescriptor plugin = of_springs();
+  int part = 0;
+  for (char* letter = plugin.build; *letter != '\0'; ++letter) {
+    if (letter[0] == ',' && letter[1] == ' ') ++part;
+    if (part != HOSTILE_BUILD) continue;
+    letter[part == 0 ? 0 : 2] = '?';
+    break;
+  }
+  return plugin;
+}
+#endif
+
 }  // namespace
 
-#define EXPORT extern "C" __attribute__((visibility("default"))) const kadans::Plugin* kadans_plugin()
+#define DESCRIPTOR constinit const kadans::PluginDescriptor kadans_plugin
 
-#if defined(HOSTILE_loaded)  // tells that it was, by a file
+#if defined(HOSTILE_BUILD)
+DESCRIPTOR = of_another_build();
+#elif defined(HOSTILE_loaded)  // tells that it was, by a file
 namespace {
 const struct Loaded {
   Loaded() {
@@ -48,123 +90,41 @@ const struct Loaded {
   }
 } loaded;
 }  // namespace
-EXPORT { return good(); }
-#elif defined(HOSTILE_wrong_version)
-EXPORT {
-  Plugin* plugin = good();
-  plugin->abi_version = 7;
-  return plugin;
-}
-#elif defined(HOSTILE_other_frames)
-EXPORT {
-  Plugin* plugin = good();
-  plugin->actuation_frame_size += 8;
-  return plugin;
-}
+DESCRIPTOR = of_springs();
+#elif defined(HOSTILE_crashing_step)
+KADANS_PLUGIN(plugin_type<make_bomb<Where::step, crash>>("hostile"))
+#elif defined(HOSTILE_hanging_step)
+KADANS_PLUGIN(plugin_type<make_bomb<Where::step, hang>>("hostile"))
+#elif defined(HOSTILE_hanging_update)
+KADANS_PLUGIN(plugin_type<make_bomb<Where::update, hang>>("hostile"))
 #elif defined(HOSTILE_missing_symbol)
-extern "C" __attribute__((visibility("default"))) const kadans::Plugin* kadans_plugins() { return good(); }
+extern "C" __attribute__((visibility("default"))) const PluginDescriptor kadans_plugins;
+constinit const PluginDescriptor kadans_plugins = of_springs();
+#elif defined(HOSTILE_other_kind)  // as plug-ins were, when their symbol was a function
+DESCRIPTOR = [] {
+  PluginDescriptor plugin = of_springs();
+  plugin.magic[0] = 'K';
+  return plugin;
+}();
+#elif defined(HOSTILE_other_size)
+DESCRIPTOR = [] {
+  PluginDescriptor plugin = of_springs();
+  plugin.size += 8;
+  return plugin;
+}();
 #elif defined(HOSTILE_nothing)
-EXPORT { return nullptr; }
-#elif defined(HOSTILE_throwing_entry)
-EXPORT { throw std::runtime_error("boo"); }
+DESCRIPTOR = {};
 #elif defined(HOSTILE_many_types)
-EXPORT {
-  Plugin* plugin = good();
-  plugin->type_count = 4'000'000'000;
-  return plugin;
-}
+DESCRIPTOR = {.count = 4'000'000'000, .types = springs};
 #elif defined(HOSTILE_bad_name)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).name = "Bad.Name";
-  return plugin;
-}
-#elif defined(HOSTILE_missing_function)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).read_signals = nullptr;
-  return plugin;
-}
+KADANS_PLUGIN(plugin_type<make_spring>("Bad.Name"))
+#elif defined(HOSTILE_no_maker)
+KADANS_PLUGIN(PluginType{.name = "hostile"})
 #elif defined(HOSTILE_name_taken)
 KADANS_PLUGIN(plugin_type<make_spring>("joint_pid"))
-#elif defined(HOSTILE_makes_nothing)
-KADANS_PLUGIN(plugin_type<make_nothing>("hostile"))
-#elif defined(HOSTILE_throwing_create)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).create = [](const PluginSetup*, PluginError*) -> void* { throw NoException{}; };
-  return plugin;
-}
-#elif defined(HOSTILE_throwing_declare)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).declare = [](void*, const PluginDeclaration*, PluginError*) -> std::int32_t { throw 1; };
-  return plugin;
-}
-#elif defined(HOSTILE_refusing_declare)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).declare = [](void*, const PluginDeclaration*, PluginError* error) -> std::int32_t {
-    for (char& letter : error->text) letter = 'x';  // without an end
-    return 0;
-  };
-  return plugin;
-}
-#elif defined(HOSTILE_declaring_twice)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).declare = [](void*, const PluginDeclaration* program, PluginError*) -> std::int32_t {
-    for (int i = 0; i < 2; ++i) program->parameter(program->program, "k", "", 0, 1, 0, nullptr);
-    return 1;
-  };
-  return plugin;
-}
-#elif defined(HOSTILE_throwing_step)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame* actuation) {
-    actuation->joints[1] = {.effort_Nm = 1, .mode = ActuationMode::effort};
-    if (input->time_ns >= 5'000'000) throw std::runtime_error("boo");
-  };
-  return plugin;
-}
-#elif defined(HOSTILE_crashing_step)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame*) {
-    if (input->time_ns >= 100'000'000) std::raise(SIGSEGV);
-  };
-  return plugin;
-}
-#elif defined(HOSTILE_hanging_step)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).step = [](void*, const PluginInput* input, ActuationFrame*) {
-    if (input->time_ns >= 100'000'000) hang();
-  };
-  return plugin;
-}
-#elif defined(HOSTILE_hanging_update)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).update = [](void*, const Snapshot* snapshot) {
-    if (snapshot->time_ns >= 100'000'000) hang();
-  };
-  return plugin;
-}
-#elif defined(HOSTILE_not_finite)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).step = [](void*, const PluginInput*, ActuationFrame* actuation) {
-    for (JointActuation& joint : actuation->joints) joint = {.effort_Nm = std::nan(""), .mode = ActuationMode::effort};
-  };
-  type_of(plugin).motion_remaining_s = [](void*) { return std::nan(""); };
-  return plugin;
-}
-#elif defined(HOSTILE_throwing_update)
-EXPORT {
-  Plugin* plugin = good();
-  type_of(plugin).update = [](void*, const Snapshot*) { throw std::runtime_error("boo"); };
-  return plugin;
-}
+#elif defined(HOSTILE_no_plant)
+KADANS_PLUGIN(plugin_type<make_no_plant>())
+#elif defined(HOSTILE_refusing)
+KADANS_PLUGIN(plugin_type<make_nothing>("makes_nothing"), plugin_type<refuse_option>("refuses_option"),
+              plugin_type<throw_own>("throws_own"))
 #endif
