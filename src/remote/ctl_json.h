@@ -18,7 +18,6 @@ Json behaviors_json(const Answer& report);
 Json status_json(const Instance& instance, const InstanceStatus& status);
 // {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; what is not told is null.
 Json drives_json(const PowerStatus& power, const RobotModel& model);
-Json fault_json(const Fault& fault, const RobotModel& model);
 
 // Everything of a kind: "behaviors", "sets", "objects", "parameters", "signals". The report counts for behaviors and
 // parameters; the status for sets. Throws InputError on another kind.

@@ -11,13 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "kadans/telemetry/plot.h"
 #include "kadans/telemetry/record_outline.h"
 
 namespace kadans {
-
-struct PlotPoint {
-  double time_s = 0, value = 0;  // NaN: the line is interrupted
-};
 
 // Thins one signal to so many columns between two times.
 class PlotColumns {
@@ -39,10 +36,6 @@ class PlotColumns {
   std::vector<PlotPoint> points_;
 };
 
-struct PlotLine {
-  std::string label;
-  std::vector<PlotPoint> points;
-};
 struct PlotPanel {
   std::string title;  // may be ""
   std::string unit;
