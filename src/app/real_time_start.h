@@ -11,8 +11,7 @@ bool rights_suffice(int priority, bool soft);
 // Returns when they are bound, or cannot be, which is told. Before any thread is started.
 void bind_all_functions(char** argv);
 
-// All memory stays where it is, but for libraries that no real-time thread calls; Bullet is one of them without a
-// model. Without the right to it, which has been told, nothing happens.
+// All memory stays where it is. Without the right to it, which has been told, nothing happens.
 void lock_program(bool with_model) noexcept;
 
 }  // namespace kadans

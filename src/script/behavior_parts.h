@@ -11,7 +11,6 @@
 #include "kadans/script/lua_state.h"
 #include "log_bound.h"
 #include "snapshot_tables.h"
-#include "warm_up.h"
 
 namespace kadans {
 
@@ -28,12 +27,9 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void tell_refused() noexcept;  // what the control engine refused since the last time
   // The sets of all active machines that the snapshot does not show are asked for in the next tick.
   void want_sets(const Snapshot& snapshot) noexcept;
-  // Reads what a tick is going to need; false when it was done a moment ago.
-  bool warm(const Snapshot& snapshot) noexcept;
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
 
-  WarmUp warm_up;  // of a tick
   Settings settings;
   const Catalog& catalog;
   BehaviorLog& log;

@@ -63,17 +63,6 @@ class Latest {
     }
   }
 
-  // Writer thread only: brings the places of the next publish() near. Changes nothing.
-  void warm() const noexcept {
-    for (const Channel& channel : channels_) bring_near<1>(channel.slots[channel.write_slot]);
-  }
-  // Thread of reader `reader` only: brings what read() will find near, unless something newer comes. Changes nothing.
-  void warm_read(std::size_t reader = 0) noexcept {
-    Channel& channel = channels_[reader];
-    const std::uint32_t middle_slot = Memory::at(channel.middle).load(std::memory_order_relaxed) & slot_mask;
-    bring_near<0>(channel.slots[has_news(reader) ? middle_slot : channel.read_slot]);
-  }
-
   // The value that a reader looks at, for as long as this lives. Who reads again meanwhile finds the same value: what
   // is looked at is never given back to the writer, however deep the call that reads again. Give it a name: of one
   // without nothing can be kept.
@@ -121,13 +110,6 @@ class Latest {
       copy_used(from, to);
     else
       to = from;
-  }
-
-  // A hint to the processor: no access that the language knows of, so no race with the slot's owner.
-  template <int to_write>
-  static void bring_near(const Slot& slot) noexcept {
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(&slot);
-    for (std::size_t i = 0; i < sizeof slot; i += cache_line) __builtin_prefetch(bytes + i, to_write);
   }
 
   std::array<Channel, Readers> channels_;

@@ -18,7 +18,6 @@ class ControlSide final : public RecordSink {
 
   // Control thread.
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
-  void warm() noexcept override;
 
   // One thread at a time. From the next tick on, or the one that goes on, rows go there; nullptr: nowhere. The sink
   // must outlive the loop: a row may still be on its way.

@@ -28,7 +28,6 @@ class ByteReader;
 class ByteWriter;
 struct Motion;
 class StepMeter;
-class WarmUp;
 
 // Registry references of what the functions are given.
 struct RunnerTables {
@@ -78,9 +77,6 @@ class ChartRunner {
   void report_gone(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept;
   // The next tick enters again what leave_marked() left.
   void enter_again(const std::vector<bool>& marks) noexcept;
-
-  // What every tick needs.
-  void add_to(WarmUp& list) const noexcept;
 
   bool started() const noexcept { return started_; }
   bool finished() const noexcept { return finished_; }

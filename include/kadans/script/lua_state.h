@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,7 +21,6 @@ struct lua_State;
 namespace kadans {
 
 struct LuaCore;
-class WarmUp;
 
 // Takes what scripts print.
 class ScriptVoice {
@@ -81,8 +79,6 @@ class LuaState {
   // memory are in use. Where time is limited it takes as long as a tick may at most, and goes on the next time.
   void collect() noexcept;
   std::size_t used_bytes() const noexcept;
-  // What every call() needs, of the state and of the interpreter.
-  void add_to(WarmUp& list) const noexcept;
 
  private:
   void collect_in_time(int kB) noexcept;
@@ -90,7 +86,6 @@ class LuaState {
   Settings settings_;
   std::unique_ptr<LuaCore> core_;
   lua_State* lua_ = nullptr;
-  std::span<const std::byte> foundation_;  // what the interpreter keeps of itself
   std::vector<Source> sources_;
   std::uint64_t collected_at_ = 0;
 };
