@@ -4,12 +4,11 @@ set(KADANS_STANDARD_HEADERS <algorithm> <array> <charconv> <cmath> <cstdint> <cs
     <limits> <map> <memory> <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <system_error> <unordered_map>
     <utility> <variant> <vector>)
 
-# kadans_layer(NAME [SOFT] SOURCES file... [LINKS target...] [PRIVATE_LINKS target...] [PRECOMPILE header...])
+# kadans_layer(NAME SOURCES file... [LINKS target...] [PRIVATE_LINKS target...] [PRECOMPILE header...])
 # A static library kadans_NAME, known as kadans::NAME; "/" in a name becomes "_" (plant/bullet -> kadans_plant_bullet).
-# SOFT: the control thread calls none of it. PRECOMPILE names headers that nearly all of its files include, beside the
-# standard ones.
+# PRECOMPILE names headers that nearly all of its files include, beside the standard ones.
 function(kadans_layer name)
-  cmake_parse_arguments(arg "SOFT" "" "SOURCES;LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
   string(REPLACE "/" "_" target "kadans_${name}")
   string(REPLACE "/" "_" export "${name}")
   add_library(${target} STATIC ${arg_SOURCES})
@@ -25,30 +24,6 @@ function(kadans_layer name)
   endif()
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${export})
   set_property(GLOBAL APPEND PROPERTY KADANS_LAYERS ${target})
-  if(arg_SOFT)
-    set_property(GLOBAL APPEND PROPERTY KADANS_SOFT_LAYERS ${target})
-  else()
-    set_property(GLOBAL APPEND PROPERTY KADANS_HARD_LAYERS ${target})
-  endif()
-endfunction()
-
-# kadans_set_soft_apart(PROGRAM)
-# Puts the code and the constants of the layers that are SOFT into sections of their own that begin and end with pages;
-# lock_memory leaves these out. The other layers are linked first, so that an inline function of both goes to them.
-function(kadans_set_soft_apart program)
-  get_property(hard GLOBAL PROPERTY KADANS_HARD_LAYERS)
-  get_property(soft GLOBAL PROPERTY KADANS_SOFT_LAYERS)
-  list(TRANSFORM hard REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE libraries)
-  set(code "")
-  set(constants "")
-  foreach(layer IN LISTS soft)
-    string(APPEND code "    *lib${layer}.a:*(.text .text.*)\n")
-    string(APPEND constants "    *lib${layer}.a:*(.rodata .rodata.*)\n")
-  endforeach()
-  configure_file("${PROJECT_SOURCE_DIR}/cmake/soft_layers.ld.in" "${PROJECT_BINARY_DIR}/soft_layers.ld" @ONLY)
-  target_link_options(${program} PRIVATE "-Wl,-T,${PROJECT_BINARY_DIR}/soft_layers.ld" -Wl,--whole-archive ${libraries}
-                                         -Wl,--no-whole-archive)
-  set_property(TARGET ${program} APPEND PROPERTY LINK_DEPENDS "${PROJECT_BINARY_DIR}/soft_layers.ld")
 endfunction()
 
 # kadans_test(LAYER SOURCES file... [ALONE file...] [LINKS target...])

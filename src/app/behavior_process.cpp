@@ -32,6 +32,7 @@ BehaviorLink::Setup setup_of(const RunOptions& options) {
 void settle(const BehaviorLink::Setup& setup) noexcept {
   if (setup.memory_bytes > 0) (void)limit_memory(setup.memory_bytes);
   if (setup.locks_memory != 0) (void)lock_memory(heap_reserve_bytes);
+  touch_stack();
   if (setup.priority > 0) (void)take_priority(setup.priority);
 }
 

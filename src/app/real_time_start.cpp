@@ -1,12 +1,11 @@
 #include "real_time_start.h"
 
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <span>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include <unistd.h>
 
@@ -18,13 +17,6 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{2} << 20U;
-
-// What works before the loop and in other commands: files, terminals, streams, exceptions; then the model's.
-constexpr std::array<std::string_view, 16> unused{
-    "libddsc.",          "libiceoryx_",        "libssl.",       "libcrypto.", "libacl.", "libstdc++.",
-    "libsqlite3.",       "libedit.",           "libtinfo.",     "libbsd.",    "libmd.",  "libtinyxml",
-    "libBulletDynamics", "libBulletCollision", "libLinearMath", "libzstd."};
-constexpr std::size_t unused_with_model = 12;
 
 }  // namespace
 
@@ -50,9 +42,7 @@ void bind_all_functions(char** argv) {
 }
 
 void lock_program(bool with_model) noexcept {
-  const std::span<const std::string_view> all(unused);
-  (void)lock_memory(with_model ? heap_reserve_of_model_bytes : heap_reserve_bytes,
-                    with_model ? all.first(unused_with_model) : all);
+  (void)lock_memory(with_model ? heap_reserve_of_model_bytes : heap_reserve_bytes);
 }
 
 }  // namespace kadans

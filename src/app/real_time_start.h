@@ -11,8 +11,7 @@ bool rights_suffice(int priority, bool soft);
 // functions are bound; or when they cannot be bound, which it prints. Call it before any thread is started.
 void bind_all_functions(char** argv);
 
-// Locks all memory, except for libraries that no real-time thread calls; without a model Bullet is one of these.
-// Without the right to lock memory nothing happens; rights_suffice() has printed that.
+// All memory stays where it is. Without the right to it, which has been told, nothing happens.
 void lock_program(bool with_model) noexcept;
 
 }  // namespace kadans

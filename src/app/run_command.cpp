@@ -308,7 +308,7 @@ class LiveRun {
       record_side_.tell(fault);
       if (fault.code == FaultCode::tick_overrun) continue;
       std::fprintf(stderr, "%9.2f s  fault %s\n", 1e-9 * static_cast<double>(time_ns),
-                   fault_text(fault, assembly_.robot().model).c_str());
+                   fault_text(told(fault, assembly_.robot().model)).c_str());
     }
     const RecordStatus record = record_side_.status();
     tell_flights(record);

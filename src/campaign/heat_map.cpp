@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <set>
 
 #include "kadans/config/problems.h"
-#include "kadans/scenario/html_page.h"
 #include "kadans/signal/number_text.h"
+#include "kadans/telemetry/plot.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::size_t values_max = 24, bins = 10;
-constexpr int field_width = 56, field_height = 36, left = 110, top = 48, bottom = 70, legend = 120;
+constexpr double field_width = 56, field_height = 36;
 
 // The columns or rows of one quantity.
 struct Axis {
@@ -80,19 +79,18 @@ class Picture {
   }
 
   std::string svg() const {
-    const int width = left + static_cast<int>(x_.size()) * field_width + legend;
-    const int height = top + static_cast<int>(y_.size()) * field_height + bottom;
-    std::string text = printed(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
-        "font-family=\"sans-serif\" font-size=\"11\" text-anchor=\"middle\">\n",
-        width, height);
-    text += printed("<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", width, height);
-    text += printed("<text x=\"%d\" y=\"24\" font-size=\"14\" text-anchor=\"start\">", left) + html_text(title_) +
-            "</text>\n";
+    Plot plot{.title = title_, .x = plot_axis(x_), .y = plot_axis(y_)};
     for (std::size_t row = 0; row < y_.size(); ++row) {
-      for (std::size_t column = 0; column < x_.size(); ++column) text += field_svg(column, row);
+      for (std::size_t column = 0; column < x_.size(); ++column) plot.fields.push_back(plot_field(column, row));
     }
-    return text + labels() + "</svg>\n";
+    for (const double share : {1.0, 0.75, 0.5, 0.25, 0.0})
+      plot.key.push_back({color(share), printed("%.3g", low_ + share * (high_ - low_))});
+    return plot_svg(plot, {.width = field_width * static_cast<double>(x_.size()),
+                           .height = field_height * static_cast<double>(y_.size()),
+                           .left = 110,
+                           .top = 48,
+                           .right = 120,
+                           .bottom = 70});
   }
 
  private:
@@ -114,51 +112,21 @@ class Picture {
       high_ = std::max(high_, field.mean());
     }
   }
-  int x_of(std::size_t column) const { return left + static_cast<int>(column) * field_width; }
-  int y_of(std::size_t row) const { return top + static_cast<int>(y_.size() - 1 - row) * field_height; }
-
-  std::string field_svg(std::size_t column, std::size_t row) const {
-    const Field& field = fields_[row * x_.size() + column];
-    const int x = x_of(column), y = y_of(row);
-    if (field.count == 0)
-      return printed("<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"#eee\" stroke=\"#fff\"/>\n", x, y,
-                     field_width, field_height);
-    const double share = high_ > low_ ? (field.mean() - low_) / (high_ - low_) : 1;
-    const char* const ink = share > 0.6 ? "#000" : "#fff";
-    return printed("<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"%s\" stroke=\"#fff\"/>\n", x, y,
-                   field_width, field_height, color(share).c_str()) +
-           printed("<text x=\"%d\" y=\"%d\" fill=\"%s\">%.3g</text>\n", x + field_width / 2, y + 16, ink,
-                   field.mean()) +
-           printed("<text x=\"%d\" y=\"%d\" fill=\"%s\" font-size=\"9\">%zu</text>\n", x + field_width / 2, y + 29, ink,
-                   field.count);
+  static PlotAxis plot_axis(const Axis& axis) {
+    PlotAxis drawn{.name = axis.name, .range = {0, static_cast<double>(axis.size())}};
+    for (std::size_t i = 0; i < axis.size(); ++i) drawn.ticks.push_back({static_cast<double>(i) + 0.5, axis.label(i)});
+    return drawn;
   }
-
-  std::string labels() const {
-    const int bottom_y = y_of(0) + field_height;
-    std::string text;
-    for (std::size_t i = 0; i < x_.size(); ++i)
-      text +=
-          printed("<text x=\"%d\" y=\"%d\">%s</text>\n", x_of(i) + field_width / 2, bottom_y + 16, x_.label(i).c_str());
-    for (std::size_t i = 0; i < y_.size(); ++i)
-      text += printed("<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%s</text>\n", left - 8,
-                      y_of(i) + field_height / 2 + 4, y_.label(i).c_str());
-    const int middle_x = left + static_cast<int>(x_.size()) * field_width / 2;
-    const int middle_y = top + static_cast<int>(y_.size()) * field_height / 2;
-    text += printed("<text x=\"%d\" y=\"%d\" font-size=\"12\">", middle_x, bottom_y + 40) + html_text(x_.name) +
-            "</text>\n";
-    text += printed("<text transform=\"translate(20 %d) rotate(-90)\" font-size=\"12\">", middle_y) +
-            html_text(y_.name) + "</text>\n";
-    constexpr int parts = 5;
-    const int legend_x = x_of(x_.size()) + 20;
-    for (int i = 0; i < parts; ++i) {
-      const double share = static_cast<double>(i) / (parts - 1);
-      const int y = top + (parts - 1 - i) * 22;
-      text += printed("<rect x=\"%d\" y=\"%d\" width=\"18\" height=\"22\" fill=\"%s\"/>\n", legend_x, y,
-                      color(share).c_str());
-      text += printed("<text x=\"%d\" y=\"%d\" text-anchor=\"start\">%.3g</text>\n", legend_x + 24, y + 15,
-                      low_ + share * (high_ - low_));
-    }
-    return text;
+  PlotField plot_field(std::size_t column, std::size_t row) const {
+    const Field& field = fields_[row * x_.size() + column];
+    if (field.count == 0) return {.column = column, .row = row, .color = "#eee"};
+    const double share = high_ > low_ ? (field.mean() - low_) / (high_ - low_) : 1;
+    return {.column = column,
+            .row = row,
+            .color = color(share),
+            .ink = share > 0.6 ? "#000" : "#fff",
+            .text = printed("%.3g", field.mean()),
+            .small_text = std::to_string(field.count)};
   }
 
   const HeatMapOptions& options_;

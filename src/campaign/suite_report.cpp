@@ -4,12 +4,11 @@
 #include <cstdio>
 
 #include "kadans/signal/number_text.h"
-#include "kadans/telemetry/text_plot.h"
+#include "kadans/telemetry/plot.h"
 
 namespace kadans {
 namespace {
 
-constexpr std::size_t plot_columns = 60, plot_rows = 3;
 constexpr std::size_t transitions_shown = 6;
 
 std::string painted(const SuiteStyle& style, const char* code, const std::string& text) {
@@ -30,15 +29,8 @@ std::string indented(const std::string& text, const char* by) {
 }
 
 std::string plotted(const EvidenceTrace& trace, const SuiteStyle& style) {
-  const TextPlot plot = text_plot(trace.values, plot_columns, plot_rows, style.unicode);
-  std::string text = "      " + trace.signal + (trace.unit.empty() ? "" : ", " + trace.unit) + '\n';
-  for (std::size_t i = 0; i < plot.lines.size(); ++i) {
-    const bool edge = i == 0 || i + 1 == plot.lines.size();
-    text += "  " + (edge ? printed("%11.4g ", i == 0 ? plot.top : plot.bottom) : std::string(12, ' '));
-    text += (style.unicode ? "│" : "|") + plot.lines[i] + '\n';
-  }
-  return text + std::string(15, ' ') +
-         printed("%-8.2f%*.2f s\n", trace.from_s, static_cast<int>(plot_columns) - 10, trace.to_s);
+  return curve_text(trace.signal + (trace.unit.empty() ? "" : ", " + trace.unit), trace.values, trace.from_s,
+                    trace.to_s, {.rows = 3, .indent = 4, .unicode = style.unicode, .color = style.color});
 }
 
 std::string checks_of(const RunOutcome& run, const SuiteStyle& style) {

@@ -62,10 +62,6 @@ const ActuationFrame& ControlEngine::drive(std::int64_t time_ns, double dt_s) no
 // before them.
 void ControlEngine::rehearse() noexcept {
   Rehearsal& r = rehearsal_;
-  plant_.warm();
-  exchange_.heartbeat.warm_read();
-  exchange_.joystick.warm_read();
-  (void)exchange_.commands.size();
   r.sample(sensors_);
   r.estimator = estimator_;
   r.safety.imitate(safety_);
@@ -87,7 +83,6 @@ void ControlEngine::rehearse() noexcept {
   sets_.fill(r.snapshot);
   inbox_.motions().fill(r.snapshot);
   signals_.gather(row_);
-  if (sink_ != nullptr) sink_->warm();
 }
 
 void ControlEngine::tell_drives() noexcept {

@@ -1,6 +1,5 @@
 #include "kadans/realtime/task_thread.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <ctime>
@@ -11,29 +10,11 @@
 #include <sched.h>
 #include <sys/resource.h>
 
+#include "kadans/realtime/memory_lock.h"
 #include "kadans/realtime/signals_blocked.h"
 
 namespace kadans {
 namespace {
-
-// What is left of this thread's stack, but for a reserve at its end, is in memory before the first beat, or as much as
-// a beat can need: a larger stack is for Lua's and the model's rarest. What the thread's own variables take of it
-// differs: a sanitizer's are large.
-void touch_stack() noexcept {
-  constexpr std::size_t page = 4096, reserve = 16 * 1024, most = 256 * 1024;
-  pthread_attr_t attributes;
-  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;
-  void* lowest = nullptr;
-  std::size_t size = 0;
-  pthread_attr_getstack(&attributes, &lowest, &size);
-  pthread_attr_destroy(&attributes);
-  const auto* const here = static_cast<const char*>(__builtin_frame_address(0));
-  const auto left = static_cast<std::size_t>(here - static_cast<const char*>(lowest));
-  if (left <= 2 * reserve) return;
-  const std::size_t touched = std::min(left - 2 * reserve, most);
-  auto* const deep = static_cast<volatile char*>(__builtin_alloca(touched));
-  for (std::size_t i = 0; i < touched; i += page) deep[i] = 0;
-}
 
 std::uint64_t faults_of_this_thread() noexcept {
   rusage usage{};

@@ -10,11 +10,4 @@ void ControlSide::record(std::uint64_t tick, std::int64_t time_ns, std::span<con
   instance_.console_row_.publish(tick, time_ns, row);
 }
 
-void ControlSide::warm() noexcept {
-  if (RecordSink* sink = sink_.load(std::memory_order_acquire); sink != nullptr) sink->warm();
-  // A row without values goes nowhere, but finds out as others do whether somebody wants it.
-  for (const auto& port : instance_.ports()) port->row_.publish(0, 0, {});
-  instance_.console_row_.publish(0, 0, {});
-}
-
 }  // namespace kadans

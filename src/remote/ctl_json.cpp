@@ -131,15 +131,6 @@ Json drives_json(const PowerStatus& power, const RobotModel& model) {
   return {{"supply_V", told(power.supply_V)}, {"emergency", power.emergency}, {"drives", drives}};
 }
 
-Json fault_json(const Fault& fault, const RobotModel& model) {
-  Json json{{"code", name(fault.code)}, {"tick", fault.tick}, {"text", fault_text(fault, model)}};
-  put_finite(json, "value", fault.value);
-  put_finite(json, "limit", fault.limit);
-  if (fault.words[0] != '\0') json["words"] = fault.words.data();
-  if (fault.joint < model.joints.size()) json["joint"] = model.joints[fault.joint].name;
-  return json;
-}
-
 Json status_json(const Instance& instance, const InstanceStatus& status) {
   const Instance::Facts& facts = instance.facts();
   const Catalog& catalog = instance.catalog();

@@ -18,7 +18,6 @@ Json behaviors_json(const Answer& report);
 Json status_json(const Instance& instance, const InstanceStatus& status);
 // {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
 Json drives_json(const PowerStatus& power, const RobotModel& model);
-Json fault_json(const Fault& fault, const RobotModel& model);
 
 // Lists all items of a kind: "behaviors", "sets", "objects", "parameters", "signals". `report` is used for behaviors
 // and parameters, `status` for sets. Throws InputError on another kind.

@@ -68,10 +68,4 @@ void Instance::tell(const Fault& fault) noexcept {
   for (const auto& port : ports_) (void)port->faults_.try_push(fault);  // its server counts by itself
 }
 
-std::string fault_text(const Fault& fault, const RobotModel& model) {
-  const bool of_joint = fault.joint < model.joints.size();
-  return name(fault.code) + (of_joint ? " at " + model.joints[fault.joint].name : std::string()) + ": " +
-         fault_detail(fault);
-}
-
 }  // namespace kadans

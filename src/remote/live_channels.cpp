@@ -105,9 +105,7 @@ void LiveChannels::take(const Event& event) {
 }
 
 void LiveChannels::take(const Fault& fault, std::int64_t time_ns) {
-  const auto& joints = catalog_.model->joints;
-  const std::string joint = fault.joint < joints.size() ? joints[fault.joint].name : "";
-  put_json(faults_, time_ns, json_of(fault, joint, time_ns));
+  put_json(faults_, time_ns, json_of(told(fault, *catalog_.model, time_ns)));
 }
 
 void LiveChannels::take_behaviors(const std::string& json) {

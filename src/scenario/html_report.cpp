@@ -5,6 +5,7 @@
 
 #include "kadans/scenario/html_page.h"
 #include "kadans/signal/number_text.h"
+#include "kadans/telemetry/plot.h"
 #include "kadans/telemetry/record_rows.h"
 
 namespace kadans {
@@ -21,31 +22,14 @@ constexpr const char* number = " class=\"number\"";
 
 // A small line on its own scale, for what a failed check saw.
 std::string spark_line(const EvidenceTrace& trace) {
-  constexpr double width = 520, height = 90;
-  double low = INFINITY, high = -INFINITY;
-  for (const double value : trace.values) {
-    if (!std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  if (!(low <= high)) return "";
-  const double span = high > low ? high - low : 1;
-  std::string points;
-  bool drawn = false;
-  for (std::size_t i = 0; i < trace.values.size(); ++i) {
-    if (!std::isfinite(trace.values[i])) {
-      drawn = false;
-      continue;
-    }
-    const double x = width * static_cast<double>(i) / std::max(1.0, static_cast<double>(trace.values.size() - 1));
-    points +=
-        printed("%s%.1f %.1f", drawn ? " L" : " M", x, height - (height - 8) * (trace.values[i] - low) / span - 4);
-    drawn = true;
-  }
-  return printed("<svg viewBox=\"0 0 %g %g\" width=\"%g\" height=\"%g\" role=\"img\">", width, height, width, height) +
-         "<path d=\"" + points + "\" fill=\"none\" stroke=\"#0072b2\" stroke-width=\"1.6\"/></svg>" + "<figcaption>" +
+  const Plot plot{.x = {.range = {trace.from_s, trace.to_s}},
+                  .lines = {plot_line("", trace.values, trace.from_s, trace.to_s)}};
+  const PlotRange range = range_of(plot.lines);
+  if (!(range.low <= range.high)) return "";
+  return plot_svg(plot, {.width = 520, .height = 82, .left = 0, .top = 4, .right = 0, .bottom = 4}) + "<figcaption>" +
          html_text(trace.signal + (trace.unit.empty() ? "" : ", " + trace.unit)) +
-         printed(": from %.4g to %.4g, between %.2f and %.2f s", low, high, trace.from_s, trace.to_s) + "</figcaption>";
+         printed(": from %.4g to %.4g, between %.2f and %.2f s", range.low, range.high, trace.from_s, trace.to_s) +
+         "</figcaption>";
 }
 
 class HtmlRun {
@@ -77,9 +61,6 @@ class HtmlRun {
   double fault_s(const Fault& fault) const {
     if (run_.control_ticks == 0) return 0;
     return run_.duration_s * static_cast<double>(fault.tick) / static_cast<double>(run_.control_ticks);
-  }
-  std::string joint_of(const Fault& fault) const {
-    return fault.joint == no_joint ? "" : report_.subject.model.joints.at(fault.joint).name;
   }
   void add(const std::string& html) { text_ += html; }
   void title(const std::string& text) { add("<h2>" + html_text(text) + "</h2>\n"); }
@@ -199,12 +180,12 @@ class HtmlRun {
   void faults() {
     title("Faults");
     if (run_.faults.empty()) return add("<p class=\"dim\">None.</p>\n");
-    table({"time", "fault", "joint", "value", "limit", "set by"}, 1);
-    for (const Fault& fault : run_.faults)
-      add("<tr>" + cell(printed("%.3f s", fault_s(fault)), number) + cell(name(fault.code)) + cell(joint_of(fault)) +
-          cell(fault.words[0] != '\0' ? fault.words.data() : printed("%.5g", fault.value), number) +
-          cell(fault.words[0] != '\0' ? "" : printed("%.5g", fault.limit), number) +
-          cell(configuration_key(fault.code)) + "</tr>\n");
+    table({"time", "fault", "joint", "what", "set by"}, 1);
+    for (const Fault& fault : run_.faults) {
+      const ToldFault what = told(fault, report_.subject.model);
+      add("<tr>" + cell(printed("%.3f s", fault_s(fault)), number) + cell(what.name) + cell(what.joint) +
+          cell(fault_detail(what)) + cell(configuration_key(fault.code)) + "</tr>\n");
+    }
     add("</table></div>\n");
   }
 

@@ -6,28 +6,16 @@
 #include "kadans/config/foreign_json.h"
 #include "kadans/scenario/report.h"
 #include "kadans/signal/number_text.h"
+#include "kadans/telemetry/record_rows.h"
 
 namespace kadans {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json fault_json(const Fault& fault, const RobotModel& model) {
-  Json json{{"code", name(fault.code)}, {"tick", fault.tick}};
-  if (fault.joint != no_joint) json["joint"] = model.joints.at(fault.joint).name;
-  json["value"] = fault.value;
-  json["limit"] = fault.limit;
-  if (fault.words[0] != '\0') json["words"] = fault.words.data();
-  json["key"] = configuration_key(fault.code);
-  return json;
-}
-
 // "2.34 s  squat: down -> up (arrived)"
 std::string transition_line(const Transition& transition) {
-  char time[32];
-  std::snprintf(time, sizeof time, "%7.2f s  ", 1e-9 * static_cast<double>(transition.time_ns));
-  return time + transition.behavior + ": " + transition.from + (transition.from.empty() ? "-> " : " -> ") +
-         transition.to + (transition.why.empty() ? "" : " (" + transition.why + ")");
+  return printed("%7.2f s  ", seconds(transition.time_ns)) + transition_text(transition);
 }
 
 Json evidence_json(const std::vector<EvidenceTrace>& traces) {

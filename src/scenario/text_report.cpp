@@ -4,12 +4,10 @@
 
 #include "kadans/scenario/report.h"
 #include "kadans/signal/number_text.h"
-#include "kadans/telemetry/text_plot.h"
+#include "kadans/telemetry/plot.h"
 
 namespace kadans {
 namespace {
-
-constexpr std::size_t plot_columns = 60, plot_rows = 4;
 
 class TextReport {
  public:
@@ -53,17 +51,9 @@ class TextReport {
   }
 
   void plot(const ReportTrace& trace) {
-    const TextPlot plot = text_plot(trace.values, plot_columns, plot_rows, style_.unicode);
-    if (plot.lines.empty()) return;
-    text_ += "  " + trace.title + '\n';
-    for (std::size_t i = 0; i < plot.lines.size(); ++i) {
-      const bool edge = i == 0 || i + 1 == plot.lines.size();
-      const double value = i == 0 ? plot.top : plot.bottom;
-      text_ += edge ? printed("  %9.3f ", value) : std::string(12, ' ');
-      text_ += dim(style_.unicode ? "│" : "|") + plot.lines[i] + '\n';
-    }
-    text_ += std::string(12, ' ') + dim(printed("0 s%*.0f s", static_cast<int>(plot_columns) - 4, trace.duration_s)) +
-             "\n\n";
+    if (trace.values.empty()) return;
+    const PlotText style{.unicode = style_.unicode, .color = style_.color};
+    text_ += curve_text(trace.title, trace.values, 0, trace.duration_s, style) + '\n';
   }
 
   void checks() {
@@ -91,9 +81,9 @@ class TextReport {
     constexpr std::size_t shown = 5;
     for (std::size_t i = 0; i < std::min(result.faults.size(), shown); ++i) {
       const Fault& fault = result.faults[i];
-      const std::string joint = fault.joint == no_joint ? "" : " of " + subject_.model.joints.at(fault.joint).name;
-      text_ += red("  fault: ") + name(fault.code) + joint +
-               printed(" in tick %llu: ", static_cast<unsigned long long>(fault.tick)) + fault_detail(fault) +
+      const ToldFault what = told(fault, subject_.model);
+      text_ += red("  fault: ") + fault_name(what) +
+               printed(" in tick %llu: ", static_cast<unsigned long long>(fault.tick)) + fault_detail(what) +
                key(fault) + "\n";
     }
     if (result.faults.size() > shown) text_ += printed("  ... and %zu more faults\n", result.faults.size() - shown);

@@ -1,25 +1,22 @@
 #include "kadans/script/behavior.h"
 
 #include <algorithm>
-#include <span>
 
 #include "behavior_parts.h"
 #include "kadans/engine/clock.h"
 #include "kadans/engine/refusal_text.h"
 #include "lua_core.h"
-#include "tick_code.h"
 
 namespace kadans {
 namespace {
 
-constexpr std::size_t warm_snapshot_bytes = 512;  // its head and the joints
 constexpr const char* rehearsal_text =
     "local seen = { inner = { value = 1 } } "
     "local function look(from) return from.inner.value end "
     "return function(on) local sum = 0 for i = 1, 3 do sum = sum + look(seen) * i end "
     "if on and sum > 100 then seen.sum = sum end return sum ~= nil and sum < 0 end";
 
-KADANS_TICK_CODE int tick_chart(lua_State* state) {
+int tick_chart(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
   parts.runner->tick(state, parts.bindings.now_ns);
@@ -67,7 +64,7 @@ void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text)
               "says more than " + std::to_string(LogBound::lines_max) + " lines in a second; the rest is dropped");
 }
 
-KADANS_TICK_CODE void Behavior::Parts::tell_dropped(bool at_once) noexcept {
+void Behavior::Parts::tell_dropped(bool at_once) noexcept {
   const std::int64_t now_ns = bindings.engine_ns();
   const std::uint64_t dropped = bound.take_dropped(now_ns, at_once);
   if (dropped == 0) return;
@@ -75,7 +72,7 @@ KADANS_TICK_CODE void Behavior::Parts::tell_dropped(bool at_once) noexcept {
               std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
 }
 
-KADANS_TICK_CODE void Behavior::Parts::tell_refused() noexcept {
+void Behavior::Parts::tell_refused() noexcept {
   while (const Refusal* refusal = bindings.next_refusal()) {
     ++transactions_refused;
     log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
@@ -100,7 +97,7 @@ void Behavior::Parts::transitioned(const std::string& from, const std::string& t
   log.transition(transition);
 }
 
-KADANS_TICK_CODE bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
+bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
   return lua->call(function, this, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
 }
 
@@ -112,24 +109,15 @@ Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog
 
 Behavior::~Behavior() = default;
 
-KADANS_TICK_CODE bool Behavior::Parts::warm(const Snapshot& snapshot) noexcept {
-  if (!warm_up.due()) return false;
-  WarmUp::read(std::as_bytes(std::span(&snapshot, 1)).first<warm_snapshot_bytes>());
-  warm_up.go();
-  snapshot_tables.warm_up();
-  return true;
-}
-
 void Behavior::prepare(const Snapshot& newest) noexcept {
-  if (failed() || finished() || !parts_->warm(newest)) return;
+  if (failed() || finished()) return;
   parts_->rehearsal.snapshot = &newest;
   parts_->rehearsal.now_ns = clock_ns(newest);
   (void)parts_->run(rehearse_tick);
 }
 
-KADANS_TICK_CODE bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
+bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
   Parts& parts = *parts_;
-  (void)parts.warm(snapshot);
   if (failed() || finished()) return false;
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;
@@ -155,7 +143,7 @@ KADANS_TICK_CODE bool Behavior::tick(const Snapshot& snapshot, CommandSender& co
   return !finished();
 }
 
-KADANS_TICK_CODE void Behavior::publish_status() noexcept {
+void Behavior::publish_status() noexcept {
   Parts& parts = *parts_;
   const auto store = [](std::atomic<std::uint32_t>& to, std::uint64_t value) {
     to.store(static_cast<std::uint32_t>(value), std::memory_order_relaxed);
@@ -191,12 +179,12 @@ void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept 
   }
 }
 
-KADANS_TICK_CODE void Behavior::hold_clock(std::int64_t held_ns) noexcept {
+void Behavior::hold_clock(std::int64_t held_ns) noexcept {
   parts_->bindings.held_ns = held_ns;
   if (past_->parts != nullptr) past_->parts->bindings.held_ns = held_ns;
 }
 
-KADANS_TICK_CODE std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
+std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
   return snapshot.time_ns - parts_->bindings.held_ns;
 }
 
@@ -208,8 +196,8 @@ bool Behavior::post(const std::string& event) noexcept {
 const std::string& Behavior::name() const noexcept { return parts_->chart.name; }
 const Behavior::Settings& Behavior::settings() const noexcept { return parts_->settings; }
 const Chart& Behavior::chart() const noexcept { return parts_->chart; }
-KADANS_TICK_CODE bool Behavior::finished() const noexcept { return parts_->runner->finished(); }
-KADANS_TICK_CODE bool Behavior::failed() const noexcept { return parts_->failed; }
+bool Behavior::finished() const noexcept { return parts_->runner->finished(); }
+bool Behavior::failed() const noexcept { return parts_->failed; }
 const ScriptError& Behavior::error() const noexcept { return parts_->error; }
 std::uint64_t Behavior::transactions_refused() const noexcept { return parts_->transactions_refused; }
 std::uint64_t Behavior::events_unhandled() const noexcept { return parts_->runner->events_unhandled(); }

@@ -4,7 +4,6 @@
 #include "lua_core.h"
 #include "machine_sets.h"
 #include "sandbox.h"
-#include "tick_code.h"
 #include "transition_lines.h"
 
 namespace kadans {
@@ -34,17 +33,6 @@ int open_bindings(lua_State* state) {
 
 InputProblem problem_of(const ScriptError& error) { return {error.file.data(), error.line, 0, error.message.data()}; }
 
-void list_what_ticks_need(Behavior::Parts& parts) {
-  WarmUp& list = parts.warm_up;
-  list.add(tick_code());
-  parts.lua->add_to(list);
-  list.add_object(parts.bindings);
-  list.add_object(parts.settings.limits);
-  list.add_object(parts.runner);
-  list.add_object(parts.failed);
-  parts.runner->add_to(list);
-}
-
 }  // namespace
 
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
@@ -73,7 +61,6 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);
   parts.bindings.runner = parts.runner.get();
   parts.lua->core().loading = false;
-  list_what_ticks_need(parts);
 }
 
 }  // namespace kadans

@@ -11,7 +11,6 @@
 #include "kadans/script/lua_state.h"
 #include "log_bound.h"
 #include "snapshot_tables.h"
-#include "warm_up.h"
 
 namespace kadans {
 
@@ -28,12 +27,9 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void tell_refused() noexcept;  // logs what the control engine has refused since the last call
   // Asks in the next tick for the control sets of all active machines that are not active in the snapshot.
   void want_sets(const Snapshot& snapshot) noexcept;
-  // Reads the memory that a tick will need into the caches; false when this was done a moment ago.
-  bool warm(const Snapshot& snapshot) noexcept;
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
 
-  WarmUp warm_up;  // memory of a tick
   Settings settings;
   const Catalog& catalog;
   BehaviorLog& log;

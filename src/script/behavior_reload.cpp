@@ -5,7 +5,6 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/input_file.h"
 #include "machine_sets.h"
-#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -114,7 +113,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
   return true;
 }
 
-KADANS_TICK_CODE void Behavior::forget_past(std::int64_t now_ns) noexcept {
+void Behavior::forget_past(std::int64_t now_ns) noexcept {
   if (past_->parts != nullptr && now_ns - past_->swapped_ns >= probation_ns) past_->parts.reset();
 }
 

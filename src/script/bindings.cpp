@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "tick_code.h"
-
 namespace kadans {
 
 bool Bindings::has_object(std::size_t machine, std::uint32_t object) const noexcept {
@@ -31,11 +29,11 @@ void Bindings::bring_in(std::size_t machine) noexcept {
   (void)send({.kind = CommandKind::switch_set, .index = number});
 }
 
-KADANS_TICK_CODE void Bindings::bring_in_again() noexcept {
+void Bindings::bring_in_again() noexcept {
   each_bit(wanted, [&](std::uint32_t set) { (void)send({.kind = CommandKind::switch_set, .index = set}); });
 }
 
-KADANS_TICK_CODE const Refusal* Bindings::next_refusal() noexcept {
+const Refusal* Bindings::next_refusal() noexcept {
   const std::uint32_t count = snapshot->transactions_refused;
   if (count - refusals_seen > refusals_shown) refusals_seen = count - refusals_shown;
   while (refusals_seen != count) {
@@ -45,13 +43,13 @@ KADANS_TICK_CODE const Refusal* Bindings::next_refusal() noexcept {
   return nullptr;
 }
 
-KADANS_TICK_CODE bool Bindings::send(const Command& command) noexcept {
+bool Bindings::send(const Command& command) noexcept {
   if (sender->add(command)) return true;
   refused = true;
   return false;
 }
 
-KADANS_TICK_CODE void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept {
+void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept {
   sender = &to;
   snapshot = &seen;
   now_ns = time_ns - held_ns;
@@ -60,7 +58,7 @@ KADANS_TICK_CODE void Bindings::begin(CommandSender& to, const Snapshot& seen, s
   to.begin(time_ns);
 }
 
-KADANS_TICK_CODE bool Bindings::commit() noexcept {
+bool Bindings::commit() noexcept {
   const std::uint32_t sequence = sender->commit();
   const bool taken = !refused && (sequence != 0 || sender->last_sequence() == 0);
   if (taken) wanted = 0;

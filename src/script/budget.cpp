@@ -9,7 +9,6 @@
 
 #include "kadans/script/lua_state.h"
 #include "lua_core.h"
-#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -64,7 +63,7 @@ std::int64_t thread_now_ns() noexcept {
 
 void interrupt_scripts(bool yes) noexcept { interruption.store(yes, std::memory_order_relaxed); }
 
-KADANS_TICK_CODE void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept {
+void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept {
   limit_ = instructions;
   spent_ = 0;
   charged_ = 0;
@@ -80,13 +79,13 @@ KADANS_TICK_CODE void Budget::begin(lua_State* state, std::uint64_t instructions
   lua_sethook(state, hook, LUA_MASKCOUNT, interval_);
 }
 
-KADANS_TICK_CODE void Budget::hook(lua_State* state, lua_Debug* /*activation*/) {
+void Budget::hook(lua_State* state, lua_Debug* /*activation*/) {
   Budget& budget = core_of(state).budget;
   if (!budget.breached()) budget.spent_ += static_cast<std::uint64_t>(budget.interval_);
   budget.look(state);
 }
 
-KADANS_TICK_CODE void Budget::look(lua_State* state) {
+void Budget::look(lua_State* state) {
   charged_ = 0;
   if (!breached()) {
     if (heap_.exceeded()) {

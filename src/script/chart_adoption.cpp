@@ -2,7 +2,6 @@
 #include <lua.hpp>
 
 #include "kadans/script/chart_runner.h"
-#include "tick_code.h"
 
 namespace kadans {
 
@@ -113,7 +112,7 @@ void ChartRunner::leave_marked(lua_State* state, const std::vector<bool>& marks,
   list_active();
 }
 
-KADANS_TICK_CODE StateIndex ChartRunner::innermost() const noexcept {
+StateIndex ChartRunner::innermost() const noexcept {
   StateIndex at = 0;
   for (const StateIndex index : active_) {
     if (index != 0 && chart_.states[index].parent == at) at = index;

@@ -5,12 +5,11 @@
 #include "kadans/script/chart_runner.h"
 #include "lua_core.h"
 #include "motion.h"
-#include "tick_code.h"
 
 namespace kadans {
 
 // m.time_s is the time in the state whose function is called.
-KADANS_TICK_CODE void ChartRunner::set_time(lua_State* state, StateIndex index) {
+void ChartRunner::set_time(lua_State* state, StateIndex index) {
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].content);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.time_key);
   lua_pushnumber(state, state_time_s(index));
@@ -18,7 +17,7 @@ KADANS_TICK_CODE void ChartRunner::set_time(lua_State* state, StateIndex index) 
   lua_pop(state, 1);
 }
 
-KADANS_TICK_CODE void ChartRunner::call(lua_State* state, int function, StateIndex index) {
+void ChartRunner::call(lua_State* state, int function, StateIndex index) {
   set_time(state, index);
   core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, function);
@@ -55,8 +54,7 @@ void ChartRunner::cancel_run(lua_State* state, StateIndex index) {
 }
 
 // Whether what the coroutine waits for is over; pushes what its wait() returns.
-KADANS_TICK_CODE bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread,
-                                         int& arguments) const noexcept {
+bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread, int& arguments) const noexcept {
   if (!run.thread_started) return arguments = 2, true;
   if (run.motion != nullptr) {
     const Bindings& bindings = bindings_of(state);
@@ -77,7 +75,7 @@ KADANS_TICK_CODE bool ChartRunner::ready(lua_State* state, StateRun& run, lua_St
   return arguments = 0, true;
 }
 
-KADANS_TICK_CODE void ChartRunner::resume_run(lua_State* state, StateIndex index) {
+void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   StateRun& run = run_[index];
   lua_State* thread = run.thread;
   int arguments = 0;

@@ -6,8 +6,6 @@
 
 #include "bindings.h"
 #include "step_meter.h"
-#include "tick_code.h"
-#include "warm_up.h"
 
 namespace kadans {
 namespace {
@@ -31,21 +29,13 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
   }
 }
 
-void ChartRunner::add_to(WarmUp& list) const noexcept {
-  list.add_object(*this);
-  list.add(std::as_bytes(std::span(run_)));
-  list.add(std::as_bytes(std::span(active_.data(), active_.capacity())));
-  list.add(std::as_bytes(std::span(guards_)));
-  list.add(std::as_bytes(std::span(tables_.machines)));
-}
-
 bool ChartRunner::post(EventId event) noexcept {
   if (event_count_ == events_.size()) return false;
   events_[(event_first_ + event_count_++) % events_.size()] = event;
   return true;
 }
 
-KADANS_TICK_CODE void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
+void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   now_ns_ = now_ns;
   if (finished_) return;
   selected_.clear();
@@ -69,7 +59,7 @@ KADANS_TICK_CODE void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
 }
 
 // Among the events that waited when the tick began: what a guard emits is for the next one.
-KADANS_TICK_CODE void ChartRunner::look_for_transitions(lua_State* state) {
+void ChartRunner::look_for_transitions(lua_State* state) {
   std::uint32_t waiting = event_count_;
   const auto oldest = [&] { return waiting > 0 ? events_[event_first_] : no_event; };
   select(state, oldest(), false);
@@ -96,7 +86,7 @@ void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
   }
 }
 
-KADANS_TICK_CODE void ChartRunner::take_step(lua_State* state) {
+void ChartRunner::take_step(lua_State* state) {
   if (selected_.empty() && !entering_) return;
   StepMeter meter(state);
   meter.spend(state_steps * selected_.size() * (active_.size() + chart_.size()));

@@ -6,7 +6,6 @@
 #include "kadans/script/chart_runner.h"
 #include "lua_core.h"
 #include "step_meter.h"
-#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -16,11 +15,11 @@ constexpr std::size_t transition_steps = 6, selected_steps = 6;  // to look at o
 
 }  // namespace
 
-KADANS_TICK_CODE double ChartRunner::state_time_s(StateIndex state) const noexcept {
+double ChartRunner::state_time_s(StateIndex state) const noexcept {
   return static_cast<double>(now_ns_ - run_[state].entered_ns) / 1e9;
 }
 
-KADANS_TICK_CODE bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
+bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
   const Chart::Transition& transition = chart_.transitions[number];
   if (transition.when == Chart::no_function) return true;
   if (guards_[number] == Guard::unknown) {  // several innermost states may ask
@@ -36,7 +35,7 @@ KADANS_TICK_CODE bool ChartRunner::guard(lua_State* state, std::uint16_t number)
   return guards_[number] == Guard::yes;
 }
 
-KADANS_TICK_CODE bool ChartRunner::enabled(lua_State* state, std::uint16_t number, EventId event, bool events_only) {
+bool ChartRunner::enabled(lua_State* state, std::uint16_t number, EventId event, bool events_only) {
   const Chart::Transition& transition = chart_.transitions[number];
   const StateRun& source = run_[transition.source];
   if (transition.on != no_event) {
@@ -55,8 +54,8 @@ KADANS_TICK_CODE bool ChartRunner::enabled(lua_State* state, std::uint16_t numbe
   return guard(state, number);
 }
 
-KADANS_TICK_CODE std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, StateIndex leaf,
-                                                          EventId event, bool events_only) {
+std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event,
+                                         bool events_only) {
   for (const StateIndex around : active_) {  // from the outside in
     if (around > leaf) break;
     meter.spend();
@@ -72,8 +71,8 @@ KADANS_TICK_CODE std::uint16_t ChartRunner::select_always(lua_State* state, Step
   return none;
 }
 
-KADANS_TICK_CODE std::uint16_t ChartRunner::select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf,
-                                                            EventId event, bool events_only) {
+std::uint16_t ChartRunner::select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event,
+                                           bool events_only) {
   for (StateIndex inner = leaf; inner != no_state; inner = chart_.states[inner].parent) {
     const Chart::State& at = chart_.states[inner];
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
@@ -103,11 +102,11 @@ void ChartRunner::add_selected(std::uint16_t added) noexcept {
   selected_.push_back(added);
 }
 
-KADANS_TICK_CODE bool ChartRunner::is_leaf(std::size_t position) const noexcept {
+bool ChartRunner::is_leaf(std::size_t position) const noexcept {
   return position + 1 == active_.size() || !chart_.inside(active_[position + 1], active_[position]);
 }
 
-KADANS_TICK_CODE void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
+void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
   StepMeter meter(state);
   selected_.clear();
   for (std::size_t i = 0; i < active_.size(); ++i) {
@@ -128,7 +127,7 @@ KADANS_TICK_CODE void ChartRunner::select(lua_State* state, EventId event, bool 
   meter.settle();
 }
 
-KADANS_TICK_CODE bool ChartRunner::took(EventId event) const noexcept {
+bool ChartRunner::took(EventId event) const noexcept {
   return std::any_of(selected_.begin(), selected_.end(),
                      [&](std::uint16_t number) { return chart_.transitions[number].on == event; });
 }

@@ -10,8 +10,6 @@
 #include "library_function.h"
 #include "lua_core.h"
 #include "sandbox.h"
-#include "tick_code.h"
-#include "warm_up.h"
 
 namespace kadans {
 namespace {
@@ -60,7 +58,7 @@ int keep_error(lua_State* state) {
   return 1;
 }
 
-KADANS_TICK_CODE int enter(lua_State* state) { return core_of(state).entry(state); }
+int enter(lua_State* state) { return core_of(state).entry(state); }
 
 // At the foot of the stack for good, so that a call allocates nothing and looks nothing up.
 enum Foot : int { handler = 1, entrance = 2 };
@@ -81,7 +79,6 @@ LuaState::LuaState(Settings settings)
   if (lua_ == nullptr) throw std::bad_alloc();
   core_->main = lua_;
   core_->heap.for_ticks(false);
-  foundation_ = core_->heap.tick_memory();
   luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   lua_gc(lua_, LUA_GCSTOP, 0);
   lua_pushcfunction(lua_, keep_error);
@@ -99,10 +96,10 @@ LuaState::~LuaState() {
 }
 
 const ScriptError& LuaState::error() const noexcept { return core_->error; }
-KADANS_TICK_CODE std::size_t LuaState::used_bytes() const noexcept { return core_->heap.used_bytes(); }
+std::size_t LuaState::used_bytes() const noexcept { return core_->heap.used_bytes(); }
 
-KADANS_TICK_CODE bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
-                                     std::int64_t wall_ns) noexcept {
+bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
+                    std::int64_t wall_ns) noexcept {
   core_->depth = core_->coroutines = 0;
   core_->running = nullptr;
   core_->budget.begin(lua_, instructions, wall_ns);
@@ -190,7 +187,7 @@ double LuaState::search_instructions(std::string_view chunk) const noexcept {
   return 0;
 }
 
-KADANS_TICK_CODE void LuaState::collect() noexcept {
+void LuaState::collect() noexcept {
   const std::uint64_t fresh = core_->heap.allocated_bytes() - collected_at_;
   if (fresh < collect_bytes_min) return;  // it adds up over the ticks
   collected_at_ = core_->heap.allocated_bytes();
@@ -206,7 +203,7 @@ KADANS_TICK_CODE void LuaState::collect() noexcept {
 }
 
 // In pieces of some 0.1 ms: a whole collection of 4 MB takes 10 ms. By the thread's own time, as a tick's budget.
-KADANS_TICK_CODE void LuaState::collect_in_time(int kB) noexcept {
+void LuaState::collect_in_time(int kB) noexcept {
   constexpr int piece_kB = 32;
   for (std::int64_t end_ns = 0; kB > 0; kB -= piece_kB) {
     if (lua_gc(lua_, LUA_GCSTEP, std::min(kB, piece_kB)) != 0 || kB <= piece_kB) return;
@@ -214,27 +211,6 @@ KADANS_TICK_CODE void LuaState::collect_in_time(int kB) noexcept {
     if (end_ns == 0) end_ns = now_ns + settings_.limits.tick_wall_ns;
     if (now_ns >= end_ns) return;
   }
-}
-
-void LuaState::add_to(WarmUp& list) const noexcept {
-  list.add(foundation_);
-  list.add_object(core_->heap);
-  list.add_object(core_->budget);
-  list.add_object(core_->error.line);
-  list.add_object(core_->entry);
-  list.add_function(lua_call);
-  list.add_function(lua_checkstack);
-  list.add_function(lua_getallocf);
-  list.add_function(lua_gettop);
-  list.add_function(lua_pcall);
-  list.add_function(lua_pushlightuserdata);
-  list.add_function(lua_pushnumber);
-  list.add_function(lua_pushvalue);
-  list.add_function(lua_rawgeti);
-  list.add_function(lua_rawset);
-  list.add_function(lua_sethook);
-  list.add_function(lua_settop);
-  list.add_function(lua_touserdata);
 }
 
 }  // namespace kadans

@@ -5,7 +5,6 @@
 
 #include "lua_core.h"
 #include "sandbox.h"
-#include "tick_code.h"
 
 namespace kadans {
 namespace {
@@ -57,21 +56,16 @@ void SnapshotTables::finish_part(lua_State* state, std::size_t number, const cha
 
 // [-0 +1]
 void SnapshotTables::push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown) {
-  const LuaHeap& heap = core_of(state).heap;
-  const std::byte* const first = heap.tick_end();
   push_part(state, kind, index);
   finish_part(state, parts_.size() - 1, shown);
-  parts_.back().memory = {first, heap.tick_end()};
 }
 
 // [-0 +1]
 void SnapshotTables::push_joints(lua_State* state, const RobotModel& model) {
   LuaHeap& heap = core_of(state).heap;
-  const std::byte* const first = heap.tick_end();
   heap.for_ticks(true);
   lua_createtable(state, 0, static_cast<int>(model.joints.size()));
   heap.for_ticks(false);
-  joints_ = {first, heap.tick_end()};
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     push_whole_part(state, Kind::joint, i, "a joint");
     lua_setfield(state, -2, model.joints[i].name.c_str());
@@ -137,7 +131,7 @@ void SnapshotTables::push_names(lua_State* state) {
   keys_ = luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
-KADANS_TICK_CODE void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
+void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
   snapshot_ = &snapshot;
   now_ns_ = now_ns;
   if (read_.empty()) return;
@@ -148,7 +142,7 @@ KADANS_TICK_CODE void SnapshotTables::refill(lua_State* state, const Snapshot& s
   lua_pop(state, 1);
 }
 
-KADANS_TICK_CODE void SnapshotTables::fill(lua_State* state, Read read, int keys) const {
+void SnapshotTables::fill(lua_State* state, Read read, int keys) const {
   const Part& part = parts_[read.part];
   lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
   lua_rawgeti(state, keys, read.field + 1);
@@ -158,7 +152,7 @@ KADANS_TICK_CODE void SnapshotTables::fill(lua_State* state, Read read, int keys
 }
 
 // [-0 +1]
-KADANS_TICK_CODE void SnapshotTables::push_value(lua_State* state, std::size_t at, std::size_t index) const {
+void SnapshotTables::push_value(lua_State* state, std::size_t at, std::size_t index) const {
   const StatusField& field = fields_[at];
   const double value = field.at == nullptr ? static_cast<double>(now_ns_) / 1e9 : field.value(*snapshot_, index);
   if (field.type == Type::number) return lua_pushnumber(state, value);
@@ -166,15 +160,6 @@ KADANS_TICK_CODE void SnapshotTables::push_value(lua_State* state, std::size_t a
   lua_rawgeti(state, LUA_REGISTRYINDEX, choices_[at]);
   lua_rawgeti(state, -1, static_cast<int>(value) + 1);
   lua_remove(state, -2);
-}
-
-KADANS_TICK_CODE void SnapshotTables::warm_up() const noexcept {
-  if (!read_.empty()) WarmUp::read(joints_);
-  std::size_t last = parts_.size();
-  for (const Read read : read_) {
-    if (read.part != last) WarmUp::read(parts_[read.part].memory);
-    last = read.part;
-  }
 }
 
 bool SnapshotTables::read_first(lua_State* state, std::size_t part, int key) {

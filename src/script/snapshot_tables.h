@@ -5,7 +5,6 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,6 @@
 
 #include "kadans/control/catalog.h"
 #include "kadans/signal/status_fields.h"
-#include "warm_up.h"
 
 namespace kadans {
 
@@ -30,8 +28,6 @@ class SnapshotTables {
   bool read_first(lua_State* state, std::size_t part, int key);
   // From now on fills all fields of a part.
   void read_whole(lua_State* state, std::size_t part);
-  // Reads the memory that refill() and the script will need into the caches. To be called before each refill().
-  void warm_up() const noexcept;
 
  private:
   using Kind = StatusField::Part;
@@ -39,9 +35,8 @@ class SnapshotTables {
   struct Part {
     Kind kind;
     std::uint32_t index;
-    int content;                          // registry reference
-    std::bitset<128> read{};              // the fields that were read
-    std::span<const std::byte> memory{};  // memory of its tables
+    int content;              // registry reference
+    std::bitset<128> read{};  // its fields that were read
   };
   struct Read {
     std::uint16_t part, field;
@@ -63,7 +58,6 @@ class SnapshotTables {
   Snapshot nothing_{};
   const Snapshot* snapshot_ = &nothing_;
   std::int64_t now_ns_ = 0;
-  std::span<const std::byte> joints_;  // memory of the table with their names
   std::vector<StatusField> fields_;
   std::vector<int> choices_;  // registry references, by field
   int keys_ = 0;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
+#include "kadans/signal/number_text.h"
 #include "kadans/signal/status.h"
 
 namespace kadans {
@@ -94,12 +94,19 @@ FaultWords fault_words(std::string_view text) noexcept {
   return words;
 }
 
-std::string fault_detail(const Fault& fault) {
-  if (fault.words[0] != '\0') return fault.words.data();
-  char numbers[64];
-  std::snprintf(numbers, sizeof numbers, "%g, limit %g", fault.value, fault.limit);
-  return numbers;
+ToldFault told(const Fault& fault, const std::string& joint, std::int64_t time_ns) {
+  return {name(fault.code), joint, fault.value, fault.limit, fault.words.data(), time_ns};
 }
+
+std::string fault_name(const ToldFault& fault) {
+  return fault.name + (fault.joint.empty() ? "" : " of " + fault.joint);
+}
+
+std::string fault_detail(const ToldFault& fault) {
+  return fault.words.empty() ? printed("%g, limit %g", fault.value, fault.limit) : fault.words;
+}
+
+std::string fault_text(const ToldFault& fault) { return fault_name(fault) + ": " + fault_detail(fault); }
 
 const char* name(DriveState state) noexcept {
   return named(std::array{"off", "ready", "enabled", "homing", "fault"}, static_cast<std::size_t>(state));

@@ -74,4 +74,27 @@ std::string xml_characters(std::string_view text) {
   return kept;
 }
 
+std::string html_text(std::string_view text) {
+  std::string safe;
+  for (const char c : xml_characters(text)) {
+    switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += c;
+    }
+  }
+  return safe;
+}
+
 }  // namespace kadans

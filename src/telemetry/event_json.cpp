@@ -20,6 +20,13 @@ int foxglove_level(BehaviorLog::Severity severity) noexcept {
   return 0;
 }
 
+void put_what(nlohmann::ordered_json& json, const ToldFault& fault) {
+  if (!fault.joint.empty()) json["joint"] = fault.joint;
+  json["value"] = fault.value;
+  json["limit"] = fault.limit;
+  if (!fault.words.empty()) json["words"] = fault.words;
+}
+
 }  // namespace
 
 std::string json_of(const Event& event) {
@@ -41,14 +48,19 @@ std::string json_of(const Event& event) {
   return json_text(json);
 }
 
-std::string json_of(const Fault& fault, const std::string& joint, std::int64_t time_ns) {
-  nlohmann::ordered_json json{{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
-                              {"name", name(fault.code)},
-                              {"joint", joint},
-                              {"value", fault.value},
-                              {"limit", fault.limit}};
-  if (fault.words[0] != '\0') json["words"] = fault.words.data();
+std::string json_of(const ToldFault& fault) {
+  nlohmann::ordered_json json{{"timestamp", {{"sec", fault.time_ns / ns_per_s}, {"nsec", fault.time_ns % ns_per_s}}},
+                              {"name", fault.name}};
+  put_what(json, fault);
   return json_text(json);
+}
+
+nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model) {
+  const ToldFault what = told(fault, model);
+  nlohmann::ordered_json json{{"code", what.name}, {"tick", fault.tick}, {"text", fault_text(what)}};
+  put_what(json, what);
+  json["key"] = configuration_key(fault.code);
+  return json;
 }
 
 const char* const log_schema = R"({

@@ -23,27 +23,6 @@ std::string quoted(const std::string& text) {
   return safe + '\'';
 }
 
-struct Range {
-  double low = 0, high = 1;
-};
-
-Range range_of(const PlotPanel& panel) {
-  Range range{INFINITY, -INFINITY};
-  for (const PlotLine& line : panel.lines) {
-    for (const PlotPoint& point : line.points) {
-      if (!std::isfinite(point.value)) continue;
-      range.low = std::min(range.low, point.value);
-      range.high = std::max(range.high, point.value);
-    }
-  }
-  if (!(range.low <= range.high)) return {0, 1};
-  double margin = 0.06 * (range.high - range.low);
-  // A constant, or one but for the last digits, is not blown up to fill the panel.
-  if (!(margin > 1e-9 * std::max(std::abs(range.low), std::abs(range.high))))
-    margin = range.low == 0 ? 1 : 0.1 * std::abs(range.low);
-  return {range.low - margin, range.high + margin};
-}
-
 class Script {
  public:
   Script(const SignalPlot& plot, PlotFormat format, PlotSize size) : plot_(plot), size_(size) {
@@ -162,7 +141,7 @@ class Script {
 
   void panel(const PlotPanel& panel, int top, bool last) {
     place(top, panel_height(panel));
-    const Range range = range_of(panel);
+    const PlotRange range = widened(range_of(panel.lines), 0.06, 1e-8);
     add(printed("set yrange [%.9g:%.9g]\n", range.low, range.high));
     shades();
     mark_lines();
@@ -213,7 +192,7 @@ class Script {
     for (std::size_t i = 0; i < panel.lines.size(); ++i) {
       add(printed("$d%zu << EOD\n", i));
       for (const PlotPoint& point : panel.lines[i].points)
-        add(std::isfinite(point.value) ? printed("%.9g %.7g\n", point.time_s, point.value) : "\n");
+        add(std::isfinite(point.y) ? printed("%.9g %.7g\n", point.x, point.y) : "\n");
       add(panel.lines[i].points.empty() ? printed("%.9g NaN\nEOD\n", plot_.from_s) : "EOD\n");
       const std::size_t dashes = i / plot_ink::lines.size() % 4;
       command += printed("%s$d%zu using 1:2 with lines lw 1.4 lc rgb '%s' dt %zu title ", i == 0 ? "" : ", ", i,

@@ -16,7 +16,7 @@ void PlotColumns::add(double time_s, double value) {
   const auto at = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(columns_ - 1)));
   if (!std::isfinite(value)) {
     end_column();
-    if (!points_.empty() && std::isfinite(points_.back().value))
+    if (!points_.empty() && std::isfinite(points_.back().y))
       points_.push_back({time_s, std::numeric_limits<double>::quiet_NaN()});
     return;
   }
@@ -27,8 +27,8 @@ void PlotColumns::add(double time_s, double value) {
     open_ = true;
     at_ = at;
   }
-  if (value < column_.lowest.value) column_.lowest = point;
-  if (value > column_.highest.value) column_.highest = point;
+  if (value < column_.lowest.y) column_.lowest = point;
+  if (value > column_.highest.y) column_.highest = point;
   column_.last = point;
 }
 
@@ -36,10 +36,10 @@ void PlotColumns::end_column() {
   if (!open_) return;
   open_ = false;
   PlotPoint inner[] = {column_.lowest, column_.highest};
-  if (inner[0].time_s > inner[1].time_s) std::swap(inner[0], inner[1]);
+  if (inner[0].x > inner[1].x) std::swap(inner[0], inner[1]);
   points_.push_back(column_.first);
   for (const PlotPoint& point : {inner[0], inner[1], column_.last}) {
-    if (point.time_s > points_.back().time_s) points_.push_back(point);
+    if (point.x > points_.back().x) points_.push_back(point);
   }
 }
 
@@ -127,9 +127,8 @@ SignalPlot plot_of(const RecordOutline& record, const std::vector<PanelWish>& wi
     plot.panels.push_back(std::move(panel));
   }
   plot.lanes = state_lanes(record.transitions, plot.from_s, plot.to_s);
-  for (const RecordedFault& fault : record.faults) {
-    if (shown.holds(fault.time_ns))
-      plot.marks.push_back({seconds(fault.time_ns), fault.name + (fault.joint.empty() ? "" : " " + fault.joint)});
+  for (const ToldFault& fault : record.faults) {
+    if (shown.holds(fault.time_ns)) plot.marks.push_back({seconds(fault.time_ns), fault_name(fault)});
   }
   return plot;
 }

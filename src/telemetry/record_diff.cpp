@@ -183,7 +183,7 @@ std::string event_line(std::int64_t time_ns, const std::string& text) {
 std::vector<std::string> event_lines(const RecordOutline& record) {
   std::vector<std::pair<std::int64_t, std::string>> events;
   for (const Transition& t : record.transitions) events.emplace_back(t.time_ns, transition_text(t));
-  for (const RecordedFault& f : record.faults) events.emplace_back(f.time_ns, "fault " + fault_text(f));
+  for (const ToldFault& f : record.faults) events.emplace_back(f.time_ns, "fault " + fault_text(f));
   for (const Event& e : record.log) events.emplace_back(e.transition.time_ns, e.transition.behavior + ": " + e.text);
   std::ranges::stable_sort(events, {}, [](const auto& event) { return event.first; });
   std::vector<std::string> lines;

@@ -23,7 +23,7 @@ void add_message(const RecordRows& rows, RecordOutline& outline, TopicOutline& t
       outline.transitions.push_back(std::move(event->transition));
     else
       outline.log.push_back(std::move(*event));
-  } else if (std::optional<RecordedFault> fault = fault_in(rows.topic(), rows.text(), time_ns)) {
+  } else if (std::optional<ToldFault> fault = fault_in(rows.topic(), rows.text(), time_ns)) {
     outline.faults.push_back(std::move(*fault));
   } else if (rows.topic().signals.empty()) {
     StateHash hash;

@@ -90,25 +90,16 @@ std::optional<Event> event_in(const RecordTopic& topic, std::string_view json, s
   return event;
 }
 
-std::optional<RecordedFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns) {
+std::optional<ToldFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns) {
   if (!topic.is_json() || topic.schema != "kadans.Fault") return std::nullopt;
   const Json read = object_in(json);
-  return RecordedFault{time_ns,
-                       text_in(read, "name"),
-                       text_in(read, "joint"),
-                       number_in(read, "value"),
-                       number_in(read, "limit"),
-                       text_in(read, "words")};
+  return ToldFault{text_in(read, "name"),    text_in(read, "joint"), number_in(read, "value"),
+                   number_in(read, "limit"), text_in(read, "words"), time_ns};
 }
 
 std::string transition_text(const Transition& transition) {
   return transition.behavior + ": " + transition.from + (transition.from.empty() ? "-> " : " -> ") + transition.to +
          (transition.why.empty() ? "" : " (" + transition.why + ")");
-}
-
-std::string fault_text(const RecordedFault& fault) {
-  return fault.name + (fault.joint.empty() ? "" : " of " + fault.joint) +
-         (fault.words.empty() ? printed(": %g, limit %g", fault.value, fault.limit) : ": " + fault.words);
 }
 
 }  // namespace kadans

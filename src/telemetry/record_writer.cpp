@@ -163,7 +163,7 @@ bool RecordWriter::fault(const Fault& fault, std::int64_t time_ns) {
   const std::vector<std::string>& joints = settings_.subjects.joints;
   const std::string joint = fault.joint < joints.size() ? joints[fault.joint] : "";
   return file_.write(faults_, static_cast<std::uint32_t>(fault.tick), time_ns,
-                     bytes_of(json_of(fault, joint, time_ns)));
+                     bytes_of(json_of(told(fault, joint, time_ns))));
 }
 
 bool RecordWriter::timing(const std::string& json, std::int64_t time_ns) {

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "plot.h"
+#include "kadans/telemetry/plot.h"
 
 namespace kadans::testing {
 namespace {
@@ -109,11 +109,11 @@ GoldenResult GoldenRecord::compare_to(const std::filesystem::path& file, const G
 std::ostream& operator<<(std::ostream& out, const GoldenResult& result) {
   out << result.message << '\n';
   if (result.golden.empty()) return out;
-  out << "golden, over rows\n";
-  plot(out, result.golden, static_cast<double>(result.golden.size()));
-  out << "found, over rows\n";
-  plot(out, result.found, static_cast<double>(result.found.size()));
-  return out;
+  const auto rows = static_cast<double>(result.golden.size());
+  return out << plot_text({.x = {.name = "rows", .range = {0, rows}},
+                           .lines = {plot_line("golden", result.golden, 0, rows),
+                                     plot_line("found", result.found, 0, static_cast<double>(result.found.size()))}},
+                          {.rows = 6});
 }
 
 }  // namespace kadans::testing

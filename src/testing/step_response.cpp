@@ -5,8 +5,8 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "kadans/telemetry/plot.h"
 #include "kadans/testing/joint_bench.h"
-#include "plot.h"
 
 namespace kadans::testing {
 namespace {
@@ -83,8 +83,7 @@ bool operator<=(const StepResponse& response, const StepLimits& limits) noexcept
 std::ostream& operator<<(std::ostream& out, const StepResponse& r) {
   out << "step " << r.from << " -> " << r.to << ": rise " << r.rise_time_s << " s, overshoot " << r.overshoot_percent
       << " %, settled after " << r.settling_time_s << " s, steady-state error " << r.steady_state_error << '\n';
-  plot(out, r.values, r.dt_s * static_cast<double>(r.values.size() - 1));
-  return out;
+  return out << curve_text("", r.values, 0, r.dt_s * static_cast<double>(r.values.size() - 1), {.rows = 6});
 }
 
 std::ostream& operator<<(std::ostream& out, const StepLimits& limits) {

@@ -5,13 +5,13 @@
 #include <limits>
 #include <ostream>
 
+#include "kadans/telemetry/plot.h"
 #include "kadans/testing/joint_bench.h"
-#include "plot.h"
 
 namespace kadans::testing {
 namespace {
 
-constexpr double settled_share = 0.02;
+constexpr double converged_share = 0.02;
 
 double converged_s(const SwitchRecord& record, double limit_Nm) {
   const std::vector<double>& torque = record.torque_Nm;
@@ -19,7 +19,7 @@ double converged_s(const SwitchRecord& record, double limit_Nm) {
   double end_Nm = 0;
   for (std::size_t i = torque.size() - tail; i < torque.size(); ++i) end_Nm += torque[i] / static_cast<double>(tail);
   std::size_t settled = torque.size();
-  while (settled > 0 && std::abs(torque[settled - 1] - end_Nm) <= settled_share * limit_Nm) --settled;
+  while (settled > 0 && std::abs(torque[settled - 1] - end_Nm) <= converged_share * limit_Nm) --settled;
   if (settled == torque.size()) return std::numeric_limits<double>::quiet_NaN();
   return settled == 0 ? 0 : record.dt_s * static_cast<double>(settled);
 }
@@ -54,8 +54,8 @@ bool operator<=(const SwitchRecord& record, const SwitchLimits& limits) noexcept
 std::ostream& operator<<(std::ostream& out, const SwitchRecord& record) {
   out << "switch: first step " << 100 * record.first_step_share << " % of the limit, largest "
       << 100 * record.largest_step_share << " %, converged after " << record.converged_s << " s\n";
-  plot(out, record.torque_Nm, record.dt_s * static_cast<double>(record.torque_Nm.size() - 1));
-  return out;
+  const double duration_s = record.dt_s * static_cast<double>(record.torque_Nm.size() - 1);
+  return out << curve_text("", record.torque_Nm, 0, duration_s, {.rows = 6});
 }
 
 std::ostream& operator<<(std::ostream& out, const SwitchLimits& limits) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <ostream>
 
+#include "kadans/telemetry/plot.h"
 #include "kadans/testing/joint_bench.h"
-#include "plot.h"
 
 namespace kadans::testing {
 
@@ -32,8 +32,8 @@ bool operator<=(const Tracking& tracking, const TrackingLimits& limits) noexcept
 
 std::ostream& operator<<(std::ostream& out, const Tracking& tracking) {
   out << "tracking error: RMS " << tracking.rms_error << " rad, peak " << tracking.peak_error << " rad\n";
-  plot(out, tracking.error, tracking.dt_s * static_cast<double>(tracking.error.size()));
-  return out;
+  const double duration_s = tracking.dt_s * static_cast<double>(tracking.error.size());
+  return out << curve_text("", tracking.error, 0, duration_s, {.rows = 6});
 }
 
 std::ostream& operator<<(std::ostream& out, const TrackingLimits& limits) {

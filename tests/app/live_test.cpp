@@ -61,6 +61,25 @@ TEST_CASE("run binds all functions of its libraries before main(): no thread loo
   CHECK(processes == 2);
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take memory of their own
+TEST_CASE("run holds at most 40 MB with its flight recorder, and 64 MB with the page") {
+  const auto project = project_copy("live_memory");
+  write(project / "memory.sh",
+        "\"$@\" >out 2>err & sleep 3; awk '/^VmRSS/ {print $2}' /proc/$!/status >kB; wait $!; true\n");
+  const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
+  for (const bool page : {false, true}) {
+    CAPTURE(page);
+    const std::string command =
+        "'" + program + "' run config/tulip/robot.json --play squat --soft --duration 4" + (page ? " --live=0" : "");
+    REQUIRE(std::system(("cd '" + project.string() + "' && sh memory.sh " + command).c_str()) == 0);
+    const std::string kB = read(project / "kB");
+    REQUIRE(!kB.empty());
+    CHECK(std::stoi(kB) > 0);
+    CHECK(std::stoi(kB) <= 1024 * (page ? 64 : 40));
+  }
+}
+#endif
+
 TEST_CASE(
     "run ends cleanly on SIGTERM and when its terminal closes: behaviors leave, the robot is off, the record closed") {
   for (const std::string signal : {"TERM", "HUP"}) {

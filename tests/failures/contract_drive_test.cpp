@@ -57,7 +57,7 @@ TEST_CASE("in that tick the joint alone is off, latched, and the fault has the m
     spoil(robot, ActuatorFaultKind::tripped, code);
     robot.run(3);
     CHECK(robot.in_time(FaultCode::drive_fault, onset));
-    CHECK(fault_detail(first_fault(robot)) == words);
+    CHECK(fault_detail(told(first_fault(robot))) == words);
     CHECK(first_fault(robot).joint == 0);
     check_alone(robot, SafetyLevel::off);
   }
@@ -73,7 +73,7 @@ TEST_CASE("after drives.enable_s the joint alone is off, latched" *
   CHECK(robot.faults.empty());
   robot.run(5);
   CHECK(robot.in_time(FaultCode::drive_not_enabled, onset));
-  CHECK(fault_detail(first_fault(robot)) == "ready");
+  CHECK(fault_detail(told(first_fault(robot))) == "ready");
   check_alone(robot, SafetyLevel::off);
 }
 
@@ -183,7 +183,7 @@ TEST_CASE(
   robot.faulty.add(SupplyFault{.button = true, .from_ns = robot.time_ns + 1});
   robot.run(2);
   CHECK(robot.in_time(FaultCode::emergency_input, onset));
-  CHECK(fault_detail(first_fault(robot)) == "the button");
+  CHECK(fault_detail(told(first_fault(robot))) == "the button");
   CHECK(robot.safety.robot_level() == SafetyLevel::damp);
   robot.run(ticks(robot.limits().damp_s) + 5);
   CHECK(robot.safety.robot_level() == SafetyLevel::off);

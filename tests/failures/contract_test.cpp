@@ -277,7 +277,7 @@ TEST_CASE("found in time, the robot goes on, limited and flagged, and the fault 
     CHECK(robot.first(code) >= onset);
     CHECK(robot.first(code) < onset + period_ticks + static_cast<std::int64_t>(robot.limits().silent_ticks_max) + 1);
     CHECK(robot.faults.size() == 1);
-    CHECK(fault_detail(robot.faults.front()) == "front");
+    CHECK(fault_detail(told(robot.faults.front())) == "front");
     CHECK(robot.safety.robot_level() == SafetyLevel::limited);
     CHECK(std::isfinite(robot.control.state().status.channels[0]));
   }

@@ -35,7 +35,7 @@ TEST_CASE(
   const Fault& fault = bench.faults.front();
   CHECK(fault.tick == 10);
   CHECK(std::string(fault.words.data()) == "uid 1000 (operate)");
-  CHECK(fault_detail(fault) == "uid 1000 (operate)");
+  CHECK(fault_detail(told(fault)) == "uid 1000 (operate)");
   CHECK(bench.status.fault_count == 1);
   CHECK(bench.status.first_fault.code == FaultCode::emergency_stop);
   const double damp_s = bench.safety->settings().damp_s;

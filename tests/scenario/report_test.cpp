@@ -83,7 +83,9 @@ TEST_CASE("The text report tells transitions, checks, errors, faults and the lin
   CHECK(has(text, "fault: velocity_limit of knee in tick 1234: 13, limit 12 (safety.velocity_margin)"));
   CHECK(has(text, "kadans sim squat.json --seed 7"));
   CHECK(has(text, "FAILED  1 of 2 checks"));
-  CHECK(has(text, "0.800"));
+  CHECK(has(text, "  base height, m\n         0.8 |"));
+  CHECK(has(text, "         0.7 |"));
+  CHECK(has(text, " 20 s\n"));
   CHECK(text.find('\033') == std::string::npos);
 }
 

@@ -22,11 +22,10 @@ TEST_CASE("What a state allocates for its ticks stands side by side, whatever is
   void* const other = heap.reallocate(nullptr, 0, 64);
   heap.for_ticks(true);
   void* const second = heap.reallocate(nullptr, 0, 96);
-  CHECK(address(state) == address(heap.tick_memory().data()));
   CHECK(address(first) % 64 == 0);
   CHECK(address(second) == address(first) + 64);
-  CHECK(address(heap.tick_end()) == address(second) + 96);
-  const bool outside = address(other) < address(state) || address(other) >= address(heap.tick_end());
+  CHECK(address(first) - address(state) < 6000 + 64);
+  const bool outside = address(other) < address(state) || address(other) >= address(second) + 96;
   CHECK(outside);
   CHECK(heap.used_bytes() == 6000 + 64 + 64 + 96);
 }
@@ -35,7 +34,6 @@ TEST_CASE("A heap goes on when the memory for ticks is full, and uses again what
   LuaHeap heap(mb, mb);
   (void)heap.reallocate(nullptr, 0, 6000);
   for (int i = 0; i < 200; ++i) REQUIRE(heap.reallocate(nullptr, 0, 1024) != nullptr);
-  CHECK(heap.tick_memory().size() < std::size_t{64} << 10);
   heap.for_ticks(false);
   void* const block = heap.reallocate(nullptr, 0, 200);
   CHECK(heap.reallocate(block, 200, 0) == nullptr);

@@ -54,12 +54,12 @@ TEST_CASE("a signal is thinned to a bounded number of points that keep its ends 
   const std::vector<PlotPoint> points = columns.points();
   CHECK(points.size() <= 4 * 50);
   CHECK(points.size() > 50);
-  const auto value = [](const PlotPoint& point) { return point.value; };
-  CHECK(std::ranges::max(points, {}, value).time_s == doctest::Approx(33.333));
-  CHECK(std::ranges::min(points, {}, value).time_s == doctest::Approx(66.666));
-  CHECK(points.front().time_s == 0);
-  CHECK(points.back().time_s == doctest::Approx(99.999));
-  CHECK(std::ranges::is_sorted(points, {}, [](const PlotPoint& point) { return point.time_s; }));
+  const auto value = [](const PlotPoint& point) { return point.y; };
+  CHECK(std::ranges::max(points, {}, value).x == doctest::Approx(33.333));
+  CHECK(std::ranges::min(points, {}, value).x == doctest::Approx(66.666));
+  CHECK(points.front().x == 0);
+  CHECK(points.back().x == doctest::Approx(99.999));
+  CHECK(std::ranges::is_sorted(points, {}, [](const PlotPoint& point) { return point.x; }));
 }
 
 TEST_CASE("where a signal is no number its line is interrupted") {
@@ -67,9 +67,9 @@ TEST_CASE("where a signal is no number its line is interrupted") {
   for (int i = 0; i < 10; ++i) columns.add(i, i == 4 || i == 5 ? std::nan("") : i);
   const std::vector<PlotPoint> points = columns.points();
   REQUIRE(points.size() == 9);
-  CHECK(points[3].value == 3);
-  CHECK(std::isnan(points[4].value));
-  CHECK(points[5].value == 6);
+  CHECK(points[3].y == 3);
+  CHECK(std::isnan(points[4].y));
+  CHECK(points[5].y == 6);
 }
 
 TEST_CASE("the states of a behavior follow each other, from the one that the first transition left") {
@@ -98,11 +98,11 @@ TEST_CASE("a plot has a panel for each unit, the states as boxes, faults as line
   CHECK(plot.panels[2].lines[0].points.size() == 10);
   CHECK(text_of(plot.lanes) == "bend: up 0-0 down 0-1 up 1-1;");
   REQUIRE(plot.marks.size() == 1);
-  CHECK(plot.marks[0].label == "motor_hot knee");
+  CHECK(plot.marks[0].label == "motor_hot of knee");
   const std::string script = gnuplot_script(plot, PlotFormat::svg);
   CHECK(count(script, "set object rect from first") == 3 + 3);  // the states, and the second one behind each panel
   CHECK(count(script, "set arrow from") == 3);
-  CHECK(count(script, "'motor_hot knee'") == 1);
+  CHECK(count(script, "'motor_hot of knee'") == 1);
   CHECK(count(script, "title 'knee.angle_rad'") == 1);
   for (const char* unit : {"set label 'rad' ", "set label 'Nm' ", "set label 'C' ", "set xlabel 'time, s'"})
     CHECK(count(script, unit) == 1);
@@ -117,9 +117,9 @@ TEST_CASE("a plot of a stretch begins with what the signals held") {
   CHECK(plot.to_s == doctest::Approx(0.062));
   const std::vector<PlotPoint>& points = plot.panels.at(0).lines.at(0).points;
   REQUIRE(points.size() == 4);
-  CHECK(points[0].time_s == doctest::Approx(0.035));
-  CHECK(points[0].value == 20.3);
-  CHECK(points[1].time_s == doctest::Approx(0.04));
+  CHECK(points[0].x == doctest::Approx(0.035));
+  CHECK(points[0].y == 20.3);
+  CHECK(points[1].x == doctest::Approx(0.04));
 }
 
 TEST_CASE("of faults that stand close together one is named, with how many more there are") {
@@ -155,7 +155,7 @@ TEST_CASE("gnuplot draws SVG and PNG of the size that is asked for") {
   CHECK(count(svg, "width=\"700\"") >= 1);
   CHECK(count(svg, "</svg>") == 1);
   CHECK(count(svg, "knee.angle_rad") >= 1);
-  CHECK(count(svg, ">motor_hot knee<") == 1);
+  CHECK(count(svg, ">motor_hot of knee<") == 1);
   const std::string png = draw(plot, PlotFormat::png, {.width = 700, .panel_height = 100});
   CHECK(png.substr(1, 3) == "PNG");
   CHECK(static_cast<unsigned char>(png[18]) * 256 + static_cast<unsigned char>(png[19]) == 700);

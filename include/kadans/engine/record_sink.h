@@ -12,8 +12,6 @@ class RecordSink {
   // Control thread, once a tick, with one value per signal in the order of the signal table. Never blocks; what does
   // not fit is dropped and counted.
   virtual void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept = 0;
-  // Control thread, before a tick: a record will follow soon.
-  virtual void warm() noexcept {}
 };
 
 }  // namespace kadans

@@ -64,21 +64,9 @@ class Latest {
     }
   }
 
-  // Writer thread only: fetches the slots of the next publish() into the cache. Changes nothing.
-  void warm() const noexcept {
-    for (const Channel& channel : channels_) bring_near<1>(channel.slots[channel.write_slot]);
-  }
-  // Thread of reader `reader` only: fetches the slot that read() will find into the cache, unless something newer
-  // comes. Changes nothing.
-  void warm_read(std::size_t reader = 0) noexcept {
-    Channel& channel = channels_[reader];
-    const std::uint32_t middle_slot = Memory::at(channel.middle).load(std::memory_order_relaxed) & slot_mask;
-    bring_near<0>(channel.slots[has_news(reader) ? middle_slot : channel.read_slot]);
-  }
-
-  // The value that a reader looks at, for as long as the Reading lives. If the same reader reads again meanwhile,
-  // however deep the call, it finds the same value: the slot is not given back to the writer. Give the Reading a name:
-  // a temporary gives no access to the value.
+  // The value that a reader looks at, for as long as this lives. Who reads again meanwhile finds the same value: what
+  // is looked at is never given back to the writer, however deep the call that reads again. Give it a name: of one
+  // without nothing can be kept.
   class Reading {
    public:
     Reading(const Reading&) = delete;
@@ -123,13 +111,6 @@ class Latest {
       copy_used(from, to);
     else
       to = from;
-  }
-
-  // A hint to the processor. For the language this is no access to memory, so there is no race with the slot's owner.
-  template <int to_write>
-  static void bring_near(const Slot& slot) noexcept {
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(&slot);
-    for (std::size_t i = 0; i < sizeof slot; i += cache_line) __builtin_prefetch(bytes + i, to_write);
   }
 
   std::array<Channel, Readers> channels_;

@@ -45,14 +45,6 @@ class Ring {
   // Producer thread only.
   [[nodiscard]] bool try_push(const T& value) noexcept { return try_push(std::span<const T>(&value, 1)); }
 
-  // Producer thread only: fetches the slots of the next `count` elements into the cache, for writing.
-  void warm(std::size_t count) const noexcept {
-    constexpr std::size_t a_line = cache_line / sizeof(T) > 0 ? cache_line / sizeof(T) : 1;
-    for (std::size_t i = 0; i < count + a_line; i += a_line) {
-      __builtin_prefetch(&slots_[(own(head_) + i) & mask], 1);
-    }
-  }
-
   // Producer thread only: places left. It can only grow until the producer pushes again.
   std::size_t free() const noexcept {
     return Capacity - (own(head_) - Memory::at(tail_).load(std::memory_order_acquire));

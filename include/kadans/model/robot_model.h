@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "kadans/signal/fault.h"
 #include "kadans/signal/frames.h"
 
 namespace kadans {
@@ -93,5 +94,7 @@ struct RobotModel {
   std::vector<std::string> link_names() const;  // merged names too
   double mass_kg() const;
 };
+
+ToldFault told(const Fault& fault, const RobotModel& model, std::int64_t time_ns = 0);
 
 }  // namespace kadans

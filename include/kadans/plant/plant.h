@@ -44,8 +44,6 @@ class Plant {
   virtual void read(SensorFrame& sensors) noexcept = 0;
   // Control thread. The actuation holds until the next write.
   virtual void write(const ActuationFrame& actuation) noexcept = 0;
-  // Control thread, in the wait before a tick: read and write will follow soon. Changes nothing.
-  virtual void warm() noexcept {}
 };
 
 }  // namespace kadans

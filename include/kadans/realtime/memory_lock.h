@@ -2,20 +2,17 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
-#include <string_view>
 
 namespace kadans {
 
-// To be called when everything is built, before the threads are started. The heap keeps `reserve_bytes` ready and gives
-// nothing back to the system. Then everything that is mapped, now and later, stays in memory.
-//
-// With `unused` some parts are left out; of these only the pages that were touched stay in memory: shared libraries
-// whose file names begin with one of the texts, and which no real-time thread calls; the layers that are SOFT
-// (cmake/KadansLayer.cmake); the tables that only exceptions read; what is mapped later, so that a real-time thread has
-// to touch its stack first.
-//
-// Returns 0, or the errno of a refusal; then nothing is locked, so that threads and memory are still available.
-[[nodiscard]] int lock_memory(std::size_t reserve_bytes, std::span<const std::string_view> unused = {}) noexcept;
+// Before the threads are started, when all is built. The heap keeps `reserve_bytes` ready and gives nothing back to the
+// system; everything that is mapped comes into memory and stays; what is mapped later stays from its first touch on, so
+// that a real-time thread touches its stack first. Returns 0, or the errno of what was refused; then nothing is locked,
+// so that threads and memory can still be had.
+[[nodiscard]] int lock_memory(std::size_t reserve_bytes) noexcept;
+
+// What is left of the calling thread's stack, but for a reserve at its end, comes into memory, or as much as a beat can
+// need: a larger stack is for Lua's and the model's rarest.
+void touch_stack() noexcept;
 
 }  // namespace kadans

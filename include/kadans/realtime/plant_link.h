@@ -30,10 +30,6 @@ class LinkedPlant final : public Plant, public TruthSource {
     copy_used(*newest, sensors);
   }
   void write(const ActuationFrame& actuation) noexcept override { exchange_.actuation.publish(actuation); }
-  void warm() noexcept override {
-    exchange_.sensors.warm_read();
-    exchange_.actuation.warm();
-  }
   const PlantTruth& truth() const noexcept override;  // control thread
 
  private:

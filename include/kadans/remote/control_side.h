@@ -18,7 +18,6 @@ class ControlSide final : public RecordSink {
 
   // Control thread.
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
-  void warm() noexcept override;
 
   // Call it on one thread at a time. Rows go to `sink` from the current or the next tick on; nullptr: nowhere. The sink
   // must outlive the loop, because a row may still be on its way.

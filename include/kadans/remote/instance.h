@@ -152,7 +152,4 @@ class Instance {
   std::vector<std::unique_ptr<InstancePort>> ports_;
 };
 
-// "position_limit at l_knee: 2.1, limit 2": a fault as text.
-std::string fault_text(const Fault& fault, const RobotModel& model);
-
 }  // namespace kadans

@@ -7,10 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "kadans/signal/utf8.h"
+
 namespace kadans {
 
-// Escapes a text for use between tags and in attributes.
-std::string html_text(std::string_view text);
 std::string base64(std::string_view bytes);
 // A whole document. `style` is CSS that is added after the style of all pages.
 std::string html_page(const std::string& title, const std::string& body, const std::string& style = {});

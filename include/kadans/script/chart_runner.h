@@ -32,7 +32,6 @@ class ByteReader;
 class ByteWriter;
 struct Motion;
 class StepMeter;
-class WarmUp;
 
 // Registry references of the values that are passed to the chart's functions.
 struct RunnerTables {
@@ -84,9 +83,6 @@ class ChartRunner {
   void report_gone(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept;
   // The next tick enters the states again that leave_marked() left.
   void enter_again(const std::vector<bool>& marks) noexcept;
-
-  // Adds the memory that every tick needs.
-  void add_to(WarmUp& list) const noexcept;
 
   bool started() const noexcept { return started_; }
   bool finished() const noexcept { return finished_; }

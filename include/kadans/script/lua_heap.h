@@ -17,7 +17,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace kadans {
 
@@ -33,12 +32,9 @@ class LuaHeap {
 
   std::size_t used_bytes() const noexcept { return used_; }
   std::size_t limit_bytes() const noexcept { return limit_; }
-  std::uint64_t allocated_bytes() const noexcept { return allocated_; }  // since the beginning
-  // Says whether blocks that are allocated from now on are used in every tick. Such blocks are placed together in
-  // tick_memory().
+  std::uint64_t allocated_bytes() const noexcept { return allocated_; }  // ever
+  // Whether what is allocated from now on is for every tick. Such blocks stand side by side.
   void for_ticks(bool yes) noexcept { for_ticks_ = yes; }
-  std::span<const std::byte> tick_memory() const noexcept { return {tick_first_, tick_.next}; }
-  const std::byte* tick_end() const noexcept { return tick_.next; }
 
   // The largest block so far: no table, function or stack of the state is larger.
   std::size_t largest_block_bytes() const noexcept { return largest_; }

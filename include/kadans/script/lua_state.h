@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,7 +21,6 @@ struct lua_State;
 namespace kadans {
 
 struct LuaCore;
-class WarmUp;
 
 // Takes the lines that scripts print.
 class ScriptVoice {
@@ -82,8 +80,6 @@ class LuaState {
   // in the next call.
   void collect() noexcept;
   std::size_t used_bytes() const noexcept;
-  // Adds the memory of the state and of the interpreter that every call() needs.
-  void add_to(WarmUp& list) const noexcept;
 
  private:
   void collect_in_time(int kB) noexcept;
@@ -91,7 +87,6 @@ class LuaState {
   Settings settings_;
   std::unique_ptr<LuaCore> core_;
   lua_State* lua_ = nullptr;
-  std::span<const std::byte> foundation_;  // the interpreter's own data
   std::vector<Source> sources_;
   std::uint64_t collected_at_ = 0;
 };

@@ -90,7 +90,19 @@ struct Fault {
 };
 static_assert(sizeof(Fault) == 72 && alignof(Fault) == 8 && offsetof(Fault, tick) == 8, "the same on 32-bit machines");
 
-// "2.1, limit 2", or its words.
-std::string fault_detail(const Fault& fault);
+// A fault as people and programs are told of it, with its names: whatever shows one, live or from a record, shows this.
+struct ToldFault {
+  std::string name, joint;      // joint: "" for none
+  double value = 0, limit = 0;  // as in Fault
+  std::string words;            // in place of the two, where there are some
+  std::int64_t time_ns = 0;     // where it is known
+};
+ToldFault told(const Fault& fault, const std::string& joint = "", std::int64_t time_ns = 0);
+// "motor_hot of l_knee"
+std::string fault_name(const ToldFault& fault);
+// "121, limit 120", or its words
+std::string fault_detail(const ToldFault& fault);
+// "motor_hot of l_knee: 121, limit 120"
+std::string fault_text(const ToldFault& fault);
 
 }  // namespace kadans

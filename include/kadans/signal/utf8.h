@@ -20,5 +20,7 @@ void append_utf8(std::uint32_t code, std::string& text);
 // With U+FFFD for each byte that is none, and without the characters that XML cannot hold however they are written: all
 // controls but tab and line ends.
 std::string xml_characters(std::string_view text);
+// The same, safe between tags and in attributes.
+std::string html_text(std::string_view text);
 
 }  // namespace kadans

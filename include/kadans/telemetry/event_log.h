@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "kadans/engine/behavior_host.h"
 #include "kadans/exchange/ring.h"
+#include "kadans/model/robot_model.h"
 #include "kadans/signal/byte_order.h"
-#include "kadans/signal/fault.h"
 
 namespace kadans {
 
@@ -27,7 +29,10 @@ struct Event {
 
 // The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition and kadans.Fault.
 std::string json_of(const Event& event);
-std::string json_of(const Fault& fault, const std::string& joint, std::int64_t time_ns);
+std::string json_of(const ToldFault& fault);
+// The JSON that reports and ctl tell: {code, tick, text, joint, value, limit, words, key}; no joint and no words where
+// there are none, and the key is of the robot's configuration.
+nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model);
 extern const char* const log_schema;
 extern const char* const transition_schema;
 extern const char* const fault_schema;

@@ -34,7 +34,7 @@ struct RecordOutline {
   std::vector<TopicOutline> topics;        // by channel
   std::vector<Transition> transitions;
   std::vector<Event> log;
-  std::vector<RecordedFault> faults;
+  std::vector<ToldFault> faults;
   std::map<std::string, TextMap> metadata;
   std::vector<McapAttachment> attachments;
 

@@ -58,22 +58,13 @@ class RecordRows {
   Precision precision_ = Precision::full;
 };
 
-// A fault that the safety layer found, as a message on /faults holds it.
-struct RecordedFault {
-  std::int64_t time_ns = 0;
-  std::string name, joint;  // joint: "" for none
-  double value = 0, limit = 0;
-  std::string words;  // replace `value` and `limit` when not empty
-};
-
-// A transition or a log line; nullopt when the message is neither, or when it is damaged.
+// A transition or a line of the log; nothing when the message is neither, or damaged.
 std::optional<Event> event_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
-std::optional<RecordedFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
+// What the safety layer found, as /faults tells it.
+std::optional<ToldFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
 
 // "squat: down -> up (arrived)"
 std::string transition_text(const Transition& transition);
-// "motor_hot of l_knee: 121, limit 120"
-std::string fault_text(const RecordedFault& fault);
 
 inline double seconds(std::int64_t time_ns) noexcept { return 1e-9 * static_cast<double>(time_ns); }
 

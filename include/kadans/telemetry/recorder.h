@@ -49,7 +49,6 @@ class Recorder final : public RecordSink {
   void timing(const std::string& json, std::int64_t time_ns);
 
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
-  void warm() noexcept override { ring_->warm(head_size + signal_count_); }
   BehaviorLog& events() noexcept { return events_; }
   void fault(const Fault& fault) noexcept { (void)faults_.try_push(fault); }
 

@@ -12,15 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "kadans/telemetry/plot.h"
 #include "kadans/telemetry/record_outline.h"
 
 namespace kadans {
 
-struct PlotPoint {
-  double time_s = 0, value = 0;  // NaN: the line is interrupted
-};
-
-// Reduces one signal to the given number of columns between two times.
+// Thins one signal to so many columns between two times.
 class PlotColumns {
  public:
   PlotColumns(double from_s, double to_s, std::size_t columns) noexcept;
@@ -40,10 +37,6 @@ class PlotColumns {
   std::vector<PlotPoint> points_;
 };
 
-struct PlotLine {
-  std::string label;
-  std::vector<PlotPoint> points;
-};
 struct PlotPanel {
   std::string title;  // may be ""
   std::string unit;

@@ -99,10 +99,9 @@ void add_marks(const RunPage& page, SignalPlot& plot) {
   const RunResult& run = page.subject.result;
   plot.marks.clear();  // the faults are taken from the run, because the record may lack them
   for (const Fault& fault : run.faults) {
-    const std::string joint = fault.joint == no_joint ? "" : " " + page.subject.model.joints.at(fault.joint).name;
     const double share =
         static_cast<double>(fault.tick) / static_cast<double>(std::max<std::uint64_t>(run.control_ticks, 1));
-    plot.marks.push_back({share * run.duration_s, name(fault.code) + joint});
+    plot.marks.push_back({share * run.duration_s, fault_name(told(fault, page.subject.model))});
   }
   for (const ScenarioPush& push : page.scenario.pushes)
     plot.marks.push_back({push.at_s, "push on " + push.link.name, false});
@@ -113,7 +112,7 @@ void add_marks(const RunPage& page, SignalPlot& plot) {
 // True when all values are 0 (no error, no contact), so that the panel shows nothing.
 bool is_zero(const PlotPanel& panel) {
   return std::ranges::all_of(panel.lines, [](const PlotLine& line) {
-    return std::ranges::all_of(line.points, [](const PlotPoint& point) { return point.value == 0; });
+    return std::ranges::all_of(line.points, [](const PlotPoint& point) { return point.y == 0; });
   });
 }
 
