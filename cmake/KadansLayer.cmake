@@ -14,6 +14,7 @@ function(kadans_layer name)
   add_library(${target} STATIC ${arg_SOURCES})
   add_library(kadans::${export} ALIAS ${target})
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                              $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC kadans_flags ${arg_LINKS}
                                   PRIVATE ${arg_PRIVATE_LINKS} $<BUILD_INTERFACE:kadans_warnings>)

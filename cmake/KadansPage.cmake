@@ -15,7 +15,7 @@ function(kadans_embed_page dist source)
     math(EXPR number "${number} + 1")
   endforeach()
   file(CONFIGURE OUTPUT "${source}" @ONLY CONTENT [[// Made by cmake/KadansPage.cmake of the built page.
-#include "kadans/remote/page_files.h"
+#include "remote/page/page_files.h"
 
 namespace kadans {
 namespace {

@@ -1,13 +1,13 @@
-#include "kadans/app/assembly.h"
+#include "assembly.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "kadans/config/project_root.h"
-#include "kadans/estimate/signals.h"
-#include "kadans/scenario/planned_faults.h"
-#include "kadans/signal/nearest_name.h"
+#include "config/robot/project_root.h"
+#include "estimate/signals.h"
+#include "scenario/disturb/planned_faults.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

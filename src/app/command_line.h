@@ -7,16 +7,16 @@
 
 #include <CLI/CLI.hpp>
 
-#include "behavior_command.h"
+#include "app/author/behavior_command.h"
+#include "app/author/repl_command.h"
+#include "app/author/stubs_command.h"
+#include "app/ctl/ctl_command.h"
+#include "app/live/page_commands.h"
+#include "app/log/log_command.h"
+#include "app/sim/replay_command.h"
+#include "app/sweep/sweep_command.h"
+#include "app/sweep/tune_command.h"
 #include "commands.h"
-#include "ctl/ctl_command.h"
-#include "live/page_commands.h"
-#include "log/log_command.h"
-#include "repl_command.h"
-#include "replay_command.h"
-#include "stubs_command.h"
-#include "sweep_command.h"
-#include "tune_command.h"
 
 namespace kadans {
 

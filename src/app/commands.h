@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "ctl/ctl_service.h"
-#include "live/live_service.h"
+#include "app/ctl/ctl_service.h"
+#include "app/live/live_service.h"
+#include "app/report/report_options.h"
+#include "app/ros2/ros2_service.h"
+#include "app/run/run_request.h"
 #include "record_options.h"
-#include "report/report_options.h"
-#include "ros2/ros2_service.h"
-#include "run_request.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;

@@ -3,8 +3,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "kadans/app/assembly.h"
-#include "kadans/control/plugin_library.h"
+#include "assembly.h"
+#include "control/plugin_library.h"
 #include "shipped_types.h"
 
 namespace kadans {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "kadans/config/foreign_json.h"
-#include "kadans/realtime/machine.h"
+#include "config/json/foreign_json.h"
+#include "realtime/machine/machine.h"
 #include "terminal.h"
 
 namespace kadans {

@@ -1,7 +1,7 @@
 #include "option_checks.h"
 
-#include "kadans/config/fields.h"
-#include "kadans/signal/number_text.h"
+#include "config/json/fields.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {

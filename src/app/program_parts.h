@@ -2,7 +2,7 @@
 // shared library. Two programs with the same parts compute the same numbers from the same inputs.
 #pragma once
 
-#include "kadans/signal/byte_order.h"
+#include "signal/byte_order.h"
 
 namespace kadans {
 

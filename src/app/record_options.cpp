@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "live/live_service.h"
+#include "app/live/live_service.h"
 #include "option_checks.h"
 
 namespace kadans {

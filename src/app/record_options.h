@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "kadans/app/assembly.h"
-#include "kadans/remote/record_side.h"
+#include "assembly.h"
+#include "remote/instance/record_side.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;

@@ -10,7 +10,7 @@
 
 #include <unistd.h>
 
-#include "kadans/script/budget.h"
+#include "script/lua/budget.h"
 
 namespace kadans {
 namespace {

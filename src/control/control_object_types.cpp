@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "kadans/signal/nearest_name.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -1,4 +1,4 @@
-#include "kadans/control/plugin_library.h"
+#include "plugin_library.h"
 
 #include <algorithm>
 #include <cstring>

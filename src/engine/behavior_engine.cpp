@@ -1,4 +1,4 @@
-#include "kadans/engine/behavior_engine.h"
+#include "behavior_engine.h"
 
 namespace kadans {
 

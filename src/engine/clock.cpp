@@ -1,4 +1,4 @@
-#include "kadans/engine/clock.h"
+#include "clock.h"
 
 #include <ctime>
 

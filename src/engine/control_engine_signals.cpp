@@ -1,6 +1,6 @@
-#include "kadans/engine/control_engine.h"
-#include "kadans/estimate/signals.h"
-#include "kadans/signal/status_fields.h"
+#include "engine/tick/control_engine.h"
+#include "estimate/signals.h"
+#include "signal/status_fields.h"
 
 namespace kadans {
 

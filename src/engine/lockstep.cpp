@@ -1,4 +1,4 @@
-#include "kadans/engine/lockstep.h"
+#include "lockstep.h"
 
 #include <stdexcept>
 #include <utility>

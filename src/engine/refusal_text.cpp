@@ -1,4 +1,4 @@
-#include "kadans/engine/refusal_text.h"
+#include "refusal_text.h"
 
 #include <cstdio>
 

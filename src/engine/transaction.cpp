@@ -1,4 +1,4 @@
-#include "kadans/engine/transaction.h"
+#include "transaction.h"
 
 namespace kadans {
 

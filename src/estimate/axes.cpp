@@ -1,4 +1,4 @@
-#include "kadans/estimate/axes.h"
+#include "axes.h"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kadans/estimate/estimator.h"
+#include "estimator.h"
 
 namespace kadans {
 namespace {

@@ -1,4 +1,4 @@
-#include "kadans/estimate/estimator.h"
+#include "estimator.h"
 
 #include <algorithm>
 #include <cmath>

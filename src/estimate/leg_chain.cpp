@@ -1,11 +1,11 @@
-#include "kadans/estimate/leg_chain.h"
+#include "leg_chain.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "kadans/signal/sine_cosine.h"
+#include "signal/sine_cosine.h"
 
 namespace kadans {
 namespace {

@@ -1,4 +1,4 @@
-#include "kadans/estimate/orientation_filter.h"
+#include "orientation_filter.h"
 
 #include <algorithm>
 #include <cmath>

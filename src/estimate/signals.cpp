@@ -1,8 +1,8 @@
-#include "kadans/estimate/signals.h"
+#include "signals.h"
 
 #include <string>
 
-#include "kadans/signal/status_fields.h"
+#include "signal/status_fields.h"
 
 namespace kadans {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kadans/signal/sine_cosine.h"
+#include "signal/sine_cosine.h"
 
 namespace kadans {
 namespace {

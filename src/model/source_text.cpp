@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "kadans/signal/utf8.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kadans/signal/text_place.h"
+#include "signal/text_place.h"
 
 namespace kadans {
 

@@ -1,4 +1,4 @@
-#include "kadans/realtime/doorbell.h"
+#include "doorbell.h"
 
 #include <array>
 #include <cerrno>

@@ -1,4 +1,4 @@
-#include "kadans/realtime/engine_tasks.h"
+#include "engine_tasks.h"
 
 namespace kadans {
 

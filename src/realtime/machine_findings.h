@@ -1,7 +1,7 @@
 // The parts of the examination of a machine.
 #pragma once
 
-#include "kadans/realtime/machine.h"
+#include "realtime/machine/machine.h"
 
 namespace kadans {
 

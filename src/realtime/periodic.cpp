@@ -1,4 +1,4 @@
-#include "kadans/realtime/periodic.h"
+#include "periodic.h"
 
 #include <algorithm>
 #include <cstdlib>

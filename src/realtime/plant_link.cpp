@@ -1,4 +1,4 @@
-#include "kadans/realtime/plant_link.h"
+#include "plant_link.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "kadans/realtime/posix_wait.h"
+#include "posix_wait.h"
 
 #include <cerrno>
 #include <ctime>

@@ -1,6 +1,6 @@
-#include "kadans/realtime/start_line.h"
+#include "start_line.h"
 
-#include "kadans/engine/clock.h"
+#include "engine/clock.h"
 
 namespace kadans {
 

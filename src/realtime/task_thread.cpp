@@ -1,4 +1,4 @@
-#include "kadans/realtime/task_thread.h"
+#include "task_thread.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -10,8 +10,8 @@
 #include <sched.h>
 #include <sys/resource.h>
 
-#include "kadans/realtime/memory_lock.h"
-#include "kadans/realtime/signals_blocked.h"
+#include "realtime/machine/memory_lock.h"
+#include "signals_blocked.h"
 
 namespace kadans {
 namespace {

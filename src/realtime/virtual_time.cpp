@@ -1,4 +1,4 @@
-#include "kadans/realtime/virtual_time.h"
+#include "virtual_time.h"
 
 #include <algorithm>
 #include <chrono>

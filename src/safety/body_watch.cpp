@@ -1,4 +1,4 @@
-#include "kadans/safety/body_watch.h"
+#include "body_watch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "kadans/safety/detection.h"
+#include "detection.h"
 
 #include <cmath>
 

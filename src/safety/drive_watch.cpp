@@ -1,4 +1,4 @@
-#include "kadans/safety/drive_watch.h"
+#include "drive_watch.h"
 
 #include <algorithm>
 #include <charconv>

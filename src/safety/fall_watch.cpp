@@ -1,4 +1,4 @@
-#include "kadans/safety/fall_watch.h"
+#include "fall_watch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "kadans/safety/joint_limiter.h"
+#include "joint_limiter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "kadans/safety/joint_watch.h"
+#include "joint_watch.h"
 
 #include <algorithm>
 #include <cmath>

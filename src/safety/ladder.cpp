@@ -1,4 +1,4 @@
-#include "kadans/safety/ladder.h"
+#include "ladder.h"
 
 #include <algorithm>
 

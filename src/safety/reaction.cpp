@@ -1,4 +1,4 @@
-#include "kadans/safety/reaction.h"
+#include "reaction.h"
 
 namespace kadans {
 

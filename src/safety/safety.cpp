@@ -1,4 +1,4 @@
-#include "kadans/safety/safety.h"
+#include "safety.h"
 
 #include <algorithm>
 #include <utility>

@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kadans/safety/safety.h"
+#include "safety.h"
 
 namespace kadans {
 namespace {

@@ -1,4 +1,4 @@
-#include "kadans/scenario/run.h"
+#include "run.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "kadans/scenario/run_log.h"
+#include "run_log.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "kadans/signal/byte_order.h"
+#include "byte_order.h"
 
 #include <utility>
 

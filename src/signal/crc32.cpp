@@ -1,4 +1,4 @@
-#include "kadans/signal/crc32.h"
+#include "crc32.h"
 
 #include <array>
 

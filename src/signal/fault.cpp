@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "kadans/signal/number_text.h"
 #include "kadans/signal/status.h"
+#include "number_text.h"
 
 namespace kadans {
 namespace {

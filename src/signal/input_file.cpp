@@ -1,4 +1,4 @@
-#include "kadans/signal/input_file.h"
+#include "input_file.h"
 
 #include <cerrno>
 #include <system_error>

@@ -1,4 +1,4 @@
-#include "kadans/signal/nearest_name.h"
+#include "nearest_name.h"
 
 #include <algorithm>
 #include <cctype>

@@ -29,7 +29,7 @@
 #include <sleef.h>
 
 #include "arc_tangent.h"
-#include "kadans/signal/sine_cosine.h"
+#include "sine_cosine.h"
 
 namespace kadans {
 

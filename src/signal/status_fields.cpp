@@ -1,4 +1,4 @@
-#include "kadans/signal/status_fields.h"
+#include "status_fields.h"
 
 #include <array>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "kadans/signal/utf8.h"
+#include "utf8.h"
 
 #include <cstdint>
 

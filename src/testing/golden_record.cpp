@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "kadans/telemetry/plot.h"
+#include "telemetry/plot.h"
 
 namespace kadans::testing {
 namespace {

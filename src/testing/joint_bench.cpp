@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kadans/signal/nearest_name.h"
 #include "name_search.h"
+#include "signal/nearest_name.h"
 
 namespace kadans::testing {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "kadans/signal/nearest_name.h"
+#include "signal/nearest_name.h"
 
 namespace kadans::testing {
 

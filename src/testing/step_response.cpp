@@ -5,8 +5,8 @@
 #include <ostream>
 #include <stdexcept>
 
-#include "kadans/telemetry/plot.h"
 #include "kadans/testing/joint_bench.h"
+#include "telemetry/plot.h"
 
 namespace kadans::testing {
 namespace {

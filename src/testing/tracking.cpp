@@ -4,8 +4,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "kadans/telemetry/plot.h"
 #include "kadans/testing/joint_bench.h"
+#include "telemetry/plot.h"
 
 namespace kadans::testing {
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "command_line.h"
+#include "app/command_line.h"
 #include "program.h"
 
 using namespace kadans;

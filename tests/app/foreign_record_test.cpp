@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "kadans/telemetry/run_inputs.h"
 #include "program.h"
+#include "telemetry/record/run_inputs.h"
 
 using namespace kadans;
 using namespace kadans::program;

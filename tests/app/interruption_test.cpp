@@ -5,8 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "../../src/app/terminal.h"
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
+#include "app/terminal.h"
 #include "program.h"
 
 using namespace kadans;

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
 
 using namespace kadans;
 

@@ -11,9 +11,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "command_line.h"
-#include "kadans/signal/utf8.h"
+#include "app/command_line.h"
 #include "program.h"
+#include "signal/utf8.h"
 
 using namespace kadans;
 using namespace kadans::program;

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
 #include "kadans/model/dynamics.h"
 #include "kadans/plant/bullet/bullet_world.h"
 

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
 #include "program.h"
 
 using namespace kadans;

@@ -8,8 +8,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "kadans/telemetry/mcap_reader.h"
 #include "program.h"
+#include "telemetry/mcap/mcap_reader.h"
 
 using namespace kadans;
 using namespace kadans::program;

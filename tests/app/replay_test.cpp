@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "kadans/telemetry/run_inputs.h"
 #include "program.h"
+#include "telemetry/record/run_inputs.h"
 
 using namespace kadans::program;
 

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
 #include "program.h"
 
 using namespace kadans;

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
 
 using namespace kadans;
 

@@ -1,9 +1,9 @@
 // Projects of a few files for tests of what behavior check finds in them.
 #pragma once
 
+#include "app/assembly.h"
 #include "app/program.h"
-#include "kadans/app/assembly.h"
-#include "kadans/script/check_behavior.h"
+#include "script/check/check_behavior.h"
 
 namespace kadans::check_tests {
 

@@ -1,9 +1,9 @@
 // What `kadans behavior check` finds in a behavior without running it: each mistake with its line and what was meant.
 #include <doctest/doctest.h>
 
+#include "app/assembly.h"
 #include "app/program.h"
-#include "kadans/app/assembly.h"
-#include "kadans/script/check_behavior.h"
+#include "script/check/check_behavior.h"
 
 using namespace kadans;
 

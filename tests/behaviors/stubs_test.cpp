@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "app/assembly.h"
 #include "app/program.h"
-#include "kadans/app/assembly.h"
-#include "kadans/script/api.h"
+#include "script/bindings/api.h"
 
 using namespace kadans;
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
 
 namespace kadans::bench {
 

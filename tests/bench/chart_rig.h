@@ -8,7 +8,7 @@
 
 #include <unistd.h>
 
-#include "kadans/script/behavior.h"
+#include "script/behavior/behavior.h"
 
 namespace kadans::bench {
 

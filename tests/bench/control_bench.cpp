@@ -1,7 +1,7 @@
 #include "chain_rig.h"
-#include "kadans/telemetry/recorder.h"
 #include "kadans/testing/allocation_count.h"
 #include "report.h"
+#include "telemetry/record/recorder.h"
 
 namespace kadans::bench {
 namespace {

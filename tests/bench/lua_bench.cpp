@@ -9,9 +9,9 @@
 #include <sched.h>
 
 #include "chart_rig.h"
-#include "kadans/realtime/keep_awake.h"
-#include "kadans/realtime/machine.h"
 #include "kadans/signal/random.h"
+#include "realtime/machine/keep_awake.h"
+#include "realtime/machine/machine.h"
 #include "report.h"
 
 namespace kadans::bench {

@@ -2,10 +2,10 @@
 
 #include <unistd.h>
 
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
 #include "kadans/signal/random.h"
-#include "kadans/telemetry/recorder.h"
 #include "report.h"
+#include "telemetry/record/recorder.h"
 
 namespace kadans::bench {
 namespace {

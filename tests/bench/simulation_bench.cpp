@@ -1,11 +1,11 @@
 #include <ctime>
 #include <filesystem>
 
-#include "kadans/app/assembly.h"
-#include "kadans/telemetry/recorder.h"
+#include "app/assembly.h"
 #include "plant/engines.h"
 #include "plant/standing.h"
 #include "report.h"
+#include "telemetry/record/recorder.h"
 
 namespace kadans::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "kadans/app/assembly.h"
+#include "app/assembly.h"
 #include "report.h"
 
 namespace kadans::bench {

@@ -15,11 +15,11 @@
 #include <unistd.h>
 
 #include "chain_rig.h"
-#include "kadans/realtime/engine_tasks.h"
-#include "kadans/realtime/posix_wait.h"
-#include "kadans/telemetry/recorder.h"
 #include "kadans/testing/allocation_count.h"
+#include "realtime/engine_tasks.h"
+#include "realtime/posix_wait.h"
 #include "report.h"
+#include "telemetry/record/recorder.h"
 
 namespace kadans::bench {
 namespace {

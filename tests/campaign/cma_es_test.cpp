@@ -1,5 +1,5 @@
 // The search finds known optima, asks the same again when it is asked again, and goes on from scores alone.
-#include "kadans/campaign/tuning/cma_es.h"
+#include "campaign/tuning/cma_es.h"
 
 #include <cmath>
 #include <stdexcept>

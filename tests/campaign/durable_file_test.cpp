@@ -1,4 +1,4 @@
-#include "kadans/campaign/durable_file.h"
+#include "campaign/work/durable_file.h"
 
 #include <fstream>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "kadans/campaign/golden.h"
+#include "campaign/suite/golden.h"
 
 #include <fstream>
 

@@ -1,5 +1,5 @@
 // Results of shards become one table: the same whatever the shards, and never of different sweeps.
-#include "kadans/campaign/merged_sweep.h"
+#include "campaign/sweep/merged_sweep.h"
 
 #include <filesystem>
 #include <fstream>
@@ -8,8 +8,8 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "kadans/campaign/heat_map.h"
-#include "kadans/campaign/sweep_summary.h"
+#include "campaign/sweep/heat_map.h"
+#include "campaign/sweep/sweep_summary.h"
 
 using namespace kadans;
 namespace fs = std::filesystem;

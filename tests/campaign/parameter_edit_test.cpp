@@ -1,5 +1,5 @@
 // Parameters are written into a configuration's text, and nothing else in it moves.
-#include "kadans/campaign/parameter_edit.h"
+#include "campaign/sweep/parameter_edit.h"
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,10 @@
 // What is read from a run's process, and how a suite tells it.
-#include "kadans/campaign/run_outcome.h"
+#include "campaign/suite/run_outcome.h"
 
 #include <doctest/doctest.h>
 
-#include "kadans/campaign/suite_report.h"
-#include "kadans/signal/utf8.h"
+#include "campaign/suite/suite_report.h"
+#include "signal/utf8.h"
 
 using namespace kadans;
 

@@ -1,5 +1,5 @@
 // Samples: where the points of each kind lie, and that what else varies makes no difference to an axis.
-#include "kadans/campaign/sampling.h"
+#include "campaign/sweep/sampling.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Which part of the work a process does, by option and by what Slurm says.
-#include "kadans/campaign/shard.h"
+#include "campaign/sweep/shard.h"
 
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
 // Intervals against published and exact values.
-#include "kadans/campaign/statistics.h"
+#include "campaign/sweep/statistics.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "kadans/config/based_on.h"
+#include "config/scenario/based_on.h"
 
 #include <filesystem>
 #include <fstream>
@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "kadans/config/robot_config.h"
+#include "config/robot/robot_config.h"
 
 namespace kadans {
 namespace {

@@ -1,5 +1,5 @@
 // A list of fields as a reader, apart from any particular file.
-#include "kadans/config/fields.h"
+#include "config/json/fields.h"
 
 #include <array>
 

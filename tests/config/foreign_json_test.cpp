@@ -1,12 +1,12 @@
 // JSON of strangers: depth, bytes, and what is said of it.
-#include "kadans/config/foreign_json.h"
+#include "config/json/foreign_json.h"
 
 #include <string>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "kadans/config/json_value.h"
+#include "config/json/json_value.h"
 
 using namespace kadans;
 

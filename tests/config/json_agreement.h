@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/broken.h"
-#include "kadans/config/json_value.h"
+#include "config/json/json_value.h"
 
 namespace kadans {
 

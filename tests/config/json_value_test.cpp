@@ -1,5 +1,5 @@
 // The JSON reader: what it accepts, where things stand, and what it says to what it refuses.
-#include "kadans/config/json_value.h"
+#include "config/json/json_value.h"
 
 #include <clocale>
 

@@ -3,9 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "broken.h"
+#include "config/robot/robot_config.h"
+#include "config/scenario/scenario_config.h"
 #include "json_agreement.h"
-#include "kadans/config/robot_config.h"
-#include "kadans/config/scenario_config.h"
 #include "kadans/signal/random.h"
 #include "right_texts.h"
 

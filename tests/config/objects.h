@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "kadans/config/robot_config.h"
-#include "kadans/control/dcm_balance.h"
-#include "kadans/control/dcm_step.h"
-#include "kadans/control/joint_pid.h"
-#include "kadans/control/stance.h"
+#include "config/robot/robot_config.h"
+#include "control/balance/dcm_balance.h"
+#include "control/balance/dcm_step.h"
+#include "control/balance/stance.h"
+#include "control/joint/joint_pid.h"
 
 namespace kadans {
 

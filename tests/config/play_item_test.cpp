@@ -1,5 +1,5 @@
 // Lists of what to play, as people write them.
-#include "kadans/config/play_item.h"
+#include "config/scenario/play_item.h"
 
 #include <doctest/doctest.h>
 

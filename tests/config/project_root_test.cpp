@@ -1,11 +1,11 @@
 // Paths inside files, and patterns over names.
-#include "kadans/config/project_root.h"
+#include "config/robot/project_root.h"
 
 #include <fstream>
 
 #include <doctest/doctest.h>
 
-#include "kadans/config/name_pattern.h"
+#include "config/json/name_pattern.h"
 
 namespace kadans {
 namespace {

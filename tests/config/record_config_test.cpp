@@ -1,8 +1,8 @@
-#include "kadans/config/record_config.h"
+#include "config/robot/record_config.h"
 
 #include <doctest/doctest.h>
 
-#include "kadans/config/robot_config.h"
+#include "config/robot/robot_config.h"
 
 using namespace kadans;
 

@@ -1,5 +1,5 @@
 // Robot configurations: what the parts mean, and what is said to wrong ones.
-#include "kadans/config/robot_config.h"
+#include "config/robot/robot_config.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Scenarios: what the parts mean, and what is said to wrong ones.
-#include "kadans/config/scenario_config.h"
+#include "config/scenario/scenario_config.h"
 
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 // The schemas in config/schema are what the readers' field lists say, and the shipped files keep to them.
-#include "kadans/config/schema.h"
+#include "config/json/schema.h"
 
 #include <filesystem>
 #include <fstream>
@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "kadans/config/json_value.h"
+#include "config/json/json_value.h"
 #include "right_texts.h"
 
 namespace kadans {

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/config/robot_config.h"
+#include "config/robot/robot_config.h"
 #include "kadans/model/kinematics.h"
 #include "objects.h"
 

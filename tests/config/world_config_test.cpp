@@ -1,11 +1,11 @@
-#include "kadans/config/world_config.h"
+#include "config/scenario/world_config.h"
 
 #include <cmath>
 #include <string>
 
 #include <doctest/doctest.h>
 
-#include "kadans/config/scenario_config.h"
+#include "config/scenario/scenario_config.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/input_error.h"
 

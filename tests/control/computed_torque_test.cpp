@@ -1,4 +1,4 @@
-#include "kadans/control/computed_torque.h"
+#include "control/dynamics/computed_torque.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "kadans/control/dcm_balance.h"
+#include "control/balance/dcm_balance.h"
 
 #include <cmath>
 #include <limits>

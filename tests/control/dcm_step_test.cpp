@@ -1,4 +1,4 @@
-#include "kadans/control/dcm_step.h"
+#include "control/balance/dcm_step.h"
 
 #include <cmath>
 #include <limits>

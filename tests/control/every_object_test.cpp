@@ -5,14 +5,14 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/control/feedforward_player.h"
-#include "kadans/control/joint_cascade.h"
-#include "kadans/control/joint_impedance.h"
-#include "kadans/control/joint_integrator.h"
-#include "kadans/control/joint_pid.h"
-#include "kadans/control/joint_velocity.h"
-#include "kadans/control/profile_position.h"
-#include "kadans/control/trajectory_list.h"
+#include "control/joint/feedforward_player.h"
+#include "control/joint/joint_cascade.h"
+#include "control/joint/joint_impedance.h"
+#include "control/joint/joint_integrator.h"
+#include "control/joint/joint_pid.h"
+#include "control/joint/joint_velocity.h"
+#include "control/joint/profile_position.h"
+#include "control/joint/trajectory_list.h"
 #include "kadans/testing/allocation_count.h"
 #include "kadans/testing/real_time_guard.h"
 #include "object_bench.h"

@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "kadans/control/computed_torque.h"
-#include "kadans/control/feedforward_player.h"
-#include "kadans/control/gravity_compensation.h"
-#include "kadans/control/joint_cascade.h"
-#include "kadans/control/joint_impedance.h"
-#include "kadans/control/joint_integrator.h"
-#include "kadans/control/joint_pid.h"
-#include "kadans/control/joint_velocity.h"
-#include "kadans/control/profile_position.h"
-#include "kadans/control/trajectory_list.h"
+#include "control/dynamics/computed_torque.h"
+#include "control/dynamics/gravity_compensation.h"
+#include "control/joint/feedforward_player.h"
+#include "control/joint/joint_cascade.h"
+#include "control/joint/joint_impedance.h"
+#include "control/joint/joint_integrator.h"
+#include "control/joint/joint_pid.h"
+#include "control/joint/joint_velocity.h"
+#include "control/joint/profile_position.h"
+#include "control/joint/trajectory_list.h"
 #include "kadans/testing/doctest.h"
 
 using namespace kadans;

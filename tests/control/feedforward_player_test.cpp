@@ -1,4 +1,4 @@
-#include "kadans/control/feedforward_player.h"
+#include "control/joint/feedforward_player.h"
 
 #include <algorithm>
 #include <cmath>

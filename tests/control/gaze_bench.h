@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kadans/control/gaze.h"
+#include "control/gaze/gaze.h"
 #include "tested_object.h"
 
 namespace kadans::test {

@@ -1,4 +1,4 @@
-#include "kadans/control/gaze.h"
+#include "control/gaze/gaze.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "kadans/control/gravity_compensation.h"
+#include "control/dynamics/gravity_compensation.h"
 
 #include <cmath>
 #include <limits>

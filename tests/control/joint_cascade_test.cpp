@@ -1,4 +1,4 @@
-#include "kadans/control/joint_cascade.h"
+#include "control/joint/joint_cascade.h"
 
 #include <algorithm>
 

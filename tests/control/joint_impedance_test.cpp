@@ -1,4 +1,4 @@
-#include "kadans/control/joint_impedance.h"
+#include "control/joint/joint_impedance.h"
 
 #include <map>
 #include <string>

@@ -1,4 +1,4 @@
-#include "kadans/control/joint_integrator.h"
+#include "control/joint/joint_integrator.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // What JointPid adds to pid_test.cpp and every_object_test.cpp.
-#include "kadans/control/joint_pid.h"
+#include "control/joint/joint_pid.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "kadans/control/joint_velocity.h"
+#include "control/joint/joint_velocity.h"
 
 #include <doctest/doctest.h>
 

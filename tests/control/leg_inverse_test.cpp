@@ -1,4 +1,4 @@
-#include "kadans/control/leg_inverse.h"
+#include "control/balance/leg_inverse.h"
 
 #include <cmath>
 #include <stdexcept>

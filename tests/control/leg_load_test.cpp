@@ -1,4 +1,4 @@
-#include "kadans/control/leg_load.h"
+#include "control/balance/leg_load.h"
 
 #include <array>
 

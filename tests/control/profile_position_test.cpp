@@ -1,4 +1,4 @@
-#include "kadans/control/profile_position.h"
+#include "control/joint/profile_position.h"
 
 #include <algorithm>
 

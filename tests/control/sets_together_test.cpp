@@ -1,8 +1,8 @@
 // Several control sets at once: those that share no joint go on side by side.
 #include <doctest/doctest.h>
 
+#include "control/joint/joint_pid.h"
 #include "kadans/control/control_sets.h"
-#include "kadans/control/joint_pid.h"
 #include "kadans/testing/allocation_count.h"
 #include "two_joint_robot.h"
 

@@ -1,6 +1,6 @@
 // The torque loop of a series elastic drive against what its equations promise: a rotor on a spring, the joint held,
 // free, or thrown against the ground.
-#include "kadans/control/spring_torque.h"
+#include "control/drive/spring_torque.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "kadans/control/stance.h"
+#include "control/balance/stance.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "kadans/control/step_geometry.h"
+#include "control/balance/step_geometry.h"
 
 #include <cmath>
 

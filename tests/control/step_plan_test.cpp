@@ -1,4 +1,4 @@
-#include "kadans/control/step_plan.h"
+#include "control/balance/step_plan.h"
 
 #include <cmath>
 

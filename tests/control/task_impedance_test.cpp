@@ -1,4 +1,4 @@
-#include "kadans/control/task_impedance.h"
+#include "control/dynamics/task_impedance.h"
 
 #include <cmath>
 #include <limits>

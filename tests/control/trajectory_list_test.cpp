@@ -1,4 +1,4 @@
-#include "kadans/control/trajectory_list.h"
+#include "control/joint/trajectory_list.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include "../bench/chart_rig.h"
 #include "../bench/plant/engines.h"
 #include "../bench/plant/standing.h"
-#include "kadans/telemetry/recorder.h"
+#include "telemetry/record/recorder.h"
 
 using Element = std::array<std::uint64_t, 64>;  // 512 bytes
 using Queue = kadans::Ring<Element, 64>;

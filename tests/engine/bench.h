@@ -4,11 +4,11 @@
 #include <memory>
 #include <utility>
 
-#include "kadans/control/joint_pid.h"
-#include "kadans/engine/behavior_engine.h"
-#include "kadans/engine/control_engine.h"
-#include "kadans/engine/lockstep.h"
-#include "kadans/estimate/signals.h"
+#include "control/joint/joint_pid.h"
+#include "engine/behavior_engine.h"
+#include "engine/lockstep.h"
+#include "engine/tick/control_engine.h"
+#include "estimate/signals.h"
 #include "kadans/plant/ideal_world.h"
 
 namespace kadans::bench {

@@ -1,4 +1,4 @@
-#include "kadans/engine/command_inbox.h"
+#include "engine/tick/command_inbox.h"
 
 #include <array>
 #include <limits>
@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "bench.h"
-#include "kadans/engine/transaction.h"
+#include "engine/transaction.h"
 
 using namespace kadans;
 

@@ -1,4 +1,4 @@
-#include "kadans/engine/control_engine.h"
+#include "engine/tick/control_engine.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "kadans/engine/lockstep.h"
+#include "engine/lockstep.h"
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "bench.h"
-#include "kadans/engine/refusal_text.h"
-#include "kadans/engine/transaction.h"
+#include "engine/refusal_text.h"
+#include "engine/transaction.h"
 
 using namespace kadans;
 

@@ -1,4 +1,4 @@
-#include "kadans/engine/rehearsal.h"
+#include "engine/tick/rehearsal.h"
 
 #include <cmath>
 #include <cstring>
@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "bench.h"
-#include "kadans/control/spring_torque.h"
+#include "control/drive/spring_torque.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;

@@ -1,5 +1,5 @@
 // Motions that the engine plans, on an object that can be led: every kind is held against the same table.
-#include "kadans/engine/setpoint_motions.h"
+#include "engine/motion/setpoint_motions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <doctest/doctest.h>
 
 #include "bench.h"
-#include "kadans/engine/command_inbox.h"
-#include "kadans/engine/transaction.h"
+#include "engine/tick/command_inbox.h"
+#include "engine/transaction.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;

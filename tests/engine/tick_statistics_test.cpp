@@ -1,4 +1,4 @@
-#include "kadans/engine/tick_statistics.h"
+#include "engine/tick/tick_statistics.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "kadans/engine/transaction.h"
+#include "engine/transaction.h"
 
 #include <memory>
 

@@ -1,4 +1,4 @@
-#include "kadans/estimate/contact_detector.h"
+#include "estimate/contact_detector.h"
 
 #include <cmath>
 #include <stdexcept>

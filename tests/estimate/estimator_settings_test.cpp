@@ -4,8 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "estimate/signals.h"
 #include "estimate/tulip_fixture.h"
-#include "kadans/estimate/signals.h"
 
 using namespace kadans;
 using kadans::test::tulip;

@@ -1,4 +1,4 @@
-#include "kadans/estimate/leg_chain.h"
+#include "estimate/leg_chain.h"
 
 #include <algorithm>
 #include <cmath>

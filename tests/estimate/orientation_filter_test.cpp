@@ -1,4 +1,4 @@
-#include "kadans/estimate/orientation_filter.h"
+#include "estimate/orientation_filter.h"
 
 #include <cmath>
 #include <limits>

@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/estimate/orientation_filter.h"
+#include "estimate/orientation_filter.h"
 #include "kadans/model/kinematics.h"
 
 using kadans::OrientationFilter;

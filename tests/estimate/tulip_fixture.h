@@ -1,7 +1,7 @@
 // The TULip with what its sensors say, for tests of the estimator: change the frame, advance, look.
 #pragma once
 
-#include "kadans/estimate/estimator.h"
+#include "estimate/estimator.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/model/urdf.h"
 

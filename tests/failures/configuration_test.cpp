@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "app/program.h"
-#include "kadans/config/robot_config.h"
+#include "config/robot/robot_config.h"
 #include "kadans/signal/fault.h"
 
 using namespace kadans;

@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include "app/program.h"
-#include "kadans/realtime/rights.h"
-#include "kadans/telemetry/mcap_reader.h"
 #include "live_program.h"
+#include "realtime/machine/rights.h"
+#include "telemetry/mcap/mcap_reader.h"
 
 using namespace kadans;
 using namespace kadans::failures;

@@ -3,9 +3,9 @@
 #include <doctest/doctest.h>
 
 #include "engine/bench.h"
-#include "kadans/plant/udp/plant_server.h"
-#include "kadans/plant/udp/udp_plant.h"
 #include "plant/lossy_wire.h"
+#include "plant/udp/plant_server.h"
+#include "plant/udp/udp_plant.h"
 
 using namespace kadans;
 using doctest::description;

@@ -10,11 +10,11 @@
 
 #include "app/program.h"
 #include "engine/bench.h"
-#include "kadans/script/process/catalog_fingerprint.h"
-#include "kadans/script/process/process_host.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
 #include "live_program.h"
+#include "script/process/catalog_fingerprint.h"
+#include "script/process/process_host.h"
 
 using namespace kadans;
 using namespace kadans::failures;

@@ -4,8 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "app/assembly.h"
 #include "app/program.h"
-#include "kadans/app/assembly.h"
 
 using namespace kadans;
 using namespace kadans::program;

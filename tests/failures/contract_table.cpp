@@ -17,7 +17,7 @@ class ContractTable final : public doctest::IReporter {
     out_ << "# What goes wrong, and what happens then\n\n"
             "Made from the tests of tests/failures and how they end; renew it with `scripts/failures`. How soon each "
             "fault\n"
-            "is found stands in include/kadans/safety/detection.h. The death of the runtime itself "
+            "is found stands in src/safety/detection.h. The death of the runtime itself "
             "and a\n"
             "slow viewer are not in this table.\n\n"
             "| what goes wrong | what the runtime promises | test | result |\n|---|---|---|---|\n";

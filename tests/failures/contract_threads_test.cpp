@@ -10,8 +10,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "kadans/telemetry/recorder.h"
 #include "realtime/live_robot.h"
+#include "telemetry/record/recorder.h"
 
 using namespace kadans;
 using doctest::description;

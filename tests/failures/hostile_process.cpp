@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "kadans/realtime/child_process.h"
-#include "kadans/realtime/placement.h"
-#include "kadans/script/process/behavior_link.h"
 #include "kadans/signal/random.h"
+#include "realtime/machine/child_process.h"
+#include "realtime/machine/placement.h"
+#include "script/process/behavior_link.h"
 
 using namespace kadans;
 

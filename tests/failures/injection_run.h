@@ -7,8 +7,8 @@
 #include <string>
 
 #include "injection.h"
-#include "kadans/safety/detection.h"
 #include "light_robot.h"
+#include "safety/detection.h"
 
 namespace kadans::failures {
 

@@ -5,8 +5,8 @@
 
 #include "app/program.h"
 #include "injection_run.h"
-#include "kadans/scenario/run_log.h"
-#include "kadans/script/script_host.h"
+#include "scenario/run_log.h"
+#include "script/host/script_host.h"
 
 namespace kadans::failures {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "kadans/control/joint_pid.h"
+#include "control/joint/joint_pid.h"
 
 namespace kadans::failures {
 namespace {

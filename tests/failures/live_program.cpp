@@ -13,8 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "kadans/telemetry/mcap_reader.h"
-#include "kadans/telemetry/signal_topics.h"
+#include "telemetry/mcap/mcap_reader.h"
+#include "telemetry/record/signal_topics.h"
 
 namespace kadans::failures {
 

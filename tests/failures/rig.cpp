@@ -1,6 +1,6 @@
 #include "rig.h"
 
-#include "kadans/safety/detection.h"
+#include "safety/detection.h"
 
 namespace kadans::failures {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "kadans/engine/behavior_engine.h"
-#include "kadans/engine/control_engine.h"
-#include "kadans/scenario/faulty_plant.h"
+#include "engine/behavior_engine.h"
+#include "engine/tick/control_engine.h"
 #include "saboteur.h"
+#include "scenario/disturb/faulty_plant.h"
 #include "written_watch.h"
 
 namespace kadans::failures {

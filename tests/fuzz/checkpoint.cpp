@@ -3,14 +3,14 @@
 //
 // An input is a file, or, if it does not begin as one, files to make a checkpoint of, a line each: "PATH<tab>TEXT", or
 // "!PATH" for a plug-in that is known as the one that lies here.
-#include "../../src/app/checkpoint.h"
+#include "app/sim/checkpoint.h"
 
 #include <map>
 
-#include "../../src/app/input_files.h"
+#include "app/sim/input_files.h"
 #include "fuzz_folder.h"
 #include "fuzz_input.h"
-#include "kadans/telemetry/mcap_format.h"
+#include "telemetry/mcap/mcap_format.h"
 
 namespace {
 

@@ -5,13 +5,13 @@
 #include <array>
 #include <cmath>
 
+#include "config/plan/sweep_plan.h"
+#include "config/plan/tune_plan.h"
+#include "config/robot/robot_config.h"
+#include "config/scenario/based_on.h"
+#include "config/scenario/scenario_config.h"
 #include "fuzz_folder.h"
 #include "fuzz_input.h"
-#include "kadans/config/based_on.h"
-#include "kadans/config/robot_config.h"
-#include "kadans/config/scenario_config.h"
-#include "kadans/config/sweep_plan.h"
-#include "kadans/config/tune_plan.h"
 
 namespace {
 

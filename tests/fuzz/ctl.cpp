@@ -9,7 +9,7 @@
 
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
-#include "kadans/remote/ctl_requests.h"
+#include "remote/ctl/ctl_requests.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // JSON of files and of clients: our reader agrees with nlohmann-json on what is JSON and what it says, and what a
 // client says is said back as the same text.
-#include "kadans/config/foreign_json.h"
+#include "config/json/foreign_json.h"
 
 #include <nlohmann/json.hpp>
 

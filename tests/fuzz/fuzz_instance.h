@@ -12,12 +12,12 @@
 
 #include "engine/bench.h"
 #include "fuzz_folder.h"
-#include "kadans/remote/behavior_side.h"
-#include "kadans/remote/control_side.h"
-#include "kadans/remote/live_hub.h"
-#include "kadans/remote/record_side.h"
-#include "kadans/script/script_host.h"
-#include "kadans/telemetry/event_log.h"
+#include "remote/instance/behavior_side.h"
+#include "remote/instance/control_side.h"
+#include "remote/instance/record_side.h"
+#include "remote/page/live_hub.h"
+#include "script/host/script_host.h"
+#include "telemetry/record/event_log.h"
 
 namespace kadans::fuzz {
 

@@ -7,7 +7,7 @@
 #include <fcntl.h>
 
 #include "fuzz_input.h"
-#include "kadans/plant/joystick/joystick_device.h"
+#include "plant/joystick/joystick_device.h"
 
 namespace {
 

@@ -3,15 +3,15 @@
 // the token changes nothing.
 //
 // An input is whether it has the token, then messages: how, length (low byte first), bytes.
-#include "kadans/remote/live_client.h"
+#include "remote/page/live_client.h"
 
 #include <nlohmann/json.hpp>
 
-#include "../../src/remote/live_protocol.h"
+#include "config/json/foreign_json.h"
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
-#include "kadans/config/foreign_json.h"
-#include "kadans/remote/order_table.h"
+#include "remote/order/order_table.h"
+#include "remote/page/live_protocol.h"
 
 namespace {
 

@@ -2,16 +2,16 @@
 // Whatever comes, the connection is served or ends, what goes out is HTTP, and no picture is taken without the token.
 //
 // An input is what the server has, then pieces, each with its length (low byte first) in front.
-#include "../../src/remote/live_connection.h"
+#include "remote/page/live_connection.h"
 
 #include <array>
 
 #include <boost/asio/io_context.hpp>
 #include <sys/socket.h>
 
-#include "../../src/remote/live_crowd.h"
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
+#include "remote/page/live_crowd.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 
 #include <lua.hpp>
 
-#include "../../src/script/sandbox.h"
-#include "kadans/script/lua_state.h"
+#include "script/lua/lua_state.h"
+#include "script/sandbox/sandbox.h"
 
 namespace kadans::fuzz {
 namespace {

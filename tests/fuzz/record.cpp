@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "fuzz_input.h"
-#include "kadans/telemetry/record_cut.h"
-#include "kadans/telemetry/record_diff.h"
-#include "kadans/telemetry/record_text.h"
-#include "kadans/telemetry/signal_plot.h"
+#include "telemetry/plot/signal_plot.h"
+#include "telemetry/reading/record_cut.h"
+#include "telemetry/reading/record_diff.h"
+#include "telemetry/reading/record_text.h"
 
 namespace {
 

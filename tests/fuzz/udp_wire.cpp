@@ -13,10 +13,10 @@
 
 #include "fuzz_input.h"
 #include "kadans/plant/ideal_world.h"
-#include "kadans/plant/udp/plant_server.h"
-#include "kadans/plant/udp/udp_plant.h"
-#include "kadans/signal/crc32.h"
 #include "plant/two_joints.h"
+#include "plant/udp/plant_server.h"
+#include "plant/udp/udp_plant.h"
+#include "signal/crc32.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include "checker.h"
 #include "kadans/exchange/latest.h"
 #include "kadans/exchange/one_writer.h"
-#include "kadans/remote/latest_row.h"
+#include "remote/instance/latest_row.h"
 
 namespace kadans::interleavings {
 namespace {

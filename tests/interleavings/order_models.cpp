@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "checker.h"
-#include "kadans/remote/order_queue.h"
+#include "remote/order/order_queue.h"
 
 namespace kadans::interleavings {
 namespace {

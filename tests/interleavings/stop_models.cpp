@@ -1,6 +1,6 @@
 // The emergency stop, asked for by one or two while the control thread takes it.
 #include "checker.h"
-#include "kadans/safety/emergency_stop.h"
+#include "safety/emergency_stop.h"
 
 namespace kadans::interleavings {
 namespace {

@@ -14,8 +14,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "kadans/plant/joystick/joystick_device.h"
 #include "kadans/signal/input_error.h"
+#include "plant/joystick/joystick_device.h"
 
 using namespace kadans;
 namespace fs = std::filesystem;

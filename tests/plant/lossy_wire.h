@@ -11,8 +11,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "kadans/plant/udp/datagram_socket.h"
 #include "kadans/signal/random.h"
+#include "plant/udp/datagram_socket.h"
 
 namespace kadans::test {
 

@@ -5,8 +5,8 @@
 #include <BulletDynamics/Featherstone/btMultiBodyPoint2Point.h>
 #include <doctest/doctest.h>
 
-#include "body.h"
-#include "contact_world.h"
+#include "plant/bullet/body.h"
+#include "plant/bullet/contact/contact_world.h"
 #include "tulip_robot.h"
 
 using namespace kadans;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/contact_row.h"
+#include "plant/bullet/solver/contact_row.h"
 #include "tulip_robot.h"
 
 namespace kadans::test {

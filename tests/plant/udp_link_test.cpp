@@ -7,11 +7,11 @@
 #include <sys/un.h>
 
 #include "kadans/plant/ideal_world.h"
-#include "kadans/plant/udp/plant_server.h"
-#include "kadans/plant/udp/udp_plant.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/testing/allocation_count.h"
 #include "lossy_wire.h"
+#include "plant/udp/plant_server.h"
+#include "plant/udp/udp_plant.h"
 #include "two_joints.h"
 
 using namespace kadans;

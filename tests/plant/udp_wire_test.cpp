@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/plant/udp/arrivals.h"
-#include "kadans/plant/udp/wire.h"
-#include "kadans/signal/crc32.h"
 #include "kadans/signal/random.h"
+#include "plant/udp/arrivals.h"
+#include "plant/udp/wire.h"
+#include "signal/crc32.h"
 
 using namespace kadans;
 

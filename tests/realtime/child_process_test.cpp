@@ -1,6 +1,6 @@
 // Programs beside this one: what they get and what comes back, the doorbell tells when one is gone, its memory cannot
 // be taken away, its end is known.
-#include "kadans/realtime/child_process.h"
+#include "realtime/machine/child_process.h"
 
 #include <csignal>
 #include <cstring>

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "kadans/realtime/wait.h"
+#include "realtime/wait.h"
 
 namespace kadans {
 

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "engine/bench.h"
-#include "kadans/realtime/engine_tasks.h"
-#include "kadans/realtime/plant_link.h"
-#include "kadans/realtime/task_thread.h"
-#include "kadans/realtime/virtual_time.h"
+#include "realtime/engine_tasks.h"
+#include "realtime/plant_link.h"
+#include "realtime/task_thread.h"
+#include "realtime/virtual_time.h"
 
 namespace kadans {
 

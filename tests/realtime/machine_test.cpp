@@ -1,4 +1,4 @@
-#include "kadans/realtime/machine.h"
+#include "realtime/machine/machine.h"
 
 #include <algorithm>
 #include <fstream>
@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "kadans/realtime/rights.h"
+#include "realtime/machine/rights.h"
 
 using namespace kadans;
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "kadans/realtime/memory_lock.h"
+#include "realtime/machine/memory_lock.h"
 
 #include <array>
 #include <cstring>

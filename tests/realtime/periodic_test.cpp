@@ -1,4 +1,4 @@
-#include "kadans/realtime/periodic.h"
+#include "realtime/periodic.h"
 
 #include <doctest/doctest.h>
 

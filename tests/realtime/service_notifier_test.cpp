@@ -1,4 +1,4 @@
-#include "kadans/realtime/service_notifier.h"
+#include "realtime/machine/service_notifier.h"
 
 #include <array>
 #include <cstring>

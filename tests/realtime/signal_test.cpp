@@ -7,8 +7,8 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include "kadans/realtime/posix_wait.h"
-#include "kadans/realtime/task_thread.h"
+#include "realtime/posix_wait.h"
+#include "realtime/task_thread.h"
 
 using namespace kadans;
 

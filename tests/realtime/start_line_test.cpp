@@ -1,11 +1,11 @@
-#include "kadans/realtime/start_line.h"
+#include "realtime/start_line.h"
 
 #include <atomic>
 
 #include <doctest/doctest.h>
 
-#include "kadans/realtime/posix_wait.h"
-#include "kadans/realtime/task_thread.h"
+#include "realtime/posix_wait.h"
+#include "realtime/task_thread.h"
 
 using namespace kadans;
 

@@ -1,11 +1,11 @@
-#include "kadans/realtime/task_thread.h"
+#include "realtime/task_thread.h"
 
 #include <stdexcept>
 
 #include <doctest/doctest.h>
 
 #include "fake_wait.h"
-#include "kadans/realtime/jitter.h"
+#include "realtime/machine/jitter.h"
 
 using namespace kadans;
 

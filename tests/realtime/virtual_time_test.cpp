@@ -1,11 +1,11 @@
-#include "kadans/realtime/virtual_time.h"
+#include "realtime/virtual_time.h"
 
 #include <array>
 #include <vector>
 
 #include <doctest/doctest.h>
 
-#include "kadans/realtime/task_thread.h"
+#include "realtime/task_thread.h"
 
 using namespace kadans;
 

@@ -1,4 +1,4 @@
-#include "kadans/remote/configuration_text.h"
+#include "remote/instance/configuration_text.h"
 
 #include <doctest/doctest.h>
 

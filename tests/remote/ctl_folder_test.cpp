@@ -1,5 +1,5 @@
 // Where instances are found, who may do what, what dead ones leave behind.
-#include "kadans/remote/ctl_folder.h"
+#include "remote/ctl/ctl_folder.h"
 
 #include <cstdlib>
 #include <fstream>

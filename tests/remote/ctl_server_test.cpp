@@ -1,8 +1,8 @@
 // Every verb against a robot that runs on threads and virtual time.
 #include <doctest/doctest.h>
 
-#include "kadans/telemetry/mcap_reader.h"
 #include "remote/live_instance.h"
+#include "telemetry/mcap/mcap_reader.h"
 
 using namespace kadans;
 using namespace kadans::remote_test;

@@ -3,10 +3,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "kadans/remote/configuration_text.h"
 #include "kadans/signal/input_error.h"
-#include "kadans/telemetry/mcap_reader.h"
+#include "remote/instance/configuration_text.h"
 #include "remote/live_instance.h"
+#include "telemetry/mcap/mcap_reader.h"
 
 using namespace kadans;
 using namespace kadans::remote_test;

@@ -1,4 +1,4 @@
-#include "kadans/remote/latest_row.h"
+#include "remote/instance/latest_row.h"
 
 #include <array>
 #include <thread>

@@ -1,5 +1,5 @@
 // What a live server tells a client, without a socket.
-#include "kadans/remote/live_client.h"
+#include "remote/page/live_client.h"
 
 #include <algorithm>
 #include <cstring>

@@ -9,12 +9,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "kadans/remote/behavior_side.h"
-#include "kadans/remote/control_side.h"
-#include "kadans/remote/ctl_link.h"
-#include "kadans/remote/ctl_server.h"
-#include "kadans/remote/record_side.h"
 #include "realtime/live_robot.h"
+#include "remote/ctl/ctl_link.h"
+#include "remote/ctl/ctl_server.h"
+#include "remote/instance/behavior_side.h"
+#include "remote/instance/control_side.h"
+#include "remote/instance/record_side.h"
 
 namespace kadans::remote_test {
 

@@ -5,9 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/remote/live_client.h"
-#include "kadans/remote/live_hub.h"
 #include "remote/live_instance.h"
+#include "remote/page/live_client.h"
+#include "remote/page/live_hub.h"
 
 using namespace kadans;
 using namespace kadans::remote_test;

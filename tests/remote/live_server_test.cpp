@@ -1,5 +1,5 @@
 // What strangers do to the live server over its port, and that it serves the next one all the same.
-#include "kadans/remote/live_server.h"
+#include "remote/page/live_server.h"
 
 #include <memory>
 #include <stdexcept>

@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "../../src/remote/order_request.h"
 #include "kadans/signal/input_error.h"
+#include "remote/order/order_request.h"
 
 using namespace kadans;
 

@@ -1,5 +1,5 @@
 // Orders as texts that come from anybody, and their answers.
-#include "kadans/remote/ros2/text_commands.h"
+#include "remote/ros2/text_commands.h"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "kadans/remote/tuning.h"
+#include "remote/instance/tuning.h"
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kadans/safety/safety.h"
+#include "safety/safety.h"
 
 namespace kadans::safety_bench {
 

@@ -1,5 +1,5 @@
 // The emergency stop, and the same way down at the end of a run.
-#include "kadans/safety/emergency_stop.h"
+#include "safety/emergency_stop.h"
 
 #include <string>
 #include <thread>

@@ -1,4 +1,4 @@
-#include "kadans/safety/ladder.h"
+#include "safety/ladder.h"
 
 #include <set>
 #include <string>

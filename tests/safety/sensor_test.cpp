@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "bench.h"
-#include "kadans/safety/detection.h"
+#include "safety/detection.h"
 
 using namespace kadans;
 using namespace kadans::safety_bench;

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/scenario/checks.h"
+#include "scenario/judge/checks.h"
 
 using namespace kadans;
 

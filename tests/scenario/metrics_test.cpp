@@ -1,5 +1,5 @@
 // What each kind of metric makes of a run.
-#include "kadans/scenario/metrics.h"
+#include "scenario/judge/metrics.h"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // What may be set and drawn for a run: names, patterns, ranges, and that draws repeat and do not disturb each other.
-#include "kadans/scenario/quantities.h"
+#include "scenario/disturb/quantities.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "kadans/scenario/report.h"
+#include "scenario/report/report.h"
 
 #include <limits>
 

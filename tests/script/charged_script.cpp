@@ -2,11 +2,11 @@
 
 #include <lua.hpp>
 
-#include "../../src/script/behavior_parts.h"
-#include "../../src/script/sandbox.h"
 #include "charge_cases.h"
 #include "kadans/signal/input_error.h"
+#include "script/behavior/behavior_parts.h"
 #include "script/fixture.h"
+#include "script/sandbox/sandbox.h"
 
 // A function of its own with a name that callgrind finds.
 extern "C" [[gnu::noinline]] int kadans_charged_call(lua_State* state, int arguments) {

@@ -1,5 +1,5 @@
 // The console: lines of Lua between ticks, commands, completion.
-#include "kadans/script/console.h"
+#include "script/console/console.h"
 
 #include <algorithm>
 

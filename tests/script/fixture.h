@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "kadans/engine/transaction.h"
-#include "kadans/script/behavior.h"
-#include "kadans/script/script_host.h"
+#include "engine/transaction.h"
+#include "script/behavior/behavior.h"
+#include "script/host/script_host.h"
 
 namespace kadans::script_test {
 

@@ -1,8 +1,8 @@
 // Reloads of several behaviors, by time and by saving; and the safe posture after a failure.
 #include <doctest/doctest.h>
 
-#include "kadans/script/script_host.h"
 #include "script/fixture.h"
+#include "script/host/script_host.h"
 
 using namespace kadans;
 using namespace kadans::script_test;

@@ -1,11 +1,11 @@
 // What plays, as bytes, and another host that goes on with it: what it would be after the death of a process.
 #include <doctest/doctest.h>
 
-#include "kadans/script/process/restart_policy.h"
-#include "kadans/signal/byte_order.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
 #include "script/fixture.h"
+#include "script/process/restart_policy.h"
+#include "signal/byte_order.h"
 
 using namespace kadans;
 using namespace kadans::script_test;

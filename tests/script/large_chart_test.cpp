@@ -1,9 +1,9 @@
 // A large chart costs nothing beyond what its script does.
 #include <doctest/doctest.h>
 
-#include "kadans/script/file_watch.h"
 #include "kadans/testing/allocation_count.h"
 #include "script/fixture.h"
+#include "script/host/file_watch.h"
 
 using namespace kadans;
 using namespace kadans::script_test;

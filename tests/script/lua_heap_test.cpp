@@ -1,4 +1,4 @@
-#include "kadans/script/lua_heap.h"
+#include "script/lua/lua_heap.h"
 
 #include <cstdint>
 

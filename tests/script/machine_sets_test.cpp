@@ -1,8 +1,8 @@
 // Control sets of behaviors that are called or played beside others: the caller's, or one with joints of its own.
 #include <doctest/doctest.h>
 
-#include "kadans/script/check_behavior.h"
 #include "kadans/signal/input_error.h"
+#include "script/check/check_behavior.h"
 #include "script/fixture.h"
 
 using namespace kadans;

@@ -1,7 +1,7 @@
 // Mistakes that authors make, each with the message it must give: the line, what is wrong, what was meant.
 #include <doctest/doctest.h>
 
-#include "kadans/script/check_behavior.h"
+#include "script/check/check_behavior.h"
 #include "script/fixture.h"
 
 using namespace kadans;

@@ -1,7 +1,7 @@
 // The options of motions: what each field does, and what each mistake in it is told.
 #include <doctest/doctest.h>
 
-#include "kadans/script/check_behavior.h"
+#include "script/check/check_behavior.h"
 #include "script/fixture.h"
 
 using namespace kadans;

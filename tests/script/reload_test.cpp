@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/script/behavior.h"
+#include "script/behavior/behavior.h"
 #include "script/fixture.h"
 
 using namespace kadans;

@@ -1,5 +1,5 @@
 // Several behaviors: lists, lanes, and that a failure stays where it is.
-#include "kadans/script/script_host.h"
+#include "script/host/script_host.h"
 
 #include <doctest/doctest.h>
 

@@ -3,11 +3,11 @@
 #include <doctest/doctest.h>
 #include <lua.hpp>
 
-#include "../../src/script/lua_core.h"
-#include "kadans/script/budget.h"
-#include "kadans/script/lua_state.h"
 #include "kadans/signal/input_error.h"
 #include "script/fixture.h"
+#include "script/lua/budget.h"
+#include "script/lua/lua_core.h"
+#include "script/lua/lua_state.h"
 
 using namespace kadans;
 using namespace kadans::script_test;

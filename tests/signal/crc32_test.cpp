@@ -1,4 +1,4 @@
-#include "kadans/signal/crc32.h"
+#include "signal/crc32.h"
 
 #include <string_view>
 

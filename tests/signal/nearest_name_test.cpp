@@ -1,4 +1,4 @@
-#include "kadans/signal/nearest_name.h"
+#include "signal/nearest_name.h"
 
 #include <string>
 #include <vector>

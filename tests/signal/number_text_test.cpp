@@ -1,8 +1,8 @@
-#include "kadans/signal/number_text.h"
+#include "signal/number_text.h"
 
 #include <doctest/doctest.h>
 
-#include "kadans/signal/shell_word.h"
+#include "signal/shell_word.h"
 
 using namespace kadans;
 

@@ -14,8 +14,8 @@
 #include <mpfr.h>
 
 #include "kadans/signal/random.h"
-#include "kadans/signal/sine_cosine.h"
 #include "kadans/signal/state_hash.h"
+#include "signal/sine_cosine.h"
 
 namespace kadans {
 namespace {

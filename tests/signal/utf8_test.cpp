@@ -1,4 +1,4 @@
-#include "kadans/signal/utf8.h"
+#include "signal/utf8.h"
 
 #include <doctest/doctest.h>
 

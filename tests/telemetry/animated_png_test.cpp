@@ -1,4 +1,4 @@
-#include "kadans/telemetry/animated_png.h"
+#include "telemetry/plot/animated_png.h"
 
 #include <cstdint>
 #include <stdexcept>
@@ -7,8 +7,8 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/signal/byte_order.h"
-#include "kadans/signal/crc32.h"
+#include "signal/byte_order.h"
+#include "signal/crc32.h"
 
 using namespace kadans;
 

@@ -1,4 +1,4 @@
-#include "kadans/telemetry/flight_recorder.h"
+#include "telemetry/record/flight_recorder.h"
 
 #include <array>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <doctest/doctest.h>
 
 #include "kadans/signal/random.h"
-#include "kadans/telemetry/mcap_reader.h"
-#include "kadans/telemetry/recorder.h"
-#include "kadans/telemetry/signal_topics.h"
 #include "scratch_file.h"
+#include "telemetry/mcap/mcap_reader.h"
+#include "telemetry/record/recorder.h"
+#include "telemetry/record/signal_topics.h"
 
 using namespace kadans;
 

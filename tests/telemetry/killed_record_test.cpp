@@ -11,10 +11,10 @@
 #include <unistd.h>
 
 #include "kadans/signal/random.h"
-#include "kadans/telemetry/mcap_reader.h"
-#include "kadans/telemetry/recorder.h"
-#include "kadans/telemetry/signal_topics.h"
 #include "scratch_file.h"
+#include "telemetry/mcap/mcap_reader.h"
+#include "telemetry/record/recorder.h"
+#include "telemetry/record/signal_topics.h"
 
 using namespace kadans;
 

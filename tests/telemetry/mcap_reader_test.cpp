@@ -1,13 +1,13 @@
-#include "kadans/telemetry/mcap_reader.h"
+#include "telemetry/mcap/mcap_reader.h"
 
 #include <doctest/doctest.h>
 #include <zstd.h>
 
-#include "kadans/signal/crc32.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
-#include "kadans/telemetry/mcap_writer.h"
 #include "scratch_file.h"
+#include "signal/crc32.h"
+#include "telemetry/mcap/mcap_writer.h"
 
 using namespace kadans;
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "kadans/telemetry/recorder.h"
+#include "telemetry/record/recorder.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -1,4 +1,4 @@
-#include "kadans/telemetry/mcap_writer.h"
+#include "telemetry/mcap/mcap_writer.h"
 
 #include <algorithm>
 #include <csignal>
@@ -8,8 +8,8 @@
 #include <sys/resource.h>
 
 #include "kadans/signal/random.h"
-#include "kadans/telemetry/mcap_reader.h"
 #include "scratch_file.h"
+#include "telemetry/mcap/mcap_reader.h"
 
 using namespace kadans;
 

@@ -1,5 +1,5 @@
 // Plots that need no other program: what the text and the SVG hold.
-#include "kadans/telemetry/plot.h"
+#include "telemetry/plot.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "kadans/telemetry/record_comparison.h"
+#include "telemetry/reading/record_comparison.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/telemetry/recorder.h"
 #include "scratch_file.h"
+#include "telemetry/record/recorder.h"
 
 using namespace kadans;
 

@@ -1,11 +1,11 @@
 // A stretch of a record is a record.
-#include "kadans/telemetry/record_cut.h"
+#include "telemetry/reading/record_cut.h"
 
 #include <doctest/doctest.h>
 
 #include "kadans/signal/input_error.h"
-#include "kadans/telemetry/record_diff.h"
-#include "kadans/telemetry/record_text.h"
+#include "telemetry/reading/record_diff.h"
+#include "telemetry/reading/record_text.h"
 #include "written_record.h"
 
 using namespace kadans;

@@ -1,5 +1,5 @@
 // Two records beside each other: where they part, and what is no difference.
-#include "kadans/telemetry/record_diff.h"
+#include "telemetry/reading/record_diff.h"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // Rows as lines of JSON and as tables: the same numbers, in the order of the file.
-#include "kadans/telemetry/record_text.h"
+#include "telemetry/reading/record_text.h"
 
 #include <limits>
 

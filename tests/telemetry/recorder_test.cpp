@@ -1,4 +1,4 @@
-#include "kadans/telemetry/recorder.h"
+#include "telemetry/record/recorder.h"
 
 #include <array>
 #include <atomic>
@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include "kadans/telemetry/mcap_reader.h"
 #include "kadans/testing/real_time_guard.h"
 #include "scratch_file.h"
+#include "telemetry/mcap/mcap_reader.h"
 
 using namespace kadans;
 

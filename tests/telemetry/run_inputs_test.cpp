@@ -1,4 +1,4 @@
-#include "kadans/telemetry/run_inputs.h"
+#include "telemetry/record/run_inputs.h"
 
 #include <doctest/doctest.h>
 

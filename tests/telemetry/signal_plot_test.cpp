@@ -1,5 +1,5 @@
 // What a plot shows: nothing that was there is thinned away, and it stays small.
-#include "kadans/telemetry/signal_plot.h"
+#include "telemetry/plot/signal_plot.h"
 
 #include <algorithm>
 #include <cmath>

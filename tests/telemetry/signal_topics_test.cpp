@@ -1,11 +1,11 @@
-#include "kadans/telemetry/signal_topics.h"
+#include "telemetry/record/signal_topics.h"
 
 #include <array>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
-#include "kadans/signal/byte_order.h"
+#include "signal/byte_order.h"
 
 using namespace kadans;
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "kadans/telemetry/mcap_writer.h"
-#include "kadans/telemetry/record_outline.h"
-#include "kadans/telemetry/signal_topics.h"
 #include "scratch_file.h"
+#include "telemetry/mcap/mcap_writer.h"
+#include "telemetry/reading/record_outline.h"
+#include "telemetry/record/signal_topics.h"
 
 namespace kadans {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "kadans/control/joint_pid.h"
+#include "control/joint/joint_pid.h"
 #include "kadans/testing/doctest.h"
 
 using namespace kadans;

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "kadans/control/joint_pid.h"
+#include "control/joint/joint_pid.h"
 #include "kadans/testing/doctest.h"
 
 using namespace kadans;

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "kadans/control/joint_pid.h"
+#include "control/joint/joint_pid.h"
 #include "kadans/testing/doctest.h"
 
 using namespace kadans;

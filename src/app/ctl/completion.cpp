@@ -6,8 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "ctl/ctl_command.h"
-#include "kadans/remote/order_table.h"
+#include "ctl_command.h"
+#include "remote/order/order_table.h"
 
 namespace kadans {
 namespace {

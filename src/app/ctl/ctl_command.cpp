@@ -1,4 +1,4 @@
-#include "ctl/ctl_command.h"
+#include "ctl_command.h"
 
 #include <cstdio>
 #include <functional>
@@ -6,15 +6,15 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include "ctl/ctl_console.h"
-#include "ctl/ctl_print.h"
-#include "kadans/config/foreign_json.h"
-#include "kadans/remote/ctl_link.h"
-#include "kadans/remote/order_table.h"
+#include "app/option_checks.h"
+#include "app/terminal.h"
+#include "config/json/foreign_json.h"
+#include "ctl_console.h"
+#include "ctl_print.h"
 #include "kadans/signal/input_error.h"
-#include "kadans/signal/number_text.h"
-#include "option_checks.h"
-#include "terminal.h"
+#include "remote/ctl/ctl_link.h"
+#include "remote/order/order_table.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {

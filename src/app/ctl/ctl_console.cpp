@@ -1,4 +1,4 @@
-#include "ctl/ctl_console.h"
+#include "ctl_console.h"
 
 #include <cstdio>
 #include <iostream>
@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "kadans/config/foreign_json.h"
+#include "app/line_editor.h"
+#include "app/terminal.h"
+#include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
-#include "line_editor.h"
-#include "terminal.h"
 
 namespace kadans {
 namespace {

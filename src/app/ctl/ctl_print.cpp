@@ -1,4 +1,4 @@
-#include "ctl/ctl_print.h"
+#include "ctl_print.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "ctl/ctl_service.h"
+#include "ctl_service.h"
 
 #include <CLI/CLI.hpp>
 
+#include "app/terminal.h"
 #include "kadans/signal/input_error.h"
-#include "terminal.h"
 
 namespace kadans {
 

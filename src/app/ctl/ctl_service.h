@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "kadans/remote/ctl_server.h"
+#include "remote/ctl/ctl_server.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;

@@ -1,7 +1,7 @@
-#include "ctl/sim_remote.h"
+#include "sim_remote.h"
 
-#include "kadans/config/project_root.h"
-#include "run_request.h"
+#include "app/run/run_request.h"
+#include "config/robot/project_root.h"
 #include "version.h"
 
 namespace kadans {

@@ -4,15 +4,15 @@
 
 #include <optional>
 
-#include "ctl/ctl_service.h"
-#include "kadans/app/assembly.h"
-#include "kadans/remote/behavior_side.h"
-#include "kadans/remote/control_side.h"
-#include "kadans/remote/record_side.h"
-#include "kadans/scenario/pushes.h"
-#include "kadans/scenario/run.h"
-#include "live/live_service.h"
-#include "ros2/ros2_service.h"
+#include "app/assembly.h"
+#include "app/live/live_service.h"
+#include "app/ros2/ros2_service.h"
+#include "ctl_service.h"
+#include "remote/instance/behavior_side.h"
+#include "remote/instance/control_side.h"
+#include "remote/instance/record_side.h"
+#include "scenario/disturb/pushes.h"
+#include "scenario/run.h"
 
 namespace kadans {
 

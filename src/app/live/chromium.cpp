@@ -1,4 +1,4 @@
-#include "live/chromium.h"
+#include "chromium.h"
 
 #include <cerrno>
 #include <cstdlib>

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "kadans/realtime/child_process.h"
+#include "realtime/machine/child_process.h"
 
 namespace kadans {
 

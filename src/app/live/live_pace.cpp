@@ -1,8 +1,8 @@
-#include "live/live_pace.h"
+#include "live_pace.h"
 
 #include <thread>
 
-#include "terminal.h"
+#include "app/terminal.h"
 
 namespace kadans {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "kadans/remote/live_hub.h"
-#include "kadans/scenario/run.h"
+#include "remote/page/live_hub.h"
+#include "scenario/run.h"
 
 namespace kadans {
 

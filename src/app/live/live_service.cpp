@@ -1,13 +1,13 @@
-#include "live/live_service.h"
+#include "live_service.h"
 
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
 
-#include "kadans/config/json_value.h"
-#include "kadans/remote/page_files.h"
-#include "kadans/remote/run_description.h"
-#include "option_checks.h"
+#include "app/option_checks.h"
+#include "config/json/json_value.h"
+#include "remote/instance/run_description.h"
+#include "remote/page/page_files.h"
 
 namespace kadans {
 

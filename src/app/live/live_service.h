@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kadans/app/assembly.h"
-#include "kadans/remote/live_server.h"
+#include "app/assembly.h"
+#include "remote/page/live_server.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "live/live_service.h"
+#include "live_service.h"
 
 namespace kadans {
 

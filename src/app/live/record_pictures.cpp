@@ -1,4 +1,4 @@
-#include "live/record_pictures.h"
+#include "record_pictures.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -6,12 +6,12 @@
 #include <mutex>
 #include <vector>
 
-#include "kadans/config/fields.h"
-#include "kadans/remote/page_files.h"
-#include "kadans/telemetry/mcap_reader.h"
-#include "live/chromium.h"
-#include "live/live_service.h"
-#include "terminal.h"
+#include "app/terminal.h"
+#include "chromium.h"
+#include "config/json/fields.h"
+#include "live_service.h"
+#include "remote/page/page_files.h"
+#include "telemetry/mcap/mcap_reader.h"
 
 namespace kadans {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <CLI/CLI.hpp>
 
-#include "kadans/campaign/durable_file.h"
+#include "app/option_checks.h"
+#include "app/terminal.h"
+#include "campaign/work/durable_file.h"
 #include "kadans/signal/input_error.h"
-#include "kadans/telemetry/animated_png.h"
-#include "live/page_commands.h"
-#include "live/record_pictures.h"
-#include "option_checks.h"
-#include "terminal.h"
+#include "page_commands.h"
+#include "record_pictures.h"
+#include "telemetry/plot/animated_png.h"
 
 namespace kadans {
 namespace {

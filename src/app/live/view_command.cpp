@@ -5,11 +5,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "kadans/remote/page_files.h"
-#include "kadans/signal/input_file.h"
-#include "live/page_commands.h"
-#include "option_checks.h"
-#include "terminal.h"
+#include "app/option_checks.h"
+#include "app/terminal.h"
+#include "page_commands.h"
+#include "remote/page/page_files.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {

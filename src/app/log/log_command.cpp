@@ -1,4 +1,4 @@
-#include "log/log_command.h"
+#include "log_command.h"
 
 #include <array>
 #include <csignal>
@@ -6,9 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "log/log_verbs.h"
-#include "option_checks.h"
-#include "terminal.h"
+#include "app/option_checks.h"
+#include "app/terminal.h"
+#include "log_verbs.h"
 
 namespace kadans {
 namespace {

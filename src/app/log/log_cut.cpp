@@ -1,7 +1,7 @@
-#include "kadans/signal/number_text.h"
-#include "kadans/telemetry/record_cut.h"
-#include "log/log_verbs.h"
-#include "terminal.h"
+#include "app/terminal.h"
+#include "log_verbs.h"
+#include "signal/number_text.h"
+#include "telemetry/reading/record_cut.h"
 
 namespace kadans {
 

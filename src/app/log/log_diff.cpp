@@ -3,11 +3,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "kadans/config/foreign_json.h"
-#include "kadans/signal/number_text.h"
-#include "kadans/telemetry/record_diff.h"
-#include "log/log_verbs.h"
-#include "terminal.h"
+#include "app/terminal.h"
+#include "config/json/foreign_json.h"
+#include "log_verbs.h"
+#include "signal/number_text.h"
+#include "telemetry/reading/record_diff.h"
 
 namespace kadans {
 namespace {

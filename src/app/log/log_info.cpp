@@ -2,12 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "kadans/config/foreign_json.h"
-#include "kadans/signal/number_text.h"
-#include "kadans/signal/shell_word.h"
-#include "log/log_verbs.h"
-#include "run_request.h"
-#include "terminal.h"
+#include "app/run/run_request.h"
+#include "app/terminal.h"
+#include "config/json/foreign_json.h"
+#include "log_verbs.h"
+#include "signal/number_text.h"
+#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

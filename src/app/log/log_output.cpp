@@ -4,10 +4,10 @@
 
 #include <unistd.h>
 
-#include "kadans/campaign/durable_file.h"
-#include "kadans/signal/number_text.h"
-#include "log/log_verbs.h"
-#include "terminal.h"
+#include "app/terminal.h"
+#include "campaign/work/durable_file.h"
+#include "log_verbs.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 

@@ -1,9 +1,9 @@
 #include <cstdio>
 
-#include "kadans/campaign/durable_file.h"
-#include "kadans/telemetry/signal_plot.h"
-#include "log/log_verbs.h"
-#include "terminal.h"
+#include "app/terminal.h"
+#include "campaign/work/durable_file.h"
+#include "log_verbs.h"
+#include "telemetry/plot/signal_plot.h"
 
 namespace kadans {
 namespace {

@@ -1,9 +1,9 @@
 // `kadans log cat` and `kadans log csv`: print a record line by line.
 #include <cmath>
 
-#include "kadans/telemetry/record_text.h"
-#include "log/log_verbs.h"
-#include "terminal.h"
+#include "app/terminal.h"
+#include "log_verbs.h"
+#include "telemetry/reading/record_text.h"
 
 namespace kadans {
 namespace {

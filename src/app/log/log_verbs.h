@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "kadans/telemetry/record_outline.h"
-#include "log/log_command.h"
+#include "log_command.h"
+#include "telemetry/reading/record_outline.h"
 
 namespace kadans {
 

@@ -1,4 +1,4 @@
-#include "report/report_options.h"
+#include "report_options.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,10 +1,10 @@
-#include "report/run_page.h"
+#include "run_page.h"
 
 #include <algorithm>
 
-#include "kadans/campaign/durable_file.h"
-#include "live/record_pictures.h"
-#include "report/run_plot.h"
+#include "app/live/record_pictures.h"
+#include "campaign/work/durable_file.h"
+#include "run_plot.h"
 #include "version.h"
 
 namespace kadans {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "kadans/scenario/html_report.h"
-#include "report/report_options.h"
+#include "report_options.h"
+#include "scenario/report/html_report.h"
 
 namespace kadans {
 

@@ -1,10 +1,10 @@
-#include "report/run_plot.h"
+#include "run_plot.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "kadans/config/name_pattern.h"
+#include "config/json/name_pattern.h"
 
 namespace kadans {
 namespace {

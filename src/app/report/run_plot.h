@@ -1,8 +1,8 @@
 // Chooses the signals of a run that its report shows.
 #pragma once
 
-#include "kadans/telemetry/signal_plot.h"
-#include "report/run_page.h"
+#include "run_page.h"
+#include "telemetry/plot/signal_plot.h"
 
 namespace kadans {
 

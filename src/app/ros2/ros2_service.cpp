@@ -1,13 +1,13 @@
-#include "ros2/ros2_service.h"
+#include "ros2_service.h"
 
 #include <cstdio>
 #include <cstdlib>
 
 #include <CLI/CLI.hpp>
 
-#include "kadans/signal/number_text.h"
-#include "live/live_service.h"
-#include "option_checks.h"
+#include "app/live/live_service.h"
+#include "app/option_checks.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "kadans/app/assembly.h"
-#include "kadans/remote/ros2/ros2_bridge.h"
+#include "app/assembly.h"
+#include "remote/ros2/ros2_bridge.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;

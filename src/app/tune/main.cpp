@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "terminal.h"
+#include "app/terminal.h"
 #include "tuning.h"
 
 namespace kadans {

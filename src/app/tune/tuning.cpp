@@ -8,16 +8,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include "kadans/campaign/content_hash.h"
-#include "kadans/campaign/durable_file.h"
-#include "kadans/campaign/merged_sweep.h"
-#include "kadans/campaign/parameter_edit.h"
-#include "kadans/config/foreign_json.h"
-#include "kadans/config/json_value.h"
+#include "app/sweep/sweep_run.h"
+#include "app/sweep/sweep_subjects.h"
+#include "app/terminal.h"
+#include "campaign/sweep/merged_sweep.h"
+#include "campaign/sweep/parameter_edit.h"
+#include "campaign/work/content_hash.h"
+#include "campaign/work/durable_file.h"
+#include "config/json/foreign_json.h"
+#include "config/json/json_value.h"
 #include "kadans/signal/random.h"
-#include "sweep_run.h"
-#include "sweep_subjects.h"
-#include "terminal.h"
 
 namespace kadans {
 namespace {

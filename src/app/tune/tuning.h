@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "kadans/campaign/shard.h"
-#include "kadans/campaign/tuning/cma_es.h"
-#include "tune_command.h"
+#include "app/sweep/tune_command.h"
+#include "campaign/sweep/shard.h"
+#include "campaign/tuning/cma_es.h"
 
 namespace kadans {
 

@@ -1,4 +1,4 @@
-#include "kadans/campaign/tuning/cma_es.h"
+#include "cma_es.h"
 
 #include <stdexcept>
 

@@ -7,10 +7,10 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "body_frames.h"
-#include "contact_world.h"
 #include "kadans/plant/settings.h"
-#include "pair_mask.h"
-#include "shapes.h"
+#include "plant/bullet/contact/contact_world.h"
+#include "plant/bullet/contact/pair_mask.h"
+#include "plant/bullet/contact/shapes.h"
 
 namespace kadans::bullet {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "convert.h"
-#include "joint_rows.h"
 #include "kadans/plant/modelled_drives.h"
+#include "plant/bullet/joint/joint_rows.h"
 #include "plant_settings_check.h"
 #include "sensors.h"
 

@@ -1,7 +1,7 @@
 #include "truth.h"
 
 #include "convert.h"
-#include "link_contact.h"
+#include "plant/bullet/contact/link_contact.h"
 
 namespace kadans::bullet {
 

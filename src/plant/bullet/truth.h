@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "body.h"
-#include "drive.h"
 #include "kadans/plant/world.h"
+#include "plant/bullet/joint/drive.h"
 #include "world_objects.h"
 
 namespace kadans::bullet {

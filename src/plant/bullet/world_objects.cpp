@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "convert.h"
-#include "object_contact.h"
+#include "plant/bullet/contact/object_contact.h"
 
 namespace kadans::bullet {
 namespace {

@@ -9,10 +9,10 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include "contact_world.h"
 #include "kadans/plant/world.h"
 #include "kadans/plant/world_settings.h"
-#include "rolling_rows.h"
+#include "plant/bullet/contact/contact_world.h"
+#include "plant/bullet/contact/rolling_rows.h"
 
 namespace kadans::bullet {
 

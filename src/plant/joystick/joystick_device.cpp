@@ -1,4 +1,4 @@
-#include "kadans/plant/joystick/joystick_device.h"
+#include "joystick_device.h"
 
 #include <array>
 #include <cerrno>

@@ -1,4 +1,4 @@
-#include "kadans/plant/joystick/stick.h"
+#include "stick.h"
 
 #include <algorithm>
 #include <cmath>

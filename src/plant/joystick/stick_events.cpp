@@ -1,4 +1,4 @@
-#include "kadans/plant/joystick/stick_events.h"
+#include "stick_events.h"
 
 #include <charconv>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <linux/input.h>
 
 #include "kadans/signal/input_error.h"
-#include "kadans/signal/input_file.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {

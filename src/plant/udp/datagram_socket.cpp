@@ -1,4 +1,4 @@
-#include "kadans/plant/udp/datagram_socket.h"
+#include "datagram_socket.h"
 
 #include <cerrno>
 #include <chrono>

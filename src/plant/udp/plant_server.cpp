@@ -1,4 +1,4 @@
-#include "kadans/plant/udp/plant_server.h"
+#include "plant_server.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include <random>
 
 #include "kadans/plant/plant_type.h"
-#include "kadans/plant/udp/plant_server.h"
-#include "kadans/plant/udp/udp_plant.h"
 #include "kadans/signal/input_error.h"
+#include "plant_server.h"
+#include "udp_plant.h"
 
 namespace kadans {
 namespace {

@@ -1,4 +1,4 @@
-#include "kadans/plant/udp/udp_plant.h"
+#include "udp_plant.h"
 
 #include <algorithm>
 #include <chrono>

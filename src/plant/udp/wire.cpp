@@ -1,12 +1,12 @@
-#include "kadans/plant/udp/wire.h"
+#include "wire.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <stdexcept>
 
-#include "kadans/signal/crc32.h"
 #include "kadans/signal/state_hash.h"
+#include "signal/crc32.h"
 
 namespace kadans {
 namespace {

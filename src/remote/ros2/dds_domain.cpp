@@ -9,8 +9,8 @@
 #include <system_error>
 #include <thread>
 
-#include "kadans/realtime/signals_blocked.h"
 #include "kadans/signal/input_error.h"
+#include "realtime/signals_blocked.h"
 
 namespace kadans {
 namespace {

@@ -1,4 +1,4 @@
-#include "kadans/remote/ros2/robot_readings.h"
+#include "robot_readings.h"
 
 #include <utility>
 

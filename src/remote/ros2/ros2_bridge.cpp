@@ -1,4 +1,4 @@
-#include "kadans/remote/ros2/ros2_bridge.h"
+#include "ros2_bridge.h"
 
 #include <algorithm>
 #include <atomic>
@@ -11,13 +11,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "kadans/engine/clock.h"
-#include "kadans/realtime/placement.h"
-#include "kadans/realtime/posix_wait.h"
-#include "kadans/realtime/task_thread.h"
-#include "kadans/remote/ros2/robot_readings.h"
-#include "kadans/remote/ros2/text_commands.h"
+#include "engine/clock.h"
+#include "realtime/machine/placement.h"
+#include "realtime/posix_wait.h"
+#include "realtime/task_thread.h"
+#include "robot_readings.h"
 #include "ros2_topics.h"
+#include "text_commands.h"
 
 namespace kadans {
 namespace {

@@ -1,6 +1,6 @@
 // In place of the bridge where Cyclone DDS was not found.
-#include "kadans/remote/ros2/ros2_bridge.h"
 #include "kadans/signal/input_error.h"
+#include "ros2_bridge.h"
 
 namespace kadans {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dds_domain.h"
-#include "kadans/remote/ros2/robot_readings.h"
 #include "messages.h"  // made by idlc from messages.idl
+#include "robot_readings.h"
 
 namespace kadans {
 

@@ -1,10 +1,10 @@
-#include "kadans/remote/ros2/text_commands.h"
+#include "text_commands.h"
 
 #include <exception>
 
-#include "kadans/config/foreign_json.h"
+#include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
-#include "order_request.h"
+#include "remote/order/order_request.h"
 
 namespace kadans {
 namespace {

@@ -1,12 +1,12 @@
-#include "kadans/script/process/behavior_server.h"
+#include "behavior_server.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstring>
 
-#include "kadans/script/process/catalog_fingerprint.h"
+#include "catalog_fingerprint.h"
 #include "kadans/signal/input_error.h"
-#include "play_order_bytes.h"
+#include "script/host/play_order_bytes.h"
 
 namespace kadans {
 

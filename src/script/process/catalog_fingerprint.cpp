@@ -1,4 +1,4 @@
-#include "kadans/script/process/catalog_fingerprint.h"
+#include "catalog_fingerprint.h"
 
 #include "kadans/signal/state_hash.h"
 

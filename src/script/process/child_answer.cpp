@@ -1,11 +1,11 @@
-#include "kadans/script/process/child_answer.h"
+#include "child_answer.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstring>
 
-#include "kadans/signal/byte_order.h"
 #include "kadans/signal/state_hash.h"
+#include "signal/byte_order.h"
 
 namespace kadans {
 namespace {

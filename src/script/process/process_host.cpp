@@ -1,4 +1,4 @@
-#include "kadans/script/process/process_host.h"
+#include "process_host.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,8 +6,8 @@
 #include <exception>
 #include <new>
 
-#include "kadans/script/process/catalog_fingerprint.h"
-#include "play_order_bytes.h"
+#include "catalog_fingerprint.h"
+#include "script/host/play_order_bytes.h"
 
 namespace kadans {
 

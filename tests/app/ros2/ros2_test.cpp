@@ -14,8 +14,8 @@
 #include "app/program.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/model/urdf.h"
-#include "kadans/telemetry/mcap_reader.h"
-#include "kadans/telemetry/signal_topics.h"
+#include "telemetry/mcap/mcap_reader.h"
+#include "telemetry/record/signal_topics.h"
 
 using namespace kadans;
 using namespace kadans::program;

@@ -4,8 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "control/joint/joint_pid.h"
 #include "control/two_joint_robot.h"
-#include "kadans/control/joint_pid.h"
 
 using namespace kadans;
 

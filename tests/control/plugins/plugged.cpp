@@ -1,6 +1,6 @@
 // The shipped control objects, made by a plug-in. CMakeLists.txt lets tests call plugged_joint_pid where they are
 // written with make_joint_pid.
-#include "kadans/control/plugin_library.h"
+#include "control/plugin_library.h"
 
 namespace kadans {
 namespace {

@@ -1,5 +1,5 @@
 // Plug-ins from outside: what one brings works as if it were built in; whatever does not fit is refused with a reason.
-#include "kadans/control/plugin_library.h"
+#include "control/plugin_library.h"
 
 #include <filesystem>
 #include <fstream>
@@ -8,13 +8,13 @@
 
 #include <doctest/doctest.h>
 
+#include "control/drive/spring_torque.h"
+#include "control/joint/joint_impedance.h"
+#include "control/joint/joint_pid.h"
+#include "control/joint/profile_position.h"
 #include "control/two_joint_robot.h"
 #include "kadans/control/catalog.h"
-#include "kadans/control/joint_impedance.h"
-#include "kadans/control/joint_pid.h"
 #include "kadans/control/plugin.h"
-#include "kadans/control/profile_position.h"
-#include "kadans/control/spring_torque.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;

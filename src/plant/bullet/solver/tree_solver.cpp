@@ -5,8 +5,8 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include "joint_rows.h"
-#include "rolling_rows.h"
+#include "plant/bullet/contact/rolling_rows.h"
+#include "plant/bullet/joint/joint_rows.h"
 
 namespace kadans::bullet {
 namespace {

@@ -1,0 +1,124 @@
+// Assembles a robot from its files: the only place that names concrete types together. The order of the members is the
+// way of the data; each member keeps references to earlier ones.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/robot/robot_config.h"
+#include "config/scenario/scenario_config.h"
+#include "engine/lockstep.h"
+#include "kadans/control/control_object_types.h"
+#include "kadans/plant/plant_type.h"
+#include "kadans/plant/world.h"
+#include "realtime/plant_link.h"
+#include "scenario/disturb/disturbances.h"
+#include "scenario/disturb/faulty_host.h"
+#include "scenario/disturb/faulty_plant.h"
+#include "scenario/disturb/quantities.h"
+#include "scenario/run.h"
+#include "script/host/script_host.h"
+#include "script/process/process_host.h"
+#include "snapshot_filter.h"
+
+namespace kadans {
+
+// A robot as its files describe it, and the known types of control objects.
+struct Robot {
+  ControlObjectTypes types;  // shipped types, types registered by this program, types of the robot's plug-ins
+  RobotConfig config;
+};
+// Loads the plug-ins that the file names; they stay loaded. Throws InputError with all mistakes, and for a plug-in that
+// the gate does not let in.
+Robot read_robot(const std::filesystem::path& file, const PluginGate& gate = {});
+
+// The control objects of a configuration with their parameters set, and the catalog that describes them.
+struct ControlSystem {
+  Catalog catalog;
+  std::vector<std::unique_ptr<ControlObject>> objects;
+};
+// Throws InputError with the place of the mistake in the configuration.
+std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
+
+// Makes the host of a scenario's behaviors. Throws InputError.
+std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
+                                             const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
+                                             std::span<const std::byte> kept = {});
+// The robot's type of plant of this name, shipped, of this program or a plug-in's, for which `is` holds. Throws
+// InputError that says which there are.
+const PlantType& plant_type_named(const RobotConfig& robot, const std::string& file, const PlacedName& name,
+                                  bool (PlantType::*is)() const noexcept = nullptr);
+// What a plant that is no model is made for. `peer`: where it is; "": where the configuration says.
+PlantSite plant_site(const RobotConfig& robot, const std::string& peer);
+
+class Assembly {
+ public:
+  // Reads the robot and the behaviors that the scenario names. Throws InputError with all mistakes. `log`, `link` and
+  // `outside` must outlive the assembly. With `link` the world runs on a thread of its own, and the engines use the
+  // other side of the link. With `outside` the scenario's behaviors play in that process, which has been started with
+  // them. When the scenario's plant is no model, there is no world: parts(), world() and truth() cannot be used.
+  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
+           ProcessHost* outside = nullptr);
+
+  const RobotConfig& robot() const noexcept { return robot_.config; }
+  const Catalog& catalog() const noexcept { return control_system_->catalog; }
+  const ScriptHost& host() const noexcept { return *host_; }  // only when behaviors do not play outside
+  ScriptHost& host() noexcept { return *host_; }
+  const ScriptHost* own_host() const noexcept { return host_.get(); }  // nullptr when they play outside
+  OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
+  // Call before the run: from now on saved files are reloaded. Throws std::runtime_error when files cannot be watched.
+  void watch_behaviors() { host_->watch(); }
+  RunParts parts() noexcept;
+  ControlEngine& control() noexcept { return *control_; }
+  BehaviorEngine& behaviors() noexcept { return *behaviors_; }
+  Plant& plant() noexcept;                                 // the plant that the engine sees; it is not open yet
+  World* world() noexcept;                                 // with its faults; nullptr: there is none
+  TruthSignals* truth() noexcept { return truth_.get(); }  // nullptr: there is none
+  // The quantities that were set or drawn for this run.
+  const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
+  void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
+
+  // Call before the first step: the behaviors then see the snapshot as the filter changes it. The filter must outlive
+  // this object.
+  void filter(SnapshotFilter& filter);
+
+ private:
+  void vary(std::uint64_t seed);
+  void start_in_pose();
+  const PlantType& plant_type() const;
+  void make_plant(std::uint64_t seed);
+  const TruthSource* truth_source() noexcept;
+  void make_joystick_player();
+  void make_behaviors();
+  BehaviorHost& played() noexcept;
+
+  const ScenarioConfig& scenario_;
+  RunLog& log_;
+  PlantExchange* link_;
+  ProcessHost* outside_;
+  Robot robot_;
+  PlantVariant variant_;
+  std::vector<QuantityValue> quantities_;
+  std::unique_ptr<World> sound_, faulty_;  // faulty_ wraps sound_ when the scenario has faults of the plant
+  std::unique_ptr<LinkedPlant> linked_;    // when the world is on another thread
+  std::unique_ptr<Plant> elsewhere_;       // when there is no world
+  std::unique_ptr<ControlSystem> control_system_;
+  std::unique_ptr<ControlSets> sets_;
+  std::unique_ptr<Estimator> estimator_;
+  std::unique_ptr<Safety> safety_;
+  std::unique_ptr<EngineExchange> exchange_;
+  std::unique_ptr<TruthSignals> truth_;
+  std::unique_ptr<ScriptHost> host_;
+  std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the signals about the interpreter's own needs
+  std::unique_ptr<ControlEngine> control_;
+  std::unique_ptr<FaultyHost> faulty_host_;
+  std::unique_ptr<FilteredHost> filtered_;
+  std::unique_ptr<BehaviorEngine> behaviors_;
+  std::unique_ptr<Lockstep> lockstep_;
+  std::unique_ptr<Disturbances> disturbances_;
+  std::unique_ptr<JoystickSource> joystick_;
+};
+
+}  // namespace kadans

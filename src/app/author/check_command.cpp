@@ -1,0 +1,45 @@
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/terminal.h"
+#include "checked_files.h"
+#include "file_checks.h"
+
+namespace kadans {
+
+void add_check(CLI::App& app, CheckOptions& options) {
+  CLI::App* check = app.add_subcommand("check", "Say what is wrong in files, without running them");
+  check
+      ->add_option("files", options.files,
+                   "URDF, robot, scenario or plan (JSON), behaviors, modules and tests (Lua); folders, patterns")
+      ->required()
+      ->type_name("PATH...");
+  check->add_option("--robot", options.robot, "Robot that behaviors are checked against (default: by their folder)")
+      ->type_name("FILE");
+  check->add_flag("--plugins", options.plugins,
+                  "Load the plug-ins that robots name, to check what uses them too: that runs code of their own");
+}
+
+int run_check(const CheckOptions& options) {
+  int code = exit_passed;
+  bool any = false;
+  FileChecks checks(options.robot, options.plugins);
+  for (const CheckedFile& checked : files_to_check(options.files, false)) {
+    try {
+      const std::string what = checks.check(checked);
+      if (what.empty()) continue;
+      std::printf("ok  %s  %s\n", checked.file.c_str(), what.c_str());
+      any = true;
+    } catch (const InputError& error) {
+      print_problems(error);
+      code = exit_usage;
+    }
+  }
+  if (!any && code == exit_passed)
+    throw InputError({.file = options.files.front(), .message = "holds nothing of ours"});
+  return code;
+}
+
+}  // namespace kadans

@@ -1,0 +1,147 @@
+#include "file_checks.h"
+
+#include <cstdio>
+#include <set>
+
+#include "app/sim/played_behaviors.h"
+#include "app/sweep/sweep_command.h"
+#include "app/sweep/tune_command.h"
+#include "behavior_stage.h"
+#include "config/robot/project_root.h"
+#include "config/scenario/based_on.h"
+#include "json_kind.h"
+#include "kadans/model/urdf.h"
+#include "scenario/judge/checks.h"
+#include "script/check/check_behavior.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string check_urdf(const std::string& file) {
+  std::vector<InputProblem> warnings;
+  const RobotModel model = read_urdf(file, {.mesh_hulls = true}, &warnings);
+  std::size_t motors = 0;
+  for (const Joint& joint : model.joints) motors += joint.passive() ? 0 : 1;
+  char text[128];
+  std::snprintf(text, sizeof text, "robot description: %zu links, %zu joints, %zu motors, %.3f kg", model.links.size(),
+                model.joints.size(), motors, model.mass_kg());
+  std::string what = text;
+  for (const InputProblem& warning : warnings) what += "\nwarning: " + warning.text();
+  return what;
+}
+
+// Checks that behaviors accept the parameters that the robot's configuration gives them.
+void check_behavior_values(const RobotConfig& config, const Catalog& catalog) {
+  std::set<fs::path> files;
+  for (const BehaviorValue& given : config.behavior_values) files.insert(given.chunk);
+  const std::vector<InputProblem> problems = problems_in(files, project_root(config.file), catalog);
+  if (!problems.empty()) throw InputError(problems);
+}
+
+}  // namespace
+
+FileChecks::FileChecks(std::string robot, bool plugins)
+    : robot_(std::move(robot)),
+      gate_{.closed = !plugins, .let_in = {}, .remedy = "to load it is to run its code, which --plugins does"} {}
+
+std::string FileChecks::check_robot(const fs::path& file) {
+  if (gate_.closed && !read_plugin_files(file).empty()) {
+    const RobotConfig config = read_robot_config(file, {});
+    return "robot: " + std::to_string(config.objects.size()) +
+           " control objects; its plug-ins were not loaded, so types and parameters are not checked: --plugins does";
+  }
+  const Robot robot = read_robot(file);
+  const auto system = make_control_system(robot);
+  const ControlSets sets(system->catalog, std::move(system->objects));
+  check_behavior_values(robot.config, system->catalog);
+  return "robot: " + std::to_string(sets.size()) + " control objects, " + std::to_string(system->catalog.sets.size()) +
+         " control sets, " + std::to_string(system->catalog.parameters.size()) + " parameters";
+}
+
+std::string FileChecks::check_scenario(const fs::path& file) {
+  ScenarioConfig scenario = read_scenario_config(file);
+  scenario.plugins = gate_;
+  RunLog log;
+  const Assembly assembly(scenario, scenario.seed, log);
+  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
+  const std::vector<InputProblem> problems = problems_of_named(scenario, assembly.catalog());
+  if (!problems.empty()) throw InputError(problems);
+  return "scenario: " + std::to_string(scenario.behaviors.size()) + " behaviors, " + std::to_string(checks.size()) +
+         " checks, " + std::to_string(assembly.catalog().signals.size()) + " signals";
+}
+
+std::string FileChecks::check_json(const fs::path& file) {
+  switch (kind_of(parse_based_json(read_input_file(file), file).value)) {
+    case JsonKind::tuning:
+      return check_tune_plan(file, gate_);
+    case JsonKind::sweep:
+      return check_sweep_plan(file, gate_);
+    case JsonKind::robot:
+      return check_robot(file);
+    case JsonKind::scenario:
+      return check_scenario(file);
+    case JsonKind::other:
+      break;
+  }
+  return "";
+}
+
+const FileChecks::Known& FileChecks::robot_at(const fs::path& config) {
+  std::unique_ptr<Known>& known = robots_[fs::absolute(config).lexically_normal()];
+  if (known) return *known;
+  auto read = std::make_unique<Known>();
+  read->robot = read_robot(config, gate_);
+  read->system = make_control_system(read->robot);
+  known = std::move(read);
+  return *known;
+}
+
+// A behavior belongs to the robot whose configuration folder has the name of the behavior's folder.
+const FileChecks::Known* FileChecks::robot_of(const fs::path& script, std::string& missing) {
+  if (!robot_.empty()) return &robot_at(robot_);
+  fs::path config;
+  try {
+    config = robot_of_behavior(script);
+  } catch (const InputError& error) {
+    missing = error.problems().front().message;
+    return nullptr;
+  }
+  return &robot_at(config);
+}
+
+std::string FileChecks::check_script_file(const CheckedFile& checked_file) {
+  const fs::path& file = checked_file.file;
+  (void)read_input_file(file);  // throws when it does not exist
+  std::string missing;
+  const Known* const known = robot_of(file, missing);
+  CheckedScript checked =
+      check_script(project_root(file), fs::absolute(file), known == nullptr ? nullptr : &known->system->catalog);
+  if (!checked.problems.empty() && known == nullptr)
+    checked.problems.push_back({.file = file.string(), .message = "was looked at without a robot: " + missing});
+  if (!checked.problems.empty()) throw InputError(checked.problems);
+  if (checked.kind == ScriptKind::module) return "a module";
+  if (checked.kind == ScriptKind::test) return "tests";
+  if (known == nullptr && checked_file.found) return "loads; it is of no robot here, --robot FILE checks more";
+  if (known == nullptr) throw InputError({.file = file.string(), .message = missing});
+  return "fits " + known->robot.config.name;
+}
+
+std::string FileChecks::check(const CheckedFile& checked) {
+  const fs::path& file = checked.file;
+  const std::string extension = file.extension().string();
+  if (extension == ".urdf") return check_urdf(file);
+  if (extension == ".lua") {
+    const std::string what = check_script_file(checked);
+    return what == "a module" || what == "tests" ? what : "behavior: " + what;
+  }
+  if (extension != ".json")
+    throw InputError({.file = file.string(), .message = "not a file that can be checked: .urdf, .json or .lua"});
+  const std::string what = check_json(file);
+  if (what.empty() && !checked.found)
+    throw InputError({.file = file.string(), .message = "is no robot, scenario, sweep or tuning of ours"});
+  return what;
+}
+
+}  // namespace kadans

@@ -1,0 +1,43 @@
+// Finds mistakes in files, for `kadans check` and `kadans behavior check`.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "app/assembly.h"
+#include "checked_files.h"
+
+namespace kadans {
+
+class FileChecks {
+ public:
+  // `robot` is the configuration against which behaviors are checked; "": the one for their folder. Loading a plug-in
+  // executes its code, which anybody may have written. So plug-ins are loaded only when `plugins` is true.
+  FileChecks(std::string robot, bool plugins);
+
+  // Says what the file is, for people; "" for a JSON file found in a folder that is not ours. Throws InputError with
+  // all mistakes.
+  std::string check(const CheckedFile& checked);
+  // The same for a Lua file: "fits tulip", "a module", "tests". Throws InputError.
+  std::string check_script_file(const CheckedFile& checked);
+
+ private:
+  struct Known {
+    Robot robot;
+    std::unique_ptr<ControlSystem> system;
+  };
+  const Known& robot_at(const std::filesystem::path& config);
+  const Known* robot_of(const std::filesystem::path& script, std::string& missing);
+  std::string check_json(const std::filesystem::path& file);
+
+  std::string check_robot(const std::filesystem::path& file);
+  std::string check_scenario(const std::filesystem::path& file);
+
+  std::string robot_;
+  PluginGate gate_;
+  std::map<std::filesystem::path, std::unique_ptr<Known>> robots_;  // the robots that were read
+};
+
+}  // namespace kadans

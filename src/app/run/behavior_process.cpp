@@ -1,0 +1,92 @@
+#include "behavior_process.h"
+
+#include <cmath>
+
+#include "app/assembly.h"
+#include "app/terminal.h"
+#include "live_threads.h"
+#include "realtime/machine/machine.h"
+#include "realtime/machine/memory_lock.h"
+#include "realtime/machine/placement.h"
+#include "realtime/machine/rights.h"
+#include "script/process/behavior_server.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t heap_reserve_bytes = std::size_t{2} << 20U;
+constexpr std::int64_t patience_on_virtual_time_ns = 10'000'000'000;
+
+BehaviorLink::Setup setup_of(const RunOptions& options) {
+  BehaviorLink::Setup setup;
+  setup.memory_bytes = static_cast<std::uint64_t>(std::llround(1e6 * options.behaviors_memory_MB));
+  if (options.virtual_time) return setup;
+  setup.priority = read_rights("/").priority(control_priority) ? behavior_process_priority : 0;
+  setup.cpu_to_leave = options.cpu >= 0 ? options.cpu : real_time_cpu("/");
+  setup.locks_memory = 1;
+  setup.on_wall_clock = 1;
+  return setup;
+}
+
+// Sets memory limit, locked memory and priority as for an engine's thread, once everything is loaded.
+void settle(const BehaviorLink::Setup& setup) noexcept {
+  if (setup.memory_bytes > 0) (void)limit_memory(setup.memory_bytes);
+  if (setup.locks_memory != 0) (void)lock_memory(heap_reserve_bytes);
+  touch_stack();
+  if (setup.priority > 0) (void)take_priority(setup.priority);
+}
+
+}  // namespace
+
+ScenarioConfig live_scenario(const RunOptions& options) {
+  ScenarioConfig scenario;
+  scenario.file = scenario.robot = options.robot;
+  scenario.name = "run";
+  scenario.plant = options.plant;
+  scenario.peer = options.peer;
+  scenario.joystick_device = options.joystick;
+  scenario.on_wall_clock = !options.virtual_time;
+  scenario.seed = options.seed.value_or(1);
+  if (!options.play.empty()) scenario.behaviors = read_play_items(options.play, "--play", folders_of(scenario));
+  return scenario;
+}
+
+std::unique_ptr<ProcessHost> start_behavior_process(const RunOptions& options, BehaviorLog& log) {
+  ProcessHost::Settings settings;
+  settings.program = "/proc/self/exe";
+  settings.arguments = {"kadans", "behavior-process", options.robot};
+  if (!options.play.empty()) settings.arguments.insert(settings.arguments.end(), {"--play", options.play});
+  if (options.seed) settings.arguments.insert(settings.arguments.end(), {"--seed", std::to_string(*options.seed)});
+  settings.time_stands = options.virtual_time;
+  if (options.virtual_time) {
+    settings.patience_ns = patience_on_virtual_time_ns;
+    settings.start_patience_ns = 6 * patience_on_virtual_time_ns;
+  }
+  if (options.behaviors_patience_s > 0) settings.patience_ns = std::llround(1e9 * options.behaviors_patience_s);
+  if (options.behaviors_deaths > 0) settings.restart.deaths_max = options.behaviors_deaths;
+  settings.setup = setup_of(options);
+  return std::make_unique<ProcessHost>(std::move(settings), log);
+}
+
+int run_behavior_process(const RunOptions& options) {
+  die_with_parent();
+  be_first_victim();
+  const SharedMemory memory(child_memory_descriptor, sizeof(BehaviorLink));
+  Doorbell bell(child_doorbell_descriptor);
+  auto& link = *static_cast<BehaviorLink*>(memory.get());
+  if (link.setup.cpu_to_leave >= 0) (void)leave_cpu(link.setup.cpu_to_leave);
+  const KeptState& kept = link.setup.kept;
+  const std::span bytes = std::span(kept.bytes).first(std::min<std::size_t>(kept.size, kept.bytes.size()));
+  ScenarioConfig scenario = live_scenario(options);
+  scenario.on_wall_clock = link.setup.on_wall_clock != 0;
+  const Robot robot = read_robot(scenario.robot, scenario.plugins);
+  const std::unique_ptr<ControlSystem> system = make_control_system(robot);
+  const ControlSets sets(system->catalog, std::move(system->objects));  // declares parameters too
+  SpokenLines lines(link);
+  const std::unique_ptr<ScriptHost> host =
+      make_script_host(scenario, robot.config, system->catalog, scenario.seed, lines, bytes);
+  settle(link.setup);
+  return BehaviorServer(link, bell, *host, lines, system->catalog).serve();
+}
+
+}  // namespace kadans

@@ -1,0 +1,45 @@
+// The joystick of a live run. A task reads it a hundred times a second, so the engines never wait for it. It also
+// reports when the joystick is unplugged.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/tick/control_engine.h"
+#include "plant/joystick/joystick_device.h"
+#include "realtime/task_thread.h"
+#include "telemetry/record/event_log.h"
+
+namespace kadans {
+
+class LiveJoystick final : public Task {
+ public:
+  // `path` is a device or a recording; "": the one in the settings. Throws InputError when it cannot be read.
+  LiveJoystick(const JoystickSettings& settings, const std::string& path, JoystickStorage& storage)
+      : storage_(storage), source_(make_joystick(settings, path.empty() ? settings.device : path)) {}
+
+  bool beat(const Beat& beat) override {
+    storage_.publish(source_->at(beat.due_ns));
+    return true;
+  }
+
+  // Supervisor: an event when the joystick was plugged in or unplugged since the last call.
+  std::optional<Event> news(const Snapshot& snapshot) {
+    if (snapshot.tick == 0 || snapshot.joystick.connected == connected_) return std::nullopt;
+    connected_ = snapshot.joystick.connected;
+    Event event;
+    event.transition.time_ns = snapshot.time_ns;
+    event.transition.behavior = "joystick";
+    event.severity = connected_ ? BehaviorLog::Severity::info : BehaviorLog::Severity::error;
+    event.text = connected_ ? "is there" : "is gone; it reads as centred until it is plugged in again";
+    return event;
+  }
+
+ private:
+  JoystickStorage& storage_;
+  std::unique_ptr<JoystickSource> source_;
+  bool connected_ = false;
+};
+
+}  // namespace kadans

@@ -1,0 +1,48 @@
+#include "real_time_start.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include "app/terminal.h"
+#include "realtime/machine/memory_lock.h"
+#include "realtime/machine/rights.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{2} << 20U;
+
+}  // namespace
+
+bool rights_suffice(int priority, bool soft) {
+  const std::vector<std::string> missing = missing_rights(read_rights("/"), priority);
+  for (const std::string& right : missing) print_error((soft ? "going on without " : "missing ") + right);
+  if (!missing.empty() && !soft) print_error("--soft goes on without, late as the system likes");
+  return missing.empty() || soft;
+}
+
+void bind_all_functions(char** argv) {
+  constexpr const char* variable = "LD_BIND_NOW";   // of ld.so; linking with -z now binds only what a file itself calls
+  const char* const bound = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): before any thread is started
+  if (bound != nullptr && *bound != '\0') return;
+  (void)setenv(variable, "1", 1);  // NOLINT(concurrency-mt-unsafe)
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error) execv(program.c_str(), argv);
+  print_error(
+      std::string("functions of libraries are bound at their first call, in real time too: this program cannot be "
+                  "started anew (") +
+      (error ? error.message() : std::strerror(errno)) + "); set LD_BIND_NOW=1");
+}
+
+void lock_program(bool with_model) noexcept {
+  (void)lock_memory(with_model ? heap_reserve_of_model_bytes : heap_reserve_bytes);
+}
+
+}  // namespace kadans

@@ -1,0 +1,374 @@
+// `kadans run`: runs the engines on real threads, and the supervisor that starts, watches and ends them.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <sstream>
+
+#include <unistd.h>
+
+#include "app/assembly.h"
+#include "app/author/json_kind.h"
+#include "app/commands.h"
+#include "app/sim/played_behaviors.h"
+#include "app/terminal.h"
+#include "app/timing/live_report.h"
+#include "behavior_process.h"
+#include "config/robot/project_root.h"
+#include "last_resort.h"
+#include "leaving.h"
+#include "live_joystick.h"
+#include "live_log.h"
+#include "live_threads.h"
+#include "real_time_start.h"
+#include "realtime/machine/machine.h"
+#include "realtime/machine/placement.h"
+#include "realtime/machine/rights.h"
+#include "realtime/machine/service_notifier.h"
+#include "remote/instance/behavior_side.h"
+#include "remote/instance/control_side.h"
+#include "remote/instance/record_side.h"
+#include "remote/instance/truth_task.h"
+#include "version.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::int64_t supervisor_period_ns = 50'000'000;
+constexpr std::size_t kept_lines = 1000;
+// Limits at the end of a run: for threads that were told to stop, for each other part, for a server, for a record on a
+// slow disk; and for virtual time that stands still.
+constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, service_ns = 5'000'000'000,
+                       record_ns = 10'000'000'000, standing_ns = 2'000'000'000;
+
+Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const RobotConfig& robot) {
+  namespace fs = std::filesystem;
+  const fs::path record(options.record);
+  return {.name = robot.name,
+          .mode = options.virtual_time ? "run on virtual time" : "run",
+          .version = version,
+          .configuration = fs::absolute(robot.file).lexically_normal(),
+          .root = project_root(scenario.file),
+          .folders = folders_of(scenario),
+          .records = fs::absolute(record.has_parent_path() ? record.parent_path() : fs::current_path()),
+          .control_period_s = robot.engine.control_period_s,
+          .behavior_period_s = robot.engine.behavior_period_s};
+}
+
+// Many runs on virtual time may go on at the same time. So a run on virtual time is reachable only when a folder was
+// named.
+CtlPlace place_of(const RunOptions& options) {
+  CtlPlace place = options.ctl;
+  place.wanted = place.wanted && (!options.virtual_time || !place.folder.empty());
+  return place;
+}
+
+LiveTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
+  const std::int64_t period_ns = engine.control_period_ns();
+  const bool one_cpu = sysconf(_SC_NPROCESSORS_ONLN) < 2;
+  const double spin_us = options.spin_us > 0 ? options.spin_us : 1e-3 * static_cast<double>(default_spin_ns);
+  return {.control_period_ns = period_ns,
+          .behavior_period_ns = engine.behavior_divisor() * period_ns,
+          .virtual_time = options.virtual_time,
+          .real_time = read_rights("/").priority(plant_priority),
+          .keep_awake = options.keep_awake && !one_cpu,
+          .spin_ns = options.sleep_only || one_cpu ? 0 : std::llround(1e3 * spin_us),
+          .cpu = options.cpu >= 0 ? options.cpu : real_time_cpu("/")};
+}
+
+// The time in ms from the start of this process to a time on CLOCK_MONOTONIC, with a resolution of 10 ms.
+double ms_since_start(std::int64_t monotonic_ns) {
+  std::ifstream file("/proc/self/stat");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  std::string skipped;
+  for (int i = 3; i < 22; ++i) fields >> skipped;
+  double began_ticks = 0;
+  fields >> began_ticks;
+  timespec boot{};
+  clock_gettime(CLOCK_BOOTTIME, &boot);
+  const double boot_s = static_cast<double>(boot.tv_sec) + 1e-9 * static_cast<double>(boot.tv_nsec);
+  const double ahead_s = 1e-9 * static_cast<double>(monotonic_ns - WallClock().now_ns());
+  return 1e3 * (boot_s + ahead_s - began_ticks / static_cast<double>(sysconf(_SC_CLK_TCK)));
+}
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread is started
+  return value == nullptr ? "" : value;
+}
+
+class LiveRun {
+ public:
+  explicit LiveRun(const RunOptions& options)
+      : options_(options),
+        scenario_(live_scenario(options)),
+        link_(std::make_unique<PlantExchange>()),
+        process_(options.behaviors == "process" ? start_behavior_process(options, log_) : nullptr),
+        assembly_(scenario_, scenario_.seed, log_, link_.get(), process_.get()),
+        parts_{assembly_.control(), assembly_.behaviors()},
+        truth_(assembly_.truth() == nullptr ? nullptr
+                                            : std::make_unique<TruthTask>(*assembly_.truth(), parts_.control)),
+        plant_(assembly_.world() == nullptr
+                   ? nullptr
+                   : std::make_unique<PlantTask>(*link_, *assembly_.world(),
+                                                 assembly_.robot().engine.control_period_ns())),
+        joystick_(make_joystick()),
+        leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
+                 assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
+
+  int run() {
+    if (options_.virtual_time && assembly_.world() == nullptr) {
+      throw InputError(
+          InputProblem{.file = "--threads-on-virtual-time", .message = "a plant that is no model has its own time"});
+    }
+    refuse_faulty_behaviors(scenario_, assembly_.catalog());
+    assembly_.record_to(&control_side_);
+    record_side_.describe_with(robot_texts(assembly_));
+    RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
+    const bool flies = plan.flight.kept_s > 0;
+    plan.timing = {{"Control tick: takes", &control_.tick_cost()}};
+    record_side_.record_as(std::move(plan));
+    record_side_.begin();
+    if (!options_.record.empty()) record_side_.start(options_.record);
+    const bool may_record = flies || !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() ||
+                            options_.ros2.commands;
+    const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
+    if (!timing.virtual_time) lock_program(plant_ != nullptr);
+    ctl_.start();  // clients that connect before the first tick may read, and stop the robot
+    if (!assembly_.plant().open(interrupted)) return exit_interrupted;
+    LastResort last_resort(timing.real_time && !timing.virtual_time ? last_resort_priority : 0, exit_failed);
+    LiveThreads threads(timing,
+                        {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()},
+                        interrupted);
+    if (!threads.start(print_error)) return end_before_start(threads, last_resort);
+    const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
+    live_.start({{"Control tick: late", &threads.control().statistics().lateness},
+                 {"Control tick: takes", &control_.tick_cost()},
+                 {"Behavior tick: takes", &threads.behaviors().statistics().execution}});
+    ros2_.start();
+    notifier_.ready("drives " + assembly_.robot().name);
+    if (timing.real_time && !timing.virtual_time) (void)take_priority(supervisor_priority);
+    const std::string ended = watch(threads);
+    notifier_.stopping();
+    leave(threads);
+    const std::vector<std::string> hanging = switch_off(threads, last_resort);
+    end_services(last_resort);
+    LiveResult result{threads,
+                      control_,
+                      parts_.behaviors,
+                      parts_.control,
+                      plant_.get(),
+                      assembly_.plant().link_counts(),
+                      record_side_.recorder(),
+                      process_.get(),
+                      left_at_s_,
+                      start_ms,
+                      ended,
+                      failed_};
+    result.failed = result.failed || log_.has_errors() || !hanging.empty();
+    std::fputs((options_.json ? live_json(result) + "\n" : live_text(result)).c_str(), stdout);
+    if (!hanging.empty()) leave_behind(hanging);
+    return result.failed ? exit_failed : exit_passed;
+  }
+
+ private:
+  std::unique_ptr<LiveJoystick> make_joystick() {
+    const JoystickSettings& settings = assembly_.robot().joystick;
+    if (options_.joystick.empty() && settings.device.empty()) return nullptr;
+    return std::make_unique<LiveJoystick>(settings, options_.joystick, parts_.control.exchange().joystick);
+  }
+
+  // Switches the drives off and closes the record, even when threads hang. Returns the names of hanging threads.
+  std::vector<std::string> switch_off(LiveThreads& threads, LastResort& last_resort) {
+    const auto hangs = [](const std::vector<std::string>& hanging, const char* name) {
+      return std::ranges::find(hanging, name) != hanging.end();
+    };
+    last_resort.expect("switching the drives off", 2 * joining_ns + stage_ns);
+    std::vector<std::string> hanging = threads.stop(joining_ns);
+    ActuationFrame off;
+    off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
+    if (!hangs(hanging, "control")) assembly_.plant().write(off);  // else the plant's own watchdog must switch them off
+    assembly_.plant().close();
+    tell(threads.supervisor().now_ns());
+    last_resort.expect("closing the record", record_ns);
+    if (hangs(hanging, "record")) {
+      print_error("the record is not complete: its thread hangs");
+    } else if (!record_side_.end()) {
+      failed_ = true;
+      print_error("the record is not complete: " + record_side_.error());
+    }
+    tell_flights(record_side_.status());
+    return hanging;
+  }
+
+  void end_services(LastResort& last_resort) {
+    last_resort.expect("the service of ROS 2", service_ns);
+    ros2_.stop();
+    last_resort.expect("the live server", service_ns);
+    live_.stop();
+    last_resort.expect("the server of kadans ctl", service_ns);
+    ctl_.stop();
+    last_resort.expect("the end of the run", record_ns);
+  }
+
+  int end_before_start(LiveThreads& threads, LastResort& last_resort) {
+    print_error("told to stop before all threads had a CPU; nothing has begun");
+    const std::vector<std::string> hanging = switch_off(threads, last_resort);
+    end_services(last_resort);
+    if (!hanging.empty()) leave_behind(hanging);
+    return exit_interrupted;
+  }
+
+  // Ends by _exit, because a hanging thread still uses objects that a return would destroy.
+  [[noreturn]] static void leave_behind(const std::vector<std::string>& hanging) {
+    for (const std::string& name : hanging) print_error("the thread '" + name + "' hangs; the run ended without it");
+    std::fflush(nullptr);
+    _exit(exit_failed);
+  }
+
+  // Watches until the run ends. Returns the reason.
+  std::string watch(LiveThreads& threads) {
+    Wait& wait = threads.supervisor();
+    for (std::int64_t at_ns = supervisor_period_ns;; at_ns += supervisor_period_ns) {
+      const bool last = options_.duration_s && static_cast<double>(at_ns) >= *options_.duration_s * 1e9;
+      wait.until(last ? std::llround(*options_.duration_s * 1e9) : at_ns);
+      if (at_ns < wait.now_ns() - supervisor_period_ns) at_ns = wait.now_ns();
+      left_at_s_ = 1e-9 * static_cast<double>(wait.now_ns());
+      notifier_.alive(control_.ticks());
+      tell(wait.now_ns());
+      for (const auto& thread : threads.all()) {
+        if (!thread->over()) continue;
+        failed_ = true;
+        return thread->settings().name + " ended: " + thread->failure();
+      }
+      if (interrupted()) return "told to stop";
+      if (last) return "duration over";
+    }
+  }
+
+  // The robot moves to the safe posture, damps, and is off. The posture is left out when a thread failed or the robot
+  // is already held.
+  void leave(LiveThreads& threads) {
+    const SafetySettings& safety = parts_.control.safety().settings();
+    const bool held = level() >= SafetyLevel::hold;
+    failed_ = failed_ || held;
+    record_side_.expect_end();
+    if (!failed_) {
+      leaving_.ask();
+      pass(threads, assembly_.robot().safe.time_s + 0.2);
+    }
+    parts_.control.safety().emergency_stop().leave();
+    pass(threads, safety.damp_s + 0.05);
+  }
+
+  SafetyLevel level() {
+    const auto snapshot = parts_.control.exchange().snapshot.read(1);
+    return snapshot->status.safety.level;
+  }
+
+  // Lets `seconds` pass. It does not wait for virtual time that stands still, because then a thread hangs.
+  void pass(LiveThreads& threads, double seconds) {
+    Wait& wait = threads.supervisor();
+    const std::int64_t end_ns = wait.now_ns() + std::llround(seconds * 1e9);
+    std::int64_t moved_ns = WallClock().now_ns();
+    while (wait.now_ns() < end_ns && WallClock().now_ns() < moved_ns + standing_ns) {
+      const std::int64_t before_ns = wait.now_ns();
+      wait.until(std::min(end_ns, before_ns + supervisor_period_ns));
+      if (wait.now_ns() > before_ns) moved_ns = WallClock().now_ns();
+      notifier_.alive(control_.ticks());
+      tell(wait.now_ns());
+    }
+  }
+
+  void tell(const Event& event) {
+    instance_.tell(event);
+    const bool message = event.kind == Event::Kind::message;
+    if (!options_.verbose && (!message || event.severity != BehaviorLog::Severity::error)) return;
+    const Transition& t = event.transition;
+    const std::string text = message ? event.text : t.from + " -> " + t.to + " (" + t.why + ")";
+    std::fprintf(stderr, "%9.2f s  %s: %s\n", 1e-9 * static_cast<double>(t.time_ns), t.behavior.c_str(), text.c_str());
+  }
+
+  // Reports the messages of behaviors, and faults except late ticks, which the final report counts.
+  void tell(std::int64_t time_ns) {
+    Event event;
+    while (live_log_.told().pop(time_ns, event)) tell(event);
+    if (joystick_ != nullptr) {
+      const auto snapshot = parts_.control.exchange().snapshot.read(1);
+      const std::optional<Event> news = joystick_->news(*snapshot);
+      if (news) tell(*news);
+    }
+    Fault fault;
+    while (parts_.control.safety().log().try_pop(fault)) {
+      instance_.tell(fault);
+      record_side_.tell(fault);
+      if (fault.code == FaultCode::tick_overrun) continue;
+      std::fprintf(stderr, "%9.2f s  fault %s\n", 1e-9 * static_cast<double>(time_ns),
+                   fault_text(told(fault, assembly_.robot().model)).c_str());
+    }
+    const RecordStatus record = record_side_.status();
+    tell_flights(record);
+    const auto snapshot = parts_.control.exchange().snapshot.read(1);
+    instance_.publish(status_of(*snapshot, record));
+  }
+
+  void tell_flights(const RecordStatus& status) {
+    if (status.flights == told_flights_) return;
+    told_flights_ = status.flights;
+    std::fprintf(stderr, "flight record: %s\n", status.flight.data());
+  }
+
+  const RunOptions& options_;
+  ScenarioConfig scenario_;
+  ServiceNotifier notifier_{environment("NOTIFY_SOCKET")};
+  RecordLog record_log_;
+  LiveLog live_log_{record_log_};
+  EchoLog echo_{&live_log_};
+  RunLog log_{&echo_, kept_lines};
+  std::unique_ptr<PlantExchange> link_;
+  std::unique_ptr<ProcessHost> process_;  // of the behaviors, or nullptr
+  Assembly assembly_;
+  struct {
+    ControlEngine& control;
+    BehaviorEngine& behaviors;
+  } parts_;
+  std::unique_ptr<TruthTask> truth_;  // of a model, or nullptr
+  std::unique_ptr<PlantTask> plant_;  // of a model, or nullptr
+  std::unique_ptr<LiveJoystick> joystick_;
+  Leaving leaving_;
+  Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog(),
+                     parts_.control.safety().emergency_stop()};
+  ControlSide control_side_{instance_};
+  RecordSide record_side_{instance_,
+                          control_side_,
+                          record_log_,
+                          {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}}};
+  BehaviorSide behavior_side_{{instance_, process_ ? nullptr : &assembly_.host(), process_.get(), parts_.behaviors,
+                               parts_.control.exchange(), echo_, log_},
+                              &leaving_};
+  CtlService ctl_{place_of(options_), instance_};
+  LiveService live_{options_.live, instance_, assembly_};
+  Ros2Service ros2_{options_.ros2, instance_, assembly_, nullptr,
+                    options_.virtual_time ? -1 : timing_of(options_, assembly_.robot().engine).cpu};
+  ControlTask control_{parts_.control, truth_.get()};
+  BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
+  double left_at_s_ = 0;
+  std::uint32_t told_flights_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace
+
+int run_live(const RunOptions& options) {
+  require_kind(options.robot, JsonKind::robot);
+  if (!options.virtual_time && !rights_suffice(plant_priority, options.soft)) return exit_usage;
+  LiveRun run(options);
+  catch_interrupts();
+  return run.run();
+}
+
+}  // namespace kadans

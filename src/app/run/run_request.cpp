@@ -1,0 +1,116 @@
+#include "run_request.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "signal/number_text.h"
+#include "signal/shell_word.h"
+
+namespace kadans {
+namespace {
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + '\n';
+  return text;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string fact(const TextMap& facts, const char* name) {
+  const auto found = facts.find(name);
+  return found == facts.end() ? "" : found->second;
+}
+
+}  // namespace
+
+std::string exact_text(double number) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, number);
+  return error == std::errc{} ? std::string(text, end) : "";
+}
+
+NumberEntry parse_setting(const std::string& text, const std::string& option) {
+  const std::size_t equals = text.find('=');
+  const std::string_view after = equals == std::string::npos ? "" : std::string_view(text).substr(equals + 1);
+  const std::optional<double> value = number_of<double>(after);
+  if (!value)
+    throw InputError({.file = option, .message = "'" + text + "' must be NAME=NUMBER, such as ground.friction=0.3"});
+  return {.key = text.substr(0, equals), .value = *value};
+}
+
+ScenarioPush parse_push(const std::string& text, double at_s) {
+  const std::size_t equals = text.find('=');
+  ScenarioPush push;
+  push.link.name = text.substr(0, equals);
+  push.at_s = at_s;
+  std::istringstream numbers(equals == std::string::npos ? "" : text.substr(equals + 1));
+  std::size_t count = 0;
+  for (std::string number; std::getline(numbers, number, ',') && count < 4; ++count) {
+    const std::optional<double> impulse_Ns = number_of<double>(number);
+    if (count == 3 || !impulse_Ns || !(std::abs(*impulse_Ns) <= push_max_Ns))
+      count = 9;
+    else
+      push.impulse_Ns[count] = *impulse_Ns;
+  }
+  if (count != 3)
+    throw InputError({.file = "--push",
+                      .message = "'" + text + "' must be LINK=X,Y,Z in Ns, at most 1e4 each, such as torso=0,2,0"});
+  return push;
+}
+
+ScenarioConfig read_scenario(const RunRequest& request) {
+  ScenarioConfig scenario = read_scenario_config(request.scenario);
+  scenario.plugins = request.plugins;
+  if (!request.play.empty()) scenario.behaviors = read_play_items(request.play, "--play", folders_of(scenario));
+  for (const std::string& setting : request.set) scenario.set_last.push_back(parse_setting(setting));
+  return scenario;
+}
+
+std::string repeat_command(const RunRequest& request, std::uint64_t seed) {
+  std::string command = "kadans sim " + shell_word(request.scenario) + " --seed " + std::to_string(seed);
+  if (!request.play.empty()) command += " --play " + shell_quoted(request.play);
+  for (const std::string& setting : request.set) command += " --set " + shell_quoted(setting);
+  if (request.duration_s) command += " --duration " + number_text(*request.duration_s);
+  return command;
+}
+
+void put_facts(const RunRequest& request, TextMap& facts) {
+  if (request.seed) facts["seed"] = std::to_string(*request.seed);
+  if (request.duration_s) facts["duration_s"] = exact_text(*request.duration_s);
+  if (!request.play.empty()) facts["play"] = request.play;
+  if (!request.set.empty()) facts["set"] = joined(request.set);
+}
+
+void put_facts(const RunBranch& branch, TextMap& facts) {
+  if (!branch.name.empty()) facts["branch"] = branch.name;
+  if (!branch.play.empty()) facts["branch_play"] = branch.play;
+  if (!branch.set.empty()) facts["branch_set"] = joined(branch.set);
+  if (!branch.push.empty()) facts["branch_push"] = joined(branch.push);
+}
+
+RunRequest request_of(const TextMap& facts, const std::string& record) {
+  RunRequest request;
+  request.seed = number_of<std::uint64_t>(fact(facts, "seed"));
+  request.duration_s = number_of<double>(fact(facts, "duration_s"));
+  if (!request.seed || !request.duration_s ||
+      !(*request.duration_s > 0 && *request.duration_s <= scenario_duration_max_s))
+    throw InputError({.file = record, .message = "does not say with which seed and for how long it was recorded"});
+  request.play = fact(facts, "play");
+  request.set = split(fact(facts, "set"));
+  return request;
+}
+
+RunBranch branch_of(const TextMap& facts) {
+  return {.name = fact(facts, "branch"),
+          .set = split(fact(facts, "branch_set")),
+          .play = fact(facts, "branch_play"),
+          .push = split(fact(facts, "branch_push"))};
+}
+
+}  // namespace kadans

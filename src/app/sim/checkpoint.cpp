@@ -1,0 +1,72 @@
+#include "checkpoint.h"
+
+#include <cmath>
+
+#include "kadans/signal/input_error.h"
+#include "signal/number_text.h"
+
+namespace kadans {
+namespace {
+
+constexpr const char* metadata_name = "checkpoint";
+
+template <typename Number>
+Number fact_of(const TextMap& facts, const char* name, int base, const std::string& file) {
+  const auto found = facts.find(name);
+  const std::optional<Number> number = found == facts.end() ? std::nullopt : number_of<Number>(found->second, base);
+  if (number) return *number;
+  throw InputError({.file = file, .message = std::string("is a damaged checkpoint: no ") + name});
+}
+
+}  // namespace
+
+void write_checkpoint(const Checkpoint& checkpoint, const std::string& file) {
+  McapWriter writer;
+  const TextMap facts{{"tick", std::to_string(checkpoint.at.ticks)},
+                      {"time_ns", std::to_string(checkpoint.at.time_ns)},
+                      {"state_hash", hash_text(checkpoint.at.state_hash)},
+                      {"hashes", marks_text(checkpoint.trail)}};
+  const bool written =
+      writer.open(file) && write_inputs(writer, checkpoint.inputs) && writer.add_metadata(metadata_name, facts);
+  if (!writer.close() || !written) throw InputError({.message = writer.error()});
+}
+
+Checkpoint read_checkpoint(const std::string& file) {
+  McapReader reader(file);
+  McapMessage message;
+  while (reader.next(message)) {
+  }
+  Checkpoint checkpoint;
+  const auto found = reader.metadata().find(metadata_name);
+  if (found == reader.metadata().end()) {
+    throw InputError({.file = file,
+                      .message = "is no checkpoint" + (reader.complete() ? "" : ": " + reader.problem()) +
+                                 "; kadans sim --checkpoint writes one"});
+  }
+  const TextMap& facts = found->second;
+  checkpoint.inputs = read_inputs(reader, file);
+  checkpoint.at = {fact_of<std::uint64_t>(facts, "tick", 10, file), fact_of<std::int64_t>(facts, "time_ns", 10, file),
+                   fact_of<std::uint64_t>(facts, "state_hash", 16, file)};
+  if (const auto hashes = facts.find("hashes"); hashes != facts.end()) checkpoint.trail = marks_of(hashes->second);
+  return checkpoint;
+}
+
+CheckpointOrder parse_checkpoint(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::optional<double> at_s = number_of<double>(std::string_view(text).substr(0, equals));
+  if (equals == std::string::npos || !at_s || !(*at_s > 0) || equals + 1 == text.size())
+    throw InputError(
+        {.file = "--checkpoint", .message = "'" + text + "' must be SECONDS=FILE, such as 2.5=crouched.mcap"});
+  return {.at_s = *at_s, .file = text.substr(equals + 1)};
+}
+
+void CheckpointWriter::between_ticks(const RunMark& mark) {
+  trail_.between_ticks(mark);
+  std::erase_if(orders_, [&](const CheckpointOrder& order) {
+    if (mark.time_ns < std::llround(order.at_s * 1e9)) return false;
+    write_checkpoint({inputs_, mark, trail_.marks()}, order.file);
+    return true;
+  });
+}
+
+}  // namespace kadans

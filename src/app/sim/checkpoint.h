@@ -1,0 +1,57 @@
+// A checkpoint: a run at a tick, from which it can be continued, unchanged or in another way.
+//
+// The state of a run between two ticks cannot be saved exactly: neither coroutines of scripts can be taken out of a Lua
+// state, nor Bullet's pairs and contact caches in the order on which its solver depends. But a run repeats bit for bit.
+// So a checkpoint holds the inputs of the run, the tick, and the hash of all states until then. To continue, the
+// program runs to that tick again, at full speed and without a record, compares the hash, and then goes on. At that
+// point one process may split into many (run_branches.h).
+//
+// The file is a record without messages: inputs as in run_inputs.h, metadata "checkpoint".
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hash_trail.h"
+#include "telemetry/record/run_inputs.h"
+
+namespace kadans {
+
+struct Checkpoint {
+  RunInputs inputs;
+  RunMark at;
+  std::vector<HashMark> trail;  // hashes on the way to the tick
+};
+
+inline constexpr double checkpoint_trail_s = 0.1;
+
+// Throws InputError when the file cannot be written.
+void write_checkpoint(const Checkpoint& checkpoint, const std::string& file);
+// Throws InputError when the file is no checkpoint or is damaged.
+Checkpoint read_checkpoint(const std::string& file);
+
+// A checkpoint to be written: "2.5=crouched.mcap". parse_checkpoint throws InputError.
+struct CheckpointOrder {
+  double at_s = 0;
+  std::string file;
+};
+CheckpointOrder parse_checkpoint(const std::string& text);
+
+// Writes checkpoints while a run goes.
+class CheckpointWriter final : public RunObserver {
+ public:
+  CheckpointWriter(RunInputs inputs, std::vector<CheckpointOrder> orders)
+      : inputs_(std::move(inputs)), orders_(std::move(orders)) {}
+  void tick(double, std::span<const double>) override {}
+  void between_ticks(const RunMark& mark) override;
+
+  const std::vector<CheckpointOrder>& missed() const noexcept { return orders_; }  // the run ended before them
+
+ private:
+  RunInputs inputs_;
+  std::vector<CheckpointOrder> orders_;
+  HashTrail trail_{checkpoint_trail_s};
+};
+
+}  // namespace kadans

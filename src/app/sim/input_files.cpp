@@ -1,0 +1,298 @@
+#include "input_files.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <system_error>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "app/program_parts.h"
+#include "config/robot/project_root.h"
+#include "config/scenario/based_on.h"
+#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
+#include "version.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* beside = "beside";
+constexpr std::size_t input_max_bytes = std::size_t{256} << 20U;  // large enough for a plug-in, which is only hashed
+
+// The two folders at which paths in a record start.
+struct Folders {
+  fs::path root, own;
+
+  explicit Folders(const fs::path& scenario)
+      : root(project_root(scenario)), own(fs::absolute(scenario).lexically_normal().parent_path()) {}
+
+  std::string name(const fs::path& file) const {
+    const fs::path whole = fs::absolute(file).lexically_normal();
+    const auto below = [&whole](const fs::path& folder) {
+      const fs::path relative = whole.lexically_relative(folder);
+      return relative.empty() || *relative.begin() == ".." ? "" : relative.generic_string();
+    };
+    if (const std::string name = below(root); !name.empty()) return name;
+    if (const std::string name = below(own); !name.empty()) return std::string(beside) + "/" + name;
+    return whole.generic_string();
+  }
+  fs::path file(const std::string& name) const {
+    const fs::path path(name);
+    if (path.is_absolute()) return path;
+    return *path.begin() == beside ? own / path.lexically_relative(beside) : root / path;
+  }
+};
+
+std::optional<std::string> read_all(const fs::path& file) {
+  try {
+    return read_input_file(file, input_max_bytes);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+// The project around the working directory.
+fs::path project_here() { return project_root(fs::current_path() / "x"); }
+
+bool is_own(const fs::path& file) {
+  struct stat found {};
+  return stat(file.c_str(), &found) == 0 && (found.st_uid == getuid() || found.st_uid == 0);
+}
+
+std::vector<fs::path> meshes(const RobotModel& model) {
+  std::vector<fs::path> files;
+  for (const Link& link : model.links) {
+    for (const auto* list : {&link.collisions, &link.visuals}) {
+      for (const Geometry& geometry : *list) {
+        if (const Mesh* mesh = std::get_if<Mesh>(&geometry.shape)) files.emplace_back(mesh->file);
+      }
+    }
+  }
+  return files;
+}
+
+class Gathering {
+ public:
+  explicit Gathering(const fs::path& scenario) : folders_(scenario) {}
+
+  void add(const fs::path& file) {
+    std::string text = read_all(file).value_or("");
+    std::string hash = content_hash(text);
+    put({folders_.name(file), std::move(hash), std::move(text)});
+  }
+  void add_hash(const fs::path& file) {
+    put({folders_.name(file), content_hash(read_all(file).value_or("")), std::nullopt});
+  }
+  void add_name(const fs::path& file) { put({folders_.name(file), "", std::nullopt}); }
+
+  std::vector<InputFile> take() {
+    std::vector<InputFile> files;
+    for (auto& [name, file] : files_) files.push_back(std::move(file));
+    return files;
+  }
+
+ private:
+  void put(InputFile file) {
+    const std::string name = file.path;
+    files_.insert_or_assign(name, std::move(file));
+  }
+  Folders folders_;
+  std::map<std::string, InputFile> files_;
+};
+
+}  // namespace
+
+std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly) {
+  Gathering files(scenario.file);
+  const RobotConfig& robot = assembly.robot();
+  for (const fs::path& file : meshes(robot.model)) files.add_name(file);
+  if (!robot.plugins.empty()) {
+    for (const PluginFile& plugin : read_plugin_files(robot.file)) files.add_hash(plugin.file);
+  }
+  for (const fs::path& file : files_of(scenario.file)) files.add(file);
+  for (const fs::path& file : files_of(robot.file)) files.add(file);
+  files.add(robot.model.file);
+  for (const BehaviorValue& given : robot.behavior_values) files.add(project_root(robot.file) / given.chunk);
+  if (!scenario.joystick.recording.empty()) files.add(scenario.joystick.recording);
+  for (const fs::path& file : assembly.host().files()) files.add(file);
+  return files.take();
+}
+
+RunInputs inputs_of(const RunRequest& request, const ScenarioConfig& scenario, const Assembly& assembly) {
+  RunInputs inputs{.run = {{"scenario", scenario.file},
+                           {"scenario_input", Folders(scenario.file).name(scenario.file)},
+                           {"kadans", version},
+                           {"clock", "virtual"}},
+                   .program = program_parts(),
+                   .files = input_files(scenario, assembly)};
+  put_facts(request, inputs.run);
+  return inputs;
+}
+
+std::vector<InputChange> changed_files(const RunInputs& recorded, const fs::path& scenario,
+                                       const std::vector<InputFile>& added) {
+  const Folders folders(scenario);
+  std::vector<InputChange> changes;
+  for (const InputFile& file : recorded.files) {
+    if (file.hash.empty()) continue;
+    const std::optional<std::string> now = read_all(folders.file(file.path));
+    if (!now) {
+      changes.push_back({file.path, "is gone"});
+    } else if (content_hash(*now) != file.hash) {
+      changes.push_back({file.path, "changed"});
+    }
+  }
+  for (const InputFile& file : added) {
+    if (std::ranges::find(recorded.files, file.path, &InputFile::path) == recorded.files.end())
+      changes.push_back({file.path, "is new"});
+  }
+  return changes;
+}
+
+std::vector<InputChange> changed_program(const RunInputs& recorded) {
+  std::vector<InputChange> changes;
+  const TextMap now = program_parts();
+  for (const auto& [part, id] : recorded.program) {
+    const auto found = now.find(part);
+    if (found == now.end()) {
+      changes.push_back({part, "is gone"});
+    } else if (found->second != id) {
+      const bool telling = part == "version" || part == "machine";
+      changes.push_back({part == "kadans" ? "the program" : part,
+                         telling ? "changed from " + id + " to " + found->second : "changed"});
+    }
+  }
+  for (const auto& [part, id] : now) {
+    if (!recorded.program.contains(part)) changes.push_back({part, "is new"});
+  }
+  return changes;
+}
+
+std::string change_text(const std::vector<InputChange>& changes) {
+  std::string text;
+  for (const InputChange& change : changes) text += (text.empty() ? "" : ", ") + change.what + " " + change.how;
+  return text;
+}
+
+fs::path find_scenario(const RunInputs& recorded, const fs::path& record) {
+  const fs::path written = recorded.fact("scenario");
+  const std::string name = recorded.fact("scenario_input");
+  std::vector<fs::path> places{written};
+  if (!name.starts_with(std::string(beside) + "/")) {
+    places.push_back(project_here() / name);
+    places.push_back(project_root(record) / name);
+  }
+  for (const fs::path& place : places) {
+    std::error_code ignored;
+    if (fs::is_regular_file(place, ignored)) return place;
+  }
+  throw InputError(
+      {.file = record.string(),
+       .message = "its scenario " + written.string() + " is not here; run this in its project, or with --from-record"});
+}
+
+PluginGate plugins_beside(const fs::path& scenario, bool any_plugins) {
+  if (any_plugins || project_root(scenario) == project_here()) return {};
+  return {.closed = true,
+          .let_in = {},
+          .remedy = "its project is not the one around the working directory; --allow-plugins loads what lies there"};
+}
+
+UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins)
+    : owner_(getpid()) {
+  std::string pattern = (fs::temp_directory_path() / "kadans-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr)
+    throw InputError({.file = pattern, .message = "no temporary folder can be made there"});
+  folder_ = fs::absolute(pattern).lexically_normal();
+  plugins_ = {.closed = true,
+              .let_in = {},
+              .remedy =
+                  "native code does not come out of a record. Put it into the project around the working directory, "
+                  "in the place that the record knows"};
+  try {
+    for (const char* name : {"config", "models", "behaviors", beside}) fs::create_directories(folder_ / name);
+    for (const InputFile& file : recorded.files) {
+      const bool plugin = !file.text && !file.hash.empty();
+      if (plugin) link_plugin(file, record, any_plugins);
+      if (!plugin && !fs::path(file.path).is_absolute()) unpack(file);
+    }
+    const std::string name = recorded.fact("scenario_input");
+    const auto scenario = std::ranges::find(recorded.files, name, &InputFile::path);
+    if (scenario == recorded.files.end() || !scenario->text || fs::path(name).is_absolute())
+      throw InputError({.file = record, .message = "does not hold its scenario"});
+    scenario_ = folder_ / name;
+  } catch (const fs::filesystem_error& error) {  // a name is too long, or a file stands in the place of a folder
+    remove();
+    throw InputError({.file = record, .message = std::string("its files cannot be unpacked: ") + error.what()});
+  } catch (...) {
+    remove();
+    throw;
+  }
+}
+
+void UnpackedInputs::remove() const noexcept {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+UnpackedInputs::~UnpackedInputs() {
+  if (getpid() == owner_) remove();
+}
+
+void UnpackedInputs::add_behaviors(RunInputs& inputs) const {
+  const fs::path root = project_here();
+  if (!fs::is_directory(root / "behaviors")) return;
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "behaviors")) {
+    if (entry.path().extension() == ".lua" && !entry.path().stem().string().ends_with("_test"))
+      files.push_back(entry.path().lexically_relative(root));
+  }
+  std::ranges::sort(files);
+  for (const fs::path& file : files) {
+    if (fs::exists(folder_ / file)) continue;
+    std::string text = read_all(root / file).value_or("");
+    std::string hash = content_hash(text);
+    inputs.files.push_back({file.generic_string(), std::move(hash), std::move(text)});
+    unpack(inputs.files.back());
+  }
+  std::ranges::sort(inputs.files, {}, &InputFile::path);
+}
+
+void UnpackedInputs::link_plugin(const InputFile& file, const std::string& record, bool any_plugins) {
+  const fs::path here = project_here() / file.path;  // an absolute path stays unchanged
+  const auto refuse = [&](const std::string& why) {
+    throw InputError({.file = record, .message = "needs the plug-in " + file.path + ", " + why});
+  };
+  // If the recorded hash alone decided, the sender of a record could choose any file of this machine, also files that
+  // came with the record.
+  const std::string inside = here.lexically_normal().lexically_relative(project_here()).generic_string();
+  if (!any_plugins && (inside.empty() || inside.starts_with("..")))
+    refuse("which is not in the project around the working directory: --allow-plugins takes it from there");
+  const std::optional<std::string> now = read_all(here);
+  if (!now) refuse("which is not " + std::string(here == file.path ? "there" : "in this project"));
+  if (!any_plugins && content_hash(*now) != file.hash)
+    refuse("and the one here is another: build it as it was, or take this one with --allow-plugins");
+  if (!any_plugins && !is_own(here))
+    refuse("which belongs to another user: give it to yourself, or take it with --allow-plugins");
+  if (here == file.path) return plugins_.let_in.push_back(here);
+  fs::create_directories((folder_ / file.path).parent_path());
+  fs::create_symlink(here, folder_ / file.path);  // fails when the file exists
+  plugins_.let_in.push_back(folder_ / file.path);
+}
+
+void UnpackedInputs::unpack(const InputFile& file) const {
+  const fs::path place = folder_ / file.path;
+  fs::create_directories(place.parent_path());
+  if (fs::exists(fs::symlink_status(place))) throw InputError({.file = place.string(), .message = "is there already"});
+  std::ofstream stream(place, std::ios::binary);
+  stream << file.text.value_or("");  // a mesh stays empty: only its name is used
+  stream.close();
+  if (!stream) throw InputError({.file = place.string(), .message = "cannot be written"});
+}
+
+}  // namespace kadans

@@ -1,0 +1,72 @@
+// The files that a run reads: collects them, compares them with those of a record, and unpacks those of a record.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/assembly.h"
+#include "app/run/run_request.h"
+#include "telemetry/record/run_inputs.h"
+
+namespace kadans {
+
+// The files of a run, sorted by path. Scenario, robot, URDF, and behaviors with their modules have their text. Plug-ins
+// have only a hash. Meshes have only a name, because nothing is computed from them.
+std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly);
+
+// All inputs of the run that `request` asks for, for its record.
+RunInputs inputs_of(const RunRequest& request, const ScenarioConfig& scenario, const Assembly& assembly);
+
+// An input that is no longer the same.
+struct InputChange {
+  std::string what;  // path of a file, or part of the program
+  std::string how;   // "changed", "is gone", "is new"
+};
+// Compares the files around the scenario with the recorded ones. `added` are the files that the run reads now; those
+// that the record lacks are new.
+std::vector<InputChange> changed_files(const RunInputs& recorded, const std::filesystem::path& scenario,
+                                       const std::vector<InputFile>& added);
+std::vector<InputChange> changed_program(const RunInputs& recorded);
+// "behaviors/tulip/squat.lua changed, libm.so.6 changed"
+std::string change_text(const std::vector<InputChange>& changes);
+
+// The gate for a record whose scenario is on this disk: the plug-ins of its project are loaded when it is the project
+// around the working directory, or when `any_plugins` is true.
+PluginGate plugins_beside(const std::filesystem::path& scenario, bool any_plugins);
+
+// Finds the scenario of a record: at its recorded path, in the project around the working directory, or in the project
+// around the record. Throws InputError when it is in none of them.
+std::filesystem::path find_scenario(const RunInputs& recorded, const std::filesystem::path& record);
+
+// Unpacks the files of a record into a private temporary folder, which is removed with this object. Only new files are
+// made, so no existing file is written to and no link is followed. Native code never comes out of a record: a plug-in
+// is taken from the same path in the project around the working directory, and only if its hash is the recorded one or
+// `any_plugins` is true.
+class UnpackedInputs {
+ public:
+  // Throws InputError when the record lacks its scenario, when a file cannot be written, or when a plug-in is not here
+  // or differs.
+  UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins);
+  ~UnpackedInputs();
+  UnpackedInputs(const UnpackedInputs&) = delete;
+  UnpackedInputs& operator=(const UnpackedInputs&) = delete;
+
+  // Adds the behaviors of the project around the working directory that the record lacks, so that they can be played.
+  // They become inputs of the run.
+  void add_behaviors(RunInputs& inputs) const;
+
+  const std::filesystem::path& scenario() const noexcept { return scenario_; }
+  const PluginGate& plugins() const noexcept { return plugins_; }
+
+ private:
+  void remove() const noexcept;
+  void unpack(const InputFile& file) const;
+  void link_plugin(const InputFile& file, const std::string& record, bool any_plugins);
+
+  std::filesystem::path folder_, scenario_;
+  PluginGate plugins_;
+  int owner_;  // process that removes the folder; a process that split off later does not
+};
+
+}  // namespace kadans

@@ -1,0 +1,253 @@
+#include "replay_command.h"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/assembly.h"
+#include "app/run/observers.h"
+#include "app/terminal.h"
+#include "config/json/foreign_json.h"
+#include "input_files.h"
+#include "run_branches.h"
+#include "signal/number_text.h"
+#include "telemetry/reading/record_comparison.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t shown_differences = 12;
+
+std::optional<std::uint64_t> number_in(const TextMap& facts, const char* name) {
+  const auto found = facts.find(name);
+  return found == facts.end() ? std::nullopt : number_of<std::uint64_t>(found->second);
+}
+
+// Reads the inputs at the front of the record. Throws InputError when the record cannot be run again.
+RunInputs read_front(const std::string& record) {
+  const auto refuse = [&](const std::string& why) { throw InputError({.file = record, .message = why}); };
+  McapReader reader(record);
+  McapMessage message;
+  const bool holds_messages = reader.next(message);
+  RunInputs inputs = read_inputs(reader, record);
+  if (inputs.run.empty()) {
+    refuse(holds_messages || reader.complete() ? "was not recorded by kadans"
+                                               : "ends before it begins: " + reader.problem());
+  }
+  const std::string clock = inputs.fact("clock");
+  if (!clock.empty() && clock != "virtual") {
+    refuse(
+        "was recorded in real time: what its robot sensed, and when, cannot be had again. Records of kadans sim run "
+        "again");
+  }
+  if (inputs.empty())
+    refuse("does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
+           " or ends too early");
+  return inputs;
+}
+
+// The repeated run; it is compared with the record while it goes.
+class Replay final : public RunObserver {
+ public:
+  Replay(const std::string& record, const RunInputs& inputs, const RunRequest& request)
+      : inputs_(inputs),
+        reader_(record),
+        scenario_(read_scenario(request)),
+        duration_s_(*request.duration_s),
+        assembly_(scenario_, *request.seed, log_),
+        comparison_(reader_, assembly_.catalog().signals),
+        branch_tick_(number_in(inputs.run, "branch_tick")) {}
+
+  void go(bool progress_shown) {
+    Checks none(assembly_.catalog().signals);
+    ProgressBar progress(duration_s_, progress_shown);
+    result_ = run_scenario(assembly_.parts(), duration_s_, none, {this, &progress});
+  }
+
+  void tick(double, std::span<const double> row) override {
+    const RunParts parts = assembly_.parts();
+    comparison_.compare(parts.control.ticks() - 1, parts.control.state().time_ns, row);
+  }
+  void between_ticks(const RunMark& mark) override {
+    at_end_ = comparison_.ended() && mark.ticks == number_in(recorded_result(), "control_ticks");
+    if (branch_tick_ && mark.ticks == *branch_tick_) {
+      const double at_s = 1e-9 * static_cast<double>(mark.time_ns);
+      branch_ = std::make_unique<BranchActions>(branch_of(inputs_.run), scenario_, assembly_, at_s);
+      branch_->begin(mark);
+    }
+    if (branch_) branch_->between_ticks(mark);
+  }
+  bool stop_asked() const override {
+    return comparison_.parted() || at_end_ || (comparison_.ended() && !reader_.complete());
+  }
+
+  const RecordComparison& comparison() const noexcept { return comparison_; }
+  const std::string& error() const noexcept { return result_.error; }
+  std::vector<InputFile> files() const { return input_files(scenario_, assembly_); }
+  // Where and why the record is cut short; "" when it is not.
+  std::string problem() const { return comparison_.ended() && !reader_.complete() ? reader_.problem() : ""; }
+  // True when the run ended, or had to end, before the end of the record.
+  bool shorter() const { return !comparison_.over(); }
+  // True when the state at the end differs in a part that is not recorded.
+  bool other_end() const {
+    const TextMap result = recorded_result();
+    return at_end_ && result.contains("state_hash") && result.at("state_hash") != hash_text(result_.state_hash);
+  }
+  bool same() const {
+    return !comparison_.parted() && comparison_.gone().empty() && !shorter() && !other_end() && comparison_.ticks() > 0;
+  }
+
+ private:
+  TextMap recorded_result() const {
+    const auto found = reader_.metadata().find("result");
+    return found == reader_.metadata().end() ? TextMap{} : found->second;
+  }
+
+  const RunInputs& inputs_;
+  McapReader reader_;
+  RunLog log_;
+  ScenarioConfig scenario_;
+  double duration_s_;
+  Assembly assembly_;
+  RecordComparison comparison_;
+  std::optional<std::uint64_t> branch_tick_;
+  std::unique_ptr<BranchActions> branch_;
+  RunResult result_;
+  bool at_end_ = false;
+};
+
+std::string plural(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+// Everything that the report needs.
+struct Findings {
+  const ReplayOptions& options;
+  const Replay& replay;
+  std::vector<InputChange> files, program;
+  std::vector<std::string> notes;
+};
+
+nlohmann::ordered_json change_json(const std::vector<InputChange>& changes) {
+  auto list = nlohmann::ordered_json::array();
+  for (const InputChange& change : changes) list.push_back({{"what", change.what}, {"how", change.how}});
+  return list;
+}
+
+void print_json(const Findings& findings) {
+  const RecordComparison& comparison = findings.replay.comparison();
+  nlohmann::ordered_json json{{"record", findings.options.record},
+                              {"same", findings.replay.same()},
+                              {"ticks", comparison.ticks()},
+                              {"signals", comparison.signals()}};
+  if (comparison.parted()) {
+    auto list = nlohmann::ordered_json::array();
+    for (const SignalDifference& d : comparison.differences()) {
+      list.push_back({{"name", d.name},
+                      {"unit", d.unit},
+                      {"recorded", d.recorded},
+                      {"replayed", d.replayed},
+                      {"by", d.replayed - d.recorded}});
+    }
+    json["parted"] = {
+        {"tick", comparison.tick()}, {"time_s", static_cast<double>(comparison.time_ns()) / 1e9}, {"signals", list}};
+  }
+  json["gone"] = comparison.gone();
+  json["files"] = change_json(findings.files);
+  json["program"] = change_json(findings.program);
+  json["notes"] = findings.notes;
+  std::puts(json_text(json).c_str());
+}
+
+void print_differences(const RecordComparison& comparison) {
+  const std::vector<SignalDifference>& all = comparison.differences();
+  std::printf("%s differ there:\n  %-44s %18s %18s %12s\n", plural(all.size(), "signal").c_str(), "", "recorded", "now",
+              "by");
+  for (std::size_t i = 0; i < std::min(all.size(), shown_differences); ++i) {
+    const SignalDifference& d = all[i];
+    std::printf("  %-44s %18.12g %18.12g %12.3g %s\n", d.name.c_str(), d.recorded, d.replayed, d.replayed - d.recorded,
+                d.unit.c_str());
+  }
+  if (all.size() > shown_differences) std::printf("  ... and %zu more\n", all.size() - shown_differences);
+}
+
+void print_text(const Findings& findings) {
+  const Replay& replay = findings.replay;
+  const RecordComparison& comparison = replay.comparison();
+  const std::string compared = plural(comparison.ticks(), "tick") + ", " + plural(comparison.signals(), "signal");
+  const char* const record = findings.options.record.c_str();
+  if (comparison.parted()) {
+    std::printf("%s: parts in tick %llu, at %.3f s, after %s the same\n", record,
+                static_cast<unsigned long long>(comparison.tick()), 1e-9 * static_cast<double>(comparison.time_ns()),
+                plural(comparison.ticks(), "tick").c_str());
+    print_differences(comparison);
+  } else {
+    std::printf("%s: %s, %s\n", record, replay.same() ? "the same" : "not all the same", compared.c_str());
+  }
+  for (const std::string& note : findings.notes) std::printf("%s\n", note.c_str());
+  const std::string files = change_text(findings.files), program = change_text(findings.program);
+  if (!files.empty()) std::printf("since it was recorded: %s\n", files.c_str());
+  if (!program.empty()) std::printf("since it was recorded: %s\n", program.c_str());
+  if (!replay.same() && files.empty() && program.empty())
+    std::puts("since it was recorded: nothing changed; this run does not repeat");
+}
+
+std::vector<std::string> notes_of(const Replay& replay, const RunInputs& inputs) {
+  std::vector<std::string> notes;
+  const std::vector<std::string>& gone = replay.comparison().gone();
+  if (!gone.empty())
+    notes.push_back(plural(gone.size(), "signal") + " of the record are no more, the first is " + gone.front());
+  if (replay.other_end()) notes.push_back("what is not recorded ends in another state: its hash differs");
+  if (replay.shorter())
+    notes.push_back("this run ends before the record" + (replay.error().empty() ? "" : ": " + replay.error()));
+  if (!replay.problem().empty()) notes.push_back("the record is not whole: " + replay.problem());
+  if (replay.comparison().ticks() == 0 && !replay.comparison().parted())
+    notes.emplace_back("it holds no tick to compare");
+  if (!inputs.fact("watched").empty())
+    notes.emplace_back("recorded with --watch: what was saved and reloaded meanwhile is not repeated");
+  if (!inputs.fact("ctl").empty() && !replay.same())
+    notes.emplace_back("recorded while 'kadans ctl' could reach it: what was ordered meanwhile is not repeated");
+  return notes;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, ReplayOptions& options) {
+  CLI::App* replay = app.add_subcommand("replay", "Run a record again, and say where and why it is not the same");
+  replay->add_option("record", options.record, "What kadans sim left (MCAP)")->required()->type_name("FILE");
+  replay->add_flag("--from-record", options.from_record, "With the files inside the record, not those on the disk");
+  replay->add_flag("--allow-plugins", options.allow_plugins,
+                   "Load the project's plug-ins, be they others than the record's or of another project");
+  replay->add_flag("--json", options.json, "Print one JSON object instead of text");
+}
+
+int run_replay(const ReplayOptions& options) {
+  const RunInputs inputs = read_front(options.record);
+  std::unique_ptr<UnpackedInputs> unpacked;
+  if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record, options.allow_plugins);
+  RunRequest request = request_of(inputs.run, options.record);
+  request.scenario = unpacked ? unpacked->scenario().string() : find_scenario(inputs, options.record).string();
+  request.plugins = unpacked ? unpacked->plugins() : plugins_beside(request.scenario, options.allow_plugins);
+  const std::vector<InputChange> program = changed_program(inputs);
+  try {
+    Replay replay(options.record, inputs, request);
+    catch_interrupts();
+    replay.go(stderr_is_terminal() && !options.json);
+    if (interrupted()) return exit_interrupted;
+    const Findings findings{options, replay, changed_files(inputs, request.scenario, replay.files()), program,
+                            notes_of(replay, inputs)};
+    options.json ? print_json(findings) : print_text(findings);
+    return replay.same() ? exit_passed : exit_failed;
+  } catch (const InputError&) {
+    const std::string changed = change_text(changed_files(inputs, request.scenario, {}));
+    if (!changed.empty()) print_error(options.record + " cannot be run again; since it was recorded: " + changed);
+    throw;
+  }
+}
+
+}  // namespace kadans

@@ -1,0 +1,127 @@
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
+
+#include "app/author/json_kind.h"
+#include "app/commands.h"
+#include "app/option_checks.h"
+#include "app/terminal.h"
+#include "input_files.h"
+#include "sim_run.h"
+
+namespace kadans {
+namespace {
+
+std::vector<RunBranch> branches_of(const SimOptions& options) {
+  std::vector<RunBranch> branches;
+  for (const std::string& text : options.branches) branches.push_back(parse_branch(text));
+  if (branches.empty())
+    branches.push_back({.name = "", .set = options.set, .play = options.play, .push = options.push});
+  return branches;
+}
+
+int go_on(const SimOptions& options) {
+  SimContinuation continuation{.from = read_checkpoint(options.from), .branches = branches_of(options)};
+  RunInputs& inputs = continuation.from.inputs;
+  const UnpackedInputs unpacked(inputs, options.from, options.allow_plugins);
+  if (std::ranges::any_of(continuation.branches, [](const RunBranch& branch) { return !branch.play.empty(); }))
+    unpacked.add_behaviors(inputs);
+  RunRequest request = request_of(inputs.run, options.from);
+  request.scenario = unpacked.scenario().string();
+  request.plugins = unpacked.plugins();
+  if (options.duration_s) request.duration_s = options.duration_s;
+  const double at_s = static_cast<double>(continuation.from.at.time_ns) / 1e9;
+  if (!(*request.duration_s > at_s))
+    throw InputError(
+        {.file = "--duration", .message = "must be more than the " + number_text(at_s) + " s of the checkpoint"});
+  SimRun sim(options, request, std::move(continuation));
+  catch_interrupts();
+  return sim.run();
+}
+
+void refuse_wrong_mixtures(const SimOptions& options) {
+  const auto refuse_option = [](const char* option, const std::string& why) {
+    throw InputError(InputProblem{.file = option, .message = why});
+  };
+  if (options.from.empty() && options.scenario.empty())
+    throw InputError({.message = "name a scenario, or a checkpoint with --from"});
+  if (!options.from.empty() && !options.scenario.empty())
+    refuse_option("--from", "a checkpoint has its own scenario: name one of the two");
+  if (options.from.empty()) {
+    if (!options.branches.empty()) refuse_option("--branch", "parts from a checkpoint: it goes with --from");
+    if (!options.push.empty()) refuse_option("--push", "parts from a checkpoint: it goes with --from");
+    if (options.allow_plugins)
+      refuse_option("--allow-plugins", "is for the plug-ins of a checkpoint: it goes with --from");
+    return;
+  }
+  if (options.seed) refuse_option("--seed", "a checkpoint goes on with the seed that it began with");
+  if (!options.checkpoints.empty()) refuse_option("--checkpoint", "does not go with --from");
+  if (options.watch) refuse_option("--watch", "does not go with --from");
+  if (options.live.wanted()) refuse_option("--live", "does not go with --from");
+  if (options.ros2.wanted()) refuse_option("--ros2", "does not go with --from");
+  if (!options.branches.empty() && !(options.set.empty() && options.play.empty() && options.push.empty()))
+    refuse_option("--branch", "says itself what to set, play and push");
+}
+
+}  // namespace
+
+void add_sim(CLI::App& app, SimOptions& options) {
+  CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
+  sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->type_name("FILE");
+  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")
+      ->type_name("N")
+      ->check(any_seed());
+  sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
+      ->type_name("S")
+      ->check(number_within(0.001, scenario_duration_max_s));
+  sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
+      ->type_name("LIST");
+  sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
+      ->type_name("NAME=NUMBER")
+      ->allow_extra_args(false);
+  sim->add_option("--metrics", options.metrics, "A plan of a sweep or tuning whose metrics are reported")
+      ->type_name("FILE");
+  CLI::Option* record =
+      sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
+  sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
+  add_record_options(*sim, options.recording);
+  CLI::Option* realtime = sim->add_flag("--realtime", options.realtime, "Run at the pace of the wall clock");
+  sim->add_flag("--watch", options.watch, "Reload behaviors when their files are saved")->needs(realtime);
+  sim->add_option("--checkpoint", options.checkpoints, "Leave a checkpoint at a time, to go on from with --from")
+      ->type_name("S=FILE")
+      ->allow_extra_args(false);
+  sim->add_option("--from", options.from, "Go on from a checkpoint; --set, --play and --push count from there")
+      ->type_name("FILE");
+  sim->add_flag("--allow-plugins", options.allow_plugins,
+                "With --from: load the project's plug-ins, be they others than the checkpoint's");
+  sim->add_option("--push", options.push, "With --from: an impulse in Ns on a link, such as torso=0,2,0")
+      ->type_name("LINK=X,Y,Z")
+      ->allow_extra_args(false);
+  sim->add_option("--branch", options.branches,
+                  "With --from, once or more: \"NAME: push LINK=X,Y,Z; set NAME=NUMBER; play LIST\"")
+      ->type_name("BRANCH")
+      ->allow_extra_args(false);
+  sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
+      ->type_name("S")
+      ->check(number_within(0.001, scenario_duration_max_s));
+  add_report_place(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
+  add_ctl_place(*sim, options.ctl);
+  add_live_place(*sim, options.live);
+  add_ros2_place(*sim, options.ros2);
+  sim->add_option("--speed", options.speed, "With --live or --ros2: as a multiple of the wall clock's pace")
+      ->type_name("X")
+      ->check(number_within(0.01, 100.0));
+  sim->add_flag("--json", options.json, "Print one JSON object instead of text");
+  sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
+}
+
+int run_sim(const SimOptions& options) {
+  refuse_wrong_mixtures(options);
+  if (!options.from.empty()) return go_on(options);
+  require_kind(options.scenario, JsonKind::scenario);
+  SimRun sim(options, options);
+  catch_interrupts();
+  return sim.run();
+}
+
+}  // namespace kadans

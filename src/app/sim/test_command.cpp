@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/option_checks.h"
+#include "app/sweep/job_progress.h"
+#include "app/terminal.h"
+#include "campaign/suite/golden.h"
+#include "campaign/suite/suite_page.h"
+#include "campaign/suite/suite_report.h"
+#include "campaign/work/durable_file.h"
+#include "config/robot/project_root.h"
+#include "signal/shell_word.h"
+#include "test_plan.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string repeat_command(const PlannedRun& run) {
+  return "kadans sim " + shell_word(run.scenario.file.string()) + " --seed " + std::to_string(run.seed);
+}
+
+class Suite final : public JobWatcher {
+ public:
+  Suite(const TestOptions& options, std::vector<PlannedRun> runs, GoldenHashes* golden)
+      : options_(options),
+        runs_(std::move(runs)),
+        golden_(golden),
+        style_{.color = stdout_takes_color(), .unicode = true},
+        progress_(runs_.size(), !options.json) {}
+
+  int run(const FailedRuns& failed_runs) {
+    std::vector<Job> jobs;
+    for (const PlannedRun& run : runs_) {
+      jobs.push_back({{fs::read_symlink("/proc/self/exe").string(), "sim", run.scenario.file.string(), "--seed",
+                       std::to_string(run.seed), "--json", "--no-record"},
+                      run.scenario.wall_limit_s});
+      if (options_.report.wanted()) add_report(jobs.back());
+      if (golden_ != nullptr) jobs.back().arguments.insert(jobs.back().arguments.end(), {"--hash-every", "1"});
+    }
+    run_jobs(jobs, options_.jobs, *this);
+    progress_.clear();
+    report(failed_runs);
+    if (interrupted()) return exit_interrupted;
+    return failed() ? exit_failed : exit_passed;
+  }
+
+  void ended(const JobOutcome& outcome) override {
+    const PlannedRun& planned = runs_[outcome.job];
+    RunOutcome run = read_run_outcome(outcome);
+    progress_.ended();
+    run.scenario = planned.scenario.name;
+    run.file = planned.scenario.file.string();
+    run.seed = planned.seed;
+    run.repeat = repeat_command(planned);
+    if (options_.golden) check_golden(run);
+    progress_.clear();
+    if (options_.json) {
+      std::puts(run_json(run).c_str());
+    } else if (run.status != RunStatus::cancelled) {
+      std::fputs(suite_line(run, style_).c_str(), stdout);
+    }
+    std::fflush(stdout);
+    stop_ = stop_ || (options_.fail_fast && run.status != RunStatus::passed);
+    ended_.emplace_back(outcome.job, std::move(run));
+  }
+
+  void passed_time(std::size_t running) override { progress_.draw(running); }
+  bool stop_asked() const override { return stop_ || interrupted(); }
+
+ private:
+  // The process of the run writes the page, so it gets more time.
+  void add_report(Job& job) const {
+    constexpr double drawing_s = 120;
+    job.arguments.insert(job.arguments.end(),
+                         {"--report", fs::absolute(options_.report.folder).string(), "--film", options_.report.film});
+    job.wall_limit_s += drawing_s;
+  }
+
+  // A run whose state hash differs has failed.
+  void check_golden(RunOutcome& run) const {
+    if (run.status != RunStatus::passed && run.status != RunStatus::failed) return;
+    const std::string difference = golden_->difference(run);
+    if (difference.empty()) return;
+    run.errors.push_back(difference);
+    run.status = RunStatus::failed;
+  }
+
+  void renew_golden(const std::vector<RunOutcome>& runs) const {
+    const bool all = options_.selectors.empty() && !options_.rerun_failed && ended_.size() == runs_.size();
+    const std::vector<std::string> changes = golden_->take(runs, all);
+    golden_->write();
+    std::FILE* const to = options_.json ? stderr : stdout;
+    std::fprintf(to, "%s: %zu runs, %zu changes\n", golden_->file().c_str(), golden_->size(), changes.size());
+    for (const std::string& change : changes) std::fprintf(to, "  %s\n", change.c_str());
+  }
+
+  bool failed() const {
+    return ended_.size() < runs_.size() ||
+           std::ranges::any_of(ended_, [](const auto& e) { return e.second.status != RunStatus::passed; });
+  }
+
+  // Reports the runs in the order of the plan, not in the order in which they ended.
+  void report(const FailedRuns& failed_runs) {
+    std::ranges::sort(ended_, {}, [](const auto& e) { return e.first; });
+    std::vector<RunOutcome> outcomes;
+    std::vector<PlannedRun> failures;
+    for (auto& [job, run] : ended_) {
+      if (run.status != RunStatus::passed && run.status != RunStatus::cancelled) failures.push_back(runs_[job]);
+      outcomes.push_back(std::move(run));
+    }
+    if (!interrupted()) failed_runs.write(failures);
+    if (!options_.json) std::fputs(suite_summary(outcomes, progress_.elapsed_s(), style_).c_str(), stdout);
+    if (options_.renew_golden && !interrupted()) renew_golden(outcomes);
+    if (options_.report.wanted()) {
+      const fs::path page = fs::path(options_.report.folder) / "index.html";
+      write_durably(page, suite_page(outcomes, progress_.elapsed_s(), page.parent_path()));
+      std::fprintf(options_.json ? stderr : stdout, "report: %s\n", page.c_str());
+    }
+    if (!options_.junit.empty()) write_durably(options_.junit, junit_xml(outcomes, progress_.elapsed_s()));
+  }
+
+  const TestOptions& options_;
+  std::vector<PlannedRun> runs_;
+  GoldenHashes* golden_;  // or nullptr
+  SuiteStyle style_;
+  JobProgress progress_;
+  bool stop_ = false;
+  std::vector<std::pair<std::size_t, RunOutcome>> ended_;
+};
+
+}  // namespace
+
+void add_test(CLI::App& app, TestOptions& options) {
+  CLI::App* test = app.add_subcommand("test", "Run scenarios side by side and say which failed, and how");
+  test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
+      ->type_name("PATH|TAG|NAME...");
+  test->add_option("--in", options.folder, "Folder of scenarios (default: config/scenarios)")->type_name("FOLDER");
+  test->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
+      ->type_name("N")
+      ->check(whole_within(1, 1024));
+  test->add_option("--repeat", options.repeat, "Runs of each scenario, each with the next seed")
+      ->type_name("N")
+      ->check(whole_within(1, 1'000'000));
+  test->add_option("--seed", options.seed, "First seed (default: each scenario's)")->type_name("N")->check(any_seed());
+  test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
+  test->add_flag("--rerun-failed", options.rerun_failed, "Only what failed the last time");
+  test->add_flag("--list", options.list, "Say what would run");
+  CLI::Option* golden =
+      test->add_flag("--golden", options.golden, "Fail what ends in another state than FOLDER.golden.json says");
+  CLI::Option* renew = test->add_flag("--renew-golden", options.renew_golden,
+                                      "Write the states into that file, and say what that changes");
+  renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
+  test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
+  add_report_place(*test, options.report, "Leave a page about each run in a folder, and index.html about all",
+                   "failed");
+  test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
+}
+
+int run_test(const TestOptions& options) {
+  const fs::path root = project_root(fs::current_path() / "kadans");
+  const fs::path folder = options.folder.empty() ? root / "config" / "scenarios" : fs::path(options.folder);
+  const std::vector<FoundScenario> scenarios = find_scenarios(folder, options.selectors);
+  if (scenarios.empty()) throw InputError({.file = folder.string(), .message = "there is no scenario here"});
+  FailedRuns failed_runs(root);
+  std::vector<PlannedRun> runs = plan_runs(options, scenarios, failed_runs);
+  if (runs.empty()) std::fputs("nothing failed the last time\n", options.json ? stderr : stdout);
+  if (options.list) print_plan(runs, options.json);
+  if (runs.empty() || options.list) return exit_passed;
+  refuse_faulty_runs(runs);
+  std::unique_ptr<GoldenHashes> golden;
+  if (options.golden || options.renew_golden) golden = std::make_unique<GoldenHashes>(golden_file(folder));
+  catch_interrupts();
+  if (options.report.wanted()) fs::create_directories(options.report.folder);
+  return Suite(options, std::move(runs), golden.get()).run(failed_runs);
+}
+
+}  // namespace kadans

@@ -1,0 +1,100 @@
+#include "sweep_command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+
+#include "app/author/json_kind.h"
+#include "app/option_checks.h"
+#include "app/terminal.h"
+#include "campaign/sweep/shard.h"
+#include "campaign/sweep/sweep_results.h"
+#include "campaign/sweep/sweep_summary.h"
+#include "signal/shell_word.h"
+#include "sweep_run.h"
+#include "sweep_subjects.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+SweepPlan read_plan(const SweepOptions& options) {
+  SweepPlan plan = read_sweep_plan(options.plan);
+  plan.seed = options.seed.value_or(plan.seed);
+  plan.cases = options.cases.value_or(plan.cases);
+  return plan;
+}
+
+// The results of this shard alone, so that cases of other shards do not count as missing.
+MergedSweep part_of(const SweepResults& results, const Shard& shard) {
+  MergedSweep part = merge({results});
+  std::erase_if(part.rows, [&](const CaseRow& row) { return !shard.holds(row.index); });
+  std::erase_if(part.missing, [&](std::size_t index) { return !shard.holds(index); });
+  return part;
+}
+
+void tell(const MergedSweep& part, const SweepResults& results, const Shard& shard, bool json) {
+  if (json) {
+    std::puts(sweep_json(part).c_str());
+    return;
+  }
+  std::fputs(sweep_summary(part).c_str(), stdout);
+  if (!shard.whole()) std::printf("  this is part %zu/%zu alone\n", shard.index, shard.count);
+  const std::string folder = results.folder().string();
+  std::printf("  results: %s; as one table: kadans merge %s --csv FILE\n", folder.c_str(), shell_word(folder).c_str());
+}
+
+}  // namespace
+
+int run_sweep(const SweepOptions& options) {
+  require_kind(options.plan, JsonKind::sweep);
+  const SweepPlan plan = read_plan(options);
+  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan);
+  const std::string build = build_version();
+  std::vector<SweepCase> cases = sweep_cases(plan, subjects, build);
+  const SweepManifest manifest = manifest_of(plan, cases, build);
+  const fs::path folder =
+      options.out.empty() ? fs::path("sweeps") / (plan.name + "-" + manifest.plan.substr(0, 8)) : fs::path(options.out);
+  const Shard shard = options.shard.empty() ? slurm_shard().value_or(Shard{}) : parse_shard(options.shard);
+  const SweepResults results(folder, manifest);
+  std::erase_if(cases, [&](const SweepCase& one) { return !shard.holds(one.index) || results.has(one); });
+  catch_interrupts();
+  SweepRun(plan, subjects, results, std::move(cases), options.json).run(options.jobs);
+  const MergedSweep part = part_of(results, shard);
+  tell(part, results, shard, options.json);
+  if (interrupted()) return exit_interrupted;
+  return passed(part) ? exit_passed : exit_failed;
+}
+
+std::string check_sweep_plan(const std::string& file, const PluginGate& gate) {
+  const SweepPlan plan = read_sweep_plan(file);
+  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan, gate);
+  const std::size_t cases = sweep_cases(plan, subjects, "").size();
+  return "sweep: " + std::to_string(cases) + " cases, " + std::to_string(subjects.size()) + " scenarios, " +
+         std::to_string(plan.metrics.size()) + " metrics";
+}
+
+void add_sweep(CLI::App& app, SweepOptions& options) {
+  CLI::App* sweep = app.add_subcommand("sweep", "Run scenarios over a sample of their quantities");
+  sweep->add_option("plan", options.plan, "What is run, and what varies (JSON)")->required()->type_name("PLAN");
+  sweep->add_option("--cases", options.cases, "How many runs (default: the plan's)")
+      ->type_name("N")
+      ->check(whole_within(1, sweep_cases_max));
+  sweep->add_option("--seed", options.seed, "Seed of the sample (default: the plan's)")
+      ->type_name("N")
+      ->check(any_seed());
+  sweep->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
+      ->type_name("N")
+      ->check(whole_within(1, 1024));
+  sweep
+      ->add_option("--shard", options.shard, "Only this part of the cases, 0/4 to 3/4 (default: that of a Slurm array)")
+      ->type_name("PART/PARTS");
+  sweep->add_option("--out", options.out, "Folder of the results; what is there is not run again (default: in sweeps/)")
+      ->type_name("FOLDER");
+  sweep->add_flag("--json", options.json, "Print one JSON object a case, and one for the sweep at the end");
+}
+
+}  // namespace kadans

@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "app/option_checks.h"
+#include "config/json/name_pattern.h"
+#include "sweep_subjects.h"
+#include "tune_command.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+void verify(const TunedAxis& axis, const Parameter& parameter, Problems& problems) {
+  const auto [low, high] = axis.parameter.range.of;
+  const TextPlace place = axis.parameter.pattern.place;
+  if (low < parameter.min || high > parameter.max)
+    problems.add(place, "control." + parameter.name + " can be " + number_text(parameter.min) + ".." +
+                            number_text(parameter.max) + ", not " + number_text(low) + ".." + number_text(high));
+  if (axis.start < low || axis.start > high)
+    problems.add(place, "control." + parameter.name + " is " + number_text(axis.start) +
+                            ", outside min and max; widen them or say where to start");
+}
+
+}  // namespace
+
+void add_tune(CLI::App& app, TuneOptions& options) {
+  CLI::App* tune = app.add_subcommand("tune", "Seek parameters with which scenarios go best");
+  tune->add_option("plan", options.plan, "What is sought, and what is to become small (JSON)")
+      ->required()
+      ->type_name("PLAN");
+  tune->add_option("--seed", options.seed, "Seed of the search and of its runs (default: the plan's)")
+      ->type_name("N")
+      ->check(any_seed());
+  tune->add_option("--generations", options.generations, "How many (default: the plan's)")
+      ->type_name("N")
+      ->check(whole_within(1, 10'000));
+  tune->add_option("--runs", options.runs, "Runs of each candidate (default: the plan's)")
+      ->type_name("N")
+      ->check(whole_within(1, 10'000));
+  tune->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
+      ->type_name("N")
+      ->check(whole_within(1, 1024));
+  tune->add_option("--shard", options.shard, "Only this part of each generation, the folder shared with the others")
+      ->type_name("PART/PARTS");
+  tune->add_option("--wait", options.wait_s, "Seconds to wait for the other parts of a generation (default: 600)")
+      ->type_name("S")
+      ->check(number_within(0.0, 1e9));
+  tune->add_option("--out", options.out, "Folder of the results; what is there is not run again (default: in tunings/)")
+      ->type_name("FOLDER");
+  tune->add_option("--write", options.write, "Where the tuned configuration goes (default: robot.json in that folder)")
+      ->type_name("FILE");
+  tune->add_flag("--overwrite", options.overwrite, "Also when that file is there");
+  tune->add_flag("--json", options.json, "Print one JSON object instead of text");
+}
+
+int start_tune_program(char** argv) {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "kadans-tune";
+  execv(program.c_str(), argv);
+  throw InputError(InputProblem{.file = program.string(),
+                                .message = std::string("cannot be started (") + std::strerror(errno) +
+                                           "): tuning is a program of its own, built where libpagmo-dev is installed"});
+}
+
+Robot tuned_robot(const TunePlan& plan, const PluginGate& gate) {
+  std::vector<std::string> robots;
+  for (const ExperimentScenario& scenario : plan.scenarios) {
+    robots.push_back(read_scenario_config(scenario.file).robot);
+    if (robots.back() != robots.front())
+      refuse(plan.file, scenario.place,
+             "is of " + robots.back() + ", the first scenario of " + robots.front() +
+                 ": one robot can be tuned at a time");
+  }
+  return read_robot(robots.front(), gate);
+}
+
+std::vector<TunedAxis> tuned_axes(const TunePlan& plan, const Robot& robot) {
+  const auto system = make_control_system(robot);
+  const ParameterTable& table = system->catalog.parameters;
+  std::vector<std::string> names;
+  for (ParameterId id = 0; id < table.size(); ++id) names.push_back("control." + table.info(id).name);
+  Problems problems(plan.file);
+  std::vector<TunedAxis> axes;
+  for (const TunedParameter& parameter : plan.tune) {
+    TunedAxis axis{.parameter = parameter, .names = {}};
+    const std::vector<std::size_t> chosen = matching(parameter.pattern.name, names);
+    if (chosen.empty()) {
+      problems.add_unknown(parameter.pattern.place, "parameter", parameter.pattern.name, names);
+      continue;
+    }
+    axis.start = parameter.start.value_or(table.get(static_cast<ParameterId>(chosen.front())));
+    for (const std::size_t id : chosen) {
+      axis.names.push_back(names[id]);
+      verify(axis, table.info(static_cast<ParameterId>(id)), problems);
+    }
+    axes.push_back(std::move(axis));
+  }
+  problems.throw_if_any();
+  return axes;
+}
+
+std::string check_tune_plan(const std::string& file, const PluginGate& gate) {
+  const TunePlan plan = read_tune_plan(file);
+  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan, gate);
+  const std::size_t parameters = tuned_axes(plan, tuned_robot(plan, gate)).size();
+  return "tuning: " + std::to_string(parameters) + " parameters, " + std::to_string(plan.generations) +
+         " generations of " + std::to_string(plan.population) + " candidates, " + std::to_string(plan.runs) +
+         " runs each, " + std::to_string(subjects.size()) + " scenarios";
+}
+
+}  // namespace kadans

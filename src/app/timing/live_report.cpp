@@ -1,0 +1,160 @@
+#include "live_report.h"
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "config/json/foreign_json.h"
+#include "link_report.h"
+#include "tick_report.h"
+
+namespace kadans {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double resident_MB() {
+  std::ifstream file("/proc/self/statm");
+  double mapped = 0, resident = 0;
+  file >> mapped >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+Json percentiles_of(const TickStatistics& statistics) {
+  constexpr std::array told{p50, p99, p999, p9999, p99999};
+  return tick_json(statistics, told);
+}
+
+double preparation_s(const TaskThread& thread) {
+  const TickStatistics& s = thread.preparation();
+  return 1e-9 * s.mean_ns() * static_cast<double>(s.count());
+}
+
+Json json_of(const TaskThread& thread) {
+  const TaskStatistics& s = thread.statistics();
+  return {{"beats", s.lateness.count()},
+          {"overruns", s.overruns.get()},
+          {"late_wakes", s.late_wakes.get()},
+          {"missed", s.missed.get()},
+          {"page_faults", thread.page_faults()},
+          {"cpu_s", 1e-9 * static_cast<double>(thread.cpu_time_ns())},
+          {"lateness_us", percentiles_of(s.lateness)},
+          {"jitter_us", percentiles_of(s.jitter)},
+          {"execution_us", percentiles_of(s.execution)},
+          {"preparation_us", percentiles_of(thread.preparation())},
+          {"preparation_s", preparation_s(thread)}};
+}
+
+std::string row(const char* name, const TickStatistics& s, const char* rest) {
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, in_us(s, p50), in_us(s, p99),
+                in_us(s, p999), in_us(s.max_ns()), rest);
+  return text.data();
+}
+
+unsigned long long whole(std::uint64_t value) { return value; }
+
+std::string rows_of(const TaskThread& thread) {
+  const TaskStatistics& s = thread.statistics();
+  std::array<char, 128> rest{};
+  std::snprintf(rest.data(), rest.size(), "%llu beats, %llu missed, %llu page faults", whole(s.lateness.count()),
+                whole(s.missed.get()), whole(thread.page_faults()));
+  std::string rows = row((thread.settings().name + ", late").c_str(), s.lateness, rest.data());
+  if (thread.preparation().count() > 0) {
+    std::snprintf(rest.data(), rest.size(), "before the tick, %.2f s of %.2f s CPU time", preparation_s(thread),
+                  1e-9 * static_cast<double>(thread.cpu_time_ns()));
+    rows += row("  preparation", thread.preparation(), rest.data());
+  }
+  return rows + row("  work", s.execution, "");
+}
+
+// A recorder may exist only for its flight recorder.
+bool has_record(const LiveResult& result) {
+  return result.recorder != nullptr && (result.recorder->rows() > 0 || !result.recorder->error().empty());
+}
+
+std::uint64_t refused(const LiveResult& result) {
+  return result.behaviors.commands().refused() + result.engine.inbox().state().refused;
+}
+
+}  // namespace
+
+std::string live_text(const LiveResult& result) {
+  std::array<char, 400> text{};
+  std::snprintf(text.data(), text.size(), "%s after %.3f s, %.1f MB resident, first tick %.0f ms after the start\n\n",
+                result.ended.c_str(), result.duration_s, resident_MB(), result.start_ms);
+  std::string all = text.data();
+  std::snprintf(text.data(), text.size(), "  %-20s %9s %9s %9s %9s\n", "us", "p50", "p99", "p999", "max");
+  all += text.data();
+  for (const auto& thread : result.threads.all()) all += rows_of(*thread);
+  all += row("control tick alone", result.control.tick_cost(), "");
+  std::snprintf(text.data(), text.size(), "\n  commands: %llu sent, %llu applied, %llu refused\n",
+                whole(result.behaviors.commands().sent()), whole(result.engine.inbox().state().applied),
+                whole(refused(result)));
+  all += text.data();
+  if (result.process != nullptr) {
+    const ProcessHost& process = *result.process;
+    all += row("behavior process", process.answer_cost(), "from the request to the answer");
+    std::snprintf(text.data(), text.size(), "  behavior process: died %llu times, replaced %llu times%s\n",
+                  whole(process.deaths()), whole(process.takeovers()), process.down() ? ", is down" : "");
+    all += text.data();
+  }
+  if (has_record(result)) {
+    std::snprintf(text.data(), text.size(), "  record: %llu rows, %u dropped, %llu lost, %.1f MB\n",
+                  whole(result.recorder->rows()), result.recorder->dropped(), whole(result.recorder->lost()),
+                  1e-6 * static_cast<double>(result.recorder->file_bytes()));
+    all += text.data();
+  }
+  if (result.plant != nullptr && result.plant->lost_periods() > 0) {
+    std::snprintf(text.data(), text.size(), "  the model was too slow: %llu ms did not pass for it\n",
+                  whole(result.plant->lost_periods()));
+    all += text.data();
+  }
+  if (!result.link.empty()) all += "  link: " + link_text(result.link) + "\n";
+  return all;
+}
+
+std::string live_json(const LiveResult& result) {
+  Json threads;
+  for (const auto& thread : result.threads.all()) threads[thread->settings().name] = json_of(*thread);
+  if (result.threads.keep_awake() != nullptr) {
+    threads["keep_awake"] = {{"cpu_s", 1e-9 * static_cast<double>(result.threads.keep_awake()->cpu_time_ns())}};
+  }
+  Json json{{"ended", result.ended},
+            {"passed", !result.failed},
+            {"duration_s", result.duration_s},
+            {"start_ms", result.start_ms},
+            {"resident_MB", resident_MB()},
+            {"control_ticks", result.control.ticks()},
+            {"tick_us", percentiles_of(result.control.tick_cost())},
+            {"safety_level", name(result.engine.state().status.safety.level)},
+            {"faults", result.engine.state().status.safety.fault_count},
+            {"commands",
+             {{"sent", result.behaviors.commands().sent()},
+              {"applied", result.engine.inbox().state().applied},
+              {"refused", refused(result)}}},
+            {"model_lost_periods", result.plant != nullptr ? result.plant->lost_periods() : 0},
+            {"threads", threads}};
+  if (result.process != nullptr) {
+    const ProcessHost& process = *result.process;
+    json["behavior_process"] = {{"deaths", process.deaths()},
+                                {"takeovers", process.takeovers()},
+                                {"down", process.down()},
+                                {"answer_us", percentiles_of(process.answer_cost())},
+                                {"outage_us", percentiles_of(process.outage())}};
+  }
+  if (!result.link.empty()) json["link"] = link_json(result.link);
+  if (has_record(result)) {
+    json["record"] = {{"rows", result.recorder->rows()},
+                      {"dropped", result.recorder->dropped()},
+                      {"dropped_events", result.recorder->dropped_events()},
+                      {"lost", result.recorder->lost()},
+                      {"error", result.recorder->error()}};
+  }
+  return json_text(json);
+}
+
+}  // namespace kadans

@@ -1,0 +1,209 @@
+#include "sweep_results.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "campaign/work/content_hash.h"
+#include "campaign/work/durable_file.h"
+#include "config/json/foreign_json.h"
+#include "config/json/json_value.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* manifest_file = "sweep.json";
+
+Json to_json(const SweepManifest& manifest) {
+  return {{"sweep", manifest.sweep},
+          {"doc", manifest.doc},
+          {"plan", manifest.plan},
+          {"version", manifest.version},
+          {"sampling", manifest.sampling},
+          {"seed", manifest.seed},
+          {"cases", manifest.cases},
+          {"metrics", manifest.metrics},
+          {"first_try", manifest.first_try},
+          {"time", manifest.time},
+          {"worst", manifest.worst},
+          {"map_x", manifest.map_x},
+          {"map_y", manifest.map_y},
+          {"map_metric", manifest.map_metric},
+          {"passed_min", manifest.passed_min}};
+}
+
+SweepManifest manifest_from(const Json& json) {
+  return {.sweep = json.at("sweep"),
+          .doc = json.at("doc"),
+          .plan = json.at("plan"),
+          .version = json.at("version"),
+          .sampling = json.at("sampling"),
+          .seed = json.at("seed"),
+          .cases = json.at("cases"),
+          .metrics = json.at("metrics"),
+          .first_try = json.at("first_try"),
+          .time = json.at("time"),
+          .worst = json.at("worst"),
+          .map_x = json.at("map_x"),
+          .map_y = json.at("map_y"),
+          .map_metric = json.at("map_metric"),
+          .passed_min = json.at("passed_min")};
+}
+
+SweepManifest read_manifest(const fs::path& folder) {
+  const fs::path file = folder / manifest_file;
+  if (!fs::exists(file))
+    throw InputError({.file = folder.string(), .message = "holds no results of a sweep: there is no sweep.json"});
+  try {
+    return manifest_from(parse_foreign_json(read_input_file(file), file.string()));
+  } catch (const Json::exception& error) {
+    throw InputError({.file = file.string(), .message = std::string("cannot be read: ") + error.what()});
+  }
+}
+
+std::vector<std::pair<std::string, double>> numbers(const Json& json, const char* key) {
+  std::vector<std::pair<std::string, double>> all;
+  const Json members = json.value(key, Json::object());
+  for (const auto& [name, value] : members.items())
+    all.emplace_back(name, value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+  return all;
+}
+
+CaseRow row_from(const Json& json) {
+  CaseRow row{.index = json.at("case"),
+              .id = json.at("id"),
+              .scenario = json.at("scenario"),
+              .seed = json.at("seed"),
+              .failed = {},
+              .state_hash = json.value("state_hash", ""),
+              .simulated_s = json.value("duration_s", 0.0),
+              .quantities = {},
+              .metrics = {},
+              .repeat = json.at("repeat")};
+  const std::string status = json.at("status");
+  for (const RunStatus one : {RunStatus::passed, RunStatus::failed, RunStatus::refused, RunStatus::timed_out}) {
+    if (status == name(one)) row.status = one;
+  }
+  for (const Json& check : json.value("checks", Json::array())) {
+    if (!check.at("passed").get<bool>())
+      row.failed += (row.failed.empty() ? "" : "; ") + check.at("name").get<std::string>();
+  }
+  for (const auto& [quantity, value] : numbers(json, "quantities")) row.quantities.push_back({quantity, value});
+  for (const auto& [metric, value] : numbers(json, "metrics")) row.metrics.push_back({metric, value});
+  return row;
+}
+
+}  // namespace
+
+SweepManifest manifest_of(const SweepPlan& plan, const std::vector<SweepCase>& cases, const std::string& version) {
+  SweepManifest manifest{.sweep = plan.name,
+                         .doc = plan.doc,
+                         .plan = {},
+                         .version = version,
+                         .sampling = name(plan.sampling),
+                         .seed = plan.seed,
+                         .cases = cases.size(),
+                         .metrics = {},
+                         .first_try = plan.first_try.name,
+                         .time = plan.time.name,
+                         .worst = plan.worst.name,
+                         .map_x = plan.heat_map.x.name,
+                         .map_y = plan.heat_map.y.name,
+                         .map_metric = plan.heat_map.metric.name,
+                         .passed_min = plan.passed_min};
+  for (const MetricConfig& metric : plan.metrics) manifest.metrics.push_back(metric.name);
+  ContentHash hash;
+  hash.add(plan.name);
+  for (const SweepCase& one : cases) hash.add(one.id);
+  manifest.plan = hash.hex();
+  return manifest;
+}
+
+bool CaseRow::operator==(const CaseRow& other) const {
+  const auto same = [](const auto& a, const auto& b) {
+    return a.name == b.name && number_text(a.value) == number_text(b.value);
+  };
+  return index == other.index && id == other.id && scenario == other.scenario && seed == other.seed &&
+         status == other.status && failed == other.failed && state_hash == other.state_hash && repeat == other.repeat &&
+         std::ranges::equal(quantities, other.quantities, same) && std::ranges::equal(metrics, other.metrics, same);
+}
+
+SweepResults::SweepResults(fs::path folder, const SweepManifest& manifest)
+    : folder_(std::move(folder)), manifest_(manifest) {
+  fs::create_directories(folder_ / "cases");
+  if (fs::exists(folder_ / manifest_file)) {
+    const std::string other = difference(read_manifest(folder_), manifest_);
+    if (!other.empty())
+      throw InputError(
+          {.file = folder_.string(),
+           .message = "holds the results of another sweep: " + other + "; name another folder with --out"});
+    return;
+  }
+  write_durably(folder_ / manifest_file, json_text(to_json(manifest_), 2) + "\n");
+}
+
+SweepResults::SweepResults(fs::path folder) : folder_(std::move(folder)), manifest_(read_manifest(folder_)) {}
+
+fs::path SweepResults::file_of(const SweepCase& one) const {
+  char name[64];
+  std::snprintf(name, sizeof name, "%06zu-%s.json", one.index, one.id.c_str());
+  return folder_ / "cases" / name;
+}
+
+// A run that took too long says something of the machine on that day: it is run again.
+bool SweepResults::has(const SweepCase& one) const {
+  const fs::path file = file_of(one);
+  if (!fs::exists(file)) return false;
+  const std::optional<Json> json = read_foreign_json(read_input_file(file));
+  return !json || !json->is_object() || json->value("status", "") != name(RunStatus::timed_out);
+}
+
+void SweepResults::store(const SweepCase& one, const std::string& json) const { write_durably(file_of(one), json); }
+
+std::string case_json(const SweepManifest& manifest, const SweepCase& one, const RunOutcome& run) {
+  Json json{{"plan", manifest.plan}, {"case", one.index}, {"id", one.id}};
+  json.update(parse_foreign_json(run_json(run)));
+  json.erase("evidence");
+  if (!json.contains("quantities")) {  // the run left no report
+    json["quantities"] = Json::object();
+    for (const QuantityValue& setting : one.quantities) json["quantities"][setting.name] = setting.value;
+  }
+  return json_text(json) + "\n";
+}
+
+std::vector<CaseRow> SweepResults::rows() const {
+  std::vector<CaseRow> rows;
+  if (!fs::is_directory(folder_ / "cases")) return rows;
+  for (const auto& entry : fs::directory_iterator(folder_ / "cases")) {
+    const fs::path& file = entry.path();
+    if (file.filename().string().starts_with('.') || file.extension() != ".json") continue;
+    try {
+      const Json json = parse_foreign_json(read_input_file(file), file.string());
+      if (json.at("plan") != manifest_.plan)
+        throw InputError({.file = file.string(), .message = "is a result of another sweep than sweep.json beside it"});
+      rows.push_back(row_from(json));
+    } catch (const Json::exception& error) {
+      throw InputError(
+          {.file = file.string(),
+           .message = std::string("is no result of a case: ") + error.what() + "; remove it and run the sweep again"});
+    }
+  }
+  std::ranges::sort(rows, {}, &CaseRow::index);
+  return rows;
+}
+
+std::string difference(const SweepManifest& a, const SweepManifest& b) {
+  const Json one = to_json(a), other = to_json(b);
+  std::string text;
+  for (const auto& [key, value] : one.items()) {
+    if (key == "doc" || value == other.at(key)) continue;
+    text += (text.empty() ? "" : ", ") + key + " " + json_text(value) + " and " + json_text(other.at(key));
+  }
+  return text;
+}
+
+}  // namespace kadans

@@ -1,0 +1,88 @@
+#include "problems.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "signal/nearest_name.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t problems_max = 100;  // of one file; nobody reads more, and hostile input may make millions
+constexpr std::size_t names_shown_max = 10;
+constexpr std::size_t name_length_max = 80;
+
+std::string first_names(std::span<const std::string> known) {
+  if (known.empty()) return " (none is known)";
+  std::string text = " (known: ";
+  const std::size_t shown = std::min(known.size(), names_shown_max);
+  for (std::size_t i = 0; i < shown; ++i) text += (i == 0 ? "" : ", ") + known[i];
+  return text + (shown < known.size() ? ", ...)" : ")");
+}
+
+// "rotor_inertia" for rotor_inertia_kg_m2: the commonest mistake is too far away for an edit distance.
+std::string without_unit(std::string_view wrong, std::span<const std::string> known) {
+  for (const std::string& name : known) {
+    if (!wrong.empty() && name.starts_with(std::string(wrong) + "_")) return ", did you mean '" + name + "'?";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string in_quotes(std::string_view name) {
+  const std::string_view shown = name.substr(0, name_length_max);
+  std::string text = "'";
+  for (const char c : shown) text += static_cast<unsigned char>(c) < 0x20U ? '?' : c;
+  // A cut in the middle of a character would leave half of it.
+  if (shown.size() < name.size()) {
+    while (inside_character(text.back())) text.pop_back();
+    if ((static_cast<unsigned char>(text.back()) & 0x80U) != 0) text.pop_back();
+    text += "...";
+  }
+  return text + "'";
+}
+
+std::string unknown_name(std::string_view what, std::string_view wrong, std::span<const std::string> known,
+                         std::string_view where) {
+  std::string text = "unknown " + std::string(what) + " " + in_quotes(wrong);
+  if (!where.empty()) text += " " + std::string(where);
+  std::string hint = did_you_mean(wrong, known);
+  if (hint.empty()) hint = without_unit(wrong, known);
+  return text + (hint.empty() ? first_names(known) : hint);
+}
+
+void Problems::add(TextPlace place, std::string message) {
+  if (problems_.size() < problems_max) problems_.push_back({file_, place.line, place.column, std::move(message)});
+}
+
+void Problems::add(const InputError& error) {
+  others_.insert(others_.end(), error.problems().begin(), error.problems().end());
+}
+
+void Problems::add_unknown(TextPlace place, std::string_view what, std::string_view wrong,
+                           std::span<const std::string> known, std::string_view where) {
+  if (problems_.size() < problems_max) add(place, unknown_name(what, wrong, known, where));
+}
+
+void Problems::throw_if_any() const {
+  if (empty()) return;
+  const auto order = [](const InputProblem& p) { return std::tie(p.line, p.column, p.message); };
+  std::vector<InputProblem> all = problems_;
+  std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return order(a) < order(b); });
+  const auto same = [&](const auto& a, const auto& b) { return order(a) == order(b); };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
+  all.insert(all.end(), others_.begin(), others_.end());
+  throw InputError(std::move(all));
+}
+
+void refuse(const std::string& file, TextPlace place, const std::string& message) {
+  throw InputError(InputProblem{file, place.line, place.column, message});
+}
+
+void refuse_unknown(const std::string& file, const PlacedName& wrong, std::string_view what,
+                    std::span<const std::string> known) {
+  refuse(file, wrong.place, unknown_name(what, wrong.name, known));
+}
+
+}  // namespace kadans

@@ -1,0 +1,105 @@
+#include "record_config.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "config/json/name_pattern.h"
+#include "signal/nearest_name.h"
+#include "signal/number_text.h"
+
+namespace kadans {
+namespace {
+
+constexpr double each_tick = std::numeric_limits<double>::infinity();
+constexpr double rate_max_Hz = 1e5;
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+bool not_in_every_run(const std::string& pattern) {
+  return pattern.starts_with("plant.") || pattern.starts_with("behavior.");
+}
+
+// What was meant by a pattern without a signal: the nearest name, or the nearest first part of one.
+std::string meant(const std::string& pattern, const std::vector<std::string>& names) {
+  if (pattern.find('*') == std::string::npos) {
+    const auto longer = std::ranges::find_if(names, [&](const std::string& name) { return name.starts_with(pattern); });
+    return longer == names.end() ? did_you_mean(pattern, names) : ", did you mean '" + *longer + "'?";
+  }
+  std::vector<std::string> starts;
+  for (const std::string& name : names) {
+    const std::string start = name.substr(0, name.find('.'));
+    if (starts.empty() || starts.back() != start) starts.push_back(start);
+  }
+  const std::size_t dot = pattern.find('.');
+  const std::string near = nearest_name(pattern.substr(0, dot), starts);
+  if (near.empty() || dot == std::string::npos || near == pattern.substr(0, dot)) return "";
+  return ", did you mean '" + near + pattern.substr(dot) + "'?";
+}
+
+// Throws when the rate is none that ticks can have.
+std::uint32_t ticks_of(const NumberEntry& entry, const std::string& file, double control_period_s) {
+  if (entry.value == 0) return 0;
+  if (entry.value == each_tick) return 1;
+  const double ticks = 1 / (entry.value * control_period_s);
+  const double whole = std::max(1.0, std::round(ticks));
+  if (std::abs(ticks - whole) <= 1e-3 * whole) return static_cast<std::uint32_t>(whole);
+  refuse(file, entry.value_place,
+         "'" + entry.key + "' at " + number_text(entry.value) + " Hz: must be the control rate, " +
+             number_text(1 / control_period_s) + " Hz, divided by a whole number, such as " +
+             number_text(1 / (whole * control_period_s)));
+}
+
+}  // namespace
+
+void record_fields(Fields& f, RecordConfig& record) {
+  f.object("signals",
+           "rate in Hz by a pattern over the signals' names, later entries override earlier ones; 0: not recorded",
+           [&](Fields& signals) {
+             signals.number_entries(record.signals.rates_Hz, {0, rate_max_Hz, "Hz"},
+                                    "the control rate divided by a whole number");
+           });
+  f.boolean("single_precision", record.single_precision, "records hold 32-bit numbers: half the size, 7 digits");
+  f.number("flight_s", record.flight_s, {0, 600, "s"},
+           "what `kadans run` always has in memory, to be written when a fault latches; 0: nothing");
+  f.number("flight_MB", record.flight_MB, {1, 1000, "MB"}, "memory for that; where it does not suffice, less is kept");
+}
+
+SignalChoice parse_signal_choice(const std::string& text, const std::string& option) {
+  SignalChoice choice{.file = option, .rates_Hz = {}, .others = false};
+  std::istringstream items(text);
+  for (std::string item; std::getline(items, item, ',');) {
+    item = trimmed(item);
+    const std::size_t at = item.find('@');
+    NumberEntry entry{.key = trimmed(item.substr(0, at)), .value = each_tick, .place = {}, .value_place = {}};
+    const auto rate_Hz = at == std::string::npos ? each_tick : number_of<double>(trimmed(item.substr(at + 1)));
+    if (entry.key.empty() || !rate_Hz || !(*rate_Hz >= 0))
+      throw InputError(
+          {.file = option, .message = in_quotes(item) + " must be PATTERN or PATTERN@HZ, such as base.*@100"});
+    entry.value = *rate_Hz;
+    choice.rates_Hz.push_back(entry);
+  }
+  if (choice.rates_Hz.empty()) throw InputError({.file = option, .message = "names no signals, such as joint.*"});
+  return choice;
+}
+
+std::vector<std::uint32_t> ticks_between(const SignalChoice& choice, const SignalTable& signals,
+                                         double control_period_s) {
+  if (choice.rates_Hz.empty()) return {};
+  const std::vector<std::string> names = signals.names();
+  std::vector<std::uint32_t> ticks(names.size(), choice.others ? 1 : 0);
+  for (const NumberEntry& entry : choice.rates_Hz) {
+    const std::uint32_t between = ticks_of(entry, choice.file, control_period_s);
+    const std::vector<std::size_t> chosen = matching(entry.key, names);
+    if (chosen.empty() && !not_in_every_run(entry.key))
+      refuse(choice.file, entry.place, "no signal is called " + in_quotes(entry.key) + meant(entry.key, names));
+    for (const std::size_t i : chosen) ticks[i] = between;
+  }
+  return ticks;
+}
+
+}  // namespace kadans

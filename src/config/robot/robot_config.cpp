@@ -1,0 +1,148 @@
+#include "robot_config.h"
+
+#include <algorithm>
+
+#include "config/json/name_pattern.h"
+#include "config/scenario/based_on.h"
+#include "kadans/model/urdf.h"
+#include "project_root.h"
+#include "robot_reader.h"
+#include "signal/nearest_name.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t plugins_max = 64;
+
+void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
+  f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
+  f.number("behavior_period_s", engine.behavior_period_s, {1e-5, 10, "s"},
+           "period of the behavior engine, a whole multiple of control_period_s");
+  f.number("behavior_time_max_s", engine.behavior_time_max_s, {0, 10, "s"},
+           "wall-clock time that one behavior may take in one tick of kadans run; 0: half of behavior_period_s");
+  f.integer("commands_per_tick_max", engine.commands_per_tick_max, {max_transaction - 1, command_capacity},
+            "commands applied in one control tick at most; the largest transaction must pass");
+  f.number("command_age_max_s", engine.command_age_max_s, {1e-3, 60, "s"}, "older commands are refused");
+  if (f.reading() && engine.behavior_divisor() == 0) {
+    problems.add(f.place("behavior_period_s"),
+                 f.path("behavior_period_s") + " is " + number_text(engine.behavior_period_s) +
+                     ", must be a whole multiple of control_period_s, " + number_text(engine.control_period_s) + " s");
+  }
+}
+
+void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
+  f.string("pose", config.safe.pose, "the pose", Need::required);
+  f.number("after_s", config.safe.after_s, {0, 60, "s"}, "how long the last set-points are held before");
+  f.number("time_s", config.safe.time_s, {0.01, 60, "s"}, "time to go there");
+  if (!f.reading() || config.safe.pose.empty() || config.model.joints.empty())
+    return;  // without a model no pose is read
+  const std::vector<std::string> names = names_of(config.poses);
+  if (std::find(names.begin(), names.end(), config.safe.pose) != names.end()) return;
+  problems.add_unknown(f.place("pose"), "pose", config.safe.pose, names);
+}
+
+}  // namespace
+
+void RobotReader::read(Fields& f) {
+  std::string schema, base;
+  f.string("$schema", schema, "the schema of this file, for editors");
+  f.string("based_on", base, "another robot's configuration; this file says only what is different");
+  f.string("name", config_.name, "the robot's name", Need::required);
+  f.strings("plugins", config_.plugins, {1, plugins_max},
+            "shared libraries that bring types of control objects and of plants, from the project root");
+  load_model(f);
+  f.object("engine", "periods and bounds of the engines",
+           [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
+  f.map("poses", "positions in radians by joint pattern, for behaviors and the start", [&](Fields& e) { pose(e); });
+  f.map("behaviors", "parameters of behaviors on this robot, by behavior", [&](Fields& e) { behavior(e); });
+  f.object("safe", "the posture the robot goes to when a behavior failed",
+           [&](Fields& safe) { safe_fields(safe, config_, problems_); });
+  f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });
+  f.map("sensors", "what the robot senses beside joints, IMU and feet, by name", [&](Fields& e) { sensor(e); });
+  for (auto* const channels : {&config_.estimate.channels, &config_.safety.channels})
+    *channels = config_.plant.channels;
+  f.object("start", "where the robot starts", [&](Fields& e) { start(e); });
+  f.object("joystick", "a joystick that behaviors read as s.joystick", [&](Fields& e) { joystick(e); });
+  f.object("estimate", "how the estimator is set up", [&](Fields& e) { estimate(e); });
+  f.object("record", "what records hold", [&](Fields& record) { record_fields(record, config_.record); });
+  f.object("safety", "limits and reactions of the safety layer", [&](Fields& e) { safety(e); });
+  f.object(
+      "control", "control objects and control sets", [&](Fields& e) { control(e); }, Need::required);
+}
+
+void RobotReader::load_model(Fields& f) {
+  std::string urdf;
+  if (!f.string("urdf", urdf, "the robot's URDF, from the project root", Need::required)) return;
+  const std::filesystem::path file = resolve_file(urdf, f.place("urdf"), "urdf", problems_);
+  if (file.empty()) return;
+  try {
+    config_.model = read_urdf(file.string());
+  } catch (const InputError& error) {
+    problems_.add(error);
+    return;
+  }
+  have_model_ = true;
+  joint_names_ = config_.model.joint_names();
+  const std::size_t count = config_.model.joints.size();
+  config_.plant.drives.resize(count);
+  config_.plant.encoders.resize(count);
+  config_.plant.position_rad.assign(count, 0.0);
+  config_.estimate.spring_Nm_per_rad.assign(count, 0.0);
+  config_.estimate.joint_velocity_cutoff_Hz.assign(count, 0.0);
+  config_.estimate.sample_divisor.assign(count, 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Joint& joint = config_.model.joints[i];
+    config_.plant.drives[i].torque_max_Nm = joint.effort_max_Nm;
+    config_.plant.drives[i].velocity_max_rad_s = joint.velocity_max_rad_s;
+    config_.safety.joints.push_back({joint.lower_rad, joint.upper_rad, joint.velocity_max_rad_s, joint.effort_max_Nm});
+  }
+}
+
+std::vector<std::size_t> RobotReader::joints(std::string_view pattern, TextPlace place) {
+  std::vector<std::size_t> chosen = matching(pattern, joint_names_);
+  if (chosen.empty()) problems_.add_unknown(place, "joint", pattern, joint_names_);
+  return chosen;
+}
+
+RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
+                                   std::span<const std::string> object_types, std::span<const MakePlantType> plants) {
+  RobotConfig config;
+  config.plant_types = plant_types(plants);
+  config.file = config.record.signals.file = file;
+  const BasedJson json = parse_based_json(text, file);
+  if (!json.bases.empty()) (void)read_robot_config(json.bases.front(), object_types, plants);
+  Problems problems(file);
+  RobotReader reader(config, problems, object_types);
+  read_fields(json.value, problems, [&](Fields& f) { reader.read(f); });
+  problems.throw_if_any();
+  return config;
+}
+
+RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types,
+                              std::span<const MakePlantType> plants) {
+  return read_robot_config_text(read_input_file(file), file.string(), object_types, plants);
+}
+
+std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot) {
+  const JsonValue json = parse_based_json(read_input_file(robot), robot.string()).value;
+  const JsonMember* list = json.find("plugins");
+  std::vector<PluginFile> files;
+  if (list == nullptr) return files;
+  Problems problems(robot.string());
+  for (const JsonValue& name : list->value.items) {
+    if (name.kind != JsonValue::Kind::string || files.size() == plugins_max) break;
+    const std::filesystem::path file = resolve_file(name.text, name.place, "plugins", problems);
+    if (!file.empty()) files.push_back({file, name.place});
+  }
+  problems.throw_if_any();
+  return files;
+}
+
+FieldInfo describe_robot_config() {
+  RobotConfig config;
+  Problems problems("");
+  RobotReader reader(config, problems, {});
+  return describe_fields([&](Fields& f) { reader.read(f); });
+}
+
+}  // namespace kadans

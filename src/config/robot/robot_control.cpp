@@ -1,0 +1,236 @@
+// The parts of a robot's configuration that stand on control: objects, sets, poses.
+#include <algorithm>
+
+#include "config/json/name_pattern.h"
+#include "kadans/control/set_partition.h"
+#include "robot_reader.h"
+#include "signal/nearest_name.h"
+
+namespace kadans {
+namespace {
+
+bool contains(const std::vector<PlacedName>& names, const std::string& name) {
+  return std::any_of(names.begin(), names.end(), [&](const PlacedName& one) { return one.name == name; });
+}
+
+}  // namespace
+
+void RobotReader::control(Fields& f) {
+  f.list(
+      "objects", {1, max_objects}, "the control objects", [&](Fields& e) { object(e); }, Need::required);
+  f.map(
+      "sets", "control sets: the control objects that are active together", [&](Fields& e) { control_set(e); },
+      Need::required);
+  drive_objects(f);
+  f.number("switch_step_max", config_.switching.step_max, {1e-3, 1},
+           "largest change of a drive's torque from tick to tick by a switch of sets, as a share of the joint's limit");
+  f.number("switch_fade_s", config_.switching.fade_s, {1e-3, 10, "s"},
+           "in which what is left of the old set's torque fades, or longer where switch_step_max wants it");
+  unheld(f);
+  initial_sets(f);
+}
+
+void RobotReader::drive_objects(Fields& f) {
+  std::vector<PlacedName> given;
+  f.strings("at_drives", given, {1, max_objects},
+            "control objects that make the drives do what is wanted of the joints; they are in no set, always active");
+  const std::vector<std::string> names = names_of(config_.objects);
+  for (const PlacedName& object : given) {
+    const auto found = std::find(names.begin(), names.end(), object.name);
+    if (found == names.end()) {
+      problems_.add_unknown(object.place, "control object", object.name, names);
+      continue;
+    }
+    const auto index = static_cast<std::uint32_t>(found - names.begin());
+    for (const ControlSetInfo& set : config_.sets) {
+      if (std::find(set.objects.begin(), set.objects.end(), index) == set.objects.end()) continue;
+      problems_.add(object.place, "control object " + in_quotes(object.name) + " is in control set " +
+                                      in_quotes(set.name) + ": it cannot stand at the drives, too");
+    }
+    config_.at_drives.push_back(index);
+  }
+}
+
+void RobotReader::unheld(Fields& f) {
+  for (const Joint& joint : config_.model.joints) {
+    config_.unheld.push_back({0, joint.passive() ? 0 : config_.safety.damping_Nms_per_rad});
+  }
+  f.map("unheld", "what joints do that no active control set holds, by joint pattern; else they damp as in safety",
+        [&](Fields& entry) {
+          each_joint(entry, config_.unheld, [&](UnheldLaw& law) {
+            entry.number("stiffness_Nm_per_rad", law.stiffness_Nm_per_rad, {0, 1e4, "Nm/rad"},
+                         "towards where it was when it was let go; 0: it only damps");
+            entry.number("damping_Nms_per_rad", law.damping_Nms_per_rad, {0, 100, "Nms/rad"}, "of its motion");
+          });
+        });
+  for (std::size_t i = 0; i < config_.unheld.size(); ++i) {
+    if (config_.model.joints[i].passive()) config_.unheld[i] = {};
+  }
+}
+
+void RobotReader::initial_sets(Fields& f) {
+  std::string one;
+  std::vector<PlacedName> several;
+  const bool given = f.string("initial_set", one, "the control set that is active first; else the first one");
+  if (given) several.push_back({one, f.place("initial_set")});
+  f.strings("initial_sets", several, {1, max_control_sets}, "in its place, several that share no joint");
+  const std::vector<std::string> names = names_of(config_.sets);
+  if (f.reading() && names.size() > max_control_sets) {
+    problems_.add(f.place("sets"), f.path("sets") + ": at most " + std::to_string(max_control_sets) + " control sets");
+    return;
+  }
+  SetMask initial = 0;
+  for (const PlacedName& name : several) {
+    const auto found = std::find(names.begin(), names.end(), name.name);
+    if (found == names.end()) {
+      problems_.add_unknown(name.place, "control set", name.name, names);
+    } else {
+      initial |= set_bit(static_cast<std::uint32_t>(found - names.begin()));
+    }
+  }
+  if (initial != 0) config_.initial_sets = initial;
+  Catalog layout;
+  layout.sets = config_.sets;
+  for (const ObjectConfig& object : config_.objects) layout.objects.push_back({.joints = object.joints});
+  if (SetPartition(layout).clash(initial, initial)) {
+    problems_.add(several.back().place, "control sets that are active first share a joint");
+  }
+}
+
+void RobotReader::object(Fields& f) {
+  constexpr NumberRange any_number{-1e9, 1e9};
+  ObjectConfig object;
+  std::vector<PlacedName> patterns;
+  object.place = f.place();
+  f.string("name", object.name, "its name for behaviors, parameters and signals", Need::required);
+  f.string("type", object.type.name, "the kind of control object", Need::required);
+  f.strings("joints", patterns, {1, max_joints}, "patterns of the motor joints that it drives", Need::required);
+  f.integer("divisor", object.divisor, {1, 1000}, "low level every n-th control tick");
+  f.integer("high_level_divisor", object.high_level_divisor, {1, 1000}, "high level every n-th behavior tick");
+  f.object("options", "what its type asks for beyond parameters",
+           [&](Fields& e) { e.text_entries(object.options, "as the type says"); });
+  f.object("parameters", "first values by parameter pattern",
+           [&](Fields& e) { e.number_entries(object.parameters, any_number, "in the parameter's unit"); });
+  f.map("presets", "named values that a behavior may choose", [&](Fields& e) {
+    PresetConfig& preset = object.presets.emplace_back();
+    preset.name = {e.key(), e.key_place()};
+    e.number_entries(preset.values, any_number, "in the parameter's unit");
+  });
+  if (!f.reading()) return;
+  object.type.place = f.place("type");
+  if (!object.type.name.empty() && !object_types_.empty() &&
+      std::find(object_types_.begin(), object_types_.end(), object.type.name) == object_types_.end()) {
+    problems_.add_unknown(object.type.place, "type of control object", object.type.name, object_types_);
+  }
+  if (!object.name.empty() && object.name.find_first_of(".* ") != std::string::npos) {
+    problems_.add(f.place("name"),
+                  f.path("name") + ": " + in_quotes(object.name) + " must not contain '.', '*' or a space");
+  }
+  const std::vector<std::string> names = names_of(config_.objects);
+  if (std::find(names.begin(), names.end(), object.name) != names.end()) {
+    problems_.add(f.place("name"), f.path("name") + ": another control object is named " + in_quotes(object.name));
+  }
+  object_joints(patterns, object);
+  config_.objects.push_back(std::move(object));
+}
+
+void RobotReader::object_joints(const std::vector<PlacedName>& patterns, ObjectConfig& object) {
+  if (!have_model_) return;
+  for (const PlacedName& pattern : patterns) {
+    bool motor = false;
+    const std::vector<std::size_t> chosen = joints(pattern.name, pattern.place);
+    for (const std::size_t i : chosen) {
+      if (config_.model.joints[i].passive()) continue;
+      motor = true;
+      object.joints.push_back(i);
+    }
+    if (!chosen.empty() && !motor) {
+      problems_.add(pattern.place, "joint " + in_quotes(pattern.name) + " has no motor (effort 0 in the URDF)");
+    }
+  }
+  std::sort(object.joints.begin(), object.joints.end());
+  object.joints.erase(std::unique(object.joints.begin(), object.joints.end()), object.joints.end());
+}
+
+void RobotReader::control_set(Fields& entry) {
+  std::vector<PlacedName> objects;
+  entry.strings("objects", objects, {1, max_objects}, "names of its control objects, in the order of computing",
+                Need::required);
+  std::vector<PlacedName> sum, blend, priority;
+  entry.strings("sum", sum, {1, max_objects}, "those of them that add to what stands before them");
+  entry.strings("blend", blend, {1, max_objects}, "those that mix with it, by their parameter SET.OBJECT.weight");
+  entry.strings("priority", priority, {1, max_objects}, "those that replace it while they claim the joint");
+  for (const auto* composed : {&sum, &blend, &priority}) {
+    for (const PlacedName& object : *composed) {
+      if (contains(objects, object.name)) continue;
+      problems_.add_unknown(object.place, "control object", object.name, names_of(objects), "of this set");
+    }
+  }
+  ControlSetInfo set;
+  set.name = entry.key();
+  const std::vector<std::string> names = names_of(config_.objects);
+  std::vector<std::size_t> owner(joint_names_.size(), names.size());  // the object of this set that sets a joint
+  for (const PlacedName& object : objects) {
+    const Composition composition = contains(sum, object.name)        ? Composition::sum
+                                    : contains(blend, object.name)    ? Composition::blend
+                                    : contains(priority, object.name) ? Composition::priority
+                                                                      : Composition::set;
+    if (!add_to_set(object, composition, set)) continue;
+    claim_joints(set.objects.back(), composition == Composition::set, object.place, owner);
+  }
+  config_.sets.push_back(std::move(set));
+}
+
+bool RobotReader::add_to_set(const PlacedName& object, Composition composition, ControlSetInfo& set) {
+  const std::vector<std::string> names = names_of(config_.objects);
+  const auto found = std::find(names.begin(), names.end(), object.name);
+  if (found == names.end()) {
+    problems_.add_unknown(object.place, "control object", object.name, names);
+    return false;
+  }
+  const auto index = static_cast<std::uint32_t>(found - names.begin());
+  if (std::find(set.objects.begin(), set.objects.end(), index) != set.objects.end()) {
+    problems_.add(object.place, "control object " + in_quotes(object.name) + " stands twice in this set");
+    return false;
+  }
+  set.objects.push_back(index);
+  set.compositions.push_back(composition);
+  return true;
+}
+
+void RobotReader::claim_joints(std::size_t object, bool sets, TextPlace place, std::vector<std::size_t>& owner) {
+  for (const std::size_t joint : config_.objects[object].joints) {
+    if (sets && owner[joint] < config_.objects.size()) {
+      problems_.add(place, "control objects '" + config_.objects[owner[joint]].name + "' and '" +
+                               config_.objects[object].name + "' of one set both drive joint '" + joint_names_[joint] +
+                               "'");
+      return;
+    }
+    owner[joint] = object;
+  }
+}
+
+void RobotReader::pose(Fields& entry) {
+  std::vector<NumberEntry> values;
+  entry.number_entries(values, {-1e3, 1e3, "rad"}, "joint position by joint pattern");
+  if (!have_model_) return;
+  PoseInfo& pose = config_.poses.emplace_back();
+  pose.name = entry.key();
+  for (const NumberEntry& value : values) pose_value(entry, value, pose);
+  std::sort(pose.position_rad.begin(), pose.position_rad.end());
+}
+
+void RobotReader::pose_value(const Fields& entry, const NumberEntry& value, PoseInfo& pose) {
+  for (const std::size_t i : joints(value.key, value.place)) {
+    const Joint& joint = config_.model.joints[i];
+    if (!(value.value >= joint.lower_rad && value.value <= joint.upper_rad)) {
+      return problems_.add(value.value_place, entry.path(value.key) + " is " + number_text(value.value) + ", joint '" +
+                                                  joint.name + "' reaches " + number_text(joint.lower_rad) + ".." +
+                                                  number_text(joint.upper_rad) + " rad");
+    }
+    std::erase_if(pose.position_rad, [&](const auto& given) { return given.first == i; });
+    pose.position_rad.emplace_back(i, value.value);
+  }
+}
+
+}  // namespace kadans

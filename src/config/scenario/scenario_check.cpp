@@ -1,0 +1,95 @@
+#include "scenario_check.h"
+
+#include <algorithm>
+#include <array>
+
+namespace kadans {
+namespace {
+
+const std::array<std::string, 6> check_kinds{"always", "never", "eventually", "at_end", "within", "settles"};
+constexpr NumberRange time_range{0, 1e6, "s"};
+
+void list_fields(Fields& f, ScenarioCheck& check) {
+  f.string("name", check.name, "what is shown to hold", Need::required);
+  f.choice("kind", check.kind, check_kinds, "when it must (never: must not) hold", Need::required);
+  f.string("signal", check.signal, "name of a signal that must be in min..max");
+  f.number("min", check.min, {}, "least value, in the signal's unit");
+  f.number("max", check.max, {}, "greatest value, in the signal's unit");
+  f.string("that", check.that, "or a condition on signals in Lua, such as base.height_m > 0.6");
+  f.string("when", check.when, "within, settles: the condition that starts the clock");
+  f.number("within_s", check.within_s, time_range, "within, settles: time it may take");
+  f.number("from_s", check.from_s, time_range, "looked at from this time on");
+  f.number("until_s", check.until_s, time_range, "looked at up to this time, else to the end");
+  check.signal_place = f.place("signal");
+  check.that_place = f.place("that");
+  check.when_place = f.place("when");
+}
+
+// What each kind needs and what means nothing to it.
+void verify_kind(const Fields& f, const ScenarioCheck& check, Problems& problems) {
+  const bool clocked = check.kind == CheckKind::within || check.kind == CheckKind::settles;
+  const auto& kind = check_kinds.at(static_cast<std::size_t>(check.kind));
+  const auto unasked = [&](const char* key) {
+    if (f.has(key)) problems.add(f.place(key), f.path(key) + " means nothing to a check of kind " + in_quotes(kind));
+  };
+  if (clocked) {
+    if (!f.has("within_s"))
+      problems.add(f.place(), f.path() + " is of kind " + in_quotes(kind) + " and needs within_s");
+    if (check.kind == CheckKind::within && check.when.empty())
+      problems.add(f.place(), f.path() + " is of kind 'within' and needs when");
+  } else {
+    unasked("when");
+    unasked("within_s");
+  }
+  if (check.kind == CheckKind::at_end && (f.has("from_s") || f.has("until_s"))) {
+    problems.add(f.place(f.has("from_s") ? "from_s" : "until_s"),
+                 f.path() + " is judged at the end, from_s and until_s mean nothing here");
+  }
+}
+
+void verify_demand(const Fields& f, const ScenarioCheck& check, Problems& problems) {
+  if (f.has("signal") == f.has("that")) {
+    problems.add(f.place(), f.path() + (f.has("that") ? " has both signal and that, must have one of them"
+                                                      : " needs a signal with min or max, or a condition in that"));
+    return;
+  }
+  if (f.has("that")) {
+    for (const char* bound : {"min", "max"}) {
+      if (f.has(bound))
+        problems.add(f.place(bound), f.path(bound) + " belongs to a signal, here the condition decides");
+    }
+    return;
+  }
+  if (!f.has("min") && !f.has("max")) problems.add(f.place(), f.path() + " needs min, max or both");
+  if (!(check.min <= check.max)) {
+    problems.add(f.place("max"),
+                 f.path("max") + " is " + number_text(check.max) + ", must be at least min, " + number_text(check.min));
+  }
+}
+
+void verify_times(const Fields& f, const ScenarioCheck& check, double duration_s, Problems& problems) {
+  if (!(check.from_s <= check.until_s)) {
+    problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(check.until_s) +
+                                         ", must be at least from_s, " + number_text(check.from_s) + " s");
+  }
+  if (duration_s > 0 && !(check.from_s <= duration_s)) {
+    problems.add(f.place("from_s"), f.path("from_s") + " is " + number_text(check.from_s) + ", the scenario ends at " +
+                                        number_text(duration_s) + " s");
+  }
+}
+
+}  // namespace
+
+void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std::vector<ScenarioCheck>& others,
+                  Problems& problems) {
+  list_fields(f, check);
+  if (!f.reading()) return;
+  verify_demand(f, check, problems);
+  verify_kind(f, check, problems);
+  verify_times(f, check, duration_s, problems);
+  if (std::ranges::find(others, check.name, &ScenarioCheck::name) != others.end()) {
+    problems.add(f.place("name"), f.path("name") + ": another check is named " + in_quotes(check.name));
+  }
+}
+
+}  // namespace kadans

@@ -1,0 +1,81 @@
+// A scenario in one JSON file: a robot, a plant, the behaviors that play, and the checks that must hold.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "config/json/fields.h"
+#include "distribution.h"
+#include "play_item.h"
+#include "scenario_check.h"
+#include "scenario_event.h"
+#include "scenario_fault.h"
+#include "scenario_push.h"
+#include "world_config.h"
+
+namespace kadans {
+
+inline constexpr double scenario_duration_max_s = 1e6;  // of simulated time
+
+// A recording of a joystick that is played back.
+struct ScenarioJoystick {
+  std::string recording;  // "": none
+  TextPlace place;
+  double at_s = 0;
+  double lost_at_s = std::numeric_limits<double>::infinity();  // the joystick is unplugged from then on
+};
+
+// Which plug-ins the robot may load. Plug-ins that a record from elsewhere names are not trusted.
+struct PluginGate {
+  bool closed = false;
+  std::vector<std::filesystem::path> let_in;  // allowed although the gate is closed: absolute, normalised paths
+  std::string remedy;                         // what a person can do to allow the others, for the message
+
+  bool lets_in(const std::filesystem::path& file) const;
+};
+
+struct ScenarioConfig {
+  std::string file;
+  std::string name;
+  std::string doc;
+  std::string robot;             // path of the robot's configuration, resolved
+  std::string plant = "bullet";  // a type of plant_type.h; in a file a model
+  TextPlace plant_place;         // in a file that names one
+  std::string peer;              // not in the file: where the drives of one that is no model are; "": the robot's own
+  double duration_s = 0;
+  std::uint64_t seed = 1;
+  std::vector<std::string> tags;
+  std::uint32_t repeat = 1;      // runs of it in `kadans test`, each with the next seed
+  double wall_limit_s = 60;      // a run that takes longer is stopped
+  PlacedName start_pose;         // "": the robot's own
+  std::vector<NumberEntry> set;  // values of quantities, by patterns over their names
+  std::vector<Variation> randomise;
+  std::vector<NumberEntry> set_last;  // not in the file: values that the command line sets, after all random draws
+  std::vector<PlayItem> behaviors;
+  std::vector<ScenarioEvent> events;
+  std::vector<ScenarioPush> pushes;
+  std::vector<ScenarioFault> faults;
+  WorldConfig world;
+  ScenarioJoystick joystick;
+  std::string joystick_device;  // not in the file: device of a run on the wall clock
+  bool on_wall_clock = false;   // not in the file: time goes on while a behavior is slow
+  std::vector<ScenarioCheck> checks;
+  PluginGate plugins;  // not in the file
+};
+
+// The folders in which the names of its behaviors are looked up.
+PlayFolders folders_of(const ScenarioConfig& scenario);
+
+// Throws InputError with everything that is wrong. The files that it names are there, but not yet read; whether the
+// signals exist is for whoever has the table: refuse_unknown(file, {check.signal, check.signal_place}, "signal", ...).
+// When its robot has plug-ins, whether one of them brings an unknown plant is for whoever loads them.
+ScenarioConfig read_scenario_config(const std::filesystem::path& file);
+ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file);
+
+// The fields of the file, for the schema.
+FieldInfo describe_scenario_config();
+
+}  // namespace kadans

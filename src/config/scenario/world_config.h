@@ -1,0 +1,27 @@
+// The "world" of a scenario: a list of the fixed and moving bodies around the robot, the slope and motion of the
+// ground, and the payloads that the robot carries. The kind of an entry decides which keys it has; plant/world.h
+// explains them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/json/fields.h"
+#include "kadans/model/robot_model.h"
+#include "kadans/plant/world_settings.h"
+
+namespace kadans {
+
+struct WorldConfig {
+  WorldSettings settings;
+  TextPlace place;                       // in a file that has one
+  std::vector<TextPlace> payload_links;  // where each payload's link is named
+};
+
+// Reads the list under the key "world".
+void world_fields(Fields& f, WorldConfig& world, Problems& problems);
+
+// The settings for this robot. Throws InputError when a payload's link is not one of its links.
+const WorldSettings& world_for(const WorldConfig& world, const RobotModel& model, const std::string& file);
+
+}  // namespace kadans

@@ -1,0 +1,118 @@
+#include "dcm_balance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace kadans {
+namespace {
+
+double beyond(double error, double back, double front) noexcept { return error - std::clamp(error, -back, front); }
+
+}  // namespace
+
+DcmBalance::DcmBalance(const ObjectSetup& setup)
+    : standing_(setup), weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {
+  for (JointAxis& axis : joint_axes(setup)) {
+    const Role role = role_of(axis.name);
+    parts_.push_back({.axis = std::move(axis), .role = role});
+  }
+}
+
+DcmBalance::Role DcmBalance::role_of(const std::string& joint) {
+  if (joint.ends_with("_ankle_pitch")) return Role::ankle_pitch;
+  if (joint.ends_with("_hip_pitch")) return Role::hip_pitch;
+  if (joint.ends_with("_hip_roll")) return Role::hip_roll;
+  if (joint.ends_with("_shoulder_pitch")) return Role::shoulder_pitch;
+  throw std::invalid_argument("joint " + joint +
+                              " has no part in balance: it is no *_ankle_pitch, *_hip_pitch, *_hip_roll or "
+                              "*_shoulder_pitch");
+}
+
+void DcmBalance::declare(Declaration& d) {
+  Config& c = config_;
+  d.parameter({"share", "", 0, 1, 1, "Share of all its torques."}, &c.share);
+  d.parameter({"offset_x_m", "m", -0.2, 0.2, 0.02, "Where the divergent component shall be, forward of the ankles."},
+              &c.offset_x_m);
+  d.parameter({"ankle_per_m", "", 0, 10, 1, "Shift of the centre of pressure per error."}, &c.ankle_per_m);
+  d.parameter({"ankle_max_Nm", "Nm", 0, 50, 12, "Bound of an ankle's torque."}, &c.ankle_max_Nm);
+  d.parameter({"smooth_s", "s", 0, 0.1, 0, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
+  d.parameter({"reach_front_m", "m", 0, 0.5, 0.1, "Error forward that the ankles hold."}, &c.reach_front_m);
+  d.parameter({"reach_back_m", "m", 0, 0.5, 0.06, "Error backward that the ankles hold."}, &c.reach_back_m);
+  d.parameter({"reach_side_m", "m", 0, 0.5, 0, "Error to the side that the posture holds."}, &c.reach_side_m);
+  d.parameter({"hip_Nm_per_m", "Nm/m", -5000, 5000, 0, "Torque of a hip per error beyond reach."}, &c.hip_Nm_per_m);
+  d.parameter({"arm_Nm_per_m", "Nm/m", -5000, 5000, 0, "Torque of a shoulder per error beyond reach."},
+              &c.arm_Nm_per_m);
+  d.parameter({"roll_Nm_per_m", "Nm/m", -5000, 5000, 0, "Torque of a hip roll per error to the side."},
+              &c.roll_Nm_per_m);
+  const State& s = state_;
+  d.signal({"com_x_m", "m", "Centre of mass, forward of the feet's middle."}, &s.com_x_m);
+  d.signal({"com_y_m", "m", "Centre of mass, left of the feet's middle."}, &s.com_y_m);
+  d.signal({"com_z_m", "m", "Centre of mass, over the feet's frames."}, &s.com_z_m);
+  d.signal({"dcm_x_m", "m", "Divergent component of motion, forward of the feet's middle."}, &s.dcm_x_m);
+  d.signal({"dcm_y_m", "m", "Divergent component of motion, left of the feet's middle."}, &s.dcm_y_m);
+  d.signal({"beyond_x_m", "m", "What of the error forward is beyond reach."}, &s.beyond_x_m);
+  d.signal({"beyond_y_m", "m", "What of the error to the side is beyond reach."}, &s.beyond_y_m);
+  d.signal({"share", "", "Share of its torques that acts."}, &s.share);
+  for (Part& part : parts_) {
+    d.signal({part.axis.name + ".effort_Nm", "Nm", "Torque asked for."}, &part.effort_Nm);
+  }
+}
+
+void DcmBalance::start(const ControlInput&) noexcept {
+  state_ = {};
+  for (Part& part : parts_) part.effort_Nm = 0;
+}
+
+// False when it does not stand, or something is not measured.
+bool DcmBalance::measure(const ControlInput& input) noexcept {
+  const bool stands = standing_.update(input);
+  const Vec3& com = standing_.com_m();
+  State& s = state_;
+  s.com_x_m = com[0];
+  s.com_y_m = com[1];
+  s.com_z_m = com[2];
+  s.dcm_x_m = standing_.dcm_x_m();
+  s.dcm_y_m = standing_.dcm_y_m();
+  s.beyond_x_m = beyond(s.dcm_x_m - config_.offset_x_m, config_.reach_back_m, config_.reach_front_m);
+  s.beyond_y_m = beyond(s.dcm_y_m, config_.reach_side_m, config_.reach_side_m);
+  return stands;
+}
+
+double DcmBalance::law_Nm(Role role) const noexcept {
+  const Config& c = config_;
+  const State& s = state_;
+  switch (role) {
+    case Role::ankle_pitch: {
+      const double wanted_Nm = weight_N_ * c.ankle_per_m * (s.dcm_x_m - c.offset_x_m) / 2;
+      return std::clamp(wanted_Nm, -c.ankle_max_Nm, c.ankle_max_Nm);
+    }
+    case Role::hip_pitch:
+      return -c.hip_Nm_per_m * s.beyond_x_m;
+    case Role::shoulder_pitch:
+      return c.arm_Nm_per_m * s.beyond_x_m;
+    case Role::hip_roll:
+      return c.roll_Nm_per_m * s.beyond_y_m;
+  }
+  return 0;
+}
+
+void DcmBalance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
+  const bool stands = measure(input);
+  const double most = standing_share_per_s * input.dt_s;
+  state_.share = stands ? state_.share + std::clamp(config_.share - state_.share, -most, most) : 0;
+  const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
+  for (Part& part : parts_) {
+    const double wanted_Nm = stands ? state_.share * law_Nm(part.role) : 0;
+    const double bounded_Nm = std::clamp(wanted_Nm, -part.axis.effort_max_Nm, part.axis.effort_max_Nm);
+    part.effort_Nm = stands ? part.effort_Nm + smooth * (bounded_Nm - part.effort_Nm) : 0;
+    actuation.joints[part.axis.joint] = {.effort_Nm = part.effort_Nm, .mode = ActuationMode::effort};
+  }
+}
+
+std::unique_ptr<ControlObject> make_dcm_balance(const ObjectSetup& setup) {
+  return std::make_unique<DcmBalance>(setup);
+}
+
+}  // namespace kadans

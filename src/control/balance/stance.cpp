@@ -1,0 +1,206 @@
+#include "stance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace kadans {
+namespace {
+
+constexpr double most_effort = 0.9;   // of a joint's; the posture adds its own
+constexpr double narrowest_m = 0.02;  // feet apart by less do not share by p_y
+
+bool bears(std::span<const LegLoad::Bearing> bearings, std::size_t joint) {
+  return std::ranges::any_of(bearings, [joint](const LegLoad::Bearing& b) { return b.joint == joint; });
+}
+
+}  // namespace
+
+Stance::Stance(const ObjectSetup& setup)
+    : standing_(setup),
+      legs_{LegLoad(setup.model, standing_.feet()[0]), LegLoad(setup.model, standing_.feet()[1])},
+      weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {
+  for (JointAxis& axis : joint_axes(setup)) {
+    const bool arm = axis.name.ends_with("_shoulder_pitch");
+    if (!arm && !bears(legs_[0].bearings(), axis.joint) && !bears(legs_[1].bearings(), axis.joint)) {
+      throw std::invalid_argument("joint " + axis.name +
+                                  " has no part in a stance: no foot hangs on it, and it is no " + "*_shoulder_pitch");
+    }
+    parts_.push_back({.axis = std::move(axis), .arm = arm});
+  }
+}
+
+void Stance::declare(Declaration& d) {
+  declare_pressure(d);
+  declare_trunk(d);
+  declare_signals(d);
+}
+
+void Stance::declare_pressure(Declaration& d) {
+  Config& c = config_;
+  d.parameter({"share", "", 0, 1, c.share, "Share of all its torques."}, &c.share);
+  d.parameter({"offset_x_m", "m", -0.2, 0.2, c.offset_x_m, "Where the divergent component shall be, forward."},
+              &c.offset_x_m);
+  d.parameter({"offset_y_m", "m", -0.2, 0.2, c.offset_y_m, "The same, to the left."}, &c.offset_y_m);
+  d.parameter({"pull_x", "", 0, 10, c.pull_x, "Shift of the pressure per error forward."}, &c.pull_x);
+  d.parameter({"pull_y", "", 0, 10, c.pull_y, "Shift of the pressure per error to the side."}, &c.pull_y);
+  d.parameter({"need", "", 1, 10, c.need, "Of pull, what the trunk has to bow for."}, &c.need);
+  d.parameter({"toe_m", "m", 0, 0.5, c.toe_m, "How far before its frame a foot may be pressed."}, &c.toe_m);
+  d.parameter({"heel_m", "m", 0, 0.5, c.heel_m, "How far behind its frame a foot may be pressed."}, &c.heel_m);
+  d.parameter({"flat_m_per_rad", "m/rad", 0, 5, c.flat_m_per_rad, "Pressure shifts back on a foot that tips."},
+              &c.flat_m_per_rad);
+  d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
+  d.parameter({"side_m", "m", 0, 0.5, c.side_m, "How far out of the feet's frames the pressure may go."}, &c.side_m);
+  d.parameter({"grip", "", 0, 2, c.grip, "Most of the force along the ground, per weight."}, &c.grip);
+}
+
+void Stance::declare_trunk(Declaration& d) {
+  Config& c = config_;
+  d.parameter({"pitch_rad", "rad", -1, 1, c.pitch_rad, "How far the trunk leans forward."}, &c.pitch_rad);
+  d.parameter({"upright_Nm_per_rad", "Nm/rad", 0, 2000, c.upright_Nm_per_rad, "Turns the trunk back, forward."},
+              &c.upright_Nm_per_rad);
+  d.parameter({"upright_Nms_per_rad", "Nms/rad", 0, 200, c.upright_Nms_per_rad, "Damps the trunk, forward."},
+              &c.upright_Nms_per_rad);
+  d.parameter({"level_Nm_per_rad", "Nm/rad", 0, 2000, c.level_Nm_per_rad, "Turns the trunk back, to the side."},
+              &c.level_Nm_per_rad);
+  d.parameter({"level_Nms_per_rad", "Nms/rad", 0, 200, c.level_Nms_per_rad, "Damps the trunk, to the side."},
+              &c.level_Nms_per_rad);
+  d.parameter({"height_m", "m", 0, 2, c.height_m, "Of the centre of mass over the feet's frames."}, &c.height_m);
+  d.parameter({"height_N_per_m", "N/m", 0, 20000, c.height_N_per_m, "Lifts it there."}, &c.height_N_per_m);
+  d.parameter({"height_Ns_per_m", "Ns/m", 0, 2000, c.height_Ns_per_m, "Damps it."}, &c.height_Ns_per_m);
+  d.parameter({"lift_N_per_m", "N/m", 0, 5000, c.lift_N_per_m, "Harder on the ground, per distance of the pressure."},
+              &c.lift_N_per_m);
+  d.parameter({"lift_max", "", 0, 1, c.lift_max, "Most of both, per weight."}, &c.lift_max);
+  d.parameter({"turn_max_Nm", "Nm", 0, 200, c.turn_max_Nm, "Bound of the moment that turns the trunk."},
+              &c.turn_max_Nm);
+  d.parameter({"arm_Nm_per_m", "Nm/m", 0, 1000, c.arm_Nm_per_m, "Torque of a shoulder, per pressure beyond the soles."},
+              &c.arm_Nm_per_m);
+  d.parameter({"arm_from_m", "m", 0, 1, c.arm_from_m, "How far beyond that begins."}, &c.arm_from_m);
+  d.parameter({"smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
+}
+
+void Stance::declare_signals(Declaration& d) {
+  const State& s = state_;
+  d.signal({"dcm_x_m", "m", "Divergent component of motion, forward of the feet's middle."}, &s.dcm_x_m);
+  d.signal({"dcm_y_m", "m", "Divergent component of motion, left of the feet's middle."}, &s.dcm_y_m);
+  d.signal({"cop_x_m", "m", "Centre of pressure that is wanted, forward of the feet's middle."}, &s.cop_x_m);
+  d.signal({"cop_y_m", "m", "Centre of pressure that is wanted, left of the feet's middle."}, &s.cop_y_m);
+  d.signal({"turn_x_Nm", "Nm", "Moment that turns the robot, to the right."}, &s.turn_x_Nm);
+  d.signal({"turn_y_Nm", "Nm", "Moment that turns the robot, forward."}, &s.turn_y_Nm);
+  d.signal({"beyond_x_m", "m", "How far before or behind the soles the pressure would have to be."}, &s.beyond_x_m);
+  d.signal({"left", "", "Share of the weight for the left foot."}, &s.left);
+  d.signal({"force_x_N", "N", "Force of the ground that is wanted, forward."}, &s.force_N[0]);
+  d.signal({"force_y_N", "N", "Force of the ground that is wanted, to the left."}, &s.force_N[1]);
+  d.signal({"force_z_N", "N", "Force of the ground that is wanted, upward."}, &s.force_N[2]);
+  d.signal({"share", "", "Share of its torques that acts."}, &s.share);
+  for (Part& part : parts_) {
+    d.signal({part.axis.name + ".effort_Nm", "Nm", "Torque asked for."}, &part.effort_Nm);
+  }
+}
+
+void Stance::start(const ControlInput&) noexcept {
+  state_ = {};
+  for (Part& part : parts_) part.effort_Nm = 0;
+}
+
+std::array<double, 2> Stance::righting_Nm(const BaseStatus& base) const noexcept {
+  const Config& c = config_;
+  return {
+      -c.level_Nm_per_rad * base.roll_rad - c.level_Nms_per_rad * base.angular_velocity_rad_s[0],
+      -c.upright_Nm_per_rad * (base.pitch_rad - c.pitch_rad) - c.upright_Nms_per_rad * base.angular_velocity_rad_s[1]};
+}
+
+void Stance::find_pressure(const BaseStatus& base) noexcept {
+  const Config& c = config_;
+  State& s = state_;
+  s.dcm_x_m = standing_.dcm_x_m();
+  s.dcm_y_m = standing_.dcm_y_m();
+  const Vec3& left = standing_.kinematics().link(standing_.feet()[0]).position_m;
+  const Vec3& right = standing_.kinematics().link(standing_.feet()[1]).position_m;
+  const double apart_m = std::max(left[1] - right[1], narrowest_m), ahead_m = left[0] - right[0];
+  const std::array<double, 2> righting = righting_Nm(base);
+
+  const double reach_m = apart_m / 2 + c.side_m;
+  const Answer side = answer(s.dcm_y_m, c.offset_y_m, c.pull_y, {-reach_m, reach_m}, -righting[0]);
+  s.cop_y_m = side.pressure_m;
+  s.turn_x_Nm = -side.turn_Nm;
+  s.left = std::clamp(0.5 + s.cop_y_m / apart_m, 0.0, 1.0);
+
+  const double between_m = (s.left - 0.5) * ahead_m;
+  const Answer ahead =
+      answer(s.dcm_x_m, c.offset_x_m, c.pull_x, {between_m - c.heel_m, between_m + c.toe_m}, righting[1]);
+  s.cop_x_m = ahead.pressure_m;
+  s.turn_y_Nm = ahead.turn_Nm;
+  s.beyond_x_m = ahead.beyond_m;
+}
+
+// d xi / dt = w0 (xi - p - L / (m g)): a moment on the trunk does what a shift of the pressure does. So L may right the
+// trunk as far as the soles make up for it, and has to bow it where they do not reach.
+Stance::Answer Stance::answer(double dcm_m, double rest_m, double pull, const std::array<double, 2>& sole_m,
+                              double righting_Nm) const noexcept {
+  const double need_m = rest_m + config_.need * (dcm_m - rest_m);
+  const double least_Nm = weight_N_ * (need_m - sole_m[1]), most_Nm = weight_N_ * (need_m - sole_m[0]);
+  const double turn_Nm =
+      std::clamp(std::clamp(righting_Nm, least_Nm, most_Nm), -config_.turn_max_Nm, config_.turn_max_Nm);
+  const double wanted_m = rest_m + pull * (dcm_m - rest_m) - turn_Nm / weight_N_;
+  const double pressure_m = std::clamp(wanted_m, sole_m[0], sole_m[1]);
+  return {.pressure_m = pressure_m, .beyond_m = wanted_m - pressure_m, .turn_Nm = turn_Nm};
+}
+
+void Stance::find_force() noexcept {
+  const Config& c = config_;
+  State& s = state_;
+  const Vec3& com = standing_.com_m();
+  const double braking_m = std::hypot(s.cop_x_m - com[0], s.cop_y_m - com[1]);
+  const double lift_N = c.lift_N_per_m * braking_m + c.height_N_per_m * (c.height_m - com[2]) -
+                        c.height_Ns_per_m * standing_.velocity_m_s()[2];
+  const double height_m = com[2] + c.sole_m;
+  s.force_N[2] = weight_N_ + std::clamp(lift_N, -c.lift_max * weight_N_, c.lift_max * weight_N_);
+  const double most_N = c.grip * s.force_N[2];
+  s.force_N[0] = std::clamp((s.force_N[2] * (com[0] - s.cop_x_m) - s.turn_y_Nm) / height_m, -most_N, most_N);
+  s.force_N[1] = std::clamp((s.force_N[2] * (com[1] - s.cop_y_m) + s.turn_x_Nm) / height_m, -most_N, most_N);
+}
+
+void Stance::load(std::size_t side, double share) noexcept {
+  const State& s = state_;
+  const Pose& foot = standing_.kinematics().link(standing_.feet()[side]);
+  const Vec3& ankle = foot.position_m;
+  const Vec3& other = standing_.kinematics().link(standing_.feet()[1 - side]).position_m;
+  const double between_m = (share - 0.5) * (ankle[0] - other[0]);
+  const double tipped_rad = -std::asin(std::clamp(rotate(foot.orientation, {1, 0, 0})[2], -1.0, 1.0));
+  const double pressed_m = s.cop_x_m - between_m - config_.flat_m_per_rad * tipped_rad;
+  const Vec3 force{share * s.force_N[0], share * s.force_N[1], share * s.force_N[2]};
+  legs_[side].update(standing_.kinematics(), force, {ankle[0] + pressed_m, ankle[1], ankle[2] - config_.sole_m});
+  for (const LegLoad::Bearing& bearing : legs_[side].bearings()) {
+    for (Part& part : parts_) {
+      if (part.axis.joint == bearing.joint) part.wanted_Nm = bearing.effort_Nm;
+    }
+  }
+}
+
+void Stance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
+  const bool stands = standing_.update(input);
+  const double most = standing_share_per_s * input.dt_s;
+  state_.share = stands ? state_.share + std::clamp(config_.share - state_.share, -most, most) : 0;
+  if (stands) {
+    find_pressure(input.status.base);
+    find_force();
+    load(0, state_.left);
+    load(1, 1 - state_.left);
+  }
+  const State& s = state_;
+  const double arm_m = config_.arm_from_m;
+  const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
+  for (Part& part : parts_) {
+    if (part.arm) part.wanted_Nm = config_.arm_Nm_per_m * (s.beyond_x_m - std::clamp(s.beyond_x_m, -arm_m, arm_m));
+    const double wanted_Nm = stands ? state_.share * part.wanted_Nm : 0;
+    const double most_Nm = most_effort * part.axis.effort_max_Nm;
+    const double bounded_Nm = std::clamp(wanted_Nm, -most_Nm, most_Nm);
+    part.effort_Nm = stands ? part.effort_Nm + smooth * (bounded_Nm - part.effort_Nm) : 0;
+    actuation.joints[part.axis.joint] = {.effort_Nm = part.effort_Nm, .mode = ActuationMode::effort};
+  }
+}
+
+std::unique_ptr<ControlObject> make_stance(const ObjectSetup& setup) { return std::make_unique<Stance>(setup); }
+
+}  // namespace kadans

@@ -1,0 +1,172 @@
+#include "computed_torque.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kadans/control/model_state.h"
+
+namespace kadans {
+namespace {
+
+constexpr double period_max_s = 0.05;  // of the high level, for looking ahead
+
+}  // namespace
+
+// Until the high level has seen the robot the mass matrix is that of all joints at 0, and there is no bias.
+ComputedTorque::ComputedTorque(const ObjectSetup& setup) : model_(std::make_unique<ModelState>(setup.model)) {
+  for (JointAxis& axis : joint_axes(setup)) parts_.push_back({.axis = std::move(axis)});
+  const Eigen::MatrixXd& mass = model_->dynamics().mass_matrix();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      draft_.mass(i, j) =
+          mass(static_cast<Eigen::Index>(parts_[i].axis.joint), static_cast<Eigen::Index>(parts_[j].axis.joint));
+    }
+  }
+  data_.publish(draft_);
+}
+
+ComputedTorque::~ComputedTorque() = default;
+
+void ComputedTorque::declare(Declaration& declaration) {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    AxisTables tables(declaration, parts_[i].axis, static_cast<std::uint32_t>(i));
+    declare(tables, parts_[i]);
+  }
+  declaration.signal({"model_age_s", "s", "Since mass matrix and bias were measured."}, &model_age_s_);
+}
+
+void ComputedTorque::declare(AxisTables& t, Part& part) {
+  Config& c = part.config;
+  const State& s = part.state;
+  const double most = part.axis.effort_max_Nm;
+  t.tunable("kp_per_s2", "1/s2", 0, 1e6, 0, &c.kp_per_s2, "Acceleration per position error.");
+  t.tunable("kd_per_s", "1/s", 0, 1e4, 0, &c.kd_per_s, "Acceleration per velocity error.");
+  t.tunable("ki_Nm_per_rads", "Nm/(rad s)", 0, 50000, 0, &c.ki_Nm_per_rads, "Growth of torque per position error.");
+  t.tunable("integral_max_Nm", "Nm", 0, most, most, &c.integral_max_Nm, "Bound of the integral.");
+  t.tunable("rotor_inertia_kg_m2", "kg m2", 0, 1, 0, &c.rotor_inertia_kg_m2, "The drive's rotor, seen at the joint.");
+  t.tunable("viscous_Nms_per_rad", "Nm s/rad", 0, 10, 0, &c.viscous_Nms_per_rad, "Friction that the reference meets.");
+  t.tunable("effort_max_Nm", "Nm", 0, most, most, &c.effort_max_Nm, "Bound of the torque.");
+  t.position_setpoint(0);
+  t.signal("reference_rad", "rad", "Where the joint is led.", &s.reference_rad);
+  t.signal("reference_velocity_rad_s", "rad/s", "How fast it is led.", &s.reference_velocity_rad_s);
+  t.signal("error_rad", "rad", "Reference minus position.", &s.error_rad);
+  t.signal("acceleration_rad_s2", "rad/s2", "Acceleration asked of the joint.", &s.acceleration_rad_s2);
+  t.signal("integral_Nm", "Nm", "Torque of the integral.", &s.integral_Nm);
+  t.signal("effort_Nm", "Nm", "Torque asked for.", &s.effort_Nm);
+  t.signal("saturated", "", "Whether the torque is limited.", &s.saturated);
+}
+
+void ComputedTorque::update(const Snapshot& snapshot) {
+  const double since_s = std::clamp(1e-9 * static_cast<double>(snapshot.time_ns - last_update_ns_), 0.0, period_max_s);
+  last_update_ns_ = snapshot.time_ns;
+  if (!model_->update(snapshot, 0.5 * since_s)) return;
+  const Dynamics& dynamics = model_->dynamics();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(parts_[i].axis.joint);
+    draft_.bias_Nm[i] = dynamics.bias()[row];
+    for (std::size_t j = 0; j <= i; ++j) {
+      draft_.mass(i, j) = dynamics.mass_matrix()(row, static_cast<Eigen::Index>(parts_[j].axis.joint));
+    }
+  }
+  draft_.time_ns = snapshot.time_ns;
+  data_.publish(draft_);
+}
+
+void ComputedTorque::start(const ControlInput& input) noexcept {
+  started_ns_ = input.time_ns;
+  for (Part& part : parts_) take_over(part, input);
+}
+
+void ComputedTorque::take_over(Part& part, const ControlInput& input) noexcept {
+  const JointState& joint = input.joints.joints[part.axis.joint];
+  part.running = part.fresh = std::isfinite(joint.position_rad) && std::isfinite(joint.velocity_rad_s);
+  if (!part.running) return;
+  const Handover handover{joint, input.last.joints[part.axis.joint], input.dt_s};
+  continue_motion(part.reference, joint.position_rad, joint.velocity_rad_s, part.axis);
+  part.state.integral_Nm = 0;
+  part.takeover.start(effort_before_Nm(handover));
+}
+
+// The acceleration to ask of the joint.
+void ComputedTorque::aim(Part& part, const ControlInput& input) noexcept {
+  const JointState& joint = input.joints.joints[part.axis.joint];
+  const Config& c = part.config;
+  State& s = part.state;
+  if (!(std::isfinite(joint.position_rad) && std::isfinite(joint.velocity_rad_s)))
+    part.running = false;
+  else if (!part.running)
+    take_over(part, input);
+  const MinimumJerk::State& reference =
+      part.running ? part.reference.step(part.fresh ? 0 : input.dt_s) : part.reference.state();
+  s.reference_rad = reference.position;
+  s.reference_velocity_rad_s = reference.velocity;
+  s.error_rad = reference.position - joint.position_rad;
+  s.acceleration_rad_s2 =
+      reference.acceleration + c.kp_per_s2 * s.error_rad + c.kd_per_s * (reference.velocity - joint.velocity_rad_s);
+}
+
+double ComputedTorque::settle(Part& part, double law_Nm, bool known, double dt_s) noexcept {
+  const Config& c = part.config;
+  State& s = part.state;
+  const double integral_max_Nm = c.ki_Nm_per_rads > 0 ? c.integral_max_Nm : 0;  // what never moves should keep nothing
+  const double offset_Nm = part.takeover.step(law_Nm, known, dt_s, s.integral_Nm, integral_max_Nm);
+  const double unlimited_Nm = law_Nm + offset_Nm + s.integral_Nm;
+  s.effort_Nm = std::clamp(unlimited_Nm, -c.effort_max_Nm, c.effort_max_Nm);
+  s.saturated = s.effort_Nm != unlimited_Nm;
+  const double growth_Nm = c.ki_Nm_per_rads * s.error_rad * dt_s;
+  const bool winds_up = s.saturated && growth_Nm * unlimited_Nm > 0;
+  if (!winds_up) s.integral_Nm = std::clamp(s.integral_Nm + growth_Nm, -c.integral_max_Nm, c.integral_max_Nm);
+  part.takeover.leave(s.effort_Nm);
+  return s.effort_Nm;
+}
+
+void ComputedTorque::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
+  const auto newest = data_.read();
+  const ModelData& model = *newest;
+  const bool known = model.time_ns >= started_ns_;
+  model_age_s_ = 1e-9 * static_cast<double>(input.time_ns - (known ? model.time_ns : started_ns_));
+  std::array<double, max_joints> acceleration_rad_s2{};
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    aim(parts_[i], input);
+    acceleration_rad_s2[i] = parts_[i].running ? parts_[i].state.acceleration_rad_s2 : 0;
+  }
+  const std::array<double, max_joints> inertial_Nm = model.mass.times(acceleration_rad_s2, parts_.size());
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& part = parts_[i];
+    double effort_Nm = std::numeric_limits<double>::quiet_NaN();
+    if (part.running) {
+      const double law_Nm = inertial_Nm[i] + part.config.rotor_inertia_kg_m2 * acceleration_rad_s2[i] +
+                            model.bias_Nm[i] + part.config.viscous_Nms_per_rad * part.state.reference_velocity_rad_s;
+      effort_Nm = settle(part, law_Nm, known, part.fresh ? 0 : input.dt_s);
+      part.fresh = false;
+    }
+    actuation.joints[part.axis.joint] = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};
+  }
+}
+
+void ComputedTorque::set_point(std::uint32_t channel, double value, double duration_s) noexcept {
+  parts_[channel].reference.move(value, duration_s);
+}
+
+void ComputedTorque::cancel_motion(std::uint32_t channel) noexcept { parts_[channel].reference.stop(cancel_time_s); }
+
+bool ComputedTorque::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+  const MinimumJerk::State& now = parts_[channel].reference.state();
+  return state = {now.position, now.velocity, now.acceleration}, true;
+}
+
+void ComputedTorque::follow(std::uint32_t channel, const SetpointState& state) noexcept {
+  parts_[channel].reference.follow({state.value, state.velocity, state.acceleration});
+}
+
+double ComputedTorque::motion_remaining_s() const noexcept {
+  double remaining_s = 0;
+  for (const Part& part : parts_) remaining_s = std::max(remaining_s, part.reference.remaining_s());
+  return remaining_s;
+}
+
+std::unique_ptr<ControlObject> make_computed_torque(const ObjectSetup& setup) {
+  return std::make_unique<ComputedTorque>(setup);
+}
+
+}  // namespace kadans

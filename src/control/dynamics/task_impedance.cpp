@@ -1,0 +1,195 @@
+#include "task_impedance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "signal/nearest_name.h"
+
+namespace kadans {
+namespace {
+
+constexpr double point_max_m = 1;
+constexpr const char* direction_names[] = {"x", "y", "z"};
+
+std::size_t link_of(const ObjectSetup& setup) {
+  const std::string* const name = setup.options.find("link");
+  if (name == nullptr) throw OptionError("link", "it needs the option 'link': the link at the limb's end");
+  const auto link = setup.model.find_link(*name);
+  if (!link)
+    throw OptionError("link", "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
+  return *link;
+}
+
+}  // namespace
+
+TaskImpedance::TaskImpedance(const ObjectSetup& setup) : chain_(setup.model, link_of(setup)) {
+  const auto segments = chain_.segments();
+  for (JointAxis& axis : joint_axes(setup)) {
+    const auto moves = [&](const LimbChain::Segment& segment) { return segment.joint == axis.joint; };
+    const auto found = std::find_if(segments.begin(), segments.end(), moves);
+    if (found == segments.end()) {
+      throw OptionError("link", "joint " + axis.name + " does not move link " + *setup.options.find("link"));
+    }
+    parts_.push_back({.axis = std::move(axis), .segment = static_cast<std::size_t>(found - segments.begin())});
+  }
+}
+
+void TaskImpedance::declare(Declaration& declaration) {
+  for (std::size_t i = 0; i < 3; ++i) declare_direction(declaration, i);
+  declaration.parameter({"force_max_N", "N", 0, 5000, 200, "Bound of the force at the point."}, &force_max_N_);
+  declaration.signal({"force_limited", "", "Whether the force at the point is limited."}, &force_limited_);
+  for (Part& part : parts_) declare_joint(declaration, part);
+}
+
+void TaskImpedance::declare_direction(Declaration& declaration, std::size_t direction) {
+  const std::string name = direction_names[direction];
+  Config& c = directions_[direction].config;
+  const State& s = directions_[direction].state;
+  const double middle_m = chain_.root_m()[direction], far_m = chain_.reach_m() + point_max_m;
+  declaration.setpoint({.name = name + "_m",
+                        .unit = "m",
+                        .min = middle_m - far_m,
+                        .max = middle_m + far_m,
+                        .doc = "Where the point shall be, in the base frame.",
+                        .channel = static_cast<std::uint32_t>(direction),
+                        .joint = no_joint});
+  declaration.parameter({"point_" + name + "_m", "m", -point_max_m, point_max_m, 0, "The point, in the link's frame."},
+                        &point_in_link_m_[direction]);
+  declaration.parameter({name + ".stiffness_N_per_m", "N/m", 0, 50000, 0, "Force per distance from the reference."},
+                        &c.stiffness_N_per_m);
+  declaration.parameter({name + ".damping_Ns_per_m", "N s/m", 0, 5000, 0, "Force per velocity against the reference."},
+                        &c.damping_Ns_per_m);
+  declaration.signal({name + ".reference_m", "m", "Where the point is led."}, &s.reference_m);
+  declaration.signal({name + ".position_m", "m", "Where the point is, in the base frame."}, &s.position_m);
+  declaration.signal({name + ".error_m", "m", "Reference minus position."}, &s.error_m);
+  declaration.signal({name + ".force_N", "N", "Force asked for at the point."}, &s.force_N);
+}
+
+void TaskImpedance::declare_joint(Declaration& declaration, Part& part) {
+  AxisTables tables(declaration, part.axis, 0);
+  JointConfig& c = part.config;
+  const double most = part.axis.effort_max_Nm;
+  tables.tunable("posture_Nm_per_rad", "Nm/rad", 0, 5000, 0, &c.posture_Nm_per_rad, "Spring to the pose of the start.");
+  tables.tunable("damping_Nms_per_rad", "Nm s/rad", 0, 500, 0, &c.damping_Nms_per_rad, "Damper of the joint itself.");
+  tables.tunable("effort_max_Nm", "Nm", 0, most, most, &c.effort_max_Nm, "Bound of the torque.");
+  tables.signal("effort_Nm", "Nm", "Torque asked for.", &part.output.effort_Nm);
+  tables.signal("saturated", "", "Whether the torque is limited.", &part.output.saturated);
+}
+
+bool TaskImpedance::measured(const JointStates& joints) const noexcept {
+  return std::all_of(chain_.segments().begin(), chain_.segments().end(), [&](const LimbChain::Segment& segment) {
+    const JointState& joint = joints.joints[segment.joint];
+    return std::isfinite(joint.position_rad) && std::isfinite(joint.velocity_rad_s);
+  });
+}
+
+void TaskImpedance::take_over_point(const JointStates& joints) noexcept {
+  const Vec3 at = chain_.update(joints, point_in_link_m_);
+  for (std::size_t i = 0; i < 3; ++i) directions_[i].reference.reset(at[i]);
+  point_started_m_ = point_in_link_m_;
+  for (Part& part : parts_) part.posture_rad = joints.joints[part.axis.joint].position_rad;
+  located_ = true;
+}
+
+void TaskImpedance::start(const ControlInput& input) noexcept {
+  located_ = false;
+  fresh_ = true;
+  for (Part& part : parts_) {
+    const std::size_t joint = part.axis.joint;
+    part.takeover.start(effort_before_Nm({input.joints.joints[joint], input.last.joints[joint], input.dt_s}));
+  }
+}
+
+void TaskImpedance::parameters_changed() noexcept {
+  if (point_in_link_m_ == point_started_m_ || !located_) return;
+  located_ = false;
+  for (Part& part : parts_) part.takeover.start(part.output.effort_Nm);
+}
+
+// The force at the point, in each direction.
+void TaskImpedance::pull(const JointStates& joints, double dt_s) noexcept {
+  const Vec3 at = chain_.update(joints, point_in_link_m_);
+  Vec3 velocity_m_s{};
+  for (const LimbChain::Segment& segment : chain_.segments()) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      velocity_m_s[i] += segment.column_m_per_rad[i] * joints.joints[segment.joint].velocity_rad_s;
+    }
+  }
+  double length2_N2 = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    State& s = directions_[i].state;
+    const Config& c = directions_[i].config;
+    const MinimumJerk::State& reference = directions_[i].reference.step(dt_s);
+    s.reference_m = reference.position;
+    s.position_m = at[i];
+    s.error_m = reference.position - at[i];
+    s.force_N = c.stiffness_N_per_m * s.error_m + c.damping_Ns_per_m * (reference.velocity - velocity_m_s[i]);
+    length2_N2 += s.force_N * s.force_N;
+  }
+  force_limited_ = length2_N2 > force_max_N_ * force_max_N_;
+  if (!force_limited_) return;
+  const double share = force_max_N_ / std::sqrt(length2_N2);
+  for (Direction& direction : directions_) direction.state.force_N *= share;
+}
+
+double TaskImpedance::law_Nm(const Part& part, const JointState& joint) const noexcept {
+  double sum_Nm = part.config.posture_Nm_per_rad * (part.posture_rad - joint.position_rad) -
+                  part.config.damping_Nms_per_rad * joint.velocity_rad_s;
+  if (!located_) return sum_Nm;
+  const Vec3& column = chain_.segments()[part.segment].column_m_per_rad;
+  for (std::size_t i = 0; i < 3; ++i) sum_Nm += column[i] * directions_[i].state.force_N;
+  return sum_Nm;
+}
+
+void TaskImpedance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
+  const JointStates& joints = input.joints;
+  const double dt_s = fresh_ ? 0 : input.dt_s;
+  fresh_ = false;
+  if (!measured(joints)) {
+    located_ = false;
+    for (Direction& direction : directions_) direction.state.force_N = 0;
+  } else {
+    if (!located_) take_over_point(joints);
+    pull(joints, dt_s);
+  }
+  for (Part& part : parts_) {
+    const JointState& joint = joints.joints[part.axis.joint];
+    const double law = law_Nm(part, joint);
+    double integral_Nm = 0;  // there is none
+    const double unlimited_Nm = law + part.takeover.step(law, true, dt_s, integral_Nm, 0);
+    part.output.effort_Nm = std::clamp(unlimited_Nm, -part.config.effort_max_Nm, part.config.effort_max_Nm);
+    part.output.saturated = part.output.effort_Nm != unlimited_Nm;
+    actuation.joints[part.axis.joint] = {.effort_Nm = part.output.effort_Nm, .mode = ActuationMode::effort};
+  }
+}
+
+void TaskImpedance::set_point(std::uint32_t channel, double value, double duration_s) noexcept {
+  directions_[channel].reference.move(value, duration_s);
+}
+
+void TaskImpedance::cancel_motion(std::uint32_t channel) noexcept {
+  directions_[channel].reference.stop(cancel_time_s);
+}
+
+bool TaskImpedance::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+  const MinimumJerk::State& now = directions_[channel].reference.state();
+  return state = {now.position, now.velocity, now.acceleration}, true;
+}
+
+void TaskImpedance::follow(std::uint32_t channel, const SetpointState& state) noexcept {
+  directions_[channel].reference.follow({state.value, state.velocity, state.acceleration});
+}
+
+double TaskImpedance::motion_remaining_s() const noexcept {
+  double remaining_s = 0;
+  for (const Direction& direction : directions_) remaining_s = std::max(remaining_s, direction.reference.remaining_s());
+  return remaining_s;
+}
+
+std::unique_ptr<ControlObject> make_task_impedance(const ObjectSetup& setup) {
+  return std::make_unique<TaskImpedance>(setup);
+}
+
+}  // namespace kadans

@@ -1,0 +1,121 @@
+#include "setpoint_motions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kadans {
+
+SetpointMotions::SetpointMotions(Catalog& catalog, ControlSets& sets)
+    : setpoints_(catalog.setpoints), sets_(sets), motions_(catalog.setpoints.size()) {
+  active_.reserve(motions_.size());
+}
+
+bool SetpointMotions::acceptable(const Command& command, const SetpointTable& setpoints) noexcept {
+  if (!setpoints.accepts(command.index, command.value) || !setpoints[command.index].follows) return false;
+  if (!(command.duration_s >= 0 && command.duration_s <= motion_duration_max_s)) return false;
+  if (command.kind == CommandKind::via_point) {
+    return command.duration_s > 0 && command.count < CubicSpline::points_max;
+  }
+  return command.velocity > 0 && std::isfinite(command.velocity) && command.acceleration > 0 &&
+         std::isfinite(command.acceleration);
+}
+
+SetpointState SetpointMotions::now(SetpointId id) const noexcept {
+  SetpointState state;
+  (void)object(id).setpoint_state(setpoints_[id].channel, state);
+  return state;
+}
+
+MotionProfile SetpointMotions::profile(const SetpointState& from, double target, double velocity_max,
+                                       double acceleration_max, double duration_s) noexcept {
+  const double rounding_s = duration_s > 0 ? std::min(corner_s, 0.1 * duration_s) : corner_s;
+  MotionProfile profile;
+  profile.set_state({from.value, from.velocity, from.acceleration});
+  (void)profile.move(target, {velocity_max, acceleration_max, acceleration_max / rounding_s}, duration_s);
+  return profile;
+}
+
+void SetpointMotions::begin(const Command& command) noexcept {
+  if (!sets_.runs(setpoints_[command.index].owner)) return;  // it will start where its joints are
+  Motion& motion = motions_[command.index];
+  if (motion.kind == Motion::Kind::none) {
+    active_.push_back(command.index);
+    motion.led = false;
+  }
+  if (command.kind == CommandKind::trapezoid) {
+    motion.kind = Motion::Kind::trapezoid;
+    motion.trapezoid =
+        profile(now(command.index), command.value, command.velocity, command.acceleration, command.duration_s);
+    return;
+  }
+  if (command.count == 0 || motion.kind != Motion::Kind::spline) {
+    const SetpointState from = now(command.index);
+    motion.spline.begin(from.value, from.velocity);
+    motion.time_s = 0;
+  }
+  motion.kind = Motion::Kind::spline;
+  motion.planned = false;
+  (void)motion.spline.add(command.value, command.duration_s);
+}
+
+void SetpointMotions::drop(SetpointId id) noexcept {
+  if (motions_[id].kind == Motion::Kind::none) return;
+  motions_[id].kind = Motion::Kind::none;
+  active_.erase(std::find(active_.begin(), active_.end(), id));
+}
+
+bool SetpointMotions::still_led(SetpointId id) const noexcept {
+  const Motion& motion = motions_[id];
+  if (!sets_.runs(setpoints_[id].owner)) return false;
+  const SetpointState state = now(id);
+  return !motion.led || (state.value == motion.told.value && state.velocity == motion.told.velocity);
+}
+
+SetpointState SetpointMotions::advance(Motion& motion, double dt_s) noexcept {
+  if (motion.kind == Motion::Kind::trapezoid) {
+    const MotionProfile::State& state = motion.trapezoid.step(dt_s);
+    return {state.position, state.velocity, state.acceleration};
+  }
+  if (!motion.planned) motion.spline.plan();
+  motion.planned = true;
+  motion.time_s += dt_s;
+  return motion.spline.at(motion.time_s);
+}
+
+double SetpointMotions::remaining_s(const Motion& motion) noexcept {
+  if (motion.kind == Motion::Kind::trapezoid) return motion.trapezoid.remaining_s();
+  return std::max(0.0, motion.spline.duration_s() - motion.time_s);
+}
+
+void SetpointMotions::step(double dt_s) noexcept {
+  std::erase_if(active_, [&](SetpointId id) {
+    Motion& motion = motions_[id];
+    bool over = !still_led(id);
+    if (!over) {
+      motion.led = true;
+      motion.told = advance(motion, dt_s);
+      object(id).follow(setpoints_[id].channel, motion.told);
+      over = !(remaining_s(motion) > 0);
+    }
+    if (over) motion.kind = Motion::Kind::none;
+    return over;
+  });
+}
+
+void SetpointMotions::fill(Snapshot& snapshot) const noexcept {
+  const std::size_t shown = std::min(motions_.size(), max_setpoints_shown);
+  snapshot.setpoint_count = static_cast<std::uint32_t>(shown);
+  for (SetpointId id = 0; id < shown; ++id) {
+    SetpointStatus& status = snapshot.setpoints[id];
+    status = {};
+    if (!setpoints_[id].follows || !sets_.runs(setpoints_[id].owner)) continue;
+    const SetpointState state = now(id);
+    status = {state.value, state.velocity};
+  }
+  for (const SetpointId id : active_) {
+    double& left_s = snapshot.objects[setpoints_[id].owner].motion_remaining_s;
+    left_s = std::max(left_s, remaining_s(motions_[id]));
+  }
+}
+
+}  // namespace kadans

@@ -1,0 +1,69 @@
+// Plans motions of set-points above the control objects, so that every object has them: each tick the object is told
+// where its set-point is. (The minimum-jerk motion of a plain set-point is the object's own.)
+//
+//   trapezoid  speeds up, cruises and slows down within limits of velocity and acceleration (motion_profile.h). The
+//              corners are rounded over corner_s, so that no torque steps. The target may change while it runs.
+//   spline     a curve through points at given times (cubic_spline.h)
+//
+// A motion begins with the present position and velocity of the set-point, so it replaces another motion without a
+// jump. A plain set-point or a cancellation ends a motion; the object then goes on from where it was led. A motion is
+// also dropped when its object leaves the control set, or when the object has started anew and its set-point is no
+// longer where it was led.
+//
+// One owner, the control thread; nothing here allocates after construction, locks or throws.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cubic_spline.h"
+#include "kadans/control/catalog.h"
+#include "kadans/control/control_sets.h"
+#include "kadans/control/motion_profile.h"
+#include "kadans/signal/command.h"
+
+namespace kadans {
+
+class SetpointMotions {
+ public:
+  // For the set-points that `sets` marked in the catalog as ones that can be led.
+  SetpointMotions(Catalog& catalog, ControlSets& sets);
+
+  // Whether a command may be given to begin: a known set-point that can be led, limits and durations in their ranges.
+  static bool acceptable(const Command& command, const SetpointTable& setpoints) noexcept;
+  void begin(const Command& command) noexcept;  // trapezoid or via_point
+  void drop(SetpointId id) noexcept;            // the object goes on by itself
+  // Each tick, after the commands and before the objects.
+  void step(double dt_s) noexcept;
+  // Writes into the snapshot where all set-points are, and how long their objects still move.
+  void fill(Snapshot& snapshot) const noexcept;
+
+  // The motion of a trapezoid with these limits; a duration of 0 is as fast as they allow.
+  static MotionProfile profile(const SetpointState& from, double target, double velocity_max, double acceleration_max,
+                               double duration_s) noexcept;
+  static constexpr double corner_s = 0.01;  // at most a tenth of the duration
+
+ private:
+  struct Motion {
+    enum class Kind : std::uint8_t { none, trapezoid, spline };
+    Kind kind = Kind::none;
+    bool led = false;      // the object has been led in an earlier tick
+    SetpointState told;    // where it was led to
+    bool planned = false;  // of a spline: plan() was called after its last point
+    double time_s = 0;     // of a spline
+    MotionProfile trapezoid;
+    CubicSpline spline;
+  };
+  ControlObject& object(SetpointId id) const noexcept { return sets_.object(setpoints_[id].owner); }
+  SetpointState now(SetpointId id) const noexcept;
+  bool still_led(SetpointId id) const noexcept;
+  static SetpointState advance(Motion& motion, double dt_s) noexcept;
+  static double remaining_s(const Motion& motion) noexcept;
+
+  const SetpointTable& setpoints_;
+  ControlSets& sets_;
+  std::vector<Motion> motions_;     // by SetpointId
+  std::vector<SetpointId> active_;  // those under way
+};
+
+}  // namespace kadans

@@ -1,0 +1,219 @@
+#include "command_inbox.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace kadans {
+namespace {
+
+// While the emergency stop holds nothing is cleared.
+bool clears(const Command& command, const Safety& safety) noexcept {
+  return command.kind == CommandKind::clear_faults && !safety.stopped();
+}
+
+// Orders after which a joint stays where it is, or lets go no more than it does.
+bool keeps_still(const Command& command) noexcept {
+  const auto order = static_cast<DriveOrder>(command.count);
+  return order == DriveOrder::disable || order == DriveOrder::reset || order == DriveOrder::brake;
+}
+
+}  // namespace
+
+CommandInbox::CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& sets,
+                           std::uint32_t commands_per_tick_max, std::int64_t age_max_ns)
+    : queue_(queue),
+      catalog_(catalog),
+      sets_(sets),
+      commands_per_tick_max_(commands_per_tick_max),
+      age_max_ns_(age_max_ns),
+      motions_(catalog, sets) {
+  if (commands_per_tick_max_ + 1 < max_transaction) {
+    throw std::invalid_argument("commands_per_tick_max " + std::to_string(commands_per_tick_max_) +
+                                " would never let the largest transaction pass: at least " +
+                                std::to_string(max_transaction - 1));
+  }
+}
+
+RefusalReason CommandInbox::judge(const Command& command) const noexcept {
+  using enum RefusalReason;
+  const auto known = [&](std::size_t size, bool accepted) {
+    return command.index >= size ? unknown : accepted ? none : out_of_range;
+  };
+  const auto of_setpoint = [&] {
+    return known(catalog_.setpoints.size(), catalog_.setpoints.accepts(command.index, command.value));
+  };
+  switch (command.kind) {
+    case CommandKind::transaction:
+      return malformed;  // a header inside a transaction
+    case CommandKind::set_parameter:
+      return known(catalog_.parameters.size(), catalog_.parameters.accepts(command.index, command.value));
+    case CommandKind::set_point: {
+      const bool timely = command.duration_s >= 0 && command.duration_s <= motion_duration_max_s;
+      return of_setpoint() != none ? of_setpoint() : timely ? none : motion;
+    }
+    case CommandKind::cancel_motion:
+      return known(catalog_.setpoints.size(), true);
+    case CommandKind::switch_set:
+      return known(catalog_.sets.size(), true);
+    case CommandKind::clear_faults:
+      return none;
+    case CommandKind::trapezoid:
+    case CommandKind::via_point:
+      if (of_setpoint() != none) return of_setpoint();
+      return SetpointMotions::acceptable(command, catalog_.setpoints) ? none : motion;
+    case CommandKind::order_drive: {
+      const bool is_order = command.count >= 1 && command.count <= static_cast<std::uint32_t>(last_drive_order);
+      return is_order ? known(catalog_.model->joints.size(), true) : malformed;
+    }
+  }
+  return malformed;
+}
+
+RefusalReason CommandInbox::held(const Command& command, const Safety& safety, SetMask active,
+                                 std::uint16_t& joint) const noexcept {
+  if (clears(command, safety) || command.kind == CommandKind::cancel_motion) return RefusalReason::none;
+  if (command.kind == CommandKind::order_drive)
+    return safety.stopped() && !keeps_still(command) ? RefusalReason::robot_held : RefusalReason::none;
+  if (safety.robot_level() >= SafetyLevel::hold) return RefusalReason::robot_held;
+  const auto joint_held = [&](std::size_t at) {
+    if (safety.joint_level(at) != SafetyLevel::hold) return false;
+    joint = static_cast<std::uint16_t>(at);
+    return true;
+  };
+  const auto object_held = [&](std::uint32_t object) {
+    return object < catalog_.objects.size() && std::ranges::any_of(catalog_.objects[object].joints, joint_held);
+  };
+  bool is_held = false;
+  switch (command.kind) {
+    case CommandKind::set_point:
+    case CommandKind::trapezoid:
+    case CommandKind::via_point: {
+      const Setpoint& setpoint = catalog_.setpoints[command.index];
+      is_held =
+          setpoint.joint < catalog_.model->joints.size() ? joint_held(setpoint.joint) : object_held(setpoint.owner);
+      break;
+    }
+    case CommandKind::set_parameter:
+      is_held = object_held(catalog_.parameters.owner(command.index));
+      break;
+    case CommandKind::switch_set: {
+      const SetMask changed = (active ^ sets_.partition().after(active, command.index)) | set_bit(command.index);
+      each_bit(sets_.partition().joints(changed), [&](std::uint32_t at) { is_held = is_held || joint_held(at); });
+      break;
+    }
+    default:
+      break;
+  }
+  return is_held ? RefusalReason::joint_held : RefusalReason::none;
+}
+
+Refusal CommandInbox::judge_transaction(std::uint32_t count, const Safety& safety) const noexcept {
+  bool cleared = false;
+  SetMask active = sets_.active();
+  for (std::uint32_t i = 1; i <= count; ++i) {
+    const Command& command = queue_.peek(i);
+    Refusal refusal{.kind = command.kind, .reason = judge(command), .index = command.index, .value = command.value};
+    cleared = cleared || clears(command, safety);
+    if (refusal.reason == RefusalReason::none && !cleared)
+      refusal.reason = held(command, safety, active, refusal.joint);
+    if (refusal.reason != RefusalReason::none) return refusal;
+    if (command.kind == CommandKind::switch_set) active = sets_.partition().after(active, command.index);
+  }
+  return {};
+}
+
+void CommandInbox::refuse(const Command& header, Refusal refusal, std::uint64_t tick, Safety& safety) noexcept {
+  refusal.sequence = header.sequence;
+  refusals_[transactions_refused_++ % refusals_shown] = refusal;
+  state_.refused += header.count;
+  const FaultCode code = refusal.reason == RefusalReason::too_old ? FaultCode::command_old : FaultCode::command_refused;
+  safety.raise({.code = code, .tick = tick, .value = static_cast<double>(header.sequence)});
+}
+
+void CommandInbox::fill(Snapshot& snapshot) const noexcept {
+  snapshot.transactions_applied = state_.last_transaction;
+  snapshot.commands_refused = state_.refused;
+  if (snapshot.transactions_refused == transactions_refused_) return;
+  snapshot.transactions_refused = transactions_refused_;
+  snapshot.refusals = refusals_;
+}
+
+void CommandInbox::execute(const Command& command, const ControlInput& input, Safety& safety) noexcept {
+  switch (command.kind) {
+    case CommandKind::transaction:
+      break;
+    case CommandKind::set_parameter:
+      if (catalog_.parameters.set(command.index, command.value))
+        retuned_[catalog_.parameters.owner(command.index)] = true;
+      break;
+    case CommandKind::set_point: {
+      const Setpoint& setpoint = catalog_.setpoints[command.index];
+      motions_.drop(command.index);
+      sets_.object(setpoint.owner).set_point(setpoint.channel, command.value, command.duration_s);
+      break;
+    }
+    case CommandKind::cancel_motion: {
+      const Setpoint& setpoint = catalog_.setpoints[command.index];
+      motions_.drop(command.index);
+      sets_.object(setpoint.owner).cancel_motion(setpoint.channel);
+      break;
+    }
+    case CommandKind::switch_set:
+      notify_owners();  // an object starts with the parameters set before it
+      sets_.switch_to(command.index);
+      sets_.start_newcomers(input);
+      break;
+    case CommandKind::clear_faults:
+      safety.clear();
+      if (safety.came_back()) sets_.restart(input);
+      break;
+    case CommandKind::trapezoid:
+    case CommandKind::via_point:
+      motions_.begin(command);
+      break;
+    case CommandKind::order_drive:
+      drives_[command.index].order = static_cast<DriveOrder>(command.count);
+      ++drives_[command.index].number;
+      break;
+  }
+}
+
+void CommandInbox::notify_owners() noexcept {
+  for (std::uint32_t i = 0; i < sets_.size(); ++i) {
+    if (std::exchange(retuned_[i], false)) sets_.object(i).parameters_changed();
+  }
+}
+
+void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept {
+  std::uint32_t share = commands_per_tick_max_;
+  std::size_t waiting = queue_.size();
+  while (waiting > 0) {
+    const Command header = queue_.peek();
+    const bool whole =
+        header.kind == CommandKind::transaction && header.count < waiting && header.count < max_transaction;
+    if (!whole) {  // not ours: a producer that does not keep the rules; nothing behind it can be trusted
+      state_.refused += static_cast<std::uint32_t>(waiting);
+      queue_.drop(waiting);
+      safety.raise({.code = FaultCode::command_refused, .tick = tick, .value = static_cast<double>(waiting)});
+      return;
+    }
+    if (header.count > share) return;
+    const bool fresh = input.time_ns - header.time_ns <= age_max_ns_;
+    const Refusal refusal = fresh ? judge_transaction(header.count, safety) : Refusal{.reason = RefusalReason::too_old};
+    if (refusal.reason == RefusalReason::none) {
+      for (std::uint32_t i = 1; i <= header.count; ++i) execute(queue_.peek(i), input, safety);
+      notify_owners();
+      state_.applied += header.count;
+      state_.last_transaction = header.sequence;
+    } else {
+      refuse(header, refusal, tick, safety);
+    }
+    share -= header.count;
+    queue_.drop(header.count + 1);
+    waiting -= header.count + 1;
+  }
+}
+
+}  // namespace kadans

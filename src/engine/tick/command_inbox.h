@@ -1,0 +1,67 @@
+// The control engine's end of the command queue. It applies whole transactions only, checks each before its first
+// effect, and takes at most a fixed number of commands per tick. A transaction with one bad command is refused as a
+// whole and counted; the snapshot says why (refusal.h).
+//
+// While the robot is held, or worse, its set-points, parameters and control set stay what they are: commands that would
+// change them are refused, unless the same transaction clears the faults first. A motion under way goes on to its end.
+// So it is for a joint that is held alone: refused are its set-points, set-points without a joint and parameters of the
+// objects that drive it, and a switch of control sets that concerns it. A joint that damps or is off refuses nothing,
+// so that the others can go on; when it comes back, it starts from where it is. Orders to drives pass while the robot
+// is held, since they are the way out; under the emergency stop none that lets a joint move.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/motion/setpoint_motions.h"
+#include "kadans/control/control_sets.h"
+#include "kadans/signal/command.h"
+#include "safety/safety.h"
+
+namespace kadans {
+
+class CommandInbox {
+ public:
+  CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& sets, std::uint32_t commands_per_tick_max,
+               std::int64_t age_max_ns);
+
+  // Control thread. Applies the transactions that have arrived, oldest first; what exceeds the commands per tick waits
+  // for the next tick. A refusal raises a fault of the safety layer. The objects of a set that comes in start at once,
+  // so that set-points behind the switch in the same transaction act on them.
+  void apply(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept;
+
+  struct State {
+    std::uint32_t last_transaction = 0;  // number of the last one applied
+    std::uint32_t applied = 0;           // commands, headers not counted
+    std::uint32_t refused = 0;           // commands of refused transactions
+  };
+  const State& state() const noexcept { return state_; }
+  // Writes into the snapshot which transactions were applied and which refused.
+  void fill(Snapshot& snapshot) const noexcept;
+  SetpointMotions& motions() noexcept { return motions_; }
+  const DriveRequests& drives() const noexcept { return drives_; }
+
+ private:
+  RefusalReason judge(const Command& command) const noexcept;
+  // Whether the safety layer holds what the command would change, and which joint. `active`: the control sets before
+  // the command.
+  RefusalReason held(const Command& command, const Safety& safety, SetMask active, std::uint16_t& joint) const noexcept;
+  // The refusal of the first of the `count` commands that is refused; with the reason none: there is no such command.
+  Refusal judge_transaction(std::uint32_t count, const Safety& safety) const noexcept;
+  void refuse(const Command& header, Refusal refusal, std::uint64_t tick, Safety& safety) noexcept;
+  void execute(const Command& command, const ControlInput& input, Safety& safety) noexcept;
+  void notify_owners() noexcept;
+
+  CommandQueue& queue_;
+  Catalog& catalog_;
+  ControlSets& sets_;
+  std::uint32_t commands_per_tick_max_;
+  std::int64_t age_max_ns_;
+  SetpointMotions motions_;
+  DriveRequests drives_{};
+  State state_;
+  std::uint32_t transactions_refused_ = 0;
+  std::array<Refusal, refusals_shown> refusals_{};
+  std::array<bool, max_objects + 1> retuned_{};  // by owner; the last one: parameters of control sets
+};
+
+}  // namespace kadans

@@ -1,0 +1,111 @@
+#include "control_engine.h"
+
+namespace kadans {
+ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estimator& estimator, Safety& safety,
+                             ControlSets& sets, Catalog& catalog, EngineExchange& exchange)
+    : plant_(plant),
+      estimator_(estimator),
+      safety_(safety),
+      sets_(sets),
+      exchange_(exchange),
+      inbox_(exchange.commands, catalog, sets, settings.commands_per_tick_max, settings.command_age_max_ns()),
+      signals_(catalog.signals),
+      rehearsal_(settings.control_period_s, estimator, safety, *catalog.model) {
+  actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
+  written_ = actuation_;  // all of it, once
+  declare_signals(catalog);
+  if (settings.joystick) declare_joystick(catalog.signals);
+  row_.resize(catalog.signals.size());
+}
+
+void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed) noexcept {
+  plant_.read(sensors_);
+  estimator_.update(sensors_, dt_s, tick_, snapshot_.joints, snapshot_.status);
+  safety_.check({.tick = tick_,
+                 .dt_s = dt_s,
+                 .missed_ticks = missed,
+                 .heartbeat_age_s = 1e-9 * static_cast<double>(time_ns - exchange_.heartbeat.newest()),
+                 .sensors = sensors_,
+                 .joints = snapshot_.joints,
+                 .base = snapshot_.status.base,
+                 .health = estimator_.health()},
+                actuation_, snapshot_.status.safety);
+  if (safety_.fall_phase() == FallWatch::Phase::falling && snapshot_.status.base.posture == Posture::upright)
+    snapshot_.status.base.posture = Posture::falling;
+  plant_.write(drive(time_ns, dt_s));
+  copy_used(actuation_, written_);
+  const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
+  if (safety_.came_back()) sets_.restart(input);
+  inbox_.apply(tick_, input, safety_);
+  copy_first(inbox_.drives(), actuation_.joint_count, actuation_.drives);
+  inbox_.motions().step(dt_s);
+  sets_.step(tick_, input, actuation_);
+  publish(time_ns);
+  ++tick_;
+}
+
+// Objects at the drives turn what is wanted of the joints into what is asked of the motors.
+const ActuationFrame& ControlEngine::drive(std::int64_t time_ns, double dt_s) noexcept {
+  if (!sets_.drives()) return actuation_;
+  copy_used(actuation_, motors_);
+  const SensorHealth& health = estimator_.health();
+  JointMask blind = 0;
+  for (std::size_t i = 0; i < health.joint_count; ++i) {
+    const SensorState& joint = health.joints[i];
+    if (joint.silent_ticks >= joint.period_ticks || !joint.finite) blind |= joint_bit(i);
+  }
+  sets_.drive({snapshot_.joints, snapshot_.status, written_, time_ns, dt_s}, blind, motors_);
+  return motors_;
+}
+
+// Step by step as tick(). The snapshot's slots are left out: they would push out of the smallest cache what is needed
+// before them.
+void ControlEngine::rehearse() noexcept {
+  Rehearsal& r = rehearsal_;
+  r.sample(sensors_);
+  r.estimator = estimator_;
+  r.safety.imitate(safety_);
+  copy_used(snapshot_, r.snapshot);
+  copy_used(actuation_, r.actuation);
+  r.estimator.update(r.sensors, r.dt_s, tick_, r.snapshot.joints, r.snapshot.status);
+  r.safety.check({.tick = tick_,
+                  .dt_s = r.dt_s,
+                  .missed_ticks = 0,
+                  .heartbeat_age_s = 0,
+                  .sensors = r.sensors,
+                  .joints = r.snapshot.joints,
+                  .base = r.snapshot.status.base,
+                  .health = r.estimator.health()},
+                 r.actuation, r.snapshot.status.safety);
+  if (sets_.drives()) copy_used(actuation_, motors_);  // as drive() does before all else
+  sets_.rehearse(tick_, {r.snapshot.joints, r.snapshot.status, written_, snapshot_.time_ns, r.dt_s}, r.actuation);
+  inbox_.fill(r.snapshot);
+  sets_.fill(r.snapshot);
+  inbox_.motions().fill(r.snapshot);
+  signals_.gather(row_);
+}
+
+void ControlEngine::tell_drives() noexcept {
+  PowerStatus& power = snapshot_.power;
+  power.supply_V = sensors_.supply_V;
+  power.emergency = sensors_.emergency;
+  for (std::size_t i = 0; i < snapshot_.joints.count; ++i) {
+    const JointSample& said = sensors_.joints[i];
+    power.drives[i] = {said.temperature_C, said.code, said.drive, said.homed, said.braked};
+  }
+}
+
+void ControlEngine::publish(std::int64_t time_ns) noexcept {
+  snapshot_.tick = tick_;
+  snapshot_.time_ns = time_ns;
+  inbox_.fill(snapshot_);
+  sets_.fill(snapshot_);
+  inbox_.motions().fill(snapshot_);
+  snapshot_.joystick = exchange_.joystick.newest();
+  tell_drives();
+  exchange_.snapshot.publish(snapshot_);
+  signals_.gather(row_);
+  if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);
+}
+
+}  // namespace kadans

@@ -1,0 +1,87 @@
+// The control engine: the hard-real-time core. tick() is one period of it.
+//
+// Sample, actuate, compute: what is written in a tick was computed in the last one, so the actuators are written a
+// constant time after the tick began, whatever the algorithms cost. tick() does not allocate, lock, throw, log or call
+// Lua, and makes no system call but the plant's.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "command_inbox.h"
+#include "engine/settings.h"
+#include "estimate/estimator.h"
+#include "kadans/control/control_sets.h"
+#include "kadans/exchange/latest.h"
+#include "kadans/plant/plant.h"
+#include "kadans/signal/command.h"
+#include "kadans/signal/status.h"
+#include "record_sink.h"
+#include "rehearsal.h"
+#include "safety/safety.h"
+
+namespace kadans {
+
+inline constexpr std::size_t snapshot_readers = 2;  // 0: behavior engine, 1: supervisor
+using SnapshotStorage = Latest<Snapshot, snapshot_readers>;
+using HeartbeatStorage = Latest<std::int64_t>;  // time of the behavior engine's last tick
+using JoystickStorage = Latest<JoystickState>;
+
+// The storages between the threads. Position independent; may live in shared memory.
+struct EngineExchange {
+  SnapshotStorage snapshot;    // written by the control thread
+  CommandQueue commands;       // pushed by the behavior thread, popped by the control thread
+  HeartbeatStorage heartbeat;  // written by the behavior thread
+  JoystickStorage joystick;    // written by the thread that reads a joystick, read by the control thread
+};
+
+class ControlEngine {
+ public:
+  // Keeps references to all of it. Declares the engine's own signals in the catalog; before the loop.
+  ControlEngine(const EngineSettings& settings, Plant& plant, Estimator& estimator, Safety& safety, ControlSets& sets,
+                Catalog& catalog, EngineExchange& exchange);
+
+  // Before the loop, or between ticks by the control thread. Without a sink nothing is recorded.
+  void record_to(RecordSink* sink) noexcept { sink_ = sink; }
+
+  // Control thread. `missed` ticks were skipped before this one; dt_s is the true time since the last tick.
+  void tick(std::int64_t time_ns, double dt_s, std::uint32_t missed = 0) noexcept;
+
+  // Control thread, in the wait before a tick: rehearsal.h. Changes nothing that counts.
+  void rehearse() noexcept;
+
+  std::uint64_t ticks() const noexcept { return tick_; }
+  std::span<const double> row() const noexcept { return row_; }  // signals of the last tick
+  const Snapshot& state() const noexcept { return snapshot_; }
+  const ActuationFrame& actuation() const noexcept { return actuation_; }
+  const CommandInbox& inbox() const noexcept { return inbox_; }
+  Safety& safety() noexcept { return safety_; }
+  EngineExchange& exchange() noexcept { return exchange_; }
+
+ private:
+  const ActuationFrame& drive(std::int64_t time_ns, double dt_s) noexcept;
+  void tell_drives() noexcept;
+  void publish(std::int64_t time_ns) noexcept;
+  void declare_signals(Catalog& catalog);
+  void declare_joystick(SignalTable& table) const;
+
+  Plant& plant_;
+  Estimator& estimator_;
+  Safety& safety_;
+  ControlSets& sets_;
+  EngineExchange& exchange_;
+  CommandInbox inbox_;
+  const SignalTable& signals_;
+  RecordSink* sink_ = nullptr;
+
+  std::uint64_t tick_ = 0;
+  SensorFrame sensors_;
+  Snapshot snapshot_;         // joints and status are estimated in place
+  ActuationFrame actuation_;  // computed in the last tick, written in this one
+  ActuationFrame written_;    // in this tick: what is wanted of the joints
+  ActuationFrame motors_;     // what went to the plant instead, when there are actuator-level objects
+  std::vector<double> row_;
+  Rehearsal rehearsal_;
+};
+
+}  // namespace kadans

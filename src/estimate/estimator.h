@@ -1,0 +1,90 @@
+// Second step of the tick: from what the sensors say to what the robot does.
+//
+// Each joint's position is the encoder's. Its velocity is the filtered difference quotient (velocity_filter.h). Its
+// effort is the spring's deflection times its stiffness, or the motor's own effort where there is no spring. The base's
+// orientation comes from the IMU (orientation_filter.h). Contact and centre of pressure come from the soles
+// (contact_detector.h). The legs that bear give the base's height over the lowest sole and the centre of pressure of
+// the whole robot.
+//
+// Sensors fail. A reading counts as new when its `sequence` changed (0: none yet). Without a new reading everything
+// that depends on it keeps its value, and the next reading is used with the time that truly passed. A value that is not
+// finite is not used. Both are reported in health(), for the safety layer. A joint with a sample_divisor of n is looked
+// at only in every n-th tick (tick % n == 0), and in the first.
+//
+// A copy carries the whole state: it goes on as the original would.
+//
+// One owner, the control thread. update neither allocates nor throws.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "axes.h"
+#include "contact_detector.h"
+#include "kadans/estimate/velocity_filter.h"
+#include "kadans/model/robot_model.h"
+#include "kadans/signal/frames.h"
+#include "kadans/signal/status.h"
+#include "leg_chain.h"
+#include "orientation_filter.h"
+#include "sensor_health.h"
+#include "settings.h"
+
+namespace kadans {
+
+class Estimator {
+ public:
+  // dt_s: the nominal period of the tick. Keeps no reference to the model. Throws std::invalid_argument naming the key,
+  // the joint or foot, the value and the range.
+  Estimator(const RobotModel& model, const EstimateSettings& settings, double dt_s);
+
+  // dt_s: since the last update. Fills joints, and status except its safety part.
+  void update(const SensorFrame& sensors, double dt_s, std::uint64_t tick, JointStates& joints,
+              RobotStatus& status) noexcept;
+
+  const SensorHealth& health() const noexcept { return health_; }  // as of the last update
+  const EstimateSettings& settings() const noexcept { return settings_; }
+  const OrientationFilter::State& orientation() const noexcept { return orientation_.state(); }
+
+ private:
+  struct JointTrack {
+    VelocityFilter velocity;
+    double spring_Nm_per_rad = 0;
+    std::int64_t last_time_ns = 0;  // of the last reading, where the bus tells it
+    std::uint32_t last_sequence = 0;
+    double elapsed_s = 0;  // since the last position that was used
+    JointState state;
+  };
+  struct FootTrack {
+    ContactDetector detector;
+    LegChain leg;
+    std::uint32_t last_sequence = 0;
+    std::array<double, sensors_per_foot> force_N{};  // the last finite ones
+  };
+
+  void add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s);
+  void add_feet(const RobotModel& model, const EstimateSettings& settings);
+  void update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept;
+  Axes update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept;
+  void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
+  void update_channels(const SensorFrame& sensors, RobotStatus& status) noexcept;
+  void update_support(const JointStates& joints, const Axes& base, RobotStatus& status) noexcept;
+
+  EstimateSettings settings_;
+  OrientationFilter orientation_;
+  std::vector<JointTrack> joints_;
+  std::vector<FootTrack> feet_;
+  std::array<std::uint32_t, max_channels> last_channel_sequences_{};
+  std::array<double, max_channels> channels_{};  // the last finite readings
+  SensorHealth health_;
+  double dt_s_;
+  bool started_ = false;
+  std::uint32_t last_imu_sequence_ = 0;
+  double imu_elapsed_s_ = 0;
+  double height_m_ = 0;
+  double heading_x_ = 1, heading_y_ = 0;  // the base's x axis on the ground, a unit vector; holds while x is upright
+  SupportStatus support_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,226 @@
+#include "contact_world.h"
+
+#include <algorithm>
+
+#include "plant/bullet/bullet_memory.h"
+
+namespace kadans::bullet {
+class SteppedWorld final : public btMultiBodyDynamicsWorld {
+ public:
+  using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
+
+  void internalSingleStepSimulation(btScalar dt_s) override {
+    for (const Driven& driven : driven_) driven.body->setLinearVelocity(driven.velocity_m_s);
+    // Rigid bodies alone: the multibody world's own versions would move the robot too, a second time.
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
+    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
+    getDispatchInfo().m_timeStep = dt_s;
+    performDiscreteCollisionDetection();
+    getSolverInfo().m_timeStep = dt_s;
+    if (!own_solver()) accelerate(dt_s);
+    getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
+    solve();
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
+    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
+    move(dt_s);
+    move_driven(dt_s);
+  }
+
+  void drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays) {
+    driven_.push_back({&body, velocity_m_s, stays});
+  }
+
+  void use(const TreeSolver& solver) { tree_solver_ = &solver; }
+
+  void set_iterations(int iterations) { iterations_ = iterations; }
+
+  void add_rows(JointRows& rows) {
+    addMultiBodyConstraint(&rows);
+    rows_.push_back(&rows);
+  }
+
+  void update_frames() {
+    for (int i = 0; i < m_multiBodies.size(); ++i) update_frames(*m_multiBodies[i]);
+  }
+
+ private:
+  // Which takes the free motion along with the contacts.
+  bool own_solver() const { return tree_solver_ != nullptr && tree_solver_->covers(); }
+
+  bool against_limit(double dt_s) const {
+    return std::any_of(rows_.begin(), rows_.end(), [dt_s](const JointRows* rows) { return rows->against_limit(dt_s); });
+  }
+
+  void accelerate(double dt_s) {
+    for (int i = 0; i < m_multiBodies.size(); ++i) {
+      m_multiBodies[i]->clearConstraintForces();
+      m_multiBodies[i]->computeAccelerationsArticulatedBodyAlgorithmMultiDof(dt_s, m_scratch_r, m_scratch_v,
+                                                                             m_scratch_m, false, false, false);
+    }
+  }
+
+  void solve() {
+    btPersistentManifold** manifolds = getDispatcher()->getInternalManifoldPointer();
+    const int manifold_count = getDispatcher()->getNumManifolds();
+    btMultiBodyConstraint** rows = m_multiBodyConstraints.size() > 0 ? &m_multiBodyConstraints[0] : nullptr;
+    m_multiBodyConstraintSolver->solveMultiBodyGroup(&m_collisionObjects[0], m_collisionObjects.size(), manifolds,
+                                                     manifold_count, nullptr, 0, rows, m_multiBodyConstraints.size(),
+                                                     getSolverInfo(), nullptr, getDispatcher());
+    if (own_solver()) return;
+    for (int i = 0; i < m_multiBodies.size(); ++i) m_multiBodies[i]->processDeltaVeeMultiDof2();
+  }
+
+  void move(double dt_s) {
+    for (int i = 0; i < m_multiBodies.size(); ++i) {
+      m_multiBodies[i]->stepPositionsMultiDof(dt_s);
+      update_frames(*m_multiBodies[i]);
+    }
+  }
+
+  void move_driven(double dt_s) {
+    for (const Driven& driven : driven_) {
+      btTransform& pose = driven.body->getWorldTransform();
+      if (!driven.stays) pose.setOrigin(pose.getOrigin() + dt_s * driven.velocity_m_s);
+    }
+    driven_.clear();
+  }
+
+  void update_frames(btMultiBody& body) {
+    body.forwardKinematics(m_scratch_world_to_local, m_scratch_local_origin);
+    if (body.getBaseCollider() != nullptr) body.getBaseCollider()->setWorldTransform(body.getBaseWorldTransform());
+    for (int i = 0; i < body.getNumLinks(); ++i) {
+      btMultibodyLink& link = body.getLink(i);
+      if (link.m_collider != nullptr) link.m_collider->setWorldTransform(link.m_cachedWorldTransform);
+    }
+  }
+
+  struct Driven {
+    btRigidBody* body;
+    btVector3 velocity_m_s;
+    bool stays;
+  };
+
+  int iterations_ = 10;
+  const TreeSolver* tree_solver_ = nullptr;
+  std::vector<Driven> driven_;  // in the next step
+  std::vector<JointRows*> rows_;
+};
+
+namespace {
+
+// Bullet's own pools hold 4096 of each and cost 8 MB, and milliseconds at every start.
+btDefaultCollisionConstructionInfo small_pools() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 512;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 512;
+  return info;
+}
+
+}  // namespace
+
+ContactWorld::ContactWorld(const Options& options, PairMask& mask)
+    : configuration_(small_pools()),
+      object_contact_(
+          *configuration_.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE)),
+      dispatcher_(&configuration_),
+      tree_solver_({.friction = options.friction}) {
+  reserve_bullet_memory();
+  ground_contact_.register_with(dispatcher_);
+  object_contact_.register_with(dispatcher_);
+  const bool own = options.solver != ContactSolver::stock;
+  btMultiBodyConstraintSolver& solver = own ? tree_solver_ : stock_solver_;
+  world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver, &configuration_);
+  if (own) world_->use(tree_solver_);
+  world_->setGravity(options.gravity_m_s2);
+  broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
+  world_->getDispatchInfo().m_useContinuous = false;
+  btContactSolverInfo& info = world_->getSolverInfo();
+  info.m_splitImpulse = false;
+  info.m_solverMode |=
+      SOLVER_DISABLE_IMPLICIT_CONE_FRICTION | SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_USE_ARTICULATED_WARMSTARTING;
+  world_->set_iterations(options.solver_iterations);
+  info.m_minimumSolverBatchSize = 0;
+  info.m_leastSquaresResidualThreshold = 0;
+  ground_.setWorldTransform(options.ground);
+  ground_.setFriction(options.ground_friction);
+  ground_.setRestitution(0);
+  world_->addCollisionObject(&ground_, btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);
+}
+
+ContactWorld::~ContactWorld() {
+  // The robot's parts belong to others, who may be gone: take everything out before Bullet looks at it.
+  for (int i = world_->getNumMultiBodyConstraints() - 1; i >= 0; --i) {
+    world_->removeMultiBodyConstraint(world_->getMultiBodyConstraint(i));
+  }
+  for (int i = world_->getNumMultibodies() - 1; i >= 0; --i) world_->removeMultiBody(world_->getMultiBody(i));
+  for (int i = world_->getNumCollisionObjects() - 1; i >= 0; --i) {
+    world_->removeCollisionObject(world_->getCollisionObjectArray()[i]);
+  }
+}
+
+void ContactWorld::add(btMultiBody& body) {
+  world_->addMultiBody(&body);
+  tree_solver_.add(body);
+  world_->update_frames();
+}
+
+void ContactWorld::add(btCollisionObject& collider, bool fixed) {
+  tree_solver_.add(collider);
+  const int everything = btBroadphaseProxy::DefaultFilter | btBroadphaseProxy::StaticFilter;
+  if (btRigidBody* rigid = btRigidBody::upcast(&collider); rigid != nullptr && rigid->getInvMass() > 0) {
+    world_->addRigidBody(rigid, btBroadphaseProxy::DefaultFilter, everything);  // a plain collider never moves
+    return;
+  }
+  world_->addCollisionObject(&collider, fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
+                             fixed ? btBroadphaseProxy::DefaultFilter : everything);
+}
+
+void ContactWorld::add(JointRows& rows) {
+  world_->add_rows(rows);
+  tree_solver_.add(rows);
+}
+
+void ContactWorld::add(RollingRows& rows) {
+  world_->addMultiBodyConstraint(&rows);
+  tree_solver_.add(rows);
+}
+
+void ContactWorld::add(btMultiBodyConstraint& rows) {
+  world_->addMultiBodyConstraint(&rows);
+  tree_solver_.add(rows);
+}
+
+void ContactWorld::drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays) {
+  world_->drive(body, velocity_m_s, stays);
+}
+
+// As far as it runs along itself the plane stays the same plane.
+void ContactWorld::drive_ground(const btVector3& velocity_m_s) {
+  ground_.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+  world_->drive(ground_, velocity_m_s, false);
+}
+
+void ContactWorld::step(double dt_s) { world_->stepSimulation(dt_s, 0); }
+
+void ContactWorld::detect_collisions() {
+  world_->update_frames();
+  world_->performDiscreteCollisionDetection();
+}
+
+double ContactWorld::normal_impulse(const btCollisionObject& collider) const {
+  double sum = 0;
+  for (int i = 0; i < manifold_count(); ++i) {
+    const btPersistentManifold& contact = manifold(i);
+    if (contact.getBody0() != &collider && contact.getBody1() != &collider) continue;
+    for (int j = 0; j < contact.getNumContacts(); ++j) sum += contact.getContactPoint(j).m_appliedImpulse;
+  }
+  return sum;
+}
+
+int ContactWorld::manifold_count() const { return dispatcher_.getNumManifolds(); }
+
+const btPersistentManifold& ContactWorld::manifold(int index) const {
+  return *const_cast<btCollisionDispatcher&>(dispatcher_).getManifoldByIndexInternal(index);
+}
+
+}  // namespace kadans::bullet

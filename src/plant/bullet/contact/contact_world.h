@@ -1,0 +1,86 @@
+// Bullet's world with one robot on a plane and other objects, set up so that it is physics and repeats bit for bit.
+//
+// What differs from Bullet's defaults, and why:
+// - no split impulse: the multibody solver never applies the split part, so joint limits would vanish;
+// - friction cone off, two fixed friction directions: standing feet do not creep;
+// - islands unused (one robot is one island), nothing sleeps: the order of the solver is the same every run. Pairs keep
+//   the order they came in, which a new world repeats; Bullet's option to sort them allocates in every step;
+// - the solver starts from the last step's impulses and runs all its iterations (residual threshold 0); in a step in
+//   which a joint runs into its limit it runs limit_iterations_factor times as many, because a light foot between the
+//   ground and an ankle's limit is where the iteration converges slowest.
+// A step follows btDiscreteDynamicsWorld's own order, without what only islands and continuous collision need:
+// collide, accelerate (articulated body algorithm), solve contacts and rows, move, update the frames once.
+// Not thread-safe; one world a plant.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+#include <btBulletDynamicsCommon.h>
+
+#include "ground_contact.h"
+#include "kadans/plant/settings.h"
+#include "object_contact.h"
+#include "pair_mask.h"
+#include "plant/bullet/joint/joint_rows.h"
+#include "plant/bullet/solver/tree_solver.h"
+#include "rolling_rows.h"
+
+namespace kadans::bullet {
+
+inline constexpr int limit_iterations_factor = 5;
+
+class SteppedWorld;
+
+class ContactWorld {
+ public:
+  struct Options {
+    btVector3 gravity_m_s2;
+    int solver_iterations = 10;
+    double ground_friction = 1;
+    btTransform ground = btTransform::getIdentity();  // of the plane: z is its normal
+    ContactSolver solver = ContactSolver::tree;
+    FrictionLaw friction = FrictionLaw::cone;  // of our own solver
+  };
+
+  ContactWorld(const Options& options, PairMask& mask);  // keeps a reference to the mask
+  ~ContactWorld();
+  ContactWorld(const ContactWorld&) = delete;
+  ContactWorld& operator=(const ContactWorld&) = delete;
+
+  void add(btMultiBody& body);
+  void add(btCollisionObject& collider, bool fixed);
+  void add(JointRows& rows);
+  void add(RollingRows& rows);
+  void add(btMultiBodyConstraint& rows);  // anything else: for Bullet's solver only
+
+  // For the next step: the velocity of a driven body, which nothing stops, in its contacts. The step also moves the
+  // body, unless `stays`.
+  void drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays);
+  void drive_ground(const btVector3& velocity_m_s);
+
+  void step(double dt_s);
+  void detect_collisions();  // without a step
+
+  const btCollisionObject& ground() const { return ground_; }
+  double normal_impulse(const btCollisionObject& collider) const;  // of all its contacts in the last step
+  int manifold_count() const;
+  const btPersistentManifold& manifold(int index) const;
+
+ private:
+  GroundContactMaker ground_contact_;
+  btDefaultCollisionConfiguration configuration_;
+  ObjectContactMaker object_contact_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btMultiBodyConstraintSolver stock_solver_;
+  TreeSolver tree_solver_;
+  std::unique_ptr<SteppedWorld> world_;
+  btStaticPlaneShape ground_shape_{btVector3(0, 0, 1), 0};
+  btRigidBody ground_{0, nullptr, &ground_shape_};
+};
+
+}  // namespace kadans::bullet

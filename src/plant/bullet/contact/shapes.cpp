@@ -1,0 +1,79 @@
+#include "shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "plant/bullet/convert.h"
+
+namespace kadans::bullet {
+namespace {
+
+struct ConvexMaker {
+  const Geometry& geometry;
+
+  std::unique_ptr<btConvexShape> operator()(const Box& box) const {
+    return std::make_unique<btBoxShape>(to_bullet(box.size_m) / 2);
+  }
+  std::unique_ptr<btConvexShape> operator()(const Sphere& sphere) const {
+    return std::make_unique<btSphereShape>(sphere.radius_m);
+  }
+  std::unique_ptr<btConvexShape> operator()(const Cylinder& cylinder) const {
+    return std::make_unique<btCylinderShapeZ>(btVector3(cylinder.radius_m, cylinder.radius_m, cylinder.length_m / 2));
+  }
+  std::unique_ptr<btConvexShape> operator()(const Mesh& mesh) const {
+    throw std::invalid_argument("collision mesh '" + mesh.file + "' of link '" + geometry.link +
+                                "': the Bullet plant takes boxes, spheres and cylinders");
+  }
+};
+
+void add_corners(const btConvexShape& shape, const btTransform& pose, std::vector<btVector3>& corners) {
+  if (shape.getShapeType() == SPHERE_SHAPE_PROXYTYPE) {
+    const double radius_m = static_cast<const btSphereShape&>(shape).getRadius();
+    corners.push_back(pose.getOrigin() - btVector3(0, 0, radius_m));
+    return;
+  }
+  const bool box = shape.getShapeType() == BOX_SHAPE_PROXYTYPE;
+  const btVector3 half_m = box ? static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin()
+                               : static_cast<const btCylinderShape&>(shape).getHalfExtentsWithMargin();
+  const int around = box ? 4 : 16;
+  const double reach = box ? std::sqrt(2.0) : 1;  // of a square's corners
+  for (int i = 0; i < around; ++i) {
+    const double angle_rad = (2 * i + 1) * std::numbers::pi / around;
+    const btVector3 out(reach * std::cos(angle_rad) * half_m.x(), reach * std::sin(angle_rad) * half_m.y(), 0);
+    for (const double end : {-1.0, 1.0}) corners.push_back(pose * (out + btVector3(0, 0, end * half_m.z())));
+  }
+}
+
+}  // namespace
+
+LinkShapes::LinkShapes(const Link& link, const btTransform& com_in_link) {
+  const btTransform link_in_com = com_in_link.inverse();
+  for (const Geometry& geometry : link.collisions) {
+    parts_.push_back(std::visit(ConvexMaker{geometry}, geometry.shape));
+    compound_.addChildShape(link_in_com * to_bullet(geometry.pose), parts_.back().get());
+  }
+}
+
+double LinkShapes::lowest_m(const btTransform& pose) const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < compound_.getNumChildShapes(); ++i) {
+    const btTransform part = pose * compound_.getChildTransform(i);
+    const btVector3 down = btVector3(0, 0, -1) * part.getBasis();
+    const auto* convex = parts_[static_cast<std::size_t>(i)].get();
+    lowest = std::min<double>(lowest, (part * convex->localGetSupportingVertex(down)).z());
+  }
+  return lowest;
+}
+
+std::vector<btVector3> LinkShapes::corners(const btTransform& pose) const {
+  std::vector<btVector3> corners;
+  for (int i = 0; i < compound_.getNumChildShapes(); ++i) {
+    add_corners(*parts_[static_cast<std::size_t>(i)], pose * compound_.getChildTransform(i), corners);
+  }
+  return corners;
+}
+
+}  // namespace kadans::bullet

@@ -1,0 +1,57 @@
+// A socket for datagrams, and a batch of those that it received. Receiving and sending never block, allocate or throw:
+// they are the only system calls in the tick.
+//
+// One owner, one thread at a time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <sys/socket.h>
+
+#include "wire.h"
+
+namespace kadans {
+
+struct PeerAddress {
+  sockaddr_storage address{};
+  socklen_t size = 0;  // 0: without a name, the other end of a connected socket
+
+  bool operator==(const PeerAddress& other) const noexcept;
+  std::string text() const;  // "10.0.0.2:7000"
+};
+
+class DatagramSocket {
+ public:
+  static constexpr std::size_t batch_max = 16;
+
+  explicit DatagramSocket(int descriptor);  // takes it over
+  // "host:port", "[::1]:7000", ":7000" for every address of this machine. Throws InputError that says what
+  // is wrong with the place, or what the system said.
+  static DatagramSocket listening(const std::string& place);
+  static DatagramSocket connected(const std::string& place);
+  ~DatagramSocket();
+  DatagramSocket(DatagramSocket&& other) noexcept;
+  DatagramSocket& operator=(DatagramSocket&&) = delete;
+
+  // Sleeps until a datagram has come, at most this long. Before the loop only.
+  void wait(int milliseconds) const noexcept;
+  // Takes the datagrams that have come, at most batch_max; returns how many. They stay until the next call.
+  std::size_t receive() noexcept;
+  Bytes datagram(std::size_t index) const noexcept;  // empty when it was longer than wire_bytes_max
+  const PeerAddress& from(std::size_t index) const noexcept;
+  // False when the system does not accept it. Without an address, or with one that has no name, it goes to the other
+  // end.
+  bool send(Bytes datagram) const noexcept;
+  bool send(Bytes datagram, const PeerAddress& to) const noexcept;
+
+ private:
+  struct Batch;
+  int descriptor_ = -1;
+  std::unique_ptr<Batch> batch_;
+};
+
+}  // namespace kadans

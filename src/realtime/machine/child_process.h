@@ -1,0 +1,122 @@
+// What this process starts: a program, or a copy of itself. Nothing else of Kadans starts any.
+//
+// A program is spawned, not forked: a fork of a running real-time process would copy the page tables of all its locked
+// memory and then cost each of its threads a page fault for every page that it writes. A spawn lends the memory until
+// the new program runs, and copies nothing. The program starts as a usual process: with no signal handled or blocked,
+// of the usual scheduling class (priority and CPU it takes itself, once it is ready), and with no open file but those
+// that it is given. What is ignored when a terminal hangs up (nohup) stays ignored.
+//
+// Threads: one at a time for each object.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "realtime/doorbell.h"
+#include "shared_memory.h"
+
+namespace kadans {
+
+inline constexpr int no_file = -1;
+
+struct ProgramStart {
+  std::vector<std::string> words;     // its name and its arguments
+  std::string program;                // its path; "": as its name, which PATH is asked for
+  std::vector<int> files{0, 1, 2};    // of ours, that it finds as its own from 0 on; no_file: /dev/null
+  bool own_group = false;             // of processes: Ctrl-C does not reach it; kill() ends what it has started, too
+  bool blocks_group_signals = false;  // a terminal's Ctrl-C, a service manager's SIGTERM go to all of a group
+};
+
+class ChildProcess {
+ public:
+  explicit ChildProcess(const ProgramStart& start);  // throws std::system_error
+  // A copy of this process, which has one thread: nothing in the copy. Throws std::system_error.
+  static std::optional<ChildProcess> copy();
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&&) = delete;
+  ~ChildProcess() { stop(); }
+
+  // Until one of these, which all run, has ended, or for so long; < 0: for ever. A signal ends it early.
+  static void wait_for_one(std::span<const ChildProcess* const> running, int most_ms);
+
+  pid_t pid() const noexcept { return pid_; }
+  bool ended() noexcept { return reap(false); }
+  void wait() noexcept;  // until it has ended
+  void kill() const noexcept;
+  void stop() noexcept;  // kills it and waits; not in a copy of the process that started it
+  // Waits a moment for a process that ends by itself, kills one that does not; never waits long. How it ended: "exit
+  // code 2", "signal 11 (Segmentation fault)".
+  std::string end() noexcept;
+  int exit_code() const noexcept;  // -1: it runs, a signal ended it, or nobody can tell
+  int signal() const noexcept;     // that ended it, or 0
+
+ private:
+  ChildProcess(pid_t pid, bool own_group) noexcept;
+  bool reap(bool waits) noexcept;
+  bool ends_soon(int tries) noexcept;
+  void forget() noexcept;
+
+  pid_t pid_, owner_;
+  bool own_group_, running_ = true;
+  int end_;  // can be read once the process has ended; -1: the system has no such thing
+  std::optional<int> status_;
+};
+
+// Called by the program itself: from now on it dies when the thread that started it dies.
+void die_with_parent() noexcept;
+
+// A nameless file in memory, for what a child reads or writes.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view text = {});  // throws std::system_error
+  ~MemoryFile();
+  MemoryFile(MemoryFile&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  MemoryFile& operator=(MemoryFile&&) = delete;
+
+  int descriptor() const noexcept { return descriptor_; }
+  std::string text() const;  // all that is in it
+
+ private:
+  int descriptor_;
+};
+
+struct ProgramOutput {
+  int exit_code = -1;
+  std::string out, err;
+};
+// Runs a program to its end, with this text to read. Throws std::system_error when it cannot be started.
+ProgramOutput run_program(std::vector<std::string> words, std::string_view input = {});
+
+// Where a program finds its ends of what it shares.
+inline constexpr int child_doorbell_descriptor = 3, child_memory_descriptor = 4;
+
+// A program with which this process shares memory and a doorbell. It has standard input, output and errors as this
+// process, and blocks the signals of its group.
+class PartnerProcess {
+ public:
+  // The program's path, its name and arguments. Throws std::system_error.
+  PartnerProcess(const std::string& program, const std::vector<std::string>& words, const SharedMemory& memory)
+      : PartnerProcess(program, words, memory, Doorbell::make_pair()) {}
+  ~PartnerProcess() { (void)end(); }
+
+  pid_t pid() const noexcept { return process_.pid(); }
+  Doorbell& bell() noexcept { return bell_; }
+  void kill() const noexcept { process_.kill(); }
+  std::string end() noexcept;  // lets go of the doorbell; else as of every child
+
+ private:
+  PartnerProcess(const std::string& program, const std::vector<std::string>& words, const SharedMemory& memory,
+                 std::pair<Doorbell, Doorbell> ends);
+
+  Doorbell bell_;
+  ChildProcess process_;
+};
+
+}  // namespace kadans

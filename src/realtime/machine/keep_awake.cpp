@@ -1,0 +1,62 @@
+#include "keep_awake.h"
+
+#include <ctime>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include "realtime/relax.h"
+#include "realtime/signals_blocked.h"
+
+namespace kadans {
+
+KeepAwake::KeepAwake(int cpu) : cpu_(cpu) {
+  latency_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+  const std::int32_t wanted_us = 0;
+  if (latency_ >= 0 && write(latency_, &wanted_us, sizeof wanted_us) != sizeof wanted_us) {
+    close(latency_);
+    latency_ = -1;
+  }
+  const SignalsBlocked blocked;
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, std::size_t{64} * 1024);  // all of it may be locked
+  const int error = pthread_create(&thread_, &attributes, spin, this);
+  pthread_attr_destroy(&attributes);
+  if (error == 0) return;
+  if (latency_ >= 0) close(latency_);
+  throw std::system_error(error, std::generic_category(), "no thread to keep the CPU awake");
+}
+
+KeepAwake::~KeepAwake() {
+  stop_.store(true, std::memory_order_relaxed);
+  pthread_join(thread_, nullptr);
+  if (latency_ >= 0) close(latency_);
+}
+
+void* KeepAwake::spin(void* self) {
+  auto& awake = *static_cast<KeepAwake*>(self);
+  const sched_param lowest{};
+  cpu_set_t cpus;
+  CPU_ZERO(&cpus);
+  CPU_SET(static_cast<std::size_t>(awake.cpu_), &cpus);
+  // In any other class it would take time from others: then rather not.
+  if (pthread_setschedparam(pthread_self(), SCHED_IDLE, &lowest) != 0 ||
+      pthread_setaffinity_np(pthread_self(), sizeof cpus, &cpus) != 0) {
+    return nullptr;
+  }
+  pthread_setname_np(pthread_self(), "keep-awake");
+  while (!awake.stop_.load(std::memory_order_relaxed)) relax();
+  return nullptr;
+}
+
+std::int64_t KeepAwake::cpu_time_ns() const noexcept {
+  clockid_t clock{};
+  timespec used{};
+  if (pthread_getcpuclockid(thread_, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0;
+  return std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec;
+}
+
+}  // namespace kadans

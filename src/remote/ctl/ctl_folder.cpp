@@ -1,0 +1,151 @@
+#include "ctl_folder.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+
+#include <fcntl.h>
+#include <grp.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<mode_t, 3> modes{0666, 0660, 0600};
+constexpr mode_t lock_mode = 0600;
+constexpr int backlog = 64;
+
+fs::path of_session() {
+  const char* folder = std::getenv("XDG_RUNTIME_DIR");  // NOLINT(concurrency-mt-unsafe): before any thread is started
+  return folder == nullptr || *folder == '\0' ? fs::path() : fs::path(folder) / "kadans";
+}
+
+fs::path of_system() { return "/run/kadans"; }
+
+bool is_of_others(const fs::path& folder) {
+  struct stat found {};
+  return lstat(folder.c_str(), &found) == 0 && (!S_ISDIR(found.st_mode) || found.st_uid != getuid());
+}
+
+// In /tmp anybody can take our name before us; then a folder at home serves.
+fs::path of_user() {
+  const fs::path usual = "/tmp/kadans-" + std::to_string(getuid());
+  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): before any thread is started
+  if (!is_of_others(usual) || home == nullptr || *home == '\0') return usual;
+  return fs::path(home) / ".cache/kadans";
+}
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what) {
+  throw InputError({.file = path.string(), .message = what});
+}
+[[noreturn]] void fail_as_system(const fs::path& path, const std::string& what) {
+  fail(path, what + ": " + std::generic_category().message(errno));
+}
+
+sockaddr_un address_of(const fs::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string text = path.string();
+  if (text.size() >= sizeof address.sun_path)
+    fail(path, "the path of a socket has at most " + std::to_string(sizeof address.sun_path - 1) + " characters");
+  std::memcpy(address.sun_path, text.c_str(), text.size() + 1);
+  return address;
+}
+
+gid_t group_named(const std::string& name) {
+  const group* found = getgrnam(name.c_str());  // NOLINT(concurrency-mt-unsafe): before any thread is started
+  if (found == nullptr) throw InputError({.message = "there is no group '" + name + "' (getent group lists them)"});
+  return found->gr_gid;
+}
+
+}  // namespace
+
+fs::path ctl_folder_for_server() {
+  if (const fs::path session = of_session(); !session.empty()) return session;
+  return getuid() == 0 ? of_system() : of_user();
+}
+
+std::vector<fs::path> ctl_folders_for_clients() {
+  std::vector<fs::path> folders;
+  if (const fs::path session = of_session(); !session.empty()) folders.push_back(session);
+  if (getuid() != 0) folders.push_back(of_user());
+  folders.push_back(of_system());
+  return folders;
+}
+
+CtlSockets::CtlSockets(const Settings& settings) : folder_(fs::absolute(settings.folder).lexically_normal()) {
+  (void)address_of(folder_ / name(Role::develop));
+  std::error_code failed;
+  fs::create_directories(folder_, failed);
+  if (failed) fail(folder_, "cannot be made: " + failed.message());
+  struct stat found {};
+  const bool folder = lstat(folder_.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+  if (!folder || (found.st_uid != getuid() && found.st_uid != 0))
+    fail(folder_, "is no folder of this user's or the system's, so no sockets are made in it");
+  try {
+    lock();
+    listen_as(Role::read, settings.operators);
+    listen_as(Role::operate, settings.operators);
+    listen_as(Role::develop, settings.developers);
+  } catch (...) {
+    close_all();
+    throw;
+  }
+}
+
+CtlSockets::~CtlSockets() { close_all(); }
+
+void CtlSockets::lock() {
+  const fs::path file = folder_ / "lock";
+  // Who may read it may lock it.
+  lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, lock_mode);
+  if (lock_ < 0) fail_as_system(file, "cannot be opened");
+  if (fchmod(lock_, lock_mode) != 0) fail_as_system(file, "cannot be given its mode");
+  if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+  const int why = errno;
+  close(lock_);
+  lock_ = -1;
+  errno = why;
+  if (why != EWOULDBLOCK) fail_as_system(file, "cannot be locked");
+  fail(folder_, "another instance is reached here already; give this one a folder of its own: --ctl FOLDER");
+}
+
+// Nobody can connect before the socket has its owner and mode.
+void CtlSockets::listen_as(Role role, const std::string& group) {
+  const fs::path path = folder_ / name(role);
+  const sockaddr_un address = address_of(path);
+  int& socket = listeners_[static_cast<std::size_t>(role)];
+  socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket < 0) fail_as_system(path, "no socket");
+  (void)unlink(path.c_str());  // left by a dead one: the lock is ours
+  if (bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    fail_as_system(path, "cannot be made");
+  const mode_t mode = role == Role::develop && !group.empty() ? 0660 : modes[static_cast<std::size_t>(role)];
+  if (!group.empty() && chown(path.c_str(), static_cast<uid_t>(-1), group_named(group)) != 0)
+    fail_as_system(path, "cannot be given to the group " + group);
+  if (chmod(path.c_str(), mode) != 0) fail_as_system(path, "cannot be given its mode");
+  if (listen(socket, backlog) != 0) fail_as_system(path, "cannot be listened on");
+}
+
+void CtlSockets::close_all() noexcept {
+  for (std::size_t i = 0; i < listeners_.size(); ++i) {
+    if (listeners_[i] < 0) continue;
+    (void)unlink((folder_ / role_names[i]).c_str());
+    close(listeners_[i]);
+    listeners_[i] = -1;
+  }
+  if (lock_ < 0) return;
+  close(lock_);  // the file stays: somebody may be about to lock it
+  lock_ = -1;
+}
+
+}  // namespace kadans

@@ -1,0 +1,97 @@
+// The behavior thread's part of an instance: carries out orders between two ticks of the behaviors. An order to the
+// control thread is one transaction; it is answered when the control engine has applied or refused the transaction. An
+// order to the behaviors is answered when their next tick is over. Every change is logged with the name of the client
+// that asked for it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "echo_log.h"
+#include "engine/behavior_engine.h"
+#include "instance.h"
+#include "realtime/engine_tasks.h"
+#include "script/console/console.h"
+#include "script/host/script_host.h"
+#include "script/process/process_host.h"
+#include "tuning.h"
+
+namespace kadans {
+
+class BehaviorSide final : public BesideTick {
+ public:
+  struct Parts {
+    Instance& instance;
+    ScriptHost* host;      // the behaviors run in this host ...
+    ProcessHost* process;  // ... or in this process; the other pointer is nullptr
+    BehaviorEngine& engine;
+    EngineExchange& exchange;
+    EchoLog& echo;     // stands between the behaviors and the readers of `log`
+    BehaviorLog& log;  // changes are logged here; its messages pass through the echo
+  };
+  static constexpr std::size_t consoles_max = 4;
+  static constexpr std::int64_t led_again_ns = 1'000'000'000;  // moving set-points are logged once in this time
+
+  // All parts must outlive this object. `next` is called after it in every tick.
+  explicit BehaviorSide(const Parts& parts, BesideTick* next = nullptr) : p_(parts), next_(next) {}
+
+  void beside_tick(std::int64_t time_ns) override;
+
+ private:
+  // An order that has been begun and not yet answered.
+  struct Pending {
+    std::unique_ptr<OrderCase> order;
+    OrderQueue* from;
+    std::int64_t asked_ns;
+    std::uint64_t asked_tick;    // tick of the behaviors; a simulation does not run them in each of its own ticks
+    std::uint32_t sequence = 0;  // of its transaction; 0: the order waits for the end of a tick
+    ParameterChange change{};    // for set_parameter and undo
+    bool lasting = false;
+    std::uint16_t lifts = 0;  // of clear_faults: SafetyStatus::lifts before
+    JointMask joints = 0;     // of orders to drives
+  };
+
+  void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
+  bool carry_out_now(const Order& order, Answer& answer);
+  void begin(Pending& pending);
+  void settle(std::int64_t time_ns);
+  void heed_stop();
+  bool waits_for_tick(const Pending& pending) const noexcept;
+  bool settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns);
+  void finish(Pending& pending);
+  void say(std::int64_t time_ns, const std::string& who, const std::string& what);
+
+  // behavior_side_orders.cpp
+  OrderTaker& orders() const noexcept { return p_.host != nullptr ? static_cast<OrderTaker&>(*p_.host) : *p_.process; }
+  void report_process(Answer& answer) const;
+  void report(Answer& answer) const;
+  void give(const Order& order);
+  void begin_change(Pending& pending, const ParameterChange& change);
+  ParameterChange change_of(const Order& order) const;
+  void send(Pending& pending, std::span<const Command> commands);
+  std::vector<Command> set_points_of(const Order& order) const;
+  JointMask joints_of(const Order& order) const;
+  void order_drives(Pending& pending);
+  std::string told(const Order& order, bool& done);  // by lines_
+
+  // behavior_side_console.cpp
+  void evaluate(const Order& order, Answer& answer);
+  Console& console_of(const Order& order);
+
+  Parts p_;
+  BesideTick* next_;
+  bool stopped_ = false;     // by the emergency stop, as of the last tick
+  std::uint16_t lifts_ = 0;  // of the emergency stop, as of the last tick
+  std::vector<Pending> pending_;
+  TuningHistory tuning_;
+  std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client
+  std::vector<double> parameters_;
+  std::vector<EchoLog::Line> lines_;                   // messages of the last tick, when it carried out an order
+  std::int64_t time_ns_ = 0, led_ns_ = -led_again_ns;  // led_ns_: when a set-point was last logged
+};
+
+}  // namespace kadans

@@ -1,0 +1,71 @@
+#include "instance.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "config/json/problems.h"
+#include "signal/nearest_name.h"
+
+namespace kadans {
+
+std::uint64_t InstancePort::send(Order order) {
+  const bool to_records = order.kind == Order::Kind::record_start || order.kind == Order::Kind::record_stop ||
+                          order.kind == Order::Kind::record_dump;
+  auto asked = std::make_unique<OrderCase>();
+  asked->order = std::move(order);
+  asked->answer.number = sent_ + 1;
+  if (!(to_records ? records_ : behaviors_).ask(std::move(asked))) return 0;
+  return ++sent_;
+}
+
+bool InstancePort::next(Answer& answer) {
+  std::unique_ptr<OrderCase> answered = behaviors_.answered();
+  if (!answered) answered = records_.answered();
+  if (!answered) return false;
+  answer = std::move(answered->answer);
+  return true;
+}
+
+std::uint32_t Instance::set_named(const std::string& name) const {
+  const std::vector<std::string> names = names_of(catalog_.sets);
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) throw InputError({.message = unknown_name("control set", name, names)});
+  return static_cast<std::uint32_t>(found - names.begin());
+}
+
+InstancePort& Instance::open_port() {
+  if (ports_.size() == ports_max) throw std::logic_error("an instance has no more ports");
+  return *ports_.emplace_back(std::make_unique<InstancePort>(catalog_.signals.size()));
+}
+
+InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) noexcept {
+  return {.tick = snapshot.tick,
+          .time_ns = snapshot.time_ns,
+          .safety = snapshot.status.safety,
+          .control_sets = snapshot.control_sets,
+          .commands_refused = snapshot.commands_refused,
+          .record = record,
+          .power = snapshot.power};
+}
+
+void Instance::publish(const InstanceStatus& status) noexcept {
+  for (const auto& port : ports_) port->status_.publish(status);
+}
+
+void Instance::tell(const Event& event) {
+  const Transition& t = event.transition;
+  for (const auto& port : ports_) {
+    if (event.kind == Event::Kind::transition) {
+      port->events_.transition(t);
+    } else {
+      port->events_.message(t.time_ns, event.severity, t.behavior, event.text);
+    }
+  }
+}
+
+void Instance::tell(const Fault& fault) noexcept {
+  for (const auto& port : ports_) (void)port->faults_.try_push(fault);  // its server counts by itself
+}
+
+}  // namespace kadans

@@ -1,0 +1,193 @@
+#include "record_side.h"
+
+#include <algorithm>
+#include <ctime>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t timing_period_ns = 1'000'000'000;
+
+// "tulip_20261121_181500.mcap", in universal time.
+std::string dated(const std::string& robot, const char* suffix) {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "_%Y%m%d_%H%M%S", &parts);
+  return robot + text + suffix + ".mcap";
+}
+
+}  // namespace
+
+void RecordSide::make_recorder() {
+  if (recorder_) return;
+  recorder_ = std::make_unique<Recorder>(instance_.catalog().signals, plan_.settings, plan_.flight);
+  told_.store(recorder_.get(), std::memory_order_release);
+}
+
+void RecordSide::begin() {
+  if (!(plan_.flight.kept_s > 0) || others_) return;
+  make_recorder();
+  log_.to(&recorder_->events());
+  control_.record_to(recorder_.get());
+}
+
+// A record, or what the flight recorder writes.
+template <typename Record>
+void RecordSide::describe(Record& record, std::int64_t time_ns) const {
+  (void)record.describe("run", facts_);
+  if (!texts_.urdf.empty()) (void)record.describe_robot(texts_.name, texts_.urdf, time_ns);
+  if (!texts_.description.empty()) (void)record.describe_parts(texts_.description, time_ns);
+}
+
+void RecordSide::start(const std::string& file) {
+  make_recorder();
+  if (!recorder_->open(file)) throw InputError({.message = recorder_->error()});
+  describe(*recorder_, time_ns_);
+  file_ = file;
+  log_.to(&recorder_->events());
+  control_.record_to(recorder_.get());
+  publish();
+}
+
+void RecordSide::leave_to(RecordSink& own, const std::string& file) {
+  file_ = file;
+  others_ = true;
+  control_.record_to(&own);
+}
+
+bool RecordSide::stop() {
+  if (file_.empty() || others_) return true;
+  if (recorder_->flight() == nullptr) {
+    control_.record_to(nullptr);
+    log_.to(nullptr);
+  }
+  const bool whole = recorder_->close();
+  publish();
+  file_.clear();
+  return whole;
+}
+
+bool RecordSide::end() {
+  const bool whole = stop();
+  if (!recorder_ || recorder_->flight() == nullptr) return whole;
+  (void)recorder_->drain();
+  hand_over(true);
+  recorder_->flight()->finish();
+  publish();
+  return whole && recorder_->flight()->error().empty();
+}
+
+std::string RecordSide::error() const {
+  if (!recorder_) return "";
+  const bool of_flight = recorder_->error().empty() && recorder_->flight() != nullptr;
+  return of_flight ? recorder_->flight()->error() : recorder_->error();
+}
+
+bool RecordSide::beat(const Beat& beat) {
+  time_ns_ = beat.due_ns;
+  // A disk that fails is told at the end; the robot goes on.
+  const bool open = !file_.empty() && !others_;
+  if (recorder_ && (open || recorder_->flight() != nullptr)) (void)recorder_->drain();
+  if (open) tell_timing();
+  hand_over(false);
+  for (const auto& port : instance_.ports()) {
+    while (std::unique_ptr<OrderCase> order = port->records_.take()) {
+      try {
+        carry_out(*order);
+      } catch (const std::exception& error) {
+        order->answer.text = error.what();
+      }
+      port->records_.answer(std::move(order));
+    }
+  }
+  publish();
+  return true;
+}
+
+void RecordSide::tell_timing() {
+  if (plan_.timing.empty() || time_ns_ < timing_told_ns_ + timing_period_ns) return;
+  timing_told_ns_ = time_ns_;
+  recorder_->timing(timing_json(plan_.timing), time_ns_);
+}
+
+// A latched fault gets its file.
+void RecordSide::hand_over(bool at_once) {
+  FlightRecorder* flight = recorder_ ? recorder_->flight() : nullptr;
+  if (flight == nullptr) return;
+  if (ending_.load(std::memory_order_relaxed)) flight->watch_no_more();
+  if (!flight->due(at_once)) return;
+  const fs::path file = instance_.facts().records / dated(instance_.facts().name, "_flight");
+  fly(file);
+}
+
+void RecordSide::fly(const fs::path& file) {
+  FlightRecorder& flight = *recorder_->flight();
+  if (!flight.begin(file.string())) return;
+  describe(flight.dump(), 0);
+}
+
+void RecordSide::carry_out(OrderCase& order) {
+  Answer& answer = order.answer;
+  if (order.order.kind == Order::Kind::record_start) {
+    if (!file_.empty()) throw InputError({.message = "a record goes on already: " + file_});
+    const fs::path file = file_for(order.order.text, "");
+    start(file.string());
+    answer.text = file.string();
+    answer.done = true;
+    return;
+  }
+  if (order.order.kind == Order::Kind::record_dump) {
+    FlightRecorder* flight = recorder_ ? recorder_->flight() : nullptr;
+    if (flight == nullptr) throw InputError({.message = "there is no flight recorder: this run has --flight 0"});
+    if (flight->busy()) throw InputError({.message = flight->file() + " is being written"});
+    fly(file_for(order.order.text, "_flight"));
+    answer.text = flight->busy() ? flight->file() : flight->error();
+    answer.done = flight->busy();
+    return;
+  }
+  if (file_.empty()) throw InputError({.message = "there is no record to stop"});
+  if (others_) throw InputError({.message = file_ + " was begun with this run and ends with it"});
+  const std::string file = file_;
+  answer.done = stop();
+  answer.text = file + (answer.done ? "" : " is not complete: " + recorder_->error());
+}
+
+fs::path RecordSide::file_for(const std::string& name, const char* suffix) const {
+  const fs::path file = name.empty() ? dated(instance_.facts().name, suffix) : name;
+  if (file.has_parent_path() || file.extension() != ".mcap" || file.stem().empty())
+    throw InputError({.message = "a record's name ends with .mcap and names no folder; records lie in " +
+                                 instance_.facts().records.string()});
+  const fs::path whole = instance_.facts().records / file;
+  if (fs::symlink_status(whole).type() != fs::file_type::not_found)
+    throw InputError({.message = whole.string() + " is there already"});
+  return whole;
+}
+
+void RecordSide::publish() {
+  RecordStatus status;
+  if (!file_.empty()) {
+    status.goes_on = true;
+    if (!others_) {
+      status.failed = !recorder_->error().empty();
+      status.rows = recorder_->rows();
+      status.bytes = recorder_->file_bytes();
+      status.dropped = recorder_->dropped();
+    }
+    const std::size_t length = std::min(file_.size(), status.file.size() - 1);
+    std::copy_n(file_.begin(), length, status.file.begin());
+  }
+  if (recorder_ && recorder_->flight() != nullptr) {
+    const std::string& flight = recorder_->flight()->file();
+    status.flights = recorder_->flight()->dumps();
+    std::copy_n(flight.begin(), std::min(flight.size(), status.flight.size() - 1), status.flight.begin());
+  }
+  status_.publish(status);
+}
+
+}  // namespace kadans

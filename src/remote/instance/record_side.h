@@ -1,0 +1,102 @@
+// The record thread's part of an instance: writes the waiting rows and events, and starts and stops records while the
+// loop runs.
+//
+// The recorder is made with the first record, or at the start when there is a flight recorder. It then lives to the
+// end, so it can still take a row that is on its way when a record ends; such a row is thrown away when the next record
+// begins. Records that are ordered later lie in the instance's folder of records and never overwrite a file.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "control_side.h"
+#include "instance.h"
+#include "realtime/task_thread.h"
+#include "robot_texts.h"
+#include "telemetry/record/recorder.h"
+#include "telemetry/record/timing_json.h"
+
+namespace kadans {
+
+// Passes the behaviors' events to the record while there is one. Behavior thread, except for to().
+class RecordLog final : public BehaviorLog {
+ public:
+  void to(BehaviorLog* log) noexcept { log_.store(log, std::memory_order_release); }
+  void transition(const Transition& transition) override {
+    if (BehaviorLog* log = log_.load(std::memory_order_acquire); log != nullptr) log->transition(transition);
+  }
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
+    if (BehaviorLog* log = log_.load(std::memory_order_acquire); log != nullptr)
+      log->message(time_ns, severity, behavior, text);
+  }
+
+ private:
+  std::atomic<BehaviorLog*> log_{nullptr};
+};
+
+struct RecordPlan {
+  RecorderSettings settings = {};
+  FlightSettings flight = {};
+  std::vector<TimingSource> timing = {};  // must outlive the record
+};
+
+class RecordSide final : public Task {
+ public:
+  // The references must outlive this object. `facts` are written into every record under "run".
+  RecordSide(Instance& instance, ControlSide& control, RecordLog& log, TextMap facts)
+      : instance_(instance), control_(control), log_(log), facts_(std::move(facts)) {}
+
+  // Before the loop.
+  void describe_with(RobotTexts texts) { texts_ = std::move(texts); }
+  void record_as(RecordPlan plan) { plan_ = std::move(plan); }
+  // The last step before the loop: starts the flight recorder.
+  void begin();
+  // start and stop: record thread, or before or after the loop. start throws InputError when the file cannot be made.
+  void start(const std::string& file);
+  [[nodiscard]] bool stop();  // false: the record is not complete, error() says why
+  // Any thread: the robot is about to be released. From now on no fault starts a flight record.
+  void expect_end() noexcept { ending_.store(true, std::memory_order_relaxed); }
+  // After the loop: calls stop() and writes the flight record that is still due.
+  [[nodiscard]] bool end();
+  std::string error() const;  // of the record, else of the flight record
+  // Before the loop: another part of the program writes a record, `own`, that goes on to the end of the run.
+  void leave_to(RecordSink& own, const std::string& file);
+  bool beat(const Beat&) override;
+
+  // Supervisor.
+  void tell(const Fault& fault) noexcept {
+    if (Recorder* recorder = told_.load(std::memory_order_acquire); recorder != nullptr) recorder->fault(fault);
+  }
+  RecordStatus status() noexcept { return status_.newest(); }
+  // Call after the loop; nullptr: there was no record.
+  const Recorder* recorder() const noexcept { return recorder_.get(); }
+
+ private:
+  void carry_out(OrderCase& order);
+  void make_recorder();
+  template <typename Record>
+  void describe(Record& record, std::int64_t time_ns) const;
+  void hand_over(bool at_once);
+  void fly(const std::filesystem::path& file);
+  void tell_timing();
+  std::filesystem::path file_for(const std::string& name, const char* suffix) const;
+  void publish();
+
+  Instance& instance_;
+  ControlSide& control_;
+  RecordLog& log_;
+  TextMap facts_;
+  RobotTexts texts_;
+  RecordPlan plan_;
+  std::int64_t time_ns_ = 0, timing_told_ns_ = 0;
+  std::atomic<bool> ending_{false};
+  std::unique_ptr<Recorder> recorder_;
+  std::atomic<Recorder*> told_{nullptr};  // the same recorder, for the supervisor
+  std::string file_;                      // "": none is open
+  bool others_ = false;                   // the open file is that of leave_to()
+  Latest<RecordStatus> status_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,164 @@
+#include "run_description.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "config/json/foreign_json.h"
+#include "kadans/control/set_partition.h"
+#include "script/chart/chart_graph.h"
+
+namespace kadans {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+const char* kind_name(Chart::Kind kind) noexcept {
+  switch (kind) {
+    case Chart::Kind::state:
+      return "state";
+    case Chart::Kind::parallel:
+      return "parallel";
+    case Chart::Kind::region:
+      return "region";
+    case Chart::Kind::final_state:
+      return "final";
+    case Chart::Kind::history:
+      return "history";
+  }
+  return "";
+}
+
+Json number_of(StateIndex state) { return state == no_state ? Json(nullptr) : Json(state); }
+
+Json chart_of(const Behavior& behavior) {
+  const Chart& chart = behavior.chart();
+  const std::vector<ScriptParameter> parameters = behavior.parameters();
+  Json states = Json::array(), transitions = Json::array();
+  for (const Chart::State& state : chart.states) {
+    states.push_back({{"name", state.name},
+                      {"path", state.path},
+                      {"kind", kind_name(state.kind)},
+                      {"parent", number_of(state.parent)},
+                      {"initial", number_of(state.initial)}});
+  }
+  for (const Chart::Transition& transition : chart.transitions) {
+    if (transition.target == no_state) continue;
+    transitions.push_back({{"source", transition.source},
+                           {"target", transition.target},
+                           {"label", transition_label(chart, transition, parameters)}});
+  }
+  return {{"states", states}, {"transitions", transitions}};
+}
+
+Json behaviors_of(const ScriptHost* host) {
+  Json behaviors = Json::array();
+  for (std::size_t i = 0; host != nullptr && i < host->size(); ++i) {
+    const Behavior& behavior = host->behavior(i);
+    Json parameters = Json::array();
+    for (const ScriptParameter& p : behavior.parameters()) {
+      parameters.push_back({{"name", p.name},
+                            {"unit", p.unit},
+                            {"min", p.min},
+                            {"max", p.max},
+                            {"initial", p.initial},
+                            {"value", p.value},
+                            {"doc", p.doc}});
+    }
+    behaviors.push_back({{"name", behavior.name()}, {"chart", chart_of(behavior)}, {"parameters", parameters}});
+  }
+  return behaviors;
+}
+
+Json robot_of(const RobotConfig& robot) {
+  Json joints = Json::array(), feet = Json::array();
+  for (const Joint& joint : robot.model.joints) joints.push_back(joint.name);
+  for (const FootSettings& foot : robot.plant.feet) {
+    Json corners = Json::array();
+    for (const Vec3& sensor_m : foot.sensors_m) corners.push_back(vector_of(sensor_m));
+    feet.push_back({{"link", foot.link}, {"corners_m", corners}});
+  }
+  return {{"name", robot.name},
+          {"base", robot.model.links.front().name},
+          {"mass_kg", robot.model.mass_kg()},
+          {"joints", joints},
+          {"feet", feet},
+          {"control_period_ns", robot.engine.control_period_ns()}};
+}
+
+Json sets_of(const Catalog& catalog) {
+  Json sets = Json::array();
+  for (std::uint32_t i = 0; i < catalog.sets.size(); ++i) {
+    Json objects = Json::array();
+    for (const std::uint32_t object : catalog.sets[i].objects) objects.push_back(catalog.objects[object].name);
+    sets.push_back(
+        {{"name", catalog.sets[i].name}, {"objects", objects}, {"initial", (catalog.initial_sets & set_bit(i)) != 0}});
+  }
+  return sets;
+}
+
+Json objects_of(const RobotConfig& robot, const Catalog& catalog) {
+  Json objects = Json::array();
+  for (const ObjectInfo& object : catalog.objects) {
+    Json options = Json::object();
+    const auto configured = std::ranges::find(robot.objects, object.name, &ObjectConfig::name);
+    if (configured != robot.objects.end()) {
+      for (const TextEntry& option : configured->options) options[option.key] = option.text;
+    }
+    Json joints = Json::array(), presets = Json::array();
+    for (const std::size_t joint : object.joints) joints.push_back(catalog.model->joints[joint].name);
+    for (const Preset& preset : object.presets) {
+      Json values = Json::object();
+      for (const auto& [id, value] : preset.values) values[catalog.parameters.info(id).name] = value;
+      presets.push_back({{"name", preset.name}, {"values", values}});
+    }
+    objects.push_back(
+        {{"name", object.name}, {"type", object.type}, {"options", options}, {"joints", joints}, {"presets", presets}});
+  }
+  return objects;
+}
+
+// An infinite range has no JSON number: null.
+Json parameters_of(const Catalog& catalog) {
+  Json parameters = Json::array();
+  for (ParameterId id = 0; id < catalog.parameters.size(); ++id) {
+    const Parameter& p = catalog.parameters.info(id);
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"min", p.min},
+                          {"max", p.max},
+                          {"initial", p.initial},
+                          {"value", catalog.parameters.get(id)},
+                          {"doc", p.doc}});
+  }
+  return parameters;
+}
+
+}  // namespace
+
+std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host) {
+  const Json description{{"robot", robot_of(robot)},
+                         {"sets", sets_of(catalog)},
+                         {"objects", objects_of(robot, catalog)},
+                         {"parameters", parameters_of(catalog)},
+                         {"behaviors", behaviors_of(host)}};
+  return json_text(description);
+}
+
+std::string behaviors_description(const ScriptHost* host) { return json_text(behaviors_of(host)); }
+
+// FNV-1a.
+std::uint64_t chart_sign(const Chart& chart) noexcept {
+  std::uint64_t sign = 14695981039346656037ULL;
+  const auto mix = [&](std::uint64_t value) { sign = (sign ^ value) * 1099511628211ULL; };
+  for (const Chart::State& state : chart.states) {
+    for (const char c : state.path) mix(static_cast<unsigned char>(c));
+    mix(state.parent);
+  }
+  for (const Chart::Transition& transition : chart.transitions) mix(transition.source), mix(transition.target);
+  return sign;
+}
+
+}  // namespace kadans

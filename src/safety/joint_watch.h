@@ -1,0 +1,126 @@
+// Finds faults of one joint in every tick: of its sensor, its state and what is asked of it. It only finds them; the
+// ladder reacts.
+//
+// A reading jumps when it is more than jump_rad further from the last one than twice the speed limit allows in the time
+// between them.
+//
+// A reading is stuck when it stays exactly the same for stuck_ticks readings although the motor moved. Standing still
+// alone is no fault, because an encoder of finite resolution repeats its readings. With a spring the motor moves by
+// torque / spring while the joint is pressed against something; this part of its way does not count. The rest, smoothed
+// because the rotor swings on its spring, is the joint's own way. A rigid drive has no second encoder: there a reading
+// is also stuck when what is asked of the motor changes much. What is asked of a joint that damps or is off is not
+// done, so it does not count.
+//
+// One owner, the control thread; nothing here allocates or throws.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "estimate/sensor_health.h"
+#include "fault_mask.h"
+#include "kadans/signal/frames.h"
+#include "settings.h"
+#include "thermal_model.h"
+
+namespace kadans {
+
+class JointWatch {
+ public:
+  struct Input {
+    const JointState& state;
+    const JointSample& sample;
+    const SensorState& health;
+    const JointActuation& asked;
+    double written_Nm;  // in the last tick
+    bool follows;       // in the last tick the joint did what was asked, within limits
+    double dt_s;
+  };
+
+  JointWatch() = default;
+  JointWatch(const SafetySettings& settings, const JointLimits& limits) noexcept;
+
+  FaultMask look(const Input& input) noexcept;
+  // Value and limit of a fault that look() has just found.
+  void describe(const Input& input, Fault& fault) const noexcept;
+
+  const ThermalModel& thermal() const noexcept { return thermal_; }
+  // The share of its torque that the winding allows, down to the continuous torque's.
+  double derating() const noexcept { return derating_; }
+
+ private:
+  static constexpr double swing_s = 0.05;  // of the smoothing; a rotor of 0.04 kg m2 on 100 Nm/rad swings in 0.13 s
+  FaultMask look_at_reading(const Input& input) noexcept;
+  bool stuck(const Input& input) noexcept;
+  // What was asked of the motor, as one number that the joint follows: the position in modes that have one, else
+  // torque.
+  static double demand(const Input& input) noexcept {
+    return has_position(input.asked.mode) ? input.asked.position_rad : input.written_Nm;
+  }
+  // The joint's position by its motor: the motor's position less the spring's deflection by its torque, smoothed.
+  double by_motor_rad(const Input& input) noexcept {
+    if (spring_Nm_per_rad_ == 0) return input.sample.motor_position_rad;
+    const double deflection_rad = input.sample.motor_effort_Nm / spring_Nm_per_rad_;
+    mean_rad_ += input.dt_s / (input.dt_s + swing_s) * (input.sample.motor_position_rad - deflection_rad - mean_rad_);
+    return mean_rad_;
+  }
+  FaultMask derate() noexcept;
+
+  double lowest_rad_ = 0, highest_rad_ = 0;  // limits with their margins
+  double fastest_rad_s_ = 0;
+  double jump_rad_ = 0, jump_rad_s_ = 0;
+  double stuck_motion_rad_ = 0, stuck_effort_Nm_ = 0, spring_Nm_per_rad_ = 0;
+  double warm_C_ = 0, hot_C_ = 0, continuous_share_ = 1;
+  double lower_rad_ = 0, upper_rad_ = 0;
+  std::uint32_t stuck_ticks_ = 0, silent_ticks_max_ = 0;
+  bool passive_ = true;
+
+  ThermalModel thermal_;
+  double derating_ = 1;
+  bool seen_ = false;                       // there was a reading
+  double reading_rad_ = 0;                  // the last one
+  double step_rad_ = 0, step_max_rad_ = 0;  // from the one before it, and what was possible
+  double since_s_ = 0;                      // since the last one
+  std::uint32_t same_ = 0;                  // readings in a row equal to it; what the motor did meanwhile:
+  double mean_rad_ = 0;                     // by_motor_rad, smoothed
+  double motor_rad_ = 0, asked_ = 0;        // when it was first read
+  double motor_low_rad_ = 0, motor_high_rad_ = 0, asked_low_ = 0, asked_high_ = 0;
+};
+
+// Here, because it runs for every joint in every tick.
+inline FaultMask JointWatch::look(const Input& in) noexcept {
+  using enum FaultCode;
+  since_s_ += in.dt_s;
+  FaultMask found = bit_if(!in.health.finite, sensor_not_finite) | bit_if(!is_finite(in.asked), actuation_not_finite) |
+                    bit_if(in.health.silent_ticks > silent_ticks_max_ + in.health.period_ticks - 1, sensor_silent);
+  if (in.health.silent_ticks == 0 && in.health.finite) found |= look_at_reading(in);
+  if (passive_) return found;  // nothing to take away
+  found |= bit_if(!(in.state.position_rad >= lowest_rad_ && in.state.position_rad <= highest_rad_), position_limit) |
+           bit_if(!(std::abs(in.state.velocity_rad_s) <= fastest_rad_s_), velocity_limit);
+  // Counts the motor's own torque: a load of the ground on the spring heats nothing.
+  thermal_.step(std::max(std::abs(in.written_Nm), std::abs(in.sample.motor_effort_Nm)), in.dt_s);
+  derating_ = 1;
+  return thermal_.temperature_C() <= warm_C_ ? found : found | derate();
+}
+
+inline FaultMask JointWatch::look_at_reading(const Input& in) noexcept {
+  const double position_rad = in.sample.position_rad;
+  const bool first = !seen_;
+  step_rad_ = position_rad - reading_rad_;
+  step_max_rad_ = jump_rad_ + jump_rad_s_ * since_s_;
+  reading_rad_ = position_rad;
+  since_s_ = 0;
+  seen_ = true;
+  if (first || step_rad_ != 0) {
+    same_ = 0;
+    mean_rad_ = position_rad;
+    motor_rad_ = by_motor_rad(in);
+    asked_ = demand(in);
+  }
+  if (first) return 0;
+  return bit_if(!(std::abs(step_rad_) <= step_max_rad_), FaultCode::sensor_jump) |
+         bit_if(step_rad_ == 0 && stuck(in), FaultCode::sensor_stuck);
+}
+
+}  // namespace kadans

@@ -1,0 +1,148 @@
+// The safety layer stands between what the control objects computed and what the plant is told. It checks the sensors,
+// the state and the actuation of the last tick, and reduces what the robot may do, rung by rung: normal, limited, hold,
+// damp, off.
+//
+// Watches find faults (joint_watch.h, drive_watch.h, body_watch.h, fall_watch.h, engine_watch.h); detection.h says how
+// soon. Reactions say which rung follows (reaction.h), ladders keep the rung until it may be left (ladder.h). An
+// emergency stop also brings the robot down (emergency_stop.h). What is asked of a joint that still works is cut to its
+// limits (joint_limiter.h). An actuation that is not finite is never written, whatever the configuration says.
+//
+// A joint that comes back from damp or off, by itself or because faults were cleared, gets its torque back over
+// recover_s. came_back() says so in that tick: the control objects then start anew from the measured state, as at a
+// switch of control sets. What was asked of the joint before is dropped.
+//
+// One owner, the control thread; check() neither allocates, locks nor throws.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "body_watch.h"
+#include "drive_watch.h"
+#include "emergency_stop.h"
+#include "engine_watch.h"
+#include "estimate/sensor_health.h"
+#include "fall_watch.h"
+#include "joint_limiter.h"
+#include "joint_watch.h"
+#include "kadans/exchange/ring.h"
+#include "kadans/model/robot_model.h"
+#include "kadans/signal/fault.h"
+#include "kadans/signal/frames.h"
+#include "kadans/signal/signal.h"
+#include "kadans/signal/status.h"
+#include "ladder.h"
+#include "settings.h"
+
+namespace kadans {
+
+inline constexpr std::size_t fault_log_capacity = 256;
+using FaultLog = Ring<Fault, fault_log_capacity>;
+
+struct SafetyInput {
+  std::uint64_t tick;
+  double dt_s;
+  std::uint32_t missed_ticks;  // skipped before this one
+  double heartbeat_age_s;      // since the behavior engine's last tick
+  const SensorFrame& sensors;
+  const JointStates& joints;
+  const BaseStatus& base;
+  const SensorHealth& health;
+};
+
+class Safety {
+ public:
+  // Throws std::invalid_argument unless there is one valid set of limits per joint of the model.
+  Safety(const SafetySettings& settings, const RobotModel& model);
+
+  // Before the loop. safety.level, .robot_level, .faults, .fall, .impact_m_s2, .missed_ticks and, by joint,
+  // safety.<joint>.level, .temperature_C.
+  void declare_signals(SignalTable& table, const RobotModel& model) const;
+
+  // Limits the actuation in place, so that what remains may be written, and reports into `status`.
+  void check(const SafetyInput& input, ActuationFrame& actuation, SafetyStatus& status) noexcept;
+  // For rehearsals: takes over the state of `other`, a safety layer of the same robot; the log stays its own. Does not
+  // allocate.
+  void imitate(const Safety& other) noexcept;
+  // Notes a fault that another part found; its reaction follows in the next check.
+  void raise(const Fault& fault) noexcept;
+  // Brings the robot down when asked; clear() and imitate() do not change it.
+  EmergencyStop& emergency_stop() noexcept { return stop_; }
+  // Lifts all latches: the next check judges anew. No effect while the emergency stop holds: that is lifted first.
+  void clear() noexcept;
+  bool stopped() const noexcept { return stopped_; }  // by the emergency stop, or its button
+  // Whether, in the last check or by a clear() since, joints that damped or were off began to follow again what is
+  // asked of them. What is computed for the next tick must then start from the measured state.
+  bool came_back() const noexcept { return came_back_; }
+
+  // Faults as they happen, for another thread to pop. A full log drops faults; first_fault stays.
+  FaultLog& log() noexcept { return log_; }
+  const SafetySettings& settings() const noexcept { return settings_; }
+  SafetyLevel robot_level() const noexcept { return robot_.level(); }
+  // The worse of the joint's own rung and the robot's; limited while its torque comes back.
+  SafetyLevel joint_level(std::size_t joint) const noexcept {
+    const SafetyLevel recovering = joints_[joint].authority < 1 ? SafetyLevel::limited : SafetyLevel::normal;
+    return std::max({joints_[joint].ladder.level(), robot_.level(), recovering});
+  }
+  double temperature_C(std::size_t joint) const noexcept { return joints_[joint].watch.thermal().temperature_C(); }
+  FallWatch::Phase fall_phase() const noexcept { return fall_.phase(); }
+
+ private:
+  struct JointGuard {
+    JointWatch watch;
+    DriveWatch drive;
+    JointLimiter limiter;
+    Ladder ladder;
+    bool finite = true;     // what was asked for in this tick
+    FaultMask cut = 0;      // by the limiter, in the last tick
+    double authority = 1;   // share of the torque limit; grows after damp and off
+    bool gave_way = false;  // in the last tick it damped or was off, whatever was asked
+    double last_Nm = 0;     // written in the last tick
+    bool driven = false;    // in the last tick something but off was written
+    std::uint32_t level_number = 0;
+  };
+
+  FaultMask watch_body(const SafetyInput& input, double dt_s) noexcept;
+  FaultMask watch_feet(const SafetyInput& input, double dt_s) noexcept;
+  FaultMask watch_channels(const SafetyInput& input, double dt_s) noexcept;
+  FaultMask watch_joints(const SafetyInput& input, const ActuationFrame& actuation, double dt_s) noexcept;
+  void judge_robot(const SafetyInput& input, FaultMask body, FaultMask others, double dt_s) noexcept;
+  FaultMask take_stop(bool& lift) noexcept;
+  void go_down(FaultMask faults, double dt_s) noexcept;
+  bool passes(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept;
+  bool gives_way(std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
+  void limit_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
+  void cut_joint(const SafetyInput& input, std::size_t joint, JointActuation& actuation) noexcept;
+
+  SafetySettings settings_;
+  std::size_t joint_count_;
+  std::array<JointGuard, max_joints> joints_{};
+  std::array<FootWatch, max_feet> feet_{};
+  std::array<Ladder, max_feet> foot_ladders_{};  // only to report each foot's faults once
+  std::array<ChannelWatch, max_channels> channels_{};
+  std::array<Ladder, max_channels> channel_ladders_{};  // the same for each sensor channel
+  ImuWatch imu_;
+  FallWatch fall_;
+  EngineWatch engine_;
+  SupplyWatch supply_;
+  Ladder robot_;
+  FaultMask escalating_ = 0;  // codes whose reaction escalates
+  FaultMask pending_ = 0;     // raised by others since the last check
+  FaultMask cut_ = 0;         // of any joint, in the last tick
+  std::uint32_t lost_ = 0;    // joints that damp or are off by themselves
+  double lasting_s_ = 0;      // how long what escalates has lasted
+  double last_dt_s_ = 0;      // of the last check
+  double change_s_ = 0;       // the time in which the torque asked may have changed
+  bool came_back_ = false;
+  EmergencyStop stop_;
+  FaultWords stopped_by_{};
+  bool stopped_ = false;  // by the emergency stop, until it is lifted
+  std::uint16_t lifts_ = 0;
+  std::uint32_t fault_count_ = 0;
+  Fault first_fault_;
+  FaultLog log_;
+  std::uint32_t level_number_ = 0, robot_level_number_ = 0;
+};
+
+}  // namespace kadans

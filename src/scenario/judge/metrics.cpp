@@ -1,0 +1,89 @@
+#include "metrics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kadans {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+Metrics::Metrics(const SignalTable& signals, const std::vector<MetricConfig>& metrics, const std::string& file)
+    : conditions_(signals) {
+  Problems problems(file);
+  for (const MetricConfig& config : metrics) {
+    Gathered metric{.config = config};
+    if (!config.that.empty()) {
+      ExpressionError error;
+      if (!conditions_.add(config.that, metric.index, error)) {
+        const TextPlace start = config.that_place;
+        problems.add({start.line, start.column > 0 ? start.column + error.column : 0}, error.message);
+      }
+    } else if (const auto signal = signals.find(config.signal)) {
+      metric.index = *signal;
+    } else {
+      problems.add_unknown(config.signal_place, "signal", config.signal, signals.names());
+    }
+    metrics_.push_back(std::move(metric));
+  }
+  problems.throw_if_any();
+}
+
+void Metrics::tick(double time_s, std::span<const double> row) {
+  if (conditions_.size() > 0 && !broken_) broken_ = !conditions_.evaluate(time_s, row);
+  for (Gathered& metric : metrics_) {
+    if (!(time_s >= metric.config.from_s && time_s <= metric.config.until_s)) continue;
+    const bool condition = !metric.config.that.empty();
+    if (condition && broken_) continue;
+    add(metric, time_s, condition ? static_cast<double>(conditions_.holds(metric.index)) : row[metric.index]);
+  }
+}
+
+void Metrics::add(Gathered& metric, double time_s, double value) const noexcept {
+  const bool first = metric.ticks++ == 0;
+  double& kept = metric.value;
+  switch (metric.config.kind) {
+    case MetricKind::max:
+      kept = first || value > kept || std::isnan(value) ? value : kept;
+      break;
+    case MetricKind::min:
+      kept = first || value < kept || std::isnan(value) ? value : kept;
+      break;
+    case MetricKind::mean:
+    case MetricKind::share:
+      kept += value;
+      break;
+    case MetricKind::rms:
+      kept += value * value;
+      break;
+    case MetricKind::end:
+      kept = value;
+      break;
+    case MetricKind::first_time:
+      kept = first ? nothing : kept;
+      if (std::isnan(kept) && value != 0) kept = time_s;
+      break;
+    case MetricKind::since:
+      if (first || value == 0) kept = nothing;
+      if (std::isnan(kept) && value != 0) kept = time_s;
+      break;
+  }
+}
+
+std::vector<MetricValue> Metrics::values() const {
+  std::vector<MetricValue> values;
+  for (const Gathered& metric : metrics_) {
+    const MetricKind kind = metric.config.kind;
+    double value = metric.value;
+    const auto ticks = static_cast<double>(metric.ticks);
+    if (kind == MetricKind::mean || kind == MetricKind::share) value /= ticks;
+    if (kind == MetricKind::rms) value = std::sqrt(value / ticks);
+    if (metric.ticks == 0 || (broken_ && !metric.config.that.empty())) value = nothing;
+    values.push_back({metric.config.name, value});
+  }
+  return values;
+}
+
+}  // namespace kadans

@@ -1,0 +1,156 @@
+#include "truth_signals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kadans {
+TruthSignals::TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
+                           const WorldSettings& world)
+    : plant_(plant), model_(*catalog.model), settle_s_(settle_s), kinematics_(*catalog.model) {
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const std::string& joint = model_.joints[i].name;
+    writers_[i] = catalog.signals.find("composition." + joint + ".writers").value();
+    for (std::uint32_t object = 0; object < catalog.objects.size(); ++object) {
+      const auto signal =
+          catalog.signals.find("control." + catalog.objects[object].name + "." + joint + ".reference_rad");
+      if (signal) references_[i].push_back({object, *signal});
+    }
+  }
+  for (const Foot& foot : feet) {
+    FootState state;
+    state.link = model_.find_link(foot.link).value();
+    state.sole_m = foot.sole_m;
+    feet_.push_back(std::move(state));
+  }
+  declare(catalog.signals, feet);
+  std::vector<std::size_t> links;
+  for (const FootState& foot : feet_) links.push_back(foot.link);
+  world_.emplace(catalog.signals, world, links);
+}
+
+void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
+  table.add({"plant.base.height_m", "m", "Height of the base frame over the ground."}, &state_.height_m);
+  table.add({"plant.base.x_m", "m", "Position of the base frame."}, &state_.x_m);
+  table.add({"plant.base.y_m", "m", "Position of the base frame."}, &state_.y_m);
+  table.add({"plant.base.tilt_rad", "rad", "Angle between the base's z axis and up."}, &state_.tilt_rad);
+  table.add({"plant.base.yaw_rad", "rad", "Heading of the base."}, &state_.yaw_rad);
+  table.add({"plant.base.speed_m_s", "m/s", "Speed of the base frame."}, &state_.speed_m_s);
+  table.add({"plant.base.jump_m", "m", "Way of the base in a step beyond what its speed explains."}, &state_.jump_m);
+  table.add({"plant.limits.position_rad", "rad", "How far the worst joint is inside its limits; negative beyond."},
+            &state_.position_rad);
+  table.add({"plant.limits.motor_torque_share", "",
+             "Largest torque of a motor as a share of its limit; what it cannot give at its speed counts as used up."},
+            &state_.motor_torque_share);
+  table.add({"plant.limits.torque_share", "", "Largest torque of a transmission on its joint as a share of its limit."},
+            &state_.torque_share);
+  table.add({"plant.limits.speed_share", "", "Largest joint velocity as a share of its limit."}, &state_.speed_share);
+  table.add({"plant.limits.overspeed_s", "s", "How long now a joint has been faster than its limit."},
+            &state_.overspeed_s);
+  table.add({"reference.base.height_m", "m", "Height of the base with every joint at its set-point."},
+            &state_.reference_height_m);
+  table.add({"reference.base.error_m", "m", "Height of the base minus that of the set-points."},
+            &state_.reference_error_m);
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    const std::string foot = "plant.foot." + feet[i].link + ".";
+    table.add({foot + "force_N", "N", "Vertical force of the ground on the foot."}, &feet_[i].force_N);
+    table.add({foot + "slip_m", "m", "Way of the foot along the ground since it settled."}, &feet_[i].slip_m);
+  }
+}
+
+void TruthSignals::watch(Catalog& catalog, const GazeTruth::Eyes& eyes) {
+  gazes_.push_back(std::make_unique<GazeTruth>(plant_, catalog, eyes));
+  gazes_.back()->declare(catalog.signals);
+}
+
+void TruthSignals::update_limits(double dt_s) noexcept {
+  const PlantTruth& truth = plant_.truth();
+  state_.position_rad = std::numeric_limits<double>::infinity();
+  state_.motor_torque_share = state_.torque_share = state_.speed_share = state_.overspeed_s = 0;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint& joint = model_.joints[i];
+    const double inside = std::min(truth.position_rad[i] - joint.lower_rad, joint.upper_rad - truth.position_rad[i]);
+    state_.position_rad = std::min(state_.position_rad, inside);
+    if (!joint.passive()) {
+      const double left_Nm = truth.motor_torque_max_Nm[i] - std::abs(truth.motor_torque_Nm[i]);
+      state_.motor_torque_share = std::max(state_.motor_torque_share, 1 - left_Nm / joint.effort_max_Nm);
+      state_.torque_share = std::max(state_.torque_share, std::abs(truth.drive_torque_Nm[i]) / joint.effort_max_Nm);
+    }
+    if (joint.velocity_max_rad_s > 0) {
+      const double share = std::abs(truth.velocity_rad_s[i]) / joint.velocity_max_rad_s;
+      overspeed_s_[i] = share > 1 ? overspeed_s_[i] + dt_s : 0;
+      state_.speed_share = std::max(state_.speed_share, share);
+      state_.overspeed_s = std::max(state_.overspeed_s, overspeed_s_[i]);
+    }
+  }
+}
+
+void TruthSignals::update_jump(double dt_s) noexcept {
+  const Vec3& at_m = plant_.truth().base.position_m;
+  const double way_m = std::hypot(at_m[0] - last_m_[0], at_m[1] - last_m_[1], at_m[2] - last_m_[2]);
+  const double fastest_m_s = std::max(last_m_s_, state_.speed_m_s);
+  state_.jump_m = dt_s > 0 ? std::max(0.0, way_m - fastest_m_s * dt_s) : 0;
+  last_m_ = at_m;
+  last_m_s_ = state_.speed_m_s;
+}
+
+void TruthSignals::update_feet(double time_s) noexcept {
+  const PlantTruth& truth = plant_.truth();
+  for (std::size_t i = 0; i < feet_.size() && i < truth.foot_count; ++i) {
+    FootState& foot = feet_[i];
+    const Vec3& at_m = truth.feet[i].position_m;
+    foot.force_N = truth.foot_force_N[i][2];
+    if (!foot.settled && time_s >= settle_s_) {
+      foot.settled = true;
+      foot.settled_at_m = at_m;
+    }
+    if (foot.settled) foot.slip_m = std::hypot(at_m[0] - foot.settled_at_m[0], at_m[1] - foot.settled_at_m[1]);
+  }
+}
+
+// The set-point of the object that drives the joint; joints without one (passive ankles) count as they are.
+double TruthSignals::reference_rad(std::size_t joint, std::span<const double> row) const noexcept {
+  const auto writers = static_cast<std::uint32_t>(row[writers_[joint]]);
+  for (const Reference& reference : references_[joint]) {
+    if ((writers >> reference.object & 1U) != 0) return row[reference.signal];
+  }
+  return plant_.truth().position_rad[joint];
+}
+
+// The lowest point of the soles is the ground.
+double TruthSignals::reference_height_m(std::span<const double> row) noexcept {
+  const PlantTruth& truth = plant_.truth();
+  const std::size_t joints = model_.joints.size();
+  for (std::size_t i = 0; i < joints; ++i) position_rad_[i] = reference_rad(i, row);
+  kinematics_.update({position_rad_.data(), joints}, {{0, 0, 0}, truth.base.orientation});
+  double lowest_m = 0;
+  for (const FootState& foot : feet_) {
+    for (const Vec3& point : foot.sole_m) {
+      lowest_m = std::min(lowest_m, transform(kinematics_.link(foot.link), point)[2]);
+    }
+  }
+  return -lowest_m;
+}
+
+void TruthSignals::update(double time_s, std::span<const double> row) noexcept {
+  const PlantTruth& truth = plant_.truth();
+  const Vec3 up = rotate(truth.base.orientation, {0, 0, 1});
+  const Vec3& v = truth.base_velocity_m_s;
+  state_.x_m = truth.base.position_m[0];
+  state_.y_m = truth.base.position_m[1];
+  state_.height_m = truth.base.position_m[2];
+  state_.tilt_rad = std::atan2(std::hypot(up[0], up[1]), up[2]);
+  state_.yaw_rad = roll_pitch_yaw(truth.base.orientation)[2];
+  state_.speed_m_s = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  const double dt_s = last_s_ ? time_s - *last_s_ : 0;
+  last_s_ = time_s;
+  update_limits(dt_s);
+  update_jump(dt_s);
+  update_feet(time_s);
+  world_->update(truth);
+  for (const auto& gaze : gazes_) gaze->update(row);
+  state_.reference_height_m = reference_height_m(row);
+  state_.reference_error_m = state_.height_m - state_.reference_height_m;
+}
+
+}  // namespace kadans

@@ -1,0 +1,94 @@
+// The true state of a simulated robot as signals, for checks and pictures, never for control.
+//
+//   plant.base.height_m, x_m, y_m, tilt_rad, yaw_rad, speed_m_s     of the base frame in the world
+//   plant.base.jump_m           distance that the base moved in this step beyond what its speed explains: a teleport
+//   plant.foot.<link>.force_N, slip_m   slip: horizontal distance from the place where the foot settled
+//   plant.limits.position_rad   distance of the worst joint from its limits; negative when it is beyond them
+//   plant.limits.motor_torque_share   the largest torque of a motor, as a share of its joint's limit. Torque that the
+//                                     motor cannot give at its speed counts as used. Above 1 the plant is wrong
+//   plant.limits.torque_share   the largest torque of a transmission on its joint, as a share of the limit. It is above
+//                               1 when a limb hits something, because the rotor behind it must be stopped, too
+//   plant.limits.speed_share    the largest joint velocity, as a share of its limit. It is above 1 when something turns
+//                               the joint faster than its motor could; no motor accelerates it any more then
+//   plant.limits.overspeed_s    for how long a joint has now been above its limit without a break
+//   reference.base.height_m     the height of the base if every joint were at its set-point
+//   reference.base.error_m      plant.base.height_m minus reference.base.height_m
+// It also declares the signals of world_signals.h, and those of gaze_truth.h for eyes that are watched.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gaze_truth.h"
+#include "kadans/control/catalog.h"
+#include "kadans/model/kinematics.h"
+#include "kadans/plant/world.h"
+#include "world_signals.h"
+
+namespace kadans {
+
+class TruthSignals {
+ public:
+  // The constructor declares the signals in the catalog and keeps references to plant, model and catalog. `feet` are
+  // the foot links of the plant's settings, each with the points of its sole that touch the ground. Slip is measured
+  // from settle_s on.
+  struct Foot {
+    std::string link;
+    std::vector<Vec3> sole_m;  // in the link's frame
+  };
+  TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
+               const WorldSettings& world = {});
+
+  // Call before the run.
+  void watch(Catalog& catalog, const GazeTruth::Eyes& eyes);
+
+  // Call after each step of the plant. `row` holds the signals of the last control tick; the set-points are read from
+  // it.
+  void update(double time_s, std::span<const double> row) noexcept;
+
+ private:
+  struct State {
+    double height_m = 0, x_m = 0, y_m = 0, tilt_rad = 0, yaw_rad = 0, speed_m_s = 0, jump_m = 0;
+    double position_rad = 0, motor_torque_share = 0, torque_share = 0, speed_share = 0, overspeed_s = 0;
+    double reference_height_m = 0, reference_error_m = 0;
+  };
+  struct FootState {
+    std::size_t link = 0;
+    std::vector<Vec3> sole_m;
+    bool settled = false;
+    Vec3 settled_at_m{};
+    double force_N = 0, slip_m = 0;
+  };
+  void declare(SignalTable& table, const std::vector<Foot>& feet);
+  void update_limits(double dt_s) noexcept;
+  void update_jump(double dt_s) noexcept;
+  void update_feet(double time_s) noexcept;
+  double reference_rad(std::size_t joint, std::span<const double> row) const noexcept;
+  double reference_height_m(std::span<const double> row) noexcept;
+
+  const TruthSource& plant_;
+  const RobotModel& model_;
+  double settle_s_;
+  Kinematics kinematics_;
+  State state_;
+  std::array<double, max_joints> overspeed_s_{};
+  std::optional<double> last_s_;  // time of the step before; its base position and speed follow
+  Vec3 last_m_{};
+  double last_m_s_ = 0;
+  std::vector<FootState> feet_;
+  std::optional<WorldSignals> world_;
+  std::vector<std::unique_ptr<GazeTruth>> gazes_;
+  struct Reference {  // a control object's set-point of a joint
+    std::uint32_t object;
+    SignalId signal;
+  };
+  std::array<std::vector<Reference>, max_joints> references_;
+  std::array<SignalId, max_joints> writers_{};  // signals that say which objects have a share in the joint
+  std::array<double, max_joints> position_rad_{};
+};
+
+}  // namespace kadans

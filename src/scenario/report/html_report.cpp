@@ -1,0 +1,236 @@
+#include "html_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "html_page.h"
+#include "signal/number_text.h"
+#include "telemetry/plot.h"
+#include "telemetry/reading/record_rows.h"
+
+namespace kadans {
+namespace {
+
+std::string counted(std::size_t count, const char* what) {
+  return (count == 0 ? "no" : std::to_string(count)) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string cell(const std::string& text, const char* type = "") {
+  return "<td" + std::string(type) + ">" + html_text(text) + "</td>";
+}
+constexpr const char* number = " class=\"number\"";
+
+// A small line on its own scale, for what a failed check saw.
+std::string spark_line(const EvidenceTrace& trace) {
+  const Plot plot{.x = {.range = {trace.from_s, trace.to_s}},
+                  .lines = {plot_line("", trace.values, trace.from_s, trace.to_s)}};
+  const PlotRange range = range_of(plot.lines);
+  if (!(range.low <= range.high)) return "";
+  return plot_svg(plot, {.width = 520, .height = 82, .left = 0, .top = 4, .right = 0, .bottom = 4}) + "<figcaption>" +
+         html_text(trace.signal + (trace.unit.empty() ? "" : ", " + trace.unit)) +
+         printed(": from %.4g to %.4g, between %.2f and %.2f s", range.low, range.high, trace.from_s, trace.to_s) +
+         "</figcaption>";
+}
+
+class HtmlRun {
+ public:
+  explicit HtmlRun(const HtmlReport& report) : report_(report), run_(report.subject.result) {}
+
+  std::string write() {
+    head();
+    words();
+    failures();
+    plot();
+    film();
+    checks();
+    transitions();
+    faults();
+    log();
+    again();
+    return html_page(report_.scenario + ": " + verdict(), text_, report_.plot_style);
+  }
+
+ private:
+  std::string verdict() const {
+    if (run_.interrupted) return "interrupted";
+    return run_.passed ? "passed" : "failed";
+  }
+  std::size_t failed() const {
+    return static_cast<std::size_t>(std::ranges::count(run_.checks, false, &CheckResult::passed));
+  }
+  double fault_s(const Fault& fault) const {
+    if (run_.control_ticks == 0) return 0;
+    return run_.duration_s * static_cast<double>(fault.tick) / static_cast<double>(run_.control_ticks);
+  }
+  void add(const std::string& html) { text_ += html; }
+  void title(const std::string& text) { add("<h2>" + html_text(text) + "</h2>\n"); }
+
+  void head() {
+    const std::string color = run_.passed && !run_.interrupted ? "good" : "bad";
+    std::string word = verdict();
+    std::ranges::transform(word, word.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
+    add("<h1><span class=\"badge " + color + "\">" + word + "</span>" + html_text(report_.scenario) + "</h1>\n");
+    if (!report_.doc.empty()) add("<p>" + html_text(report_.doc) + "</p>\n");
+  }
+
+  void fact(const char* name, const std::string& value) {
+    add(std::string("<div><dt>") + name + "</dt><dd>" + html_text(value) + "</dd></div>\n");
+  }
+
+  void words() {
+    const std::vector<LogLine>& lines = report_.subject.log.lines();
+    const auto errors =
+        static_cast<std::size_t>(std::ranges::count(lines, BehaviorLog::Severity::error, &LogLine::severity));
+    add("<p>" + html_text(report_.robot) + " ran " + html_text(report_.scenario) +
+        printed(" with seed %llu for %.4g simulated seconds", static_cast<unsigned long long>(run_.seed),
+                run_.duration_s) +
+        ": " + counted(report_.subject.log.transitions().size(), "transition") + ", " +
+        counted(run_.faults.size(), "fault") + ", " + counted(errors, "error") + " of behaviors. " +
+        (failed() > 0
+             ? printed("%zu of %zu checks did not hold.", failed(), run_.checks.size())
+             : "Checks that held: " + (run_.checks.empty() ? "none, there are none."
+                                                           : "all " + std::to_string(run_.checks.size()) + ".")) +
+        "</p>\n");
+    if (!run_.error.empty()) add("<p class=\"bad\">The run ended early: " + html_text(run_.error) + "</p>\n");
+    add("<dl>\n");
+    fact("robot", report_.robot);
+    fact("seed", std::to_string(run_.seed));
+    fact("simulated", printed("%.3f s", run_.duration_s));
+    fact("took", printed("%.2f s, %.1f times real time", run_.wall_s, run_.realtime_factor));
+    fact("control tick", printed("median %.2f us, 99 %% %.2f us, most %.0f us", 1e-3 * run_.tick.median_ns,
+                                 1e-3 * run_.tick.p99_ns, 1e-3 * run_.tick.max_ns));
+    fact("ticks", printed("%llu control, %llu behavior", static_cast<unsigned long long>(run_.control_ticks),
+                          static_cast<unsigned long long>(run_.behavior_ticks)));
+    fact("commands", printed("%llu sent, %llu refused", static_cast<unsigned long long>(run_.commands_sent),
+                             static_cast<unsigned long long>(run_.commands_refused)));
+    fact("state", hash_text(run_.state_hash));
+    fact("program", report_.program);
+    if (!report_.subject.record.empty()) fact("record", report_.subject.record);
+    add("</dl>\n");
+    if (report_.quantities.empty()) return;
+    std::string drawn;
+    for (const QuantityValue& quantity : report_.quantities)
+      drawn += (drawn.empty() ? "" : ", ") + quantity.name + printed(" = %.6g", quantity.value);
+    add("<p class=\"dim\">Set or drawn for this run: " + html_text(drawn) + "</p>\n");
+  }
+
+  void failures() {
+    if (failed() == 0) return;
+    title("What failed");
+    for (const CheckResult& check : run_.checks) {
+      if (check.passed) continue;
+      add("<div class=\"failed\"><strong>" + html_text(check.name) +
+          "</strong>: " + printed("%.5g at %.3f s", check.value, check.at_s) + html_text(wanted_clause(check)));
+      for (const EvidenceTrace& trace : report_.evidence) {
+        if (trace.check == check.name) add("<figure>" + spark_line(trace) + "</figure>");
+      }
+      add("</div>\n");
+    }
+  }
+
+  void plot() {
+    title("What the robot did");
+    if (report_.plot.empty()) return add("<p class=\"dim\">No plots: " + html_text(report_.no_plot) + "</p>\n");
+    const std::size_t begin = report_.plot.find("<svg");  // without the declaration of XML
+    add("<div class=\"plot\">" + (begin == std::string::npos ? "" : report_.plot.substr(begin)) + "</div>\n");
+  }
+
+  void film() {
+    title("Film");
+    if (report_.film.empty()) return add("<p class=\"dim\">No pictures: " + html_text(report_.no_film) + "</p>\n");
+    add("<div class=\"film\">\n");
+    for (const ReportPicture& picture : report_.film) {
+      const std::string time = printed("%.2f s", picture.time_s);
+      add("<figure><img alt=\"the robot at " + time + "\" src=\"data:image/png;base64," + base64(picture.png) +
+          "\"><figcaption>" + time + "</figcaption></figure>\n");
+    }
+    add("</div>\n");
+  }
+
+  void table(const std::vector<const char*>& heads, std::size_t numbers_first) {
+    add("<div class=\"scroll\"><table><tr>");
+    for (std::size_t i = 0; i < heads.size(); ++i)
+      add(std::string("<th") + (i < numbers_first ? number : "") + ">" + heads[i] + "</th>");
+    add("</tr>\n");
+  }
+
+  void checks() {
+    title("Checks");
+    if (run_.checks.empty()) return add("<p class=\"dim\">The scenario has none.</p>\n");
+    table({"", "check", "value", "when", "wanted"}, 0);
+    for (const CheckResult& check : run_.checks) {
+      add("<tr>" + std::string(check.passed ? "<td class=\"mark good\">✓</td>" : "<td class=\"mark bad\">✗</td>") +
+          cell(check.name) + cell(printed("%.5g", check.value), number) + cell(printed("%.3f s", check.at_s), number) +
+          cell(demand(check)) + "</tr>\n");
+    }
+    add("</table></div>\n");
+  }
+
+  void transitions() {
+    title("Transitions");
+    const std::vector<Transition>& all = report_.subject.log.transitions();
+    if (all.empty()) return add("<p class=\"dim\">None.</p>\n");
+    table({"time", "behavior", "from", "to", "why"}, 1);
+    for (const Transition& t : all)
+      add("<tr>" + cell(printed("%.3f s", seconds(t.time_ns)), number) + cell(t.behavior) + cell(t.from) + cell(t.to) +
+          cell(t.why) + "</tr>\n");
+    add("</table></div>\n");
+  }
+
+  void faults() {
+    title("Faults");
+    if (run_.faults.empty()) return add("<p class=\"dim\">None.</p>\n");
+    table({"time", "fault", "joint", "what", "set by"}, 1);
+    for (const Fault& fault : run_.faults) {
+      const ToldFault what = told(fault, report_.subject.model);
+      add("<tr>" + cell(printed("%.3f s", fault_s(fault)), number) + cell(what.name) + cell(what.joint) +
+          cell(fault_detail(what)) + cell(configuration_key(fault.code)) + "</tr>\n");
+    }
+    add("</table></div>\n");
+  }
+
+  void log() {
+    title("Log");
+    const std::vector<LogLine>& lines = report_.subject.log.lines();
+    if (lines.empty()) return add("<p class=\"dim\">The behaviors said nothing.</p>\n");
+    table({"time", "", "who", "what"}, 1);
+    for (const LogLine& line : lines) {
+      const bool error = line.severity == BehaviorLog::Severity::error;
+      const bool warning = line.severity == BehaviorLog::Severity::warning;
+      add("<tr>" + cell(printed("%.3f s", seconds(line.time_ns)), number) +
+          cell(error     ? "error"
+               : warning ? "warning"
+                         : "",
+               error ? " class=\"bad\"" : " class=\"warn\"") +
+          cell(line.behavior) + cell(line.text) + "</tr>\n");
+    }
+    add("</table></div>\n");
+  }
+
+  void again() {
+    title("Once more");
+    add("<pre>" + html_text(report_.subject.repeat) + "</pre>\n");
+    if (!report_.subject.record.empty())
+      add("<p class=\"dim\">To look at it: <code>kadans view " + html_text(report_.subject.record) + "</code></p>\n");
+  }
+
+  const HtmlReport& report_;
+  const RunResult& run_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string html_report(const HtmlReport& report) { return HtmlRun(report).write(); }
+
+std::string report_file(const std::string& name, std::uint64_t seed) {
+  std::string safe = name;
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  std::ranges::replace_if(
+      safe, [&](char c) { return !plain(c); }, '_');
+  return safe + "-" + std::to_string(seed) + ".html";
+}
+
+}  // namespace kadans

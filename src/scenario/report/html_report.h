@@ -1,0 +1,34 @@
+// The report of a run as one HTML page: what happened in words, plots and pictures, every check, transition, fault and
+// log line, and the command that repeats the run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report.h"
+
+namespace kadans {
+
+struct ReportPicture {
+  double time_s = 0;
+  std::string png;
+};
+
+struct HtmlReport {
+  const ReportSubject& subject;
+  std::string scenario, doc, robot, program;  // program: "kadans 0.1.0"
+  std::vector<QuantityValue> quantities;      // quantities that were set or drawn for this run
+  std::vector<EvidenceTrace> evidence;        // of the checks that failed
+  std::string plot;                           // an SVG; "" when there is none ...
+  std::string no_plot;                        // ... and then the reason
+  std::string plot_style;                     // CSS with the plot's colors on a dark page
+  std::vector<ReportPicture> film;
+  std::string no_film;  // the reason why there is no film
+};
+
+std::string html_report(const HtmlReport& report);
+
+// The name of a run's report file: "squat-1.html" for scenario "squat" and seed 1.
+std::string report_file(const std::string& name, std::uint64_t seed);
+
+}  // namespace kadans

@@ -1,0 +1,78 @@
+// One run of a scenario on the virtual clock, from the first tick to the result.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/lockstep.h"
+#include "kadans/plant/world.h"
+#include "plant/joystick/stick.h"
+#include "run_log.h"
+#include "scenario/disturb/disturbances.h"
+#include "scenario/judge/checks.h"
+#include "scenario/judge/truth_signals.h"
+
+namespace kadans {
+
+struct RunParts {
+  World& world;
+  ControlEngine& control;
+  BehaviorEngine& behaviors;
+  Lockstep& lockstep;
+  TruthSignals& truth;
+  RunLog& log;
+  Disturbances* disturbances = nullptr;
+  JoystickSource* joystick = nullptr;
+  // Signals about the interpreter's own needs (memory, instructions, pauses). They are not part of the state hash,
+  // because memory depends on the machine.
+  SignalId upkeep_first = 0;
+  std::size_t upkeep_count = 0;
+};
+
+// The progress of a run between two ticks.
+struct RunMark {
+  std::uint64_t ticks = 0;       // completed ticks
+  std::int64_t time_ns = 0;      // time at which the next tick begins
+  std::uint64_t state_hash = 0;  // over all completed ticks
+};
+
+// Observes a run while it goes. `row` holds all signals of the tick.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void tick(double time_s, std::span<const double> row) = 0;
+  // Called for each fault that the safety layer found.
+  virtual void fault(const Fault& fault) { (void)fault; }
+  // Called after each tick and its step of the plant. Changes that it makes take effect in the next tick.
+  virtual void between_ticks(const RunMark& mark) { (void)mark; }
+  virtual bool stop_asked() const { return false; }
+};
+
+struct TickCost {
+  double median_ns = 0, p99_ns = 0, max_ns = 0;
+};
+
+struct RunResult {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  bool passed = false;  // every check passed, no behavior had an error, the run was not stopped early
+  bool interrupted = false;
+  std::string error;  // why the run ended early; "" when it did not
+  std::vector<CheckResult> checks;
+  double duration_s = 0;
+  double wall_s = 0;
+  double realtime_factor = 0;
+  std::uint64_t control_ticks = 0, behavior_ticks = 0;
+  std::uint64_t state_hash = 0;
+  TickCost tick;
+  std::uint64_t commands_sent = 0, commands_refused = 0;
+  std::vector<Fault> faults;  // in the order of time, at most fault_log_capacity in a tick
+};
+
+// Runs for duration_s of simulated time. `observers` may be empty. When the plant throws, the run ends and the result
+// holds the error.
+RunResult run_scenario(const RunParts& parts, double duration_s, Checks& checks,
+                       const std::vector<RunObserver*>& observers);
+
+}  // namespace kadans

@@ -1,0 +1,239 @@
+#include "behavior.h"
+
+#include <algorithm>
+
+#include "behavior_parts.h"
+#include "engine/clock.h"
+#include "engine/refusal_text.h"
+#include "script/lua/lua_core.h"
+
+namespace kadans {
+namespace {
+
+constexpr const char* rehearsal_text =
+    "local seen = { inner = { value = 1 } } "
+    "local function look(from) return from.inner.value end "
+    "return function(on) local sum = 0 for i = 1, 3 do sum = sum + look(seen) * i end "
+    "if on and sum > 100 then seen.sum = sum end return sum ~= nil and sum < 0 end";
+
+int tick_chart(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  parts.runner->tick(state, parts.bindings.now_ns);
+  return 0;
+}
+
+// The work of a tick but for the chart: tables filled with what they are going to hold anyway, and a function that uses
+// the interpreter as functions of charts do.
+int rehearse_tick(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  Behavior::Parts::Rehearsal& rehearsal = parts.rehearsal;
+  parts.snapshot_tables.refill(state, *rehearsal.snapshot, rehearsal.now_ns);
+  if (rehearsal.function == LUA_NOREF) {
+    if (luaL_loadstring(state, rehearsal_text) != 0) return lua_error(state);
+    lua_call(state, 0, 1);
+    rehearsal.function = luaL_ref(state, LUA_REGISTRYINDEX);
+  }
+  lua_rawgeti(state, LUA_REGISTRYINDEX, rehearsal.function);
+  lua_pushboolean(state, 1);
+  lua_call(state, 1, 1);
+  return 0;
+}
+
+int stop_chart(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  parts.runner->stop(state, parts.bindings.now_ns);
+  return 0;
+}
+
+}  // namespace
+
+Behavior::Parts::Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to)
+    : settings(wanted), catalog(offered), log(to) {}
+
+void Behavior::Parts::say(const char* text) noexcept { say_with(BehaviorLog::Severity::info, text); }
+
+void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text) noexcept {
+  const std::int64_t now_ns = bindings.engine_ns();
+  tell_dropped(false);
+  const LogBound::Answer answer = bound.admit(now_ns);
+  if (answer == LogBound::Answer::say) return log.message(now_ns, severity, chart.name, text);
+  if (answer == LogBound::Answer::drop) return;
+  log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
+              "says more than " + std::to_string(LogBound::lines_max) + " lines in a second; the rest is dropped");
+}
+
+void Behavior::Parts::tell_dropped(bool at_once) noexcept {
+  const std::int64_t now_ns = bindings.engine_ns();
+  const std::uint64_t dropped = bound.take_dropped(now_ns, at_once);
+  if (dropped == 0) return;
+  log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
+              std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
+}
+
+void Behavior::Parts::tell_refused() noexcept {
+  while (const Refusal* refusal = bindings.next_refusal()) {
+    ++transactions_refused;
+    log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
+                "refused by the control engine, all commands of that tick: " + refusal_text(*refusal, catalog));
+  }
+}
+
+void Behavior::Parts::want_sets(const Snapshot& snapshot) noexcept {
+  for (std::size_t i = 0; i < chart.machines.size(); ++i) {
+    const ControlSetInfo* set = bindings.set_of(i);
+    if (set == nullptr || !runner->active(chart.machines[i].root)) continue;
+    bindings.wanted |= set_bit(static_cast<std::uint32_t>(set - catalog.sets.data())) & ~snapshot.control_sets;
+  }
+}
+
+void Behavior::Parts::transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept {
+  transition.time_ns = bindings.engine_ns();
+  transition.behavior = chart.name;
+  transition.from = from;
+  transition.to = to;
+  transition.why = why;
+  log.transition(transition);
+}
+
+bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
+  return lua->call(function, this, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
+}
+
+Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
+    : parts_(std::make_unique<Parts>(settings, catalog, log)), past_(std::make_unique<Past>()) {
+  load_behavior(*parts_);
+  publish_status();
+}
+
+Behavior::~Behavior() = default;
+
+void Behavior::prepare(const Snapshot& newest) noexcept {
+  if (failed() || finished()) return;
+  parts_->rehearsal.snapshot = &newest;
+  parts_->rehearsal.now_ns = clock_ns(newest);
+  (void)parts_->run(rehearse_tick);
+}
+
+bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  Parts& parts = *parts_;
+  if (failed() || finished()) return false;
+  forget_past(clock_ns(snapshot));
+  Bindings& bindings = parts.bindings;
+  bindings.begin(commands, snapshot, snapshot.time_ns);
+  if (snapshot.transactions_refused != bindings.refusals_seen) parts.tell_refused();
+  if (bindings.wanted != 0) bindings.bring_in_again();
+  if (!parts.run(tick_chart)) {
+    commands.discard();
+    if (take_back(snapshot, commands)) return true;
+    parts.failed = true;
+    parts.error = parts.lua->error();
+    parts.tell_dropped(true);
+    if (parts.error.breach == ScriptBreach::none) stop(snapshot, commands);
+    return false;
+  }
+  if (!bindings.commit()) {
+    ++parts.transactions_refused;
+    parts.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
+                      "queue_full: the commands of this tick were refused, all of them");
+  }
+  parts.tell_dropped(finished());
+  publish_status();
+  return !finished();
+}
+
+void Behavior::publish_status() noexcept {
+  Parts& parts = *parts_;
+  const auto store = [](std::atomic<std::uint32_t>& to, std::uint64_t value) {
+    to.store(static_cast<std::uint32_t>(value), std::memory_order_relaxed);
+  };
+  store(status_.instructions, parts.lua->core().budget.spent());
+  const bool wall = parts.settings.limits.tick_wall_ns > 0;
+  const std::int64_t began_ns = wall ? WallClock{}.now_ns() : 0;
+  parts.lua->collect();
+  store(status_.gc_pause_ns, wall ? static_cast<std::uint64_t>(WallClock{}.now_ns() - began_ns) : 0);
+  store(status_.heap_bytes, parts.lua->used_bytes());
+  store(status_.state, parts.runner->innermost());
+}
+
+void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  Parts& parts = *parts_;
+  if (!parts.runner->started() || parts.error.breach != ScriptBreach::none) return;
+  // An exit that raises ends its transaction; the states around it are left in the next one, in what is left of the
+  // tick.
+  const bool wall = parts.settings.limits.tick_wall_ns > 0;
+  const std::int64_t end_ns = wall ? WallClock{}.now_ns() + parts.settings.limits.tick_wall_ns : 0;
+  for (std::uint64_t left = parts.settings.limits.tick_instructions; left > 0;) {
+    const std::int64_t left_ns = wall ? std::max<std::int64_t>(end_ns - WallClock{}.now_ns(), 1) : 0;
+    parts.bindings.begin(commands, snapshot, snapshot.time_ns);
+    if (parts.lua->call(stop_chart, &parts, left, left_ns)) {
+      (void)parts.bindings.commit();
+      return;
+    }
+    commands.discard();
+    if (!parts.failed) parts.error = parts.lua->error();
+    parts.failed = true;
+    if (parts.lua->error().breach != ScriptBreach::none) return;
+    left -= std::min(left, parts.lua->core().budget.spent());
+  }
+}
+
+void Behavior::hold_clock(std::int64_t held_ns) noexcept {
+  parts_->bindings.held_ns = held_ns;
+  if (past_->parts != nullptr) past_->parts->bindings.held_ns = held_ns;
+}
+
+std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
+  return snapshot.time_ns - parts_->bindings.held_ns;
+}
+
+bool Behavior::post(const std::string& event) noexcept {
+  const EventId id = parts_->chart.find_event(event);
+  return id != no_event && id != run_done_event && parts_->runner->post(id);
+}
+
+const std::string& Behavior::name() const noexcept { return parts_->chart.name; }
+const Behavior::Settings& Behavior::settings() const noexcept { return parts_->settings; }
+const Chart& Behavior::chart() const noexcept { return parts_->chart; }
+bool Behavior::finished() const noexcept { return parts_->runner->finished(); }
+bool Behavior::failed() const noexcept { return parts_->failed; }
+const ScriptError& Behavior::error() const noexcept { return parts_->error; }
+std::uint64_t Behavior::transactions_refused() const noexcept { return parts_->transactions_refused; }
+std::uint64_t Behavior::events_unhandled() const noexcept { return parts_->runner->events_unhandled(); }
+std::size_t Behavior::heap_bytes() const noexcept { return parts_->lua->used_bytes(); }
+
+std::string Behavior::outcome() const {
+  if (failed()) return "error";
+  const EventId outcome = parts_->runner->outcome();
+  return outcome == no_event ? "" : parts_->chart.events[static_cast<std::size_t>(outcome)];
+}
+
+std::string Behavior::state() const { return parts_->chart.states[parts_->runner->innermost()].path; }
+
+SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets(); }
+
+ObjectMask Behavior::objects() const noexcept {
+  ObjectMask all = 0;
+  for (const ControlSetInfo* set : parts_->bindings.sets) {
+    if (set == nullptr) return ~ObjectMask{0};
+    for (const std::uint32_t object : set->objects) all |= ObjectMask{1} << object;
+  }
+  return all;
+}
+
+std::vector<ScriptParameter> Behavior::parameters() const {
+  const auto& all = parts_->lua->core().parameters;
+  return {all.begin(), all.end()};
+}
+
+bool Behavior::set_parameter(const std::string& name, double value) noexcept {
+  for (ScriptParameter& parameter : parts_->lua->core().parameters) {
+    if (parameter.name != name || !(value >= parameter.min && value <= parameter.max)) continue;
+    parameter.value = value;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace kadans

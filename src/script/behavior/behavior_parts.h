@@ -1,0 +1,88 @@
+// The parts of a behavior. behavior_loading.cpp makes them, behavior.cpp runs them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "behavior.h"
+#include "script/bindings/bindings.h"
+#include "script/bindings/log_bound.h"
+#include "script/bindings/snapshot_tables.h"
+#include "script/chart/chart_runner.h"
+#include "script/lua/lua_state.h"
+
+namespace kadans {
+
+struct Behavior::Parts final : ScriptVoice, TransitionSink {
+  Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to);
+  ~Parts() override = default;
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  void say(const char* text) noexcept override;
+  void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
+  void tell_dropped(bool at_once) noexcept;  // logs how many lines were dropped
+  void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;
+  void tell_refused() noexcept;  // logs what the control engine has refused since the last call
+  // Asks in the next tick for the control sets of all active machines that are not active in the snapshot.
+  void want_sets(const Snapshot& snapshot) noexcept;
+  // Runs one of the functions below under the tick's budget.
+  bool run(int (*function)(lua_State*)) noexcept;
+
+  Settings settings;
+  const Catalog& catalog;
+  BehaviorLog& log;
+  LogBound bound;
+  std::unique_ptr<LuaState> lua;
+  Chart chart;
+  Bindings bindings;
+  RunnerTables tables;
+  SnapshotTables snapshot_tables;
+  std::unique_ptr<ChartRunner> runner;
+  Transition transition;  // reused, so that its strings keep their room
+  struct Rehearsal {
+    const Snapshot* snapshot = nullptr;
+    std::int64_t now_ns = 0;
+    int function = LUA_NOREF;
+  } rehearsal;
+  ScriptError error;
+  bool failed = false;
+  std::uint64_t transactions_refused = 0;
+  std::vector<InputProblem> problems;
+};
+
+struct Behavior::Past {
+  std::unique_ptr<Parts> parts;
+  std::vector<bool> left;  // its states that were left at the swap
+  std::int64_t swapped_ns = 0;
+  std::vector<LuaState::Source> taken_back;  // files that failed in their first second
+  std::string complaint;                     // the last logged complaint, so that it is not repeated
+};
+
+// Reads the file, makes the chart and the bindings. `instructions` 0: the limit for loading. Throws InputError.
+void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
+
+// behavior_arguments.cpp. Sets the parameters of the behavior and of those that it calls to the values in the robot's
+// configuration. Throws InputError.
+void give_robot_values(Behavior::Parts& parts);
+
+// behavior_arguments.cpp. Gives the behavior the values of Settings::arguments. Throws InputError.
+void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
+
+// behavior_adoption.cpp. Copies the state of `old` into the newly loaded `fresh`: active states, vars, parameters,
+// random numbers. `old` is not changed. False: fresh.lua->error() says why.
+bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,
+                    const Snapshot& snapshot, CommandSender& commands) noexcept;
+// [-0 +1] Pushes the `vars` of a machine.
+void push_vars(lua_State* state, const RunnerTables::Machine& machine);
+// True when a machine can take over vars of this version of it.
+bool takes_vars(const Chart::Machine& machine, int version) noexcept;
+// [-1 +0] The top of the stack holds the vars that the machine had in `version`, below them are its own vars. Copies
+// the old values into the own vars. Raises what `migrate` raises.
+void give_vars(lua_State* state, const Chart::Machine& machine, int version);
+// Leaves the marked states in a transaction of its own. False: an `exit` raised.
+bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
+                  CommandSender& commands) noexcept;
+
+}  // namespace kadans

@@ -1,0 +1,259 @@
+#include "api.h"
+
+#include <cstdio>
+#include <deque>
+#include <iterator>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "api_options.h"
+#include "signal/status_fields.h"
+
+namespace kadans {
+namespace {
+
+constexpr ApiEntry written[] = {
+    {"kadans", "behavior(name)", "fun(body: table): kadans.Behavior", "A behavior: k.behavior \"name\" { ... }"},
+    {"kadans", "state(name)", "fun(body: table): kadans.Node", "A state, with transitions and states inside"},
+    {"kadans", "parallel(name)", "fun(body: table): kadans.Node", "A state whose regions are all active together"},
+    {"kadans", "region(name)", "fun(body: table): kadans.Node", "One region of a k.parallel"},
+    {"kadans", "final(name)", "fun(body: table): kadans.Node", "An end, with its outcome"},
+    {"kadans", "history(name)", "fun(body: table): kadans.Node", "Leads back to where its parent was left"},
+    {"kadans", "call(name)", "fun(arguments: table): kadans.Node", "Plays another behavior inside this state"},
+    {"kadans", "params(table)", "table", "Declares parameters: { name = { default, min =, max =, unit =, doc = } }"},
+    {"kadans", "pose(name)", "table<string, number>", "A copy of a pose of the robot, joint = position in rad"},
+    {"kadans", "budget()", "{ instructions: number, memory_bytes: number }", "What is left of this tick's budget"},
+    {"kadans", "log", "kadans.Log", "Lines for people; at most 100 a second, the rest is dropped and counted"},
+
+    {"log", "info(format, ...)", "nil", "A line in the record, and on the console with --verbose; as string.format"},
+    {"log", "warning(format, ...)", "nil", "The same, as a warning"},
+    {"log", "error(format, ...)", "nil", "The same, as an error; the behavior goes on"},
+
+    {"m", "name", "string", "The behavior's name"},
+    {"m", "time_s", "number", "Seconds in the state whose function runs"},
+    {"m", "vars", "table", "The behavior's own plain data; kept over a reload"},
+    {"m", "args", "table", "What the caller gave"},
+    {"m", "wait(seconds)", "nil", "Goes on so many seconds later; in `run` only"},
+    {"m", "emit(event)", "boolean?, string?", "Posts an event; seen from the next tick on; nil, \"queue_full\""},
+    {"m", "clear_faults()", "boolean?, string?",
+     "Lets the safety layer forget its faults, but for an emergency stop; what follows in the same tick counts "
+     "already; "
+     "nil, \"queue_full\""},
+
+    {"object", "move(pose, options)", "kadans.Motion?, string?",
+     "Moves to a pose, by name or as joint = rad, in { time_s = }; nil, \"queue_full\""},
+    {"object", "move_through(points, options)", "kadans.Motion?, string?",
+     "Moves on a smooth curve through { { pose, time_s = }, ... } to rest at the last; nil, \"queue_full\""},
+    {"object", "follow(pose, limits)", "boolean?, string?",
+     "Moves towards a pose that may be another in every tick, within limits; nil, \"queue_full\""},
+    {"object", "set(setpoint, value, options)", "kadans.Motion?, string?",
+     "Sets one set-point, at once or in { time_s = }; nil, \"queue_full\""},
+    {"object", "setpoint(name)", "number", "Where a set-point is on its way, in its unit"},
+    {"object", "parameter(name)", "number", "The value of a parameter, in its unit"},
+    {"object", "set_gains(preset)", "boolean?, string?", "Sets the parameters of a preset; nil, \"queue_full\""},
+    {"object", "set_parameter(name, value)", "boolean?, string?", "Sets one parameter; nil, \"queue_full\""},
+
+    {"motion", "done", "boolean", "Whether it arrived, was cancelled or refused"},
+    {"motion", "outcome", "'moving'|'done'|'cancelled'|'queue_full'|'refused'|'expired'", "How it ended"},
+    {"motion", "reason", "string?", "Why the control engine refused it: which set-point or parameter, and its range"},
+    {"motion", "wait()", "boolean?, string?, string?",
+     "Goes on when it is over; in `run` only; nil, outcome and reason when it did not arrive"},
+    {"motion", "cancel()", "boolean?, string?", "Comes to rest where it is; nil, \"queue_full\""},
+
+    {"s", "joints", "kadans.Joints", "By name"},
+    {"s", "base", "kadans.Base", "The trunk"},
+    {"s", "feet", "kadans.Feet", "left and right"},
+    {"s", "support", "kadans.Support", "Where the ground bears the robot"},
+    {"s", "safety", "kadans.Safety", "What the safety layer allows"},
+    {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
+    {"base", "angular_velocity_rad_s", "kadans.Rate", "In the base frame"},
+    {"s", "sensors", "kadans.Sensors",
+     "What the robot's configuration names under `sensors`; NaN before the first reading"},
+};
+
+// Where a part of the snapshot is documented.
+const char* owner_of(StatusField::Part part) {
+  using enum StatusField::Part;
+  switch (part) {
+    case joint:
+      return "joint";
+    case base:
+      return "base";
+    case rate:
+      return "rate";
+    case foot:
+      return "foot";
+    case support:
+      return "support";
+    case safety:
+      return "safety";
+    case joystick:
+      return "joystick";
+    case sensors:
+      return "sensors";
+    case root:
+      break;
+  }
+  return "s";
+}
+
+std::string type_of(const StatusField& field) {
+  if (field.type == StatusField::Type::number) return "number";
+  if (field.type == StatusField::Type::flag) return "boolean";
+  std::string type;
+  for (std::size_t i = 0; i < field.choices; ++i) type += (i == 0 ? "'" : "|'") + std::string(field.choice(i)) + "'";
+  return type;
+}
+
+// What is written above, and the fields of the snapshot.
+std::vector<ApiEntry> whole_api() {
+  static std::deque<std::string> texts;
+  const auto kept = [](std::string text) { return texts.emplace_back(std::move(text)).c_str(); };
+  std::vector<ApiEntry> all(std::begin(written), std::end(written));
+  for (const StatusField& field : status_fields()) {
+    const std::string unit = field.unit;
+    all.push_back({owner_of(field.part), field.name, kept(type_of(field)),
+                   kept(field.doc + (unit.empty() ? "" : ", in " + unit))});
+  }
+  return all;
+}
+
+struct Owner {
+  const char* name;
+  const char* type;  // of the stubs
+  const char* title;
+};
+constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require \"kadans\"`"},
+                            {"log", "kadans.Log", "Lines for people: `k.log`"},
+                            {"m", "kadans.Machine", "`m`: what a behavior acts through"},
+                            {"object", "kadans.Object", "A control object: `m.posture`"},
+                            {"motion", "kadans.Motion", "A motion: what `move` and `set` return"},
+                            {"s", "kadans.Snapshot", "`s`: the snapshot, read-only"},
+                            {"joint", "kadans.Joint", "A joint: `s.joints.l_knee`"},
+                            {"base", "kadans.Base", "The trunk: `s.base`"},
+                            {"rate", "kadans.Rate", "A turning rate: `s.base.angular_velocity_rad_s`"},
+                            {"foot", "kadans.Foot", "A foot: `s.feet.left`"},
+                            {"support", "kadans.Support", "The ground: `s.support`"},
+                            {"safety", "kadans.Safety", "The safety layer: `s.safety`"},
+                            {"joystick", "kadans.Joystick", "A joystick: `s.joystick`"}};
+
+std::string bare(std::string_view name) { return std::string(name.substr(0, name.find('('))); }
+
+// "pose, options" with the types that an editor checks.
+std::string typed(std::string_view function, std::string_view names) {
+  std::string text;
+  while (!names.empty()) {
+    const std::size_t comma = names.find(", ");
+    const std::string name(names.substr(0, comma));
+    names.remove_prefix(comma == std::string_view::npos ? names.size() : comma + 2);
+    text += (text.empty() ? "" : ", ") + name + argument_type(function, name);
+  }
+  return text;
+}
+
+// "---@field move fun(self, pose: ..., options: kadans.MoveOptions): kadans.Motion?, string?"
+std::string stub_line(const ApiEntry& entry) {
+  const std::string_view name = entry.name;
+  const std::size_t bracket = name.find('(');
+  std::string type = entry.type;
+  if (bracket != std::string_view::npos) {
+    const std::string given = typed(bare(name), name.substr(bracket + 1, name.size() - bracket - 2));
+    const std::string_view owner = entry.owner;
+    const bool method = owner != "kadans" && owner != "log";
+    type = "fun(" + std::string(method ? "self" : "") + (method && !given.empty() ? ", " : "") + given + "): " + type;
+  }
+  return "---@field " + bare(name) + " " + type + " " + entry.doc + "\n";
+}
+
+std::string alternatives(const std::string& alias, const std::vector<std::string>& values) {
+  std::string text = "---@alias " + alias + "\n";
+  for (const std::string& value : values) text += "---| " + value + "\n";
+  return text + "\n";
+}
+
+std::string range_note(const std::string& name, const std::string& unit, double min, double max) {
+  char text[160];
+  std::snprintf(text, sizeof text, "'\"%s\"' # %g..%g %s", name.c_str(), min, max, unit.c_str());
+  return text;
+}
+
+void add_object(std::string& text, const Catalog& catalog, const ObjectInfo& object) {
+  const std::string type = "kadans." + object.name;
+  const auto short_name = [&](const std::string& name) { return name.substr(object.name.size() + 1); };
+  std::vector<std::string> setpoints, parameters, presets;
+  for (const SetpointId id : object.setpoints) {
+    const Setpoint& setpoint = catalog.setpoints[id];
+    setpoints.push_back(range_note(short_name(setpoint.name), setpoint.unit, setpoint.min, setpoint.max));
+  }
+  for (const ParameterId id : object.parameters) {
+    const Parameter& parameter = catalog.parameters.info(id);
+    parameters.push_back(range_note(short_name(parameter.name), parameter.unit, parameter.min, parameter.max));
+  }
+  for (const Preset& preset : object.presets) presets.push_back("'\"" + preset.name + "\"'");
+  text += alternatives(type + ".setpoint", setpoints) + alternatives(type + ".parameter", parameters) +
+          alternatives(type + ".preset", presets);
+  text += "---@class " + type + ": kadans.Object\n";
+  text += "---@field set fun(self, setpoint: " + type +
+          ".setpoint, value: number, options: kadans.SetOptions?): " + "kadans.Motion?, string?\n";
+  text += "---@field setpoint fun(self, name: " + type + ".setpoint): number\n";
+  text += "---@field parameter fun(self, name: " + type + ".parameter): number\n";
+  text += "---@field set_gains fun(self, preset: " + type + ".preset): boolean?, string?\n";
+  text += "---@field set_parameter fun(self, name: " + type + ".parameter, value: number): boolean?, string?\n\n";
+}
+
+}  // namespace
+
+std::span<const ApiEntry> script_api() {
+  static const std::vector<ApiEntry> all = whole_api();
+  return all;
+}
+
+std::string lua_stubs(const Catalog& catalog) {
+  std::string text =
+      "---@meta kadans\n-- Generated by `kadans lua-stubs`; do not edit.\n\n---@class kadans.Node\n---@class "
+      "kadans.Behavior\n\n";
+  std::vector<std::string> poses;
+  for (const PoseInfo& pose : catalog.poses) poses.push_back("'\"" + pose.name + "\"'");
+  text += alternatives("kadans.pose", poses);
+  for (const ObjectInfo& object : catalog.objects) add_object(text, catalog, object);
+  text += motion_option_stubs();
+  text += "---@class kadans.Joints\n";
+  for (const Joint& joint : catalog.model->joints) text += "---@field " + joint.name + " kadans.Joint\n";
+  text += "\n---@class kadans.Sensors\n";
+  for (const SensorChannel& sensor : catalog.sensors)
+    text +=
+        "---@field " + sensor.name + " number " + sensor.doc + (sensor.unit.empty() ? "" : " In " + sensor.unit) + "\n";
+  text += "\n---@class kadans.Feet\n---@field left kadans.Foot\n---@field right kadans.Foot\n\n";
+  for (const Owner& owner : owners) {
+    text += "---@class " + std::string(owner.type) + "\n";
+    for (const ApiEntry& entry : script_api()) {
+      if (std::string_view(entry.owner) == owner.name) text += stub_line(entry);
+    }
+    if (std::string_view(owner.name) == "m") {
+      for (const ObjectInfo& object : catalog.objects) {
+        text += "---@field " + object.name + " kadans." + object.name + " " + object.type + "\n";
+      }
+    }
+    text += "\n";
+  }
+  return text + "---@type kadans\nlocal kadans\nreturn kadans\n";
+}
+
+std::string api_reference() {
+  std::string text =
+      "# Reference of behaviors\n\nGenerated by `kadans lua-stubs --markdown`; do not edit. The guide is "
+      "[behaviors.md](behaviors.md).\n";
+  for (const Owner& owner : owners) {
+    text += "\n## " + std::string(owner.title) + "\n\n| name | type or result | |\n|---|---|---|\n";
+    for (const ApiEntry& entry : script_api()) {
+      if (std::string_view(entry.owner) != owner.name) continue;
+      std::string type = entry.type;
+      for (std::size_t at = 0; (at = type.find('|', at)) != std::string::npos; at += 2) type.insert(at, "\\");
+      text += "| `" + std::string(entry.name) + "` | " + type + " | " + entry.doc + " |\n";
+    }
+  }
+  return text + motion_option_reference();
+}
+
+}  // namespace kadans

@@ -1,0 +1,68 @@
+// The data on which the functions of `m` work: the catalog, the snapshot and the transaction of the running tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <lua.hpp>
+
+#include "engine/transaction.h"
+#include "kadans/control/catalog.h"
+#include "kadans/control/set_partition.h"
+#include "script/chart/chart.h"
+#include "script/chart/chart_runner.h"
+#include "script/lua/lua_core.h"
+#include "script/motion/motion.h"
+
+namespace kadans {
+
+struct Bindings {
+  const Catalog* catalog = nullptr;
+  std::vector<const ControlSetInfo*> sets;  // for each machine its own set or its caller's; nullptr: every object
+  const Snapshot* snapshot = nullptr;
+  CommandSender* sender = nullptr;
+  std::int64_t held_ns = 0;  // how much the behaviors' clock is behind the engine's, because of pauses
+  std::int64_t now_ns = 0;   // time on the behaviors' clock
+  ChartRunner* runner = nullptr;
+  bool refused = false;                            // a command of this tick found no place in the queue
+  std::array<Motion*, max_transaction> motions{};  // motions asked for in this tick
+  std::uint32_t motion_count = 0;
+  SetMask wanted = 0;                   // sets that are needed and have not been sent for yet
+  std::array<std::uint32_t, 8> sent{};  // the newest transactions, a ring indexed by sent_count
+  std::uint32_t sent_count = 0;
+  std::uint32_t refusals_seen = 0;  // transactions_refused of the last snapshot
+
+  const ControlSetInfo* set_of(std::size_t machine) const noexcept {
+    return machine < sets.size() ? sets[machine] : nullptr;
+  }
+  bool has_object(std::size_t machine, std::uint32_t object) const noexcept;
+  SetMask all_sets() const noexcept;
+  // To be called when a machine is entered: asks for its control set, unless it is active.
+  void bring_in(std::size_t machine) noexcept;
+  // To be called after begin(): asks again for sets that could not be sent before.
+  void bring_in_again() noexcept;
+  // The next refusal in the snapshot of one of this behavior's transactions; nullptr when all have been returned.
+  const Refusal* next_refusal() noexcept;
+  // False when the queue has no place; then the whole transaction will be refused.
+  bool send(const Command& command) noexcept;
+  void begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept;
+  std::int64_t engine_ns() const noexcept { return now_ns + held_ns; }
+  // Commits the transaction and stores its number in its motions. False: refused.
+  bool commit() noexcept;
+};
+
+inline Bindings& bindings_of(lua_State* state) noexcept { return *static_cast<Bindings*>(core_of(state).bindings); }
+
+void open_log(lua_State* state);  // [-1 +1] adds `log` to the module's table at the top of the stack
+
+// [-0 +1] Pushes the handle of a control object: m.posture.
+void push_object(lua_State* state, std::uint32_t object);
+void open_objects(lua_State* state);
+
+// Makes `m` for each machine, and `s`. Stores their references in the runner's tables. Raises.
+void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables);
+// Gives a machine that is being entered its vars and arguments.
+void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tables, std::uint16_t machine);
+
+}  // namespace kadans

@@ -1,0 +1,154 @@
+// `m`: what the functions of a behavior act through. Each machine has its own; the control objects are the same.
+#include <cmath>
+
+#include "bindings.h"
+#include "script/behavior/vars_transfer.h"
+#include "script/sandbox/sandbox.h"
+
+namespace kadans {
+namespace {
+
+constexpr double copied_field_instructions = 20;
+
+// m:wait(seconds): inside `run` only.
+int wait(lua_State* state) {
+  const double seconds = luaL_checknumber(state, 2);
+  if (!(seconds >= 0 && seconds < 1e6)) return luaL_argerror(state, 1, "seconds >= 0");
+  if (core_of(state).running != state) return luaL_error(state, "m:wait() works inside `run` only");
+  ChartRunner& runner = *bindings_of(state).runner;
+  runner.wait_until(runner.now_ns() + static_cast<std::int64_t>(std::llround(seconds * 1e9)));
+  lua_settop(state, 0);
+  return lua_yield(state, 0);
+}
+
+// m:emit(event) -> true | nil, "queue_full". The behavior sees it from its next tick on.
+int emit(lua_State* state);  // upvalue: the chart
+
+// Reading what m does not have; upvalues: its content, its number.
+int refuse_read(lua_State* state) {
+  const Bindings& bindings = bindings_of(state);
+  const ControlSetInfo* set = bindings.set_of(static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(2))));
+  for (const ObjectInfo& object : bindings.catalog->objects) {
+    if (lua_type(state, 2) != LUA_TSTRING || object.name != lua_tostring(state, 2) || set == nullptr) continue;
+    return luaL_error(state, "control object '%s' is not in this behavior's control set, '%s'", object.name.c_str(),
+                      set->name.c_str());
+  }
+  return raise_unknown_field(state, "m", lua_upvalueindex(1), 2);
+}
+
+// m:clear_faults() -> true | nil, "queue_full". What is asked for behind it in the same tick counts already.
+int clear_faults(lua_State* state) {
+  if (bindings_of(state).send({.kind = CommandKind::clear_faults})) return lua_pushboolean(state, 1), 1;
+  return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
+}
+
+// [-0 +1] A deep copy of the value at `index`: plain data only.
+void push_copy(lua_State* state, int index, int depth) {
+  const int type = lua_type(state, index);
+  if (type == LUA_TFUNCTION || type == LUA_TUSERDATA || type == LUA_TTHREAD) {
+    luaL_error(state, "vars and args hold plain data, not a %s", luaL_typename(state, index));
+  }
+  if (type != LUA_TTABLE) return lua_pushvalue(state, index);
+  if (depth > vars_depth_max) luaL_error(state, "vars and args are nested too deeply");
+  luaL_checkstack(state, 6, "vars and args are nested too deeply");
+  Budget& budget = core_of(state).budget;
+  charge_table(state, index);
+  lua_newtable(state);
+  const int copy = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, index) != 0;) {
+    budget.charge(state, copied_field_instructions);
+    lua_pushvalue(state, -2);
+    push_copy(state, lua_gettop(state) - 1, depth + 1);
+    lua_rawset(state, copy);
+    lua_pop(state, 1);
+  }
+}
+
+void push_copy_of_reference(lua_State* state, int reference) {
+  if (reference == Chart::no_function) return lua_newtable(state);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
+  push_copy(state, lua_gettop(state), 0);
+  lua_remove(state, -2);
+}
+
+int emit(lua_State* state) {
+  const auto* chart = static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
+  const EventId event = chart->find_event(luaL_checkstring(state, 2));
+  if (event == no_event || event == run_done_event) {
+    return luaL_error(state, "nothing in this behavior waits for the event '%s'", lua_tostring(state, 2));
+  }
+  if (bindings_of(state).runner->post(event)) return lua_pushboolean(state, 1), 1;
+  return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
+}
+
+void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, std::size_t number) {
+  lua_newtable(state);
+  for (std::uint32_t object = 0; object < bindings.catalog->objects.size(); ++object) {
+    if (!bindings.has_object(number, object)) continue;
+    push_object(state, object);
+    lua_setfield(state, -2, bindings.catalog->objects[object].name.c_str());
+  }
+  lua_pushstring(state, chart.machines[number].name.c_str());
+  lua_setfield(state, -2, "name");
+  lua_pushnumber(state, 0);
+  lua_setfield(state, -2, "time_s");
+  lua_newtable(state);
+  lua_setfield(state, -2, "vars");
+  lua_newtable(state);
+  lua_setfield(state, -2, "args");
+  lua_pushcfunction(state, wait);
+  lua_setfield(state, -2, "wait");
+  lua_pushcfunction(state, clear_faults);
+  lua_setfield(state, -2, "clear_faults");
+  lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
+  lua_pushcclosure(state, emit, 1);
+  lua_setfield(state, -2, "emit");
+}
+
+}  // namespace
+
+void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables) {
+  open_objects(state);
+  open_motions(state);
+  tables.machines.resize(chart.machines.size());
+  for (std::size_t i = 0; i < chart.machines.size(); ++i) {
+    push_machine_content(state, chart, bindings, i);
+    lua_pushvalue(state, -1);
+    tables.machines[i].content = luaL_ref(state, LUA_REGISTRYINDEX);
+    lua_createtable(state, 0, 1);
+    lua_pushvalue(state, -2);
+    lua_pushinteger(state, static_cast<lua_Integer>(i));
+    lua_pushcclosure(state, refuse_read, 2);
+    lua_setfield(state, -2, "__index");
+    lua_setmetatable(state, -2);
+    make_read_only(state, "m", false);
+    tables.machines[i].handle = luaL_ref(state, LUA_REGISTRYINDEX);
+  }
+  lua_newtable(state);
+  tables.threads = luaL_ref(state, LUA_REGISTRYINDEX);
+  lua_pushliteral(state, "time_s");
+  tables.time_key = luaL_ref(state, LUA_REGISTRYINDEX);
+}
+
+void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tables, std::uint16_t number) {
+  const Chart::Machine& machine = chart.machines[number];
+  const int top = lua_gettop(state);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables.machines[number].content);
+  push_copy_of_reference(state, machine.vars);
+  lua_setfield(state, top + 1, "vars");
+  push_copy_of_reference(state, machine.arguments);
+  if (machine.given != Chart::no_function) {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, machine.given);
+    for (lua_pushnil(state); lua_next(state, top + 3) != 0;) {
+      lua_pushvalue(state, -2);
+      push_copy(state, lua_gettop(state) - 1, 0);
+      lua_rawset(state, top + 2);
+      lua_pop(state, 1);
+    }
+    lua_pop(state, 1);
+  }
+  lua_setfield(state, top + 1, "args");
+  lua_settop(state, top);
+}
+
+}  // namespace kadans

@@ -1,0 +1,188 @@
+#include "signal_expressions.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "script/check/source_lexer.h"
+#include "script/lua/lua_core.h"
+#include "script/lua/lua_state.h"
+#include "script/sandbox/sandbox.h"
+#include "signal/nearest_name.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::uint64_t evaluation_instructions = 100'000;
+constexpr std::uint64_t compilation_instructions = 10'000;
+constexpr std::array<std::string_view, 6> lua_words{"and", "or", "not", "true", "false", "nil"};
+constexpr std::array<std::string_view, 9> functions{"abs", "min", "max", "sqrt", "floor", "ceil", "sin", "cos", "deg"};
+constexpr std::string_view tick_before = "last.";
+
+bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
+
+// Where a number that begins at `at` ends: an exponent's letter is no name.
+std::size_t number_end(std::string_view text, std::size_t at) {
+  while (at < text.size()) {
+    const bool sign = (text[at] == '-' || text[at] == '+') && (text[at - 1] == 'e' || text[at - 1] == 'E');
+    if (!continues_name(text[at]) && !sign) break;
+    ++at;
+  }
+  return at;
+}
+
+std::optional<SignalId> find_signal(const SignalTable& signals, std::string_view name) {
+  if (const auto id = signals.find(name)) return id;
+  return signals.find("plant." + std::string(name));
+}
+
+}  // namespace
+
+struct SignalExpressions::State {
+  LuaState lua;
+  std::vector<Condition>* conditions = nullptr;
+  const std::vector<SignalId>* used = nullptr;
+  int values = LUA_NOREF;  // registry: the table of the signals' values, by place in `used`
+  int last = LUA_NOREF;    // registry: that of one tick before
+  bool begun = false;
+  double time_s = 0;
+  std::span<const double> row;
+  const std::string* text = nullptr;  // to compile
+  int compiled = LUA_NOREF;
+
+  State()
+      : lua({.root = {}, .folder = {}, .name = "conditions", .seed = 1, .limits = ScriptLimits{}, .voice = nullptr}) {}
+
+  static int compile(lua_State* state);
+  static int evaluate(lua_State* state);
+};
+
+int SignalExpressions::State::compile(lua_State* state) {
+  auto& self = *static_cast<State*>(lua_touserdata(state, 1));
+  if (luaL_loadbufferx(state, self.text->data(), self.text->size(), "=condition", "t") != 0) return lua_error(state);
+  push_environment(state);
+  lua_setfenv(state, -2);
+  self.compiled = luaL_ref(state, LUA_REGISTRYINDEX);
+  if (self.values == LUA_NOREF) {
+    lua_newtable(state);
+    self.values = luaL_ref(state, LUA_REGISTRYINDEX);
+    lua_newtable(state);
+    self.last = luaL_ref(state, LUA_REGISTRYINDEX);
+  }
+  return 0;
+}
+
+int SignalExpressions::State::evaluate(lua_State* state) {
+  auto& self = *static_cast<State*>(lua_touserdata(state, 1));
+  lua_rawgeti(state, LUA_REGISTRYINDEX, self.values);
+  const int values = lua_gettop(state);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, self.last);
+  const int last = lua_gettop(state);
+  const auto count = static_cast<int>(self.used->size());
+  const auto copy = [&](int from, int to, int i) {
+    lua_rawgeti(state, from, i);
+    lua_rawseti(state, to, i);
+  };
+  for (int i = 1; i <= count; ++i) {
+    if (self.begun) copy(values, last, i);
+    lua_pushnumber(state, self.row[(*self.used)[static_cast<std::size_t>(i) - 1]]);
+    lua_rawseti(state, values, i);
+    if (!self.begun) copy(values, last, i);
+  }
+  self.begun = true;
+  for (Condition& condition : *self.conditions) {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, condition.function);
+    lua_pushvalue(state, values);
+    lua_pushnumber(state, self.time_s);
+    lua_pushvalue(state, last);
+    lua_call(state, 3, 1);
+    if (!lua_isboolean(state, -1))
+      return luaL_error(state, "'%s' gives a %s, wanted true or false", condition.text.c_str(),
+                        luaL_typename(state, -1));
+    condition.holds = static_cast<char>(lua_toboolean(state, -1));
+    lua_pop(state, 1);
+  }
+  return 0;
+}
+
+SignalExpressions::SignalExpressions(const SignalTable& signals)
+    : signals_(signals), state_(std::make_unique<State>()) {
+  state_->conditions = &conditions_;
+  state_->used = &used_;
+}
+
+SignalExpressions::~SignalExpressions() = default;
+
+// Puts values[n] where a signal's name stands.
+bool SignalExpressions::translate(std::string_view text, Condition& condition, std::string& lua,
+                                  ExpressionError& error) const {
+  std::vector<SignalId> used = used_;
+  for (std::size_t at = 0; at < text.size();) {
+    const bool digit = std::isdigit(static_cast<unsigned char>(text[at])) != 0;
+    const std::size_t begin = at;
+    if (digit) {
+      at = number_end(text, at + 1);
+    } else if (starts_name(text[at])) {
+      while (at < text.size() && continues_name(text[at])) ++at;
+    } else {
+      ++at;
+    }
+    const std::string_view word = text.substr(begin, at - begin);
+    if (digit || !starts_name(word[0]) || word == "time_s" || std::ranges::find(lua_words, word) != lua_words.end()) {
+      lua += word;
+      continue;
+    }
+    if (std::ranges::find(functions, word) != functions.end()) {
+      lua += "math." + std::string(word);
+      continue;
+    }
+    const bool before = word.starts_with(tick_before);
+    const auto signal = find_signal(signals_, before ? word.substr(tick_before.size()) : word);
+    if (!signal) {
+      error = {static_cast<int>(begin) + 1,
+               "unknown signal '" + std::string(word) + "'" + did_you_mean(word, signals_.names())};
+      return false;
+    }
+    if (std::ranges::find(condition.signals, *signal) == condition.signals.end()) condition.signals.push_back(*signal);
+    auto place = std::ranges::find(used, *signal);
+    if (place == used.end()) place = used.insert(place, *signal);
+    lua += (before ? "last[" : "values[") + std::to_string(place - used.begin() + 1) + "]";
+  }
+  return true;
+}
+
+bool SignalExpressions::compile(const std::string& lua, Condition& condition, ExpressionError& error) {
+  state_->text = &lua;
+  const bool compiled = state_->lua.call(State::compile, state_.get(), compilation_instructions, 0);
+  if (!compiled) {
+    error = {1, "is not a condition: " + std::string(state_->lua.error().message.data())};
+    return false;
+  }
+  condition.function = state_->compiled;
+  return true;
+}
+
+bool SignalExpressions::add(std::string_view text, std::size_t& index, ExpressionError& error) {
+  Condition condition{.text = std::string(text), .signals = {}};
+  std::string lua = "local values, time_s, last = ...; return (";
+  if (!translate(text, condition, lua, error) || !compile(lua + "\n)", condition, error)) return false;
+  for (const SignalId signal : condition.signals) {
+    if (std::ranges::find(used_, signal) == used_.end()) used_.push_back(signal);
+  }
+  index = conditions_.size();
+  conditions_.push_back(std::move(condition));
+  return true;
+}
+
+bool SignalExpressions::evaluate(double time_s, std::span<const double> row) noexcept {
+  state_->time_s = time_s;
+  state_->row = row;
+  if (state_->lua.call(State::evaluate, state_.get(), evaluation_instructions, 0)) {
+    state_->lua.collect();
+    return true;
+  }
+  error_ = state_->lua.error().text();
+  return false;
+}
+
+}  // namespace kadans

@@ -1,0 +1,191 @@
+#include "snapshot_tables.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "script/lua/lua_core.h"
+#include "script/sandbox/sandbox.h"
+
+namespace kadans {
+namespace {
+
+// first_read(content, key): a field that is not there, for nobody read it yet, or at all. Upvalues: what
+// messages call it, its content, the tables, the part's number.
+int first_read(lua_State* state) {
+  auto& tables = *static_cast<SnapshotTables*>(lua_touserdata(state, lua_upvalueindex(3)));
+  const auto part = static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(4)));
+  const bool whole = lua_gettop(state) < 2;  // called to fill
+  if (whole || !tables.read_first(state, part, 2)) tables.read_whole(state, part);
+  if (whole) return 0;
+  lua_pushvalue(state, 2);
+  lua_rawget(state, lua_upvalueindex(2));
+  if (!lua_isnil(state, -1)) return 1;
+  return raise_unknown_field(state, lua_tostring(state, lua_upvalueindex(1)), lua_upvalueindex(2), 2);
+}
+
+}  // namespace
+
+// [-0 +1] An empty table, content of a part.
+void SnapshotTables::push_part(lua_State* state, Kind kind, std::size_t index) {
+  core_of(state).heap.for_ticks(true);
+  lua_createtable(state, 0, kind == Kind::joint ? 3 : 8);
+  core_of(state).heap.for_ticks(false);
+  lua_pushvalue(state, -1);
+  parts_.push_back({kind, static_cast<std::uint32_t>(index), luaL_ref(state, LUA_REGISTRYINDEX)});
+}
+
+// The content of part `number`, at the top, becomes read-only; it is filled when something reads it.
+void SnapshotTables::finish_part(lua_State* state, std::size_t number, const char* shown) {
+  const int content = lua_gettop(state);
+  lua_pushvalue(state, content);
+  make_read_only(state, shown);
+  if (on_demand_) {
+    lua_getmetatable(state, content);
+    lua_pushstring(state, shown);
+    lua_pushvalue(state, content);
+    lua_pushlightuserdata(state, this);
+    lua_pushinteger(state, static_cast<lua_Integer>(number));
+    lua_pushcclosure(state, first_read, 4);
+    lua_pushvalue(state, -1);
+    lua_setfield(state, -3, "__index");
+    set_filler(state);
+    lua_pop(state, 1);
+  }
+  lua_remove(state, content);
+}
+
+// [-0 +1]
+void SnapshotTables::push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown) {
+  push_part(state, kind, index);
+  finish_part(state, parts_.size() - 1, shown);
+}
+
+// [-0 +1]
+void SnapshotTables::push_joints(lua_State* state, const RobotModel& model) {
+  LuaHeap& heap = core_of(state).heap;
+  heap.for_ticks(true);
+  lua_createtable(state, 0, static_cast<int>(model.joints.size()));
+  heap.for_ticks(false);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    push_whole_part(state, Kind::joint, i, "a joint");
+    lua_setfield(state, -2, model.joints[i].name.c_str());
+  }
+  make_read_only(state, "s.joints");
+}
+
+int SnapshotTables::open(lua_State* state, const Catalog& catalog, const std::vector<std::string>& feet,
+                         bool on_demand) {
+  on_demand_ = on_demand;
+  fields_ = status_fields(catalog.sensors);
+  push_names(state);
+  push_part(state, Kind::root, 0);
+  push_joints(state, *catalog.model);
+  lua_setfield(state, -2, "joints");
+  push_part(state, Kind::base, 0);
+  const std::size_t base = parts_.size() - 1;
+  push_whole_part(state, Kind::rate, 0, "s.base.angular_velocity_rad_s");
+  lua_setfield(state, -2, "angular_velocity_rad_s");
+  finish_part(state, base, "s.base");
+  lua_setfield(state, -2, "base");
+  lua_newtable(state);
+  for (std::size_t i = 0; i < std::min(feet.size(), max_feet); ++i) {
+    push_whole_part(state, Kind::foot, i, "a foot");
+    lua_setfield(state, -2, feet[i].c_str());
+  }
+  make_read_only(state, "s.feet");
+  lua_setfield(state, -2, "feet");
+  push_whole_part(state, Kind::support, 0, "s.support");
+  lua_setfield(state, -2, "support");
+  push_whole_part(state, Kind::safety, 0, "s.safety");
+  lua_setfield(state, -2, "safety");
+  push_whole_part(state, Kind::joystick, 0, "s.joystick");
+  lua_setfield(state, -2, "joystick");
+  push_whole_part(state, Kind::sensors, 0, "s.sensors");
+  lua_setfield(state, -2, "sensors");
+  finish_part(state, 0, "s");
+  std::size_t all = 0;
+  for (const Part& part : parts_)
+    all += static_cast<std::size_t>(std::ranges::count(fields_, part.kind, &StatusField::part));
+  read_.reserve(all);
+  for (std::size_t i = 0; !on_demand && i < parts_.size(); ++i) read_whole(state, i);
+  return luaL_ref(state, LUA_REGISTRYINDEX);
+}
+
+// [-0 +0] The names of a choice's values, as a registry reference.
+int SnapshotTables::push_choices(lua_State* state, const StatusField& field) {
+  lua_createtable(state, static_cast<int>(field.choices), 0);
+  for (std::size_t value = 0; value < field.choices; ++value) {
+    lua_pushstring(state, field.choice(value));
+    lua_rawseti(state, -2, static_cast<int>(value) + 1);
+  }
+  return luaL_ref(state, LUA_REGISTRYINDEX);
+}
+
+void SnapshotTables::push_names(lua_State* state) {
+  lua_createtable(state, static_cast<int>(fields_.size()), 0);
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    lua_pushstring(state, fields_[i].name);
+    lua_rawseti(state, -2, static_cast<int>(i) + 1);
+    choices_.push_back(fields_[i].type == Type::choice ? push_choices(state, fields_[i]) : LUA_NOREF);
+  }
+  keys_ = luaL_ref(state, LUA_REGISTRYINDEX);
+}
+
+void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
+  snapshot_ = &snapshot;
+  now_ns_ = now_ns;
+  if (read_.empty()) return;
+  luaL_checkstack(state, 8, "snapshot");
+  lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
+  const int keys = lua_gettop(state);
+  for (const Read read : read_) fill(state, read, keys);
+  lua_pop(state, 1);
+}
+
+void SnapshotTables::fill(lua_State* state, Read read, int keys) const {
+  const Part& part = parts_[read.part];
+  lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
+  lua_rawgeti(state, keys, read.field + 1);
+  push_value(state, read.field, part.index);
+  lua_rawset(state, -3);
+  lua_pop(state, 1);
+}
+
+// [-0 +1]
+void SnapshotTables::push_value(lua_State* state, std::size_t at, std::size_t index) const {
+  const StatusField& field = fields_[at];
+  const double value = field.at == nullptr ? static_cast<double>(now_ns_) / 1e9 : field.value(*snapshot_, index);
+  if (field.type == Type::number) return lua_pushnumber(state, value);
+  if (field.type == Type::flag) return lua_pushboolean(state, value != 0 ? 1 : 0);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, choices_[at]);
+  lua_rawgeti(state, -1, static_cast<int>(value) + 1);
+  lua_remove(state, -2);
+}
+
+bool SnapshotTables::read_first(lua_State* state, std::size_t part, int key) {
+  if (lua_type(state, key) != LUA_TSTRING) return false;
+  const std::string_view name = lua_tostring(state, key);
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    if (fields_[i].part == parts_[part].kind && fields_[i].name == name) return read_field(state, part, i), true;
+  }
+  return false;
+}
+
+void SnapshotTables::read_whole(lua_State* state, std::size_t part) {
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    if (fields_[i].part == parts_[part].kind) read_field(state, part, i);
+  }
+}
+
+void SnapshotTables::read_field(lua_State* state, std::size_t part, std::size_t field) {
+  if (parts_[part].read[field]) return;
+  luaL_checkstack(state, 8, "snapshot");
+  const Read read{static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(field)};
+  lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
+  fill(state, read, lua_gettop(state));
+  lua_pop(state, 1);
+  parts_[part].read[field] = true;
+  read_.insert(std::ranges::upper_bound(read_, read.part, {}, &Read::part), read);
+}
+
+}  // namespace kadans

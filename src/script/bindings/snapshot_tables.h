@@ -1,0 +1,66 @@
+// `s`: the snapshot as scripts see it. The tables are made once. Each tick replaces only their fields, and only those
+// that this script has read before: the first read of a field fills it, and from then on each tick refills it.
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <lua.hpp>
+
+#include "kadans/control/catalog.h"
+#include "signal/status_fields.h"
+
+namespace kadans {
+
+class SnapshotTables {
+ public:
+  // Makes the tables and returns the registry reference of `s`. `feet` are the names of the feet in their order. With
+  // `on_demand` this object must outlive the state and must not move; without it every field is refilled each time.
+  // Raises.
+  int open(lua_State* state, const Catalog& catalog, const std::vector<std::string>& feet, bool on_demand = false);
+  // The snapshot must live as long as functions of this tick run. Existing fields are replaced without allocation.
+  // Raises only when out of memory.
+  void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
+  // From now on fills the field that the string at `key` names. False: the part has no such field.
+  bool read_first(lua_State* state, std::size_t part, int key);
+  // From now on fills all fields of a part.
+  void read_whole(lua_State* state, std::size_t part);
+
+ private:
+  using Kind = StatusField::Part;
+  using Type = StatusField::Type;
+  struct Part {
+    Kind kind;
+    std::uint32_t index;
+    int content;              // registry reference
+    std::bitset<128> read{};  // its fields that were read
+  };
+  struct Read {
+    std::uint16_t part, field;
+  };
+
+  void push_names(lua_State* state);
+  static int push_choices(lua_State* state, const StatusField& field);
+  void push_part(lua_State* state, Kind kind, std::size_t index);
+  void finish_part(lua_State* state, std::size_t number, const char* shown);
+  void push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown);
+  void push_joints(lua_State* state, const RobotModel& model);
+  void read_field(lua_State* state, std::size_t part, std::size_t field);
+  void push_value(lua_State* state, std::size_t field, std::size_t index) const;
+  void fill(lua_State* state, Read read, int keys) const;
+
+  bool on_demand_ = true;
+  std::vector<Part> parts_;
+  std::vector<Read> read_;  // by part
+  Snapshot nothing_{};
+  const Snapshot* snapshot_ = &nothing_;
+  std::int64_t now_ns_ = 0;
+  std::vector<StatusField> fields_;
+  std::vector<int> choices_;  // registry references, by field
+  int keys_ = 0;
+};
+
+}  // namespace kadans

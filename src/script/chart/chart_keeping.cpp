@@ -1,0 +1,113 @@
+// What a runner knows, as bytes and back: states, events and outcomes by their names, since the other process reads the
+// chart's file anew and finds another version of it perhaps. What is gone is left out; what contradicts itself, too.
+#include <algorithm>
+
+#include "chart_runner.h"
+#include "signal/byte_order.h"
+
+namespace kadans {
+namespace {
+
+enum Bit : std::uint8_t { bit_active = 1, bit_entering = 2, bit_run_done = 4 };
+
+StateIndex find_state(const Chart& chart, std::string_view path) {
+  const auto found = std::ranges::find(chart.states, path, &Chart::State::path);
+  return found == chart.states.end() ? no_state : static_cast<StateIndex>(found - chart.states.begin());
+}
+
+std::string_view text_of(ByteReader& bytes) noexcept {
+  const auto text = bytes.take_bytes(bytes.take<std::uint32_t>());
+  return {reinterpret_cast<const char*>(text.data()), text.size()};
+}
+
+}  // namespace
+
+void ChartRunner::keep(ByteWriter& bytes) const {
+  const auto put_event = [&](EventId event) {
+    bytes.put_string(event == no_event ? std::string_view{} : chart_.events[static_cast<std::size_t>(event)]);
+  };
+  bytes.put<std::uint8_t>(started_);
+  bytes.put<std::uint8_t>(finished_);
+  bytes.put<std::uint8_t>(filling_);
+  bytes.put(unhandled_);
+  const auto told = [](const StateRun& run) { return run.active || run.entering || run.outcome != no_event; };
+  bytes.put(static_cast<std::uint32_t>(std::ranges::count_if(run_, told)));
+  for (StateIndex i = 0; i < chart_.size(); ++i) {
+    const StateRun& run = run_[i];
+    if (!told(run)) continue;
+    bytes.put_string(chart_.states[i].path);
+    bytes.put(static_cast<std::uint8_t>((run.active ? bit_active : 0) | (run.entering ? bit_entering : 0) |
+                                        (run.run_done ? bit_run_done : 0)));
+    bytes.put(run.entered_ns);
+    put_event(run.outcome);
+  }
+  keep_histories(bytes);
+  bytes.put(event_count_);
+  for (std::uint32_t i = 0; i < event_count_; ++i) put_event(events_[(event_first_ + i) % events_.size()]);
+}
+
+void ChartRunner::keep_histories(ByteWriter& bytes) const {
+  bytes.put(static_cast<std::uint32_t>(std::ranges::count(remembered_, true)));
+  for (StateIndex history = 0; history < chart_.size(); ++history) {
+    if (!remembered_[history]) continue;
+    bytes.put_string(chart_.states[history].path);
+    bytes.put(static_cast<std::uint32_t>(std::ranges::count(histories_[history], true)));
+    for (StateIndex i = 0; i < chart_.size(); ++i) {
+      if (histories_[history][i]) bytes.put_string(chart_.states[i].path);
+    }
+  }
+}
+
+bool ChartRunner::restore(ByteReader& bytes) {
+  started_ = bytes.take<std::uint8_t>() != 0;
+  finished_ = bytes.take<std::uint8_t>() != 0;
+  filling_ = bytes.take<std::uint8_t>() != 0;
+  unhandled_ = bytes.take<std::uint64_t>();
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_state(bytes);
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
+    const EventId event = chart_.find_event(text_of(bytes));
+    if (event == no_event || !post(event)) ++unhandled_;
+  }
+  list_active();
+  fill_gaps();
+  return bytes.ok() && (active_.empty() == (!started_ || finished_));
+}
+
+// In the chart's order: what is around a state came before it.
+void ChartRunner::restore_state(ByteReader& bytes) {
+  const StateIndex index = find_state(chart_, text_of(bytes));
+  const auto bits = bytes.take<std::uint8_t>();
+  const auto entered_ns = bytes.take<std::int64_t>();
+  const EventId outcome = chart_.find_event(text_of(bytes));
+  if (index == no_state || !bytes.ok()) return;
+  const Chart::State& state = chart_.states[index];
+  StateRun& run = run_[index];
+  run.outcome = outcome;
+  run.run_done = (bits & bit_run_done) != 0;
+  run.entered_ns = entered_ns;
+  if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return;
+  const auto there = [&](StateIndex i) { return run_[i].active || run_[i].entering; };
+  bool alone = true;
+  for (StateIndex other = static_cast<StateIndex>(state.parent + 1);
+       index != 0 && other < chart_.states[state.parent].end; other = chart_.states[other].end) {
+    alone = alone && !there(other);
+  }
+  const bool fits =
+      index == 0 || (there(state.parent) && (alone || chart_.states[state.parent].kind == Chart::Kind::parallel));
+  run.active = fits && (bits & bit_active) != 0;
+  run.entering = fits && !run.active;
+  entering_ = entering_ || run.entering;
+}
+
+void ChartRunner::restore_history(ByteReader& bytes) {
+  const StateIndex history = find_state(chart_, text_of(bytes));
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
+    const StateIndex state = find_state(chart_, text_of(bytes));
+    if (history == no_state || state == no_state || histories_[history].empty()) continue;
+    if (!chart_.inside(state, chart_.states[history].parent)) continue;
+    histories_[history][state] = remembered_[history] = true;
+  }
+}
+
+}  // namespace kadans

@@ -1,0 +1,233 @@
+#include "check_arguments.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "hint.h"
+#include "script/motion/motion_options.h"
+
+namespace kadans {
+namespace {
+
+using Kind = SourceToken::Kind;
+using Mistakes = std::vector<ArgumentProblem>;
+
+// A number with nothing behind it that would change it: `1.5` or `-1.5` before a comma or a bracket.
+bool number_at(const std::vector<SourceToken>& tokens, std::size_t at, double& value) {
+  const bool negative = tokens[at].is("-");
+  if (negative) ++at;
+  if (tokens[at].kind != Kind::number) return false;
+  const SourceToken& after = tokens[at + 1];
+  if (!after.is(",") && !after.is(")") && !after.is("}") && !after.is(";")) return false;
+  value = std::strtod(tokens[at].text.c_str(), nullptr);
+  if (negative) value = -value;
+  return true;
+}
+
+std::string outside(const std::string& name, double value, double min, double max, const std::string& unit) {
+  char text[256];
+  std::snprintf(text, sizeof text, "%s = %.14g is outside its range %.14g..%.14g %s", name.c_str(), value, min, max,
+                unit.c_str());
+  return text;
+}
+
+// A text that is the whole argument.
+bool whole_text(const std::vector<SourceToken>& tokens, std::size_t at) {
+  const SourceToken& after = tokens[at + 1];
+  return tokens[at].kind == Kind::text && !after.is("..") && !after.is(":");
+}
+
+std::string short_name(const ObjectInfo& object, const std::string& name) {
+  return name.substr(std::min(name.size(), object.name.size() + 1));
+}
+
+// Where the names stand in { name = value, ... } at `at`.
+std::vector<std::size_t> keys_of_table(const std::vector<SourceToken>& tokens, std::size_t at) {
+  std::vector<std::size_t> keys;
+  if (!tokens[at].is("{")) return keys;
+  for (const std::size_t part : parts_of(tokens, at + 1)) {
+    if (tokens[part].kind == Kind::name && tokens[part + 1].is("=")) keys.push_back(part);
+  }
+  return keys;
+}
+
+bool has_key(const std::vector<SourceToken>& tokens, std::size_t at, std::string_view name) {
+  const auto keys = keys_of_table(tokens, at);
+  return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) { return tokens[key].text == name; });
+}
+
+void append(Mistakes& problems, const Mistakes& more) { problems.insert(problems.end(), more.begin(), more.end()); }
+
+// One `name = value` of a motion's options, as the bindings will see it.
+Mistakes motion_option(const std::vector<SourceToken>& tokens, std::size_t key, MotionOption::Method method,
+                       const std::string& called) {
+  std::vector<std::string> names;
+  for (const MotionOption& option : motion_options()) {
+    if ((option.methods & method) == 0) continue;
+    names.emplace_back(option.name);
+    if (tokens[key].text != option.name) continue;
+    double value = 0;
+    const bool number = number_at(tokens, key + 2, value);
+    if (option.type == MotionOption::Type::number && number && !(value >= option.min && value <= option.max))
+      return {{tokens[key].line, outside(called + ": " + option.name, value, option.min, option.max, option.unit)}};
+    if (option.type != MotionOption::Type::text || !whole_text(tokens, key + 2)) return {};
+    const std::string& given = tokens[key + 2].text;
+    const std::vector<std::string> profiles(std::begin(motion_profiles), std::end(motion_profiles));
+    if (std::find(profiles.begin(), profiles.end(), given) != profiles.end()) return {};
+    return {{tokens[key].line, called + ": unknown profile '" + given + "'" + hint_text(given, profiles)}};
+  }
+  return {{tokens[key].line, called + " has no key '" + tokens[key].text + "'" + hint_text(tokens[key].text, names)}};
+}
+
+// The options written out at `at`.
+Mistakes motion_table(const std::vector<SourceToken>& tokens, std::size_t at, MotionOption::Method method,
+                      const std::string& called) {
+  Mistakes problems;
+  if (!tokens[at].is("{")) return problems;
+  for (const std::size_t key : keys_of_table(tokens, at)) append(problems, motion_option(tokens, key, method, called));
+  if (!problems.empty()) return problems;
+  const auto has = [&](const char* name) { return has_key(tokens, at, name); };
+  const auto tell = [&](const std::string& text) { problems.push_back({tokens[at].line, called + text}); };
+  if (method == MotionOption::move && !has("time_s") && !has("profile")) tell(" needs { time_s = seconds } at the end");
+  if (method == MotionOption::point && !has("time_s")) tell(" needs time_s > 0");
+  if (has("time_s") && has("velocity_max_rad_s")) tell(": a trapezoid takes time_s or limits, not both");
+  return problems;
+}
+
+}  // namespace
+
+const ObjectInfo* ArgumentCheck::object(const std::string& name) const noexcept {
+  const auto found = std::find_if(catalog_.objects.begin(), catalog_.objects.end(),
+                                  [&](const ObjectInfo& object) { return object.name == name; });
+  return found == catalog_.objects.end() ? nullptr : &*found;
+}
+
+Mistakes ArgumentCheck::pose_name(const Tokens& tokens, std::size_t at) const {
+  if (catalog_.model == nullptr || !whole_text(tokens, at)) return {};  // of no robot
+  std::vector<std::string> names;
+  for (const PoseInfo& pose : catalog_.poses) {
+    if (pose.name == tokens[at].text) return {};
+    names.push_back(pose.name);
+  }
+  return {{tokens[at].line, "unknown pose '" + tokens[at].text + "'" + hint_text(tokens[at].text, names)}};
+}
+
+std::vector<ArgumentCheck::Range> ArgumentCheck::setpoints(const ObjectInfo& object) const {
+  std::vector<Range> all;
+  for (const SetpointId id : object.setpoints) {
+    const Setpoint& setpoint = catalog_.setpoints[id];
+    all.push_back({short_name(object, setpoint.name), setpoint.unit, setpoint.min, setpoint.max});
+  }
+  return all;
+}
+
+std::vector<ArgumentCheck::Range> ArgumentCheck::parameters(const ObjectInfo& object) const {
+  std::vector<Range> all;
+  for (const ParameterId id : object.parameters) {
+    const Parameter& parameter = catalog_.parameters.info(id);
+    all.push_back({short_name(object, parameter.name), parameter.unit, parameter.min, parameter.max});
+  }
+  return all;
+}
+
+// { joint = number, ... } at `at`.
+Mistakes ArgumentCheck::pose_table(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const {
+  Mistakes problems;
+  const std::vector<Range> ranges = setpoints(object);
+  std::vector<std::string> joints;
+  for (const std::size_t joint : object.joints) joints.push_back(catalog_.model->joints[joint].name);
+  for (const std::size_t key : keys_of_table(tokens, at)) {
+    const std::string& name = tokens[key].text;
+    const auto range = std::find_if(ranges.begin(), ranges.end(),
+                                    [&](const Range& known) { return known.name == name + ".position_rad"; });
+    double value = 0;
+    if (range == ranges.end()) {
+      problems.push_back(
+          {tokens[key].line, "'" + object.name + "' moves no joint '" + name + "'" + hint_text(name, joints)});
+    } else if (!offsets && number_at(tokens, key + 2, value) && !(value >= range->min && value <= range->max)) {
+      problems.push_back(
+          {tokens[key].line, outside(object.name + "." + range->name, value, range->min, range->max, "rad")});
+    }
+  }
+  return problems;
+}
+
+Mistakes ArgumentCheck::named_value(const ObjectInfo& object, const std::vector<Range>& ranges, const std::string& kind,
+                                    const Tokens& tokens, std::size_t at, bool offset) const {
+  if (!whole_text(tokens, at)) return {};
+  const std::string& name = tokens[at].text;
+  std::vector<std::string> names;
+  for (const Range& range : ranges) {
+    names.push_back(range.name);
+    if (range.name != name) continue;
+    double value = 0;
+    if (offset || !tokens[at + 1].is(",") || !number_at(tokens, at + 2, value)) return {};
+    if (value >= range.min && value <= range.max) return {};
+    return {{tokens[at].line, outside(object.name + "." + name, value, range.min, range.max, range.unit)}};
+  }
+  return {{tokens[at].line, "'" + object.name + "' has no " + kind + " '" + name + "'" + hint_text(name, names)}};
+}
+
+Mistakes ArgumentCheck::preset(const ObjectInfo& object, const Tokens& tokens, std::size_t at) const {
+  if (!whole_text(tokens, at)) return {};
+  std::vector<std::string> names;
+  for (const Preset& known : object.presets) {
+    if (known.name == tokens[at].text) return {};
+    names.push_back(known.name);
+  }
+  return {{tokens[at].line,
+           "'" + object.name + "' has no gains '" + tokens[at].text + "'" + hint_text(tokens[at].text, names)}};
+}
+
+Mistakes ArgumentCheck::pose(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const {
+  return tokens[at].is("{") ? pose_table(object, tokens, at, offsets) : pose_name(tokens, at);
+}
+
+// { { pose, time_s = }, ... } at `at`.
+Mistakes ArgumentCheck::points(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const {
+  Mistakes problems;
+  if (!tokens[at].is("{")) return problems;
+  for (const std::size_t point : parts_of(tokens, at + 1)) {
+    if (!tokens[point].is("{")) continue;
+    append(problems, pose(object, tokens, point + 1, offsets));
+    append(problems, motion_table(tokens, point, MotionOption::point, "a point of move_through"));
+  }
+  return problems;
+}
+
+Mistakes ArgumentCheck::of_motion(const ObjectInfo& object, const MotionMethod& method, const Tokens& tokens,
+                                  std::size_t at) const {
+  const std::vector<std::size_t> given =
+      tokens[at - 1].is("(") ? parts_of(tokens, at) : std::vector<std::size_t>{at};  // or a text, or a table
+  if (given.empty()) return {};
+  const std::size_t options = method.kind == MotionOption::set ? 2 : 1;
+  const bool there = given.size() > options;
+  const bool offsets = there && has_key(tokens, given[options], "relative");
+  Mistakes problems;
+  if (method.kind == MotionOption::set) {
+    problems = named_value(object, setpoints(object), "set-point", tokens, at, offsets);
+  } else if (method.kind == MotionOption::through) {
+    problems = points(object, tokens, at, offsets);
+  } else {
+    problems = pose(object, tokens, at, offsets);
+  }
+  if (there) append(problems, motion_table(tokens, given[options], method.kind, method.name));
+  if (!there && method.needs != nullptr) problems.push_back({tokens[at].line, std::string(method.name) + method.needs});
+  return problems;
+}
+
+Mistakes ArgumentCheck::of_method(const ObjectInfo& object, const std::string& method, const Tokens& tokens,
+                                  std::size_t at) const {
+  if (method == "set_gains") return preset(object, tokens, at);
+  if (method == "setpoint") return named_value(object, setpoints(object), "set-point", tokens, at);
+  if (method == "set_parameter" || method == "parameter")
+    return named_value(object, parameters(object), "parameter", tokens, at);
+  for (const MotionMethod& known : motion_methods()) {
+    if (method == known.name) return of_motion(object, known, tokens, at);
+  }
+  return {};
+}
+
+}  // namespace kadans

@@ -1,0 +1,50 @@
+// Makes the hint of a message, ", did you mean 'x'?". No C++ object is alive when Lua raises.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "script/lua/lua_core.h"
+#include "signal/nearest_name.h"
+
+namespace kadans {
+
+using Hint = std::array<char, 320>;
+
+// The nearest name, or a name that begins with it (a forgotten unit), or else all names when they are few.
+inline std::string hint_text(const std::string& wrong, const std::vector<std::string>& names) {
+  std::string near = did_you_mean(wrong, names);
+  if (!near.empty() || names.empty()) return near;
+  for (const std::string& name : names) {
+    if (wrong.size() >= 3 && name.starts_with(wrong)) return ", did you mean '" + name + "'?";
+  }
+  if (names.size() > 8) return "";
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "; there is: " : ", ") + name;
+  return all;
+}
+
+// `fill` adds the known names to the vector that it gets; it must not raise. The time is proportional to the product of
+// the lengths. It is charged at the end, when no object that needs a destructor is left.
+template <typename Fill>
+Hint make_hint(lua_State* state, const char* wrong, Fill fill) {
+  constexpr double instructions_per_letter = 2;
+  Hint hint{};
+  double letters = 100;
+  {
+    std::vector<std::string> names;
+    fill(names);
+    std::sort(names.begin(), names.end());
+    const std::string text = wrong;
+    for (const std::string& name : names)
+      letters += static_cast<double>((name.size() + 8) * (std::min(text.size(), nearest_name_longest) + 8));
+    std::snprintf(hint.data(), hint.size(), "%s", hint_text(text, names).c_str());
+  }
+  core_of(state).budget.charge(state, instructions_per_letter * letters);
+  return hint;
+}
+
+}  // namespace kadans

@@ -1,0 +1,152 @@
+#include "known_names.h"
+
+#include <string_view>
+
+#include "kadans/signal/input_error.h"
+#include "script/lua/lua_core.h"
+#include "script/sandbox/sandbox.h"
+
+namespace kadans {
+namespace {
+
+constexpr int shape_depth_max = 6;
+
+struct Reading {
+  Behavior::Parts* parts;
+  KnownNames* known;
+};
+
+// [-0 +0] The table or read-only table at `index`. Nothing here raises but for want of memory.
+void read_shape(lua_State* state, int index, KnownNames::Shape& shape, int depth) {
+  luaL_checkstack(state, 8, "shape");
+  if (depth > shape_depth_max || !lua_istable(state, index)) return;
+  const int top = lua_gettop(state);
+  if (!push_content(state, index)) lua_pushvalue(state, index);
+  const int content = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, content) != 0; lua_pop(state, 1)) {
+    if (lua_type(state, -2) != LUA_TSTRING) continue;
+    const char* name = lua_tostring(state, -2);
+    KnownNames::Shape& field = shape.fields[name];
+    if (name[0] == '_') continue;  // _G
+    read_shape(state, lua_gettop(state), field, depth + 1);
+  }
+  lua_settop(state, top);
+}
+
+void read_keys(lua_State* state, int reference, std::vector<std::string>& names) {
+  if (reference == Chart::no_function) return;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
+  KnownNames::Shape shape;
+  read_shape(state, lua_gettop(state), shape, shape_depth_max);
+  lua_pop(state, 1);
+  for (const auto& [name, ignored] : shape.fields) names.push_back(name);
+}
+
+void read_methods(lua_State* state, std::vector<std::string>& names) {
+  push_object(state, 0);
+  lua_getmetatable(state, -1);
+  lua_getfield(state, -1, "__index");
+  KnownNames::Shape shape;
+  read_shape(state, lua_gettop(state), shape, shape_depth_max);
+  names = shape.names();
+  lua_pop(state, 3);
+}
+
+// The fields of a module of the author's own. Its tables are not looked into: they are often data that grows.
+void read_module(lua_State* state, int index, KnownNames::Shape& module) {
+  module.open = !lua_istable(state, index);
+  if (module.open) return;
+  if (lua_getmetatable(state, index) != 0) {
+    module.open = true;
+    return lua_pop(state, 1);
+  }
+  read_shape(state, index, module, shape_depth_max);
+}
+
+void read_modules(lua_State* state, KnownNames& known) {
+  lua_getfield(state, LUA_REGISTRYINDEX, "kadans.modules");
+  const int modules = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, modules) != 0; lua_pop(state, 1)) {
+    if (lua_type(state, -2) != LUA_TSTRING || std::string_view(lua_tostring(state, -2)) == "kadans") continue;
+    read_module(state, lua_gettop(state), known.modules[lua_tostring(state, -2)]);
+  }
+  lua_pop(state, 1);
+}
+
+void read_place(lua_State* state, int reference, const char* key, KnownNames& known) {
+  if (reference == Chart::no_function) return;
+  lua_Debug function;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
+  if (lua_getinfo(state, ">S", &function) == 0 || function.source[0] != '@') return;
+  known.functions[function.source + 1][function.linedefined].insert(key);
+}
+
+void read_functions(lua_State* state, const Chart& chart, KnownNames& known) {
+  for (const Chart::State& one : chart.states) {
+    read_place(state, one.enter, "enter", known);
+    read_place(state, one.exit, "exit", known);
+    read_place(state, one.during, "during", known);
+    read_place(state, one.run, "run", known);
+  }
+  for (const Chart::Transition& transition : chart.transitions) {
+    read_place(state, transition.when, "when", known);
+    read_place(state, transition.action, "action", known);
+  }
+}
+
+int read(lua_State* state) {
+  const auto& reading = *static_cast<Reading*>(lua_touserdata(state, 1));
+  const Behavior::Parts& parts = *reading.parts;
+  KnownNames& known = *reading.known;
+  for (std::size_t i = 0; i < parts.chart.machines.size(); ++i) {
+    const std::string& chunk = parts.chart.states[parts.chart.machines[i].root].chunk;
+    for (KnownNames::Shape* machine : {&known.machine, &known.machines[chunk]}) {
+      lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.machines[i].content);
+      read_shape(state, lua_gettop(state), *machine, 0);
+      lua_pop(state, 1);
+      machine->fields["vars"].open = machine->fields["args"].open = true;
+    }
+  }
+  const bool played = !parts.chart.machines.empty();
+  known.machine.open = known.snapshot.open = !played;
+  if (played) {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.snapshot);
+    read_shape(state, lua_gettop(state), known.snapshot, 0);
+    read_methods(state, known.object_methods);
+  }
+  read_modules(state, known);
+  read_functions(state, parts.chart, known);
+  lua_getfield(state, LUA_REGISTRYINDEX, "kadans.modules");
+  lua_getfield(state, -1, "kadans");
+  read_shape(state, lua_gettop(state), known.module, 0);
+  push_environment(state);
+  read_shape(state, lua_gettop(state), known.globals, 0);
+  for (const Chart::Machine& machine : parts.chart.machines) {
+    read_keys(state, machine.vars, known.vars[parts.chart.states[machine.root].chunk]);
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::vector<std::string> KnownNames::Shape::names() const {
+  std::vector<std::string> all;
+  for (const auto& [name, ignored] : fields) all.push_back(name);
+  return all;
+}
+
+KnownNames read_known_names(Behavior::Parts& parts) {
+  KnownNames known;
+  Reading reading{&parts, &known};
+  if (!parts.lua->call(read, &reading, parts.settings.limits.load_instructions, 0)) {
+    const ScriptError& error = parts.lua->error();
+    throw InputError({error.file.data(), error.line, 0, error.message.data()});
+  }
+  known.motion_fields = {"cancel", "done", "outcome", "reason", "wait"};
+  for (const ScriptParameter& parameter : parts.lua->core().parameters) {
+    known.parameters[parameter.chunk].push_back(parameter.name);
+  }
+  return known;
+}
+
+}  // namespace kadans

@@ -1,0 +1,216 @@
+#include "lua_state.h"
+
+#include <algorithm>
+#include <cctype>
+#include <climits>
+#include <new>
+
+#include "kadans/signal/input_error.h"
+#include "lua_core.h"
+#include "script/sandbox/library_function.h"
+#include "script/sandbox/sandbox.h"
+#include "signal/input_file.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::uint64_t collect_bytes_min = 2048;
+constexpr std::size_t source_bytes_max = std::size_t{1} << 20;
+
+void* allocate(void* user, void* block, std::size_t old_bytes, std::size_t new_bytes) {
+  auto& core = *static_cast<LuaCore*>(user);
+  const bool had = core.heap.exceeded();
+  void* moved = core.heap.reallocate(block, old_bytes, new_bytes);
+  if (new_bytes > 0 && !had && core.heap.exceeded() && core.main != nullptr) {
+    core.budget.memory_ran_out(core.running != nullptr ? core.running : core.main, moved != nullptr);
+  }
+  return moved;
+}
+
+// Gives a source to the compiler a piece at a time, each charged, so that one which takes long to compile can be
+// stopped.
+struct Pieces {
+  static constexpr std::size_t bytes_max = 256;
+  std::string_view left;
+};
+
+const char* next_piece(lua_State* state, void* user, std::size_t* size) {
+  auto& pieces = *static_cast<Pieces*>(user);
+  const std::string_view piece = pieces.left.substr(0, Pieces::bytes_max);
+  pieces.left.remove_prefix(piece.size());
+  *size = piece.size();
+  core_of(state).budget.charge(state, compiling_instructions(static_cast<double>(piece.size())));
+  return piece.data();
+}
+
+// The handler of uncaught errors: keeps the message and the stack while it still stands.
+int keep_error(lua_State* state) {
+  ScriptError& error = core_of(state).error;
+  if (error.set) return 1;
+  if (lua_type(state, 1) == LUA_TSTRING) {
+    error.set_message(lua_tostring(state, 1));
+  } else {
+    error.set_message("the script raised a value that is not a string");
+  }
+  if (error.line == 0) note_place(state, error);
+  luaL_traceback(state, state, nullptr, 1);
+  error.set_traceback(lua_tostring(state, -1));
+  return 1;
+}
+
+int enter(lua_State* state) { return core_of(state).entry(state); }
+
+// At the foot of the stack for good, so that a call allocates nothing and looks nothing up.
+enum Foot : int { handler = 1, entrance = 2 };
+
+int open(lua_State* state) {
+  open_sandbox(state);
+  return 0;
+}
+
+}  // namespace
+
+LuaState::LuaState(Settings settings)
+    : settings_(std::move(settings)),
+      core_(new LuaCore{.heap = LuaHeap(settings_.limits.memory_bytes, settings_.limits.block_bytes),
+                        .random = RandomStream(settings_.seed, "script." + settings_.name)}) {
+  core_->owner = this;
+  lua_ = lua_newstate(allocate, core_.get());
+  if (lua_ == nullptr) throw std::bad_alloc();
+  core_->main = lua_;
+  core_->heap.for_ticks(false);
+  luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
+  lua_gc(lua_, LUA_GCSTOP, 0);
+  lua_pushcfunction(lua_, keep_error);
+  lua_pushcfunction(lua_, enter);
+  if (!call(open, nullptr, settings_.limits.load_instructions, 0)) {
+    lua_close(lua_);
+    throw std::bad_alloc();
+  }
+}
+
+LuaState::~LuaState() {
+  core_->main = nullptr;
+  lua_sethook(lua_, nullptr, 0, 0);
+  lua_close(lua_);
+}
+
+const ScriptError& LuaState::error() const noexcept { return core_->error; }
+std::size_t LuaState::used_bytes() const noexcept { return core_->heap.used_bytes(); }
+
+bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
+                    std::int64_t wall_ns) noexcept {
+  core_->depth = core_->coroutines = 0;
+  core_->running = nullptr;
+  core_->budget.begin(lua_, instructions, wall_ns);
+  core_->entry = function;
+  lua_settop(lua_, entrance);
+  lua_pushvalue(lua_, entrance);
+  lua_pushlightuserdata(lua_, argument);
+  const int status = lua_pcall(lua_, 1, 0, handler);
+  core_->running = nullptr;
+  if (status != 0 && !core_->error.set) {
+    const char* text = lua_tostring(lua_, -1);
+    core_->error.set_message(text != nullptr ? text : "stopped");
+  }
+  lua_settop(lua_, entrance);
+  return status == 0 && !core_->budget.breached();
+}
+
+bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
+  Source source;
+  source.path = path;
+  source.chunk = path.lexically_relative(settings_.root).generic_string();
+  if (source.chunk.empty() || source.chunk.starts_with("..")) source.chunk = path.generic_string();
+  const std::string chunk = "@" + source.chunk;
+  try {
+    source.text = read_input_file(path, source_bytes_max);
+  } catch (const InputError& error) {
+    lua_pushfstring(state, "%s:1: %s", source.chunk.c_str(), error.problems().front().message.c_str());
+    return false;
+  }
+  if (source.text.starts_with('\x1b')) {
+    lua_pushfstring(state, "%s:1: is bytecode; scripts are text", source.chunk.c_str());
+    return false;
+  }
+  sources_.push_back(std::move(source));
+  Pieces pieces{sources_.back().text};
+  if (lua_loadx(state, next_piece, &pieces, chunk.c_str(), "t") != 0) return false;
+  push_environment(lua_);
+  lua_setfenv(state, -2);
+  return true;
+}
+
+std::filesystem::path LuaState::find_module(std::string_view name) const {
+  std::string relative;
+  bool start = true;  // of a part: a part begins with a letter or digit, so ".." and "/" find nothing
+  for (const char c : name) {
+    const bool word = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    if (!word && (c != '.' || start)) return {};
+    relative += word ? c : '/';
+    start = !word;
+  }
+  if (start) return {};
+  relative += ".lua";
+  for (const auto& folder : {settings_.folder, settings_.root / "behaviors/lib"}) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(folder / relative, ignored)) return folder / relative;
+  }
+  return {};
+}
+
+int LuaState::line_of(std::string_view chunk, int from, std::string_view text) const {
+  for (const Source& source : sources_) {
+    if (source.chunk != chunk) continue;
+    const std::string& all = source.text;
+    std::size_t start = 0;
+    for (int line = 1; line < from && start != std::string::npos; ++line) {
+      start = all.find('\n', start);
+      if (start != std::string::npos) ++start;
+    }
+    const auto word = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
+    for (std::size_t at = all.find(text, start); at != std::string::npos; at = all.find(text, at + 1)) {
+      const std::size_t end = at + text.size();
+      if ((at > 0 && word(all[at - 1])) || (end < all.size() && word(all[end]))) continue;
+      return from + static_cast<int>(std::count(all.begin() + static_cast<std::ptrdiff_t>(start),
+                                                all.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    }
+  }
+  return from;
+}
+
+double LuaState::search_instructions(std::string_view chunk) const noexcept {
+  constexpr double bytes_per_instruction = 32;
+  for (const Source& source : sources_) {
+    if (source.chunk == chunk) return static_cast<double>(source.text.size()) / bytes_per_instruction;
+  }
+  return 0;
+}
+
+void LuaState::collect() noexcept {
+  const std::uint64_t fresh = core_->heap.allocated_bytes() - collected_at_;
+  if (fresh < collect_bytes_min) return;  // it adds up over the ticks
+  collected_at_ = core_->heap.allocated_bytes();
+  const bool all = core_->heap.used_bytes() > settings_.limits.memory_bytes / 4 * 3;
+  if (settings_.limits.tick_wall_ns > 0) {
+    collect_in_time(all ? INT_MAX : static_cast<int>(std::min<std::uint64_t>(fresh / 256, INT_MAX)));
+  } else if (all) {
+    lua_gc(lua_, LUA_GCCOLLECT, 0);
+  } else {
+    lua_gc(lua_, LUA_GCSTEP, static_cast<int>(fresh / 256));
+  }
+  lua_gc(lua_, LUA_GCSTOP, 0);  // a step starts the collector again
+}
+
+// In pieces of some 0.1 ms: a whole collection of 4 MB takes 10 ms. By the thread's own time, as a tick's budget.
+void LuaState::collect_in_time(int kB) noexcept {
+  constexpr int piece_kB = 32;
+  for (std::int64_t end_ns = 0; kB > 0; kB -= piece_kB) {
+    if (lua_gc(lua_, LUA_GCSTEP, std::min(kB, piece_kB)) != 0 || kB <= piece_kB) return;
+    const std::int64_t now_ns = thread_now_ns();
+    if (end_ns == 0) end_ns = now_ns + settings_.limits.tick_wall_ns;
+    if (now_ns >= end_ns) return;
+  }
+}
+
+}  // namespace kadans

@@ -1,0 +1,94 @@
+// One sandboxed Lua state. It has its own memory, a budget, only harmless library functions (sandbox.cpp lists them),
+// and a `require` for "kadans", the project's behaviors/lib and the script's own folder.
+//
+// LuaJIT's compiler is off, because compiled loops run no hooks and the budget would not hold. The garbage collector
+// does not run by itself; collect() runs it in the free time after a tick. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/behavior_host.h"
+#include "script_error.h"
+#include "script_limits.h"
+
+struct lua_State;
+
+namespace kadans {
+
+struct LuaCore;
+
+// Takes the lines that scripts print.
+class ScriptVoice {
+ public:
+  virtual ~ScriptVoice() = default;
+  virtual void say(const char* text) noexcept = 0;
+  virtual void say_with(BehaviorLog::Severity severity, const char* text) noexcept {
+    (void)severity;
+    say(text);
+  }
+};
+
+class LuaState {
+ public:
+  struct Settings {
+    std::filesystem::path root;    // of the project; messages name files relative to it
+    std::filesystem::path folder;  // the script's folder; `require` searches it before <root>/behaviors/lib
+    std::string name;              // name of the random stream
+    std::uint64_t seed = 1;
+    ScriptLimits limits;
+    ScriptVoice* voice = nullptr;
+  };
+  // A loaded file, kept to find lines for messages and to know the files of a reload.
+  struct Source {
+    std::string chunk;  // relative to the root
+    std::filesystem::path path;
+    std::string text;
+  };
+
+  explicit LuaState(Settings settings);  // throws std::bad_alloc
+  ~LuaState();
+  LuaState(const LuaState&) = delete;
+  LuaState& operator=(const LuaState&) = delete;
+
+  lua_State* get() const noexcept { return lua_; }
+  LuaCore& core() noexcept { return *core_; }
+  const Settings& settings() const noexcept { return settings_; }
+  const std::vector<Source>& sources() const noexcept { return sources_; }
+  const ScriptError& error() const noexcept;
+
+  // Runs function(state, argument pushed as light userdata) under a budget. False: error() says why. Its results are
+  // dropped. Errors unwind through the function, so it must not hold objects that need a destructor.
+  [[nodiscard]] bool call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
+                          std::int64_t wall_ns) noexcept;
+
+  // Compiles a text file and leaves the function on the stack of `state`. False: the error message is on the stack.
+  bool load_file(lua_State* state, const std::filesystem::path& path);
+  // The file in which `require` finds a module; empty when there is none.
+  std::filesystem::path find_module(std::string_view name) const;
+  // The first line from `from` on that contains `text` in quotes or as a word; `from` when there is none.
+  int line_of(std::string_view chunk, int from, std::string_view text) const;
+  // The instructions that this search takes at most.
+  double search_instructions(std::string_view chunk) const noexcept;
+
+  // Runs the collector in proportion to the bytes that were allocated since the last call; to the end of its cycle when
+  // three quarters of the memory are in use. With a limit of time it runs at most as long as a tick may, and continues
+  // in the next call.
+  void collect() noexcept;
+  std::size_t used_bytes() const noexcept;
+
+ private:
+  void collect_in_time(int kB) noexcept;
+
+  Settings settings_;
+  std::unique_ptr<LuaCore> core_;
+  lua_State* lua_ = nullptr;
+  std::vector<Source> sources_;
+  std::uint64_t collected_at_ = 0;
+};
+
+}  // namespace kadans

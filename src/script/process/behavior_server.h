@@ -1,0 +1,61 @@
+// The counterpart of ProcessHost in the process in which behaviors play: waits for a request, ticks the host, answers.
+// Between an answer and the next request it only waits. One thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "behavior_link.h"
+#include "engine/transaction.h"
+#include "realtime/doorbell.h"
+#include "script/host/script_host.h"
+#include "signal/byte_order.h"
+
+namespace kadans {
+
+// Writes the log lines of behaviors into the shared memory. Lines that do not fit are dropped and counted, and the
+// count is logged.
+class SpokenLines final : public BehaviorLog {
+ public:
+  explicit SpokenLines(BehaviorLink& link) : link_(link) {}
+
+  void transition(const Transition& transition) override;
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
+
+ private:
+  void begin(std::uint8_t kind, const std::string& behavior);
+  bool push();
+
+  BehaviorLink& link_;
+  ByteWriter line_;
+  std::uint64_t dropped_ = 0;
+};
+
+class BehaviorServer {
+ public:
+  // The host's log must be `lines`, or pass its lines on to it. `catalog` is the host's catalog.
+  BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, SpokenLines& lines, const Catalog& catalog);
+
+  // Serves until the runtime closes the doorbell. Returns the exit code of the process: 0, or 1 when the host cannot
+  // continue from the kept state.
+  int serve();
+
+ private:
+  bool answer();
+  void take_order();
+  void tell_status();
+  void keep(std::int64_t time_ns);
+
+  BehaviorLink& link_;
+  Doorbell& bell_;
+  ScriptHost& host_;
+  SpokenLines& lines_;
+  CommandSender commands_;
+  Snapshot snapshot_;
+  ByteWriter kept_;
+  std::vector<std::byte> kept_last_;
+  std::string unkept_;  // the last logged reason why the state cannot be kept
+  std::uint32_t done_ = 0;
+};
+
+}  // namespace kadans

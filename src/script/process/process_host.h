@@ -1,0 +1,123 @@
+// Plays behaviors in a process of their own: the runtime's side. Whatever happens to that process (it is killed,
+// crashes, runs out of memory, hangs, writes rubbish), the behavior engine ticks on with its high levels and its
+// heartbeat, so the control loop and the control objects hold the robot.
+//
+// Each tick asks the process for a tick (behavior_link.h) and waits for the answer. On the wall clock it waits for a
+// part of the period; a later answer counts in the tick in which it comes. On virtual time, which stands still
+// meanwhile, it waits up to patience_ns. The commands of an answer and the state that belongs to them are taken
+// together or not at all, and the state is kept here, out of the process's reach. So when the process dies in a tick,
+// that tick does not count, and the next process continues where the last complete answer ended: active states, their
+// time, vars, the list. A coroutine of `run` begins anew, as after a reload.
+//
+// Until then the robot holds its last set-points, and motions under way go on to their end. After safe.after_s it moves
+// to the safe posture, unless nothing played. A process that dies is started again (restart_policy.h). A process that
+// does not answer within patience_ns, or breaks the rules of the link, is killed first. When it dies too often in a
+// row, or when its state cannot be kept, it stays down: an error is logged, and the robot stays in its posture.
+//
+// Behavior thread, except for the constructor and attach(), which are called before the threads start.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "child_answer.h"
+#include "config/scenario/play_order.h"
+#include "engine/behavior_host.h"
+#include "engine/clock.h"
+#include "engine/tick/tick_statistics.h"
+#include "kadans/control/catalog.h"
+#include "realtime/machine/child_process.h"
+#include "restart_policy.h"
+#include "script/host/safe_posture.h"
+
+namespace kadans {
+
+class ProcessHost final : public BehaviorHost, public OrderTaker {
+ public:
+  struct Settings {
+    std::string program;
+    std::vector<std::string> arguments;      // the first is the program's name
+    bool time_stands = false;                // virtual time: a tick waits for the process, also when it starts
+    std::int64_t answer_ns = 5'000'000;      // how long a tick waits otherwise; this and the next two are wall time
+    std::int64_t patience_ns = 300'000'000;  // limit for an answer
+    std::int64_t start_patience_ns = 10'000'000'000;  // limit for the start of a process
+    RestartPolicy::Settings restart{};
+    BehaviorLink::Setup setup{};
+  };
+  // Starts the process. Throws std::system_error. `log` must outlive the host.
+  ProcessHost(Settings settings, BehaviorLog& log);
+  ~ProcessHost() override;
+
+  // Waits until the process has read its files, and declares the signals of its behaviors. Throws InputError when the
+  // process could not read them (it has written the reason to standard error) or read other files than this process.
+  // `catalog` must outlive the host.
+  void attach(Catalog& catalog, const SafePosture::Settings& safe);
+
+  void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
+  // Mistakes in the order are reported later in the log. Throws InputError only when the order is too long or the
+  // process is down.
+  void order(const PlayOrder& order) override;
+
+  // The behaviors that the process was started with, and the number of the innermost active state of each.
+  const std::vector<std::string>& names() const noexcept { return names_; }
+  std::uint32_t state(std::size_t behavior) const noexcept {
+    return behaviors_[behavior].state.load(std::memory_order_relaxed);
+  }
+  bool paused() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 2; }
+  bool finished() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 0; }
+  bool down() const noexcept { return phase_ == Phase::down; }
+  std::uint64_t deaths() const noexcept { return policy_.deaths(); }
+  std::uint64_t takeovers() const noexcept { return takeovers_; }
+  // Time from a death to the next answer, by the engine's clock.
+  const TickStatistics& outage() const noexcept { return outage_; }
+  const TickStatistics& answer_cost() const noexcept { return answer_cost_; }  // time from request to answer, wall time
+
+ private:
+  enum class Phase : std::uint8_t { waiting, starting, playing, down };
+  struct Incarnation;  // a process and the memory shared with it
+
+  void start();
+  void start_when_due() noexcept;
+  void look_if_ready() noexcept;
+  void ask(const Snapshot& snapshot, const CommandSender& commands) noexcept;
+  void wait_for_answer(CommandSender& commands) noexcept;
+  bool take_answer(CommandSender& commands) noexcept;
+  void bury(const std::string& why, bool alive) noexcept;
+  void give_up_order() noexcept;
+  void stay_down(const std::string& why) noexcept;
+  void say(BehaviorLog::Severity severity, const std::string& text) noexcept;
+
+  Settings settings_;
+  BehaviorLog& log_;
+  RestartPolicy policy_;
+  std::unique_ptr<Incarnation> child_;
+  Phase phase_ = Phase::starting;
+  std::uint64_t fingerprint_ = 0;
+  std::optional<SafePosture> safe_;
+  ChildAnswer answer_;
+  std::optional<std::vector<std::byte>> kept_{std::in_place};  // empty: no answer yet; nullopt: cannot be kept
+  PlayStatus play_;
+  std::vector<std::string> names_;
+  std::deque<BehaviorStatus> behaviors_;
+  std::deque<std::vector<std::byte>> orders_;
+  bool stopping_ = false;  // the last order was to stop
+  WallClock clock_;
+
+  std::int64_t now_ns_ = 0;         // on the engine's clock
+  std::int64_t start_due_ns_ = 0;   // on the engine's clock
+  std::int64_t died_ns_ = -1;       // on the engine's clock; -1: the process lives
+  std::uint32_t number_ = 0;        // of the last request
+  bool asked_ = false;              // the last request has not been answered
+  bool asked_order_ = false;        // that request carries the oldest order
+  std::uint32_t order_deaths_ = 0;  // deaths before that order was answered
+  std::int64_t asked_wall_ns_ = 0, asked_for_ns_ = 0;
+  std::uint32_t asked_sequence_ = 0;
+  std::uint64_t takeovers_ = 0;
+  TickStatistics outage_, answer_cost_;
+};
+
+}  // namespace kadans

@@ -1,0 +1,205 @@
+#include "sandbox.h"
+
+#include <cstdio>
+
+#include "library_function.h"
+#include "script/check/hint.h"
+#include "script/lua/lua_core.h"
+#include "script/lua/lua_state.h"
+
+namespace kadans {
+namespace {
+
+const char environment_key = 0;
+const char content_key = 0;
+const char filler_key = 0;
+
+int refuse_write(lua_State* state) {  // (proxy, key, value); upvalue: name
+  const char* name = lua_tostring(state, lua_upvalueindex(1));
+  const char* key = lua_type(state, 2) == LUA_TSTRING ? lua_tostring(state, 2) : "?";
+  if (*name == '\0') return luaL_error(state, "'%s' would be a global: write local %s", key, key);
+  return luaL_error(state, "%s is read-only: '%s' cannot be set", name, key);
+}
+
+int refuse_read(lua_State* state) {  // (content, key); upvalues: name, content
+  return raise_unknown_field(state, lua_tostring(state, lua_upvalueindex(1)), lua_upvalueindex(2), 2);
+}
+
+void take(lua_State* state, int to, int from, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    lua_getfield(state, from, name);
+    lua_setfield(state, to, name);
+  }
+}
+
+// [-0 +1] A read-only library of these functions; `extend` may change the copy.
+void push_library(lua_State* state, const char* name, std::initializer_list<const char*> names,
+                  void (*extend)(lua_State*)) {
+  lua_newtable(state);
+  const int copy = lua_gettop(state);
+  lua_getglobal(state, name);
+  take(state, copy, copy + 1, names);
+  lua_pop(state, 1);
+  if (extend != nullptr) extend(state);
+}
+
+void open_libraries(lua_State* state) {
+  const luaL_Reg libraries[] = {{"", luaopen_base},
+                                {LUA_STRLIBNAME, luaopen_string},
+                                {LUA_TABLIBNAME, luaopen_table},
+                                {LUA_MATHLIBNAME, luaopen_math},
+                                {LUA_BITLIBNAME, luaopen_bit}};
+  for (const luaL_Reg& library : libraries) {
+    lua_pushcfunction(state, library.func);
+    lua_pushstring(state, library.name);
+    lua_call(state, 1, 0);
+  }
+}
+
+void guard_string_metatable(lua_State* state, int strings) {
+  lua_pushliteral(state, "");
+  lua_getmetatable(state, -1);
+  lua_pushvalue(state, strings);
+  lua_setfield(state, -2, "__index");
+  lua_pushboolean(state, 0);
+  lua_setfield(state, -2, "__metatable");
+  lua_pop(state, 2);
+}
+
+// Content at the top that is filled when it is read is read.
+void fill(lua_State* state) {
+  if (lua_getmetatable(state, -1) == 0) return;
+  lua_pushlightuserdata(state, const_cast<char*>(&filler_key));
+  lua_rawget(state, -2);
+  if (lua_isfunction(state, -1)) {
+    lua_pushboolean(state, 1);
+    lua_call(state, 1, 0);
+    return lua_pop(state, 1);
+  }
+  lua_pop(state, 2);
+}
+
+}  // namespace
+
+int raise_unknown_field(lua_State* state, const char* name, int content, int key) {
+  lua_pushvalue(state, content);
+  const int copy = lua_gettop(state);
+  lua_pushvalue(state, key);
+  char shown[160];
+  const char* text = lua_tostring(state, -1);
+  std::snprintf(shown, sizeof shown, "%s", text != nullptr ? text : luaL_typename(state, key));
+  const Hint hint = make_hint(state, shown, [&](auto& names) {
+    for (lua_pushnil(state); lua_next(state, copy) != 0; lua_pop(state, 1)) {
+      if (lua_type(state, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -2));
+    }
+  });
+  if (*name == '\0') return luaL_error(state, "unknown name '%s'%s", shown, hint.data());
+  return luaL_error(state, "%s has no '%s'%s", name, shown, hint.data());
+}
+
+void make_read_only(lua_State* state, const char* name, bool strict) {
+  const int content = lua_gettop(state);
+  if (strict) {
+    lua_createtable(state, 0, 1);
+    lua_pushstring(state, name);
+    lua_pushvalue(state, content);
+    lua_pushcclosure(state, refuse_read, 2);
+    lua_setfield(state, -2, "__index");
+    lua_setmetatable(state, content);
+  }
+  core_of(state).heap.for_ticks(true);
+  lua_newtable(state);
+  lua_createtable(state, 0, 4);
+  core_of(state).heap.for_ticks(false);
+  lua_pushvalue(state, content);
+  lua_setfield(state, -2, "__index");
+  lua_pushstring(state, name);
+  lua_pushcclosure(state, refuse_write, 1);
+  lua_setfield(state, -2, "__newindex");
+  lua_pushboolean(state, 0);
+  lua_setfield(state, -2, "__metatable");
+  lua_pushlightuserdata(state, const_cast<char*>(&content_key));
+  lua_pushvalue(state, content);
+  lua_rawset(state, -3);
+  lua_setmetatable(state, -2);
+  lua_remove(state, content);
+}
+
+bool push_content(lua_State* state, int index) {
+  if (lua_getmetatable(state, index) == 0) return false;
+  lua_pushlightuserdata(state, const_cast<char*>(&content_key));
+  lua_rawget(state, -2);
+  lua_remove(state, -2);
+  if (lua_istable(state, -1)) return fill(state), true;
+  lua_pop(state, 1);
+  return false;
+}
+
+void set_filler(lua_State* state) {
+  lua_pushlightuserdata(state, const_cast<char*>(&filler_key));
+  lua_insert(state, -2);
+  lua_rawset(state, -3);
+}
+
+void open_sandbox(lua_State* state) {
+  core_of(state).slots.find_place(state);
+  open_libraries(state);
+  lua_newtable(state);
+  const int globals = lua_gettop(state);
+  lua_pushvalue(state, LUA_GLOBALSINDEX);
+  take(state, globals, globals + 1,
+       {"assert", "getmetatable", "ipairs", "rawequal", "rawget", "rawlen", "select", "setmetatable", "tonumber",
+        "type", "unpack"});
+  lua_pop(state, 1);
+  open_base(state, globals);
+  set_function(state, globals, "pairs", sandbox_pairs);
+  set_function(state, globals, "require", sandbox_require);
+
+  push_library(state, "coroutine", {"create", "resume", "running", "status", "wrap", "yield"}, nullptr);
+  open_protected_calls(state, globals);
+  make_read_only(state, "coroutine");
+  lua_setfield(state, globals, "coroutine");
+  push_library(
+      state, "string",
+      {"byte", "char", "find", "format", "gmatch", "gsub", "len", "lower", "match", "rep", "reverse", "sub", "upper"},
+      open_strings);
+  make_read_only(state, "string");
+  guard_string_metatable(state, lua_gettop(state));
+  lua_setfield(state, globals, "string");
+  push_library(state, "table", {"concat", "insert", "maxn", "remove", "sort"}, open_tables);
+  make_read_only(state, "table");
+  lua_setfield(state, globals, "table");
+  push_library(state, "math", {"abs",  "acos",  "asin",  "atan", "atan2", "ceil", "cos",   "cosh", "deg",
+                               "exp",  "floor", "frexp", "huge", "ldexp", "log",  "log10", "max",  "min",
+                               "modf", "pi",    "pow",   "rad",  "sin",   "sinh", "sqrt",  "tan",  "tanh"},
+               open_math);
+  make_read_only(state, "math");
+  lua_setfield(state, globals, "math");
+  push_library(state, "bit",
+               {"arshift", "band", "bnot", "bor", "bswap", "bxor", "lshift", "rol", "ror", "rshift", "tobit", "tohex"},
+               nullptr);
+  make_read_only(state, "bit");
+  lua_setfield(state, globals, "bit");
+  lua_pushliteral(state, "Lua 5.1");
+  lua_setfield(state, globals, "_VERSION");
+
+  lua_newtable(state);  // modules that are loaded, for require
+  open_kadans_module(state);
+  lua_setfield(state, -2, "kadans");
+  lua_setfield(state, LUA_REGISTRYINDEX, "kadans.modules");
+
+  lua_pushvalue(state, globals);
+  make_read_only(state, "");
+  lua_pushvalue(state, -1);
+  lua_setfield(state, globals, "_G");
+  lua_pushlightuserdata(state, const_cast<char*>(&environment_key));
+  lua_insert(state, -2);
+  lua_rawset(state, LUA_REGISTRYINDEX);
+}
+
+void push_environment(lua_State* state) {
+  lua_pushlightuserdata(state, const_cast<char*>(&environment_key));
+  lua_rawget(state, LUA_REGISTRYINDEX);
+}
+
+}  // namespace kadans

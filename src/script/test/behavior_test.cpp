@@ -1,0 +1,254 @@
+#include "behavior_test.h"
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+
+#include "kadans/signal/input_error.h"
+#include "script/bindings/snapshot_tables.h"
+#include "script/lua/lua_core.h"
+#include "script/lua/lua_state.h"
+#include "script/sandbox/sandbox.h"
+#include "test_globals.h"
+#include "test_prelude.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::uint64_t load_instructions_max = 200'000'000;  // of a file
+constexpr std::uint64_t test_instructions_max = 100'000'000;  // of each of its tests
+constexpr double advance_instructions = 1000;                 // what a call of it is charged ...
+constexpr double second_instructions = 20'000;                // ... and each virtual second: 5000 s in one test
+constexpr std::size_t memory_max_bytes = std::size_t{64} << 20;
+constexpr std::size_t stages_max = 8;  // of one test
+constexpr std::size_t tests_max = 100'000;
+
+struct Played {
+  std::unique_ptr<TestStage> stage;
+  SnapshotTables tables;
+  int snapshot = LUA_NOREF;
+};
+
+struct Testing {
+  LuaState& lua;
+  TestStages& stages;
+  std::filesystem::path root, file;
+  std::vector<Played> played;
+  struct Test {
+    std::string name;
+    int function = LUA_NOREF;
+  };
+  std::vector<Test> tests;
+  int running = LUA_NOREF;           // the function of the test that runs
+  std::array<char, 1024> message{};  // of what went wrong where nothing may raise
+  std::string text;                  // given to Lua; a member, since Lua may raise
+};
+
+Testing& testing_of(lua_State* state) { return *static_cast<Testing*>(lua_touserdata(state, lua_upvalueindex(1))); }
+
+int raise(lua_State* state, const Testing& testing) {
+  luaL_where(state, 2);
+  lua_pushstring(state, testing.message.data());
+  lua_concat(state, 2);
+  return lua_error(state);
+}
+
+Played* find(lua_State* state) {
+  Testing& testing = testing_of(state);
+  const auto number = static_cast<std::size_t>(lua_tointeger(state, 1));
+  return number < testing.played.size() ? &testing.played[number] : nullptr;
+}
+
+void keep_message(Testing& testing, const std::exception& error) {
+  std::snprintf(testing.message.data(), testing.message.size(), "%s", error.what());
+}
+
+bool make_stage(Testing& testing, const char* file, const char* robot) noexcept {
+  try {
+    const std::filesystem::path beside = testing.file.parent_path() / file;
+    const auto path = std::filesystem::exists(beside) ? beside : testing.root / file;
+    testing.played.push_back({testing.stages.make(path, robot), {}, LUA_NOREF});
+    return true;
+  } catch (const std::exception& error) {
+    keep_message(testing, error);
+    return false;
+  }
+}
+
+// play(file, robot) -> number.
+int play(lua_State* state) {
+  Testing& testing = testing_of(state);
+  const char* file = luaL_checkstring(state, 1);
+  if (testing.played.size() >= stages_max) return luaL_error(state, "a test plays 8 behaviors at most");
+  if (!make_stage(testing, file, luaL_checkstring(state, 2))) return raise(state, testing);
+  Played& played = testing.played.back();
+  static const std::vector<std::string> feet{"left", "right"};
+  played.snapshot = played.tables.open(state, played.stage->catalog(), feet);
+  lua_pushinteger(state, static_cast<lua_Integer>(testing.played.size() - 1));
+  return 1;
+}
+
+bool go_on(Testing& testing, Played& played, double seconds) noexcept {
+  try {
+    played.stage->advance(seconds);
+    return true;
+  } catch (const std::exception& error) {
+    keep_message(testing, error);
+    return false;
+  }
+}
+
+// advance(number, seconds).
+int advance(lua_State* state) {
+  Played* played = find(state);
+  if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
+  const double seconds = lua_tonumber(state, 2);
+  core_of(state).budget.charge(state, advance_instructions + second_instructions * seconds);
+  if (!go_on(testing_of(state), *played, seconds)) return raise(state, testing_of(state));
+  return 0;
+}
+
+bool read_text(Testing& testing, const TestStage& stage, const char* key) noexcept {
+  const auto is = [key](const char* name) { return std::strcmp(key, name) == 0; };
+  testing.text.clear();
+  if (is("state")) return testing.text = stage.state(), true;
+  if (is("outcome")) return testing.text = stage.outcome(), true;
+  if (is("error")) return testing.text = stage.error(), true;
+  if (is("control_sets")) return testing.text = stage.control_sets(), true;
+  if (is("log")) return testing.text = stage.said(), true;
+  if (is("states")) return testing.text = stage.went(), true;
+  return false;
+}
+
+// read(number, key): what the behavior is in, or a field of the snapshot.
+int read(lua_State* state) {
+  Played* played = find(state);
+  const char* key = luaL_checkstring(state, 2);
+  if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
+  Testing& testing = testing_of(state);
+  if (read_text(testing, *played->stage, key)) {
+    lua_pushlstring(state, testing.text.data(), testing.text.size());
+    return 1;
+  }
+  const Snapshot& snapshot = played->stage->snapshot();
+  played->tables.refill(state, snapshot, snapshot.time_ns);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, played->snapshot);
+  lua_getfield(state, -1, key);
+  return 1;
+}
+
+bool change_stage(TestStage& stage, const char* what, const char* name, double value) {
+  if (std::strcmp(what, "event") == 0) return stage.emit(name);
+  if (std::strcmp(what, "parameter") == 0) return stage.set_parameter(name, value);
+  return stage.set_sensor(name, value);
+}
+
+// change(number, what, name, value) -> whether it was known.
+int change(lua_State* state) {
+  Played* played = find(state);
+  if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
+  const char* what = luaL_checkstring(state, 2);
+  const char* name = luaL_checkstring(state, 3);
+  lua_pushboolean(state, change_stage(*played->stage, what, name, luaL_checknumber(state, 4)) ? 1 : 0);
+  return 1;
+}
+
+// add_test(name, function).
+int add_test(lua_State* state) {
+  Testing& testing = testing_of(state);
+  const char* name = luaL_checkstring(state, 1);
+  if (testing.tests.size() >= tests_max)
+    return luaL_error(state, "a file has %d tests at most", static_cast<int>(tests_max));
+  lua_settop(state, 2);
+  const int function = luaL_ref(state, LUA_REGISTRYINDEX);
+  testing.tests.push_back({name, function});
+  return 0;
+}
+
+// What the last one played is gone.
+int run_test(lua_State* state) {
+  auto& testing = *static_cast<Testing*>(lua_touserdata(state, 1));
+  lua_gc(state, LUA_GCCOLLECT, 0);
+  lua_gc(state, LUA_GCSTOP, 0);
+  core_of(state).heap.forgive();
+  lua_rawgeti(state, LUA_REGISTRYINDEX, testing.running);
+  lua_call(state, 0, 0);
+  return 0;
+}
+
+// What went wrong in it, "" when nothing did.
+std::string problem_of(Testing& testing, const Testing::Test& test) {
+  testing.played.clear();
+  testing.running = test.function;
+  if (testing.lua.call(run_test, &testing, test_instructions_max, 0)) return "";
+  const ScriptError& error = testing.lua.error();
+  if (error.breach != ScriptBreach::instructions) return error.text();
+  ScriptError stopped = error;
+  stopped.message = {"stopped, for it did not come to an end: a loop without one?"};
+  return stopped.text();
+}
+
+// [-1 +0] Into the names that scripts see.
+void set_global(lua_State* state, const char* name) {
+  push_environment(state);
+  push_content(state, -1);
+  lua_pushvalue(state, -3);
+  lua_setfield(state, -2, name);
+  lua_pop(state, 3);
+}
+
+void set_in_module(lua_State* state, const char* name) {
+  lua_getfield(state, LUA_REGISTRYINDEX, "kadans.modules");
+  lua_getfield(state, -1, "kadans");
+  push_content(state, -1);
+  lua_pushvalue(state, -4);
+  lua_setfield(state, -2, name);
+  lua_pop(state, 4);
+}
+
+int run_file(lua_State* state) {
+  auto& testing = *static_cast<Testing*>(lua_touserdata(state, 1));
+  if (luaL_loadbuffer(state, test_prelude, sizeof test_prelude - 1, "=kadans test") != 0) return lua_error(state);
+  push_environment(state);
+  lua_setfenv(state, -2);
+  for (const lua_CFunction function : {play, advance, read, change, add_test}) {
+    lua_pushlightuserdata(state, &testing);
+    lua_pushcclosure(state, function, 1);
+  }
+  lua_call(state, 5, 5);
+  open_test_names(state);
+  if (!testing.lua.load_file(state, testing.file)) return lua_error(state);
+  lua_call(state, 0, 0);
+  return 0;
+}
+
+}  // namespace
+
+void open_test_names(lua_State* state) {
+  set_in_module(state, "play");
+  for (const char* name : {"expect", "before_each", "it", "describe"}) set_global(state, name);
+}
+
+std::vector<TestOutcome> run_behavior_tests(const std::filesystem::path& root, const std::filesystem::path& file,
+                                            TestStages& stages, const std::string& only) {
+  const ScriptLimits limits{.memory_bytes = memory_max_bytes};
+  LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string(), .limits = limits});
+  Testing testing{lua, stages, root, file, {}, {}, LUA_NOREF, {}, {}};
+  testing.played.reserve(stages_max);
+  if (!lua.call(run_file, &testing, load_instructions_max, 0)) {
+    const ScriptError& error = lua.error();
+    throw InputError({error.file.data(), error.line, 0, error.message.data()});
+  }
+  std::vector<TestOutcome> outcomes;
+  for (const Testing::Test& test : testing.tests) {
+    if (test.name.find(only) == std::string::npos) continue;
+    const auto began = std::chrono::steady_clock::now();
+    std::string problem = problem_of(testing, test);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+    outcomes.push_back({.name = test.name, .problem = std::move(problem), .wall_s = took.count()});
+  }
+  return outcomes;
+}
+
+}  // namespace kadans

@@ -1,0 +1,126 @@
+// Writes MCAP, the log file format that robotics tools read (https://mcap.dev/spec).
+//
+// Messages are collected in a chunk in memory. When the chunk holds chunk_period_ns of log time or chunk_bytes, it is
+// compressed, gets its CRC, and is appended to the file in one block together with its message indexes. Each chunk
+// repeats the schemas and channels of its messages. So a file that is cut short at any byte, by a full disk or a killed
+// process, can be read up to the last whole chunk. close() adds the summary that lets readers seek.
+//
+// One thread at a time. Disk errors are a state, not exceptions: calls return false, error() says why, and the file
+// keeps its whole chunks. The same calls make the same bytes: nothing in the file comes from a clock or the machine.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mcap_format.h"
+#include "record_file.h"
+#include "signal/byte_order.h"
+
+struct ZSTD_CCtx_s;
+
+namespace kadans {
+
+struct McapSettings {
+  std::int64_t chunk_period_ns = 500'000'000;  // of log time
+  std::size_t chunk_bytes = 1U << 20U;         // before compression
+  int compression_level = 1;                   // of zstd, 1..19; 0: not compressed
+};
+
+class McapWriter {
+ public:
+  explicit McapWriter(McapSettings settings = {});
+  ~McapWriter();  // closes
+  McapWriter(const McapWriter&) = delete;
+  McapWriter& operator=(const McapWriter&) = delete;
+
+  // Replaces an existing file. Call it once per writer.
+  [[nodiscard]] bool open(const std::string& path);
+
+  // May be called at any time after open(). Numbers count from 1; schema 0 means a channel without schema.
+  std::uint16_t add_schema(std::string name, std::string encoding, std::string text);
+  std::uint16_t add_channel(std::string topic, std::string encoding, std::uint16_t schema, TextMap metadata = {});
+
+  [[nodiscard]] bool write(std::uint16_t channel, std::uint32_t sequence, std::int64_t time_ns,
+                           std::span<const std::byte> payload);
+  [[nodiscard]] bool attach(const std::string& name, const std::string& media_type, std::int64_t time_ns,
+                            std::span<const std::byte> data);
+  [[nodiscard]] bool add_metadata(const std::string& name, const TextMap& values);
+
+  [[nodiscard]] bool flush();  // ends the chunk now
+  [[nodiscard]] bool close();  // false when any call since open() failed; a second close() does nothing
+
+  bool is_open() const noexcept { return file_.is_open(); }
+  const std::string& error() const noexcept { return file_.error(); }
+  std::uint64_t file_bytes() const noexcept { return file_.size(); }
+  std::uint64_t messages() const noexcept { return messages_; }  // messages written, those of the open chunk included
+
+ private:
+  struct Schema {
+    std::string name, encoding, text;
+    std::uint32_t chunk = 0;  // number of the last chunk that carries it
+  };
+  struct Channel {
+    std::string topic, encoding;
+    std::uint16_t schema = 0;
+    TextMap metadata;
+    std::uint32_t chunk = 0;
+    std::uint64_t messages = 0;
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // of the open chunk: log time, offset
+  };
+  struct Chunk {  // the summary's data about the chunk that is being written
+    std::uint64_t start_ns = 0, end_ns = 0, offset = 0, length = 0, index_length = 0, packed = 0, unpacked = 0;
+    std::string_view compression;
+    std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes;  // channel, offset in the file
+  };
+  struct Attachment {
+    std::uint64_t offset = 0, length = 0, time_ns = 0, data_size = 0;
+    std::string name, media_type;
+  };
+  struct Metadata {
+    std::uint64_t offset = 0, length = 0;
+    std::string name;
+  };
+  struct ZstdDelete {
+    void operator()(ZSTD_CCtx_s* context) const noexcept;
+  };
+
+  bool chunk_is_due(std::uint64_t time_ns, std::size_t more) const noexcept;
+  void put_definitions(std::uint16_t channel);
+  bool pack();
+  void put_chunk(Chunk& chunk);
+  void put_message_indexes(Chunk& chunk);
+  void keep_chunk_index(const Chunk& chunk);
+  [[nodiscard]] bool append();
+  void put_summary();
+  void put_schemas();
+  void put_channels();
+  void put_statistics();
+  void put_chunk_indexes();
+  void put_attachment_indexes();
+  void put_metadata_indexes();
+
+  McapSettings settings_;
+  RecordFile file_;
+  std::vector<Schema> schemas_;
+  std::vector<Channel> channels_;
+  std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
+
+  ByteWriter records_;  // of the open chunk
+  ByteWriter block_;    // the bytes that go to the file in one piece
+  std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
+  std::uint32_t chunk_number_ = 1;
+
+  std::uint64_t messages_ = 0, start_ns_ = 0, end_ns_ = 0;
+  ByteWriter chunk_indexes_;  // already encoded for the summary: a record of some hours has tens of thousands of them
+  std::uint32_t chunks_ = 0;
+  std::vector<Attachment> attachments_;
+  std::vector<Metadata> metadata_;
+};
+
+}  // namespace kadans

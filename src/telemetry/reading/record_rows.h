@@ -1,0 +1,71 @@
+// Reads the messages of a record one after the other and decodes them: rows of named signals, events, JSON, and other
+// payloads. The metadata of its channel says what a topic holds, so topics of any name, rate or number of signals can
+// be read. The record may have any length. One thread.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kadans/signal/signal.h"
+#include "telemetry/mcap/mcap_reader.h"
+#include "telemetry/record/event_log.h"
+#include "telemetry/record/signal_topics.h"
+
+namespace kadans {
+
+struct RecordTopic {
+  std::string name;  // "/joint"
+  std::string schema, encoding;
+  std::vector<Signal> signals;  // in the order of the row's values; empty: the topic holds no rows
+
+  bool is_json() const noexcept { return encoding == "json"; }
+};
+RecordTopic topic_of(const McapReader& reader, std::uint16_t channel);
+
+class RecordRows {
+ public:
+  // Throws InputError when the file cannot be read or is no MCAP file.
+  explicit RecordRows(const std::string& path) : reader_(path) {}
+
+  // The next message in the order of the file. False at the end, or at the first problem: reader().problem().
+  [[nodiscard]] bool next();
+
+  std::uint16_t channel() const noexcept { return message_.channel; }
+  const RecordTopic& topic() const noexcept { return *topic_; }
+  std::int64_t time_ns() const noexcept { return message_.time_ns; }
+  std::uint32_t tick() const noexcept { return message_.sequence; }
+  // The values of a row; empty for other messages. Valid until next().
+  std::span<const double> values() const noexcept { return values_; }
+  Precision precision() const noexcept { return precision_; }
+  std::span<const std::byte> payload() const noexcept { return message_.payload; }
+  std::string_view text() const noexcept {
+    return {reinterpret_cast<const char*>(message_.payload.data()), message_.payload.size()};
+  }
+  const McapMessage& message() const noexcept { return message_; }
+  const McapReader& reader() const noexcept { return reader_; }
+
+ private:
+  McapReader reader_;
+  McapMessage message_;
+  std::map<std::uint16_t, RecordTopic> topics_;
+  const RecordTopic* topic_ = nullptr;
+  std::vector<double> values_;
+  Precision precision_ = Precision::full;
+};
+
+// A transition or a line of the log; nothing when the message is neither, or damaged.
+std::optional<Event> event_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
+// What the safety layer found, as /faults tells it.
+std::optional<ToldFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
+
+// "squat: down -> up (arrived)"
+std::string transition_text(const Transition& transition);
+
+inline double seconds(std::int64_t time_ns) noexcept { return 1e-9 * static_cast<double>(time_ns); }
+
+}  // namespace kadans

@@ -1,0 +1,87 @@
+// Flight recorder: keeps the last seconds of a run in memory and writes them to a record of their own when a fault
+// latches.
+//
+// It gets every row and event that the recorder drains, also when no record is open. When safety.level rises to hold or
+// beyond, a dump becomes due `aftermath` later, so that it shows what followed. A rise within kept_s after the last
+// such rise is ignored. The caller names the file. Each step() writes a few blocks, so that the draining thread is not
+// held up; meanwhile new rows go into memory. Values are in single precision.
+//
+// Use it on the draining thread only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flight_memory.h"
+#include "record_writer.h"
+
+namespace kadans {
+
+class FlightRecorder {
+ public:
+  // `record` says how a dump is written; its rates are ignored, because all signals are kept in each tick. `signals`
+  // must outlive this object.
+  FlightRecorder(const SignalTable& signals, const FlightSettings& settings, const RecorderSettings& record);
+
+  void row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
+  void event(const Event& event);
+  void fault(const Fault& fault, std::int64_t time_ns);
+
+  // True when a dump is due: call begin(). `at_once` does not wait for the aftermath, because the run has ended.
+  bool due(bool at_once = false) const noexcept {
+    return latched_ns_ && !busy() && (at_once || last_ns_ >= *latched_ns_ + aftermath_ns);
+  }
+  // From now on a rise of safety.level makes no dump due, because the run is ending.
+  void watch_no_more() noexcept { watching_ = false; }
+  // Begins a dump of the rows in memory. False: error() says why.
+  [[nodiscard]] bool begin(const std::string& file);
+  // The record of the dump, for its descriptions. Only while busy().
+  RecordWriter& dump() noexcept { return *dump_; }
+  void step();    // writes a part of the dump
+  void finish();  // writes the rest of it
+  bool busy() const noexcept { return dump_ != nullptr; }
+
+  const std::string& file() const noexcept { return file_; }    // of the last dump; "": none
+  const std::string& error() const noexcept { return error_; }  // of the last dump
+  std::uint32_t dumps() const noexcept { return dumps_; }       // complete or failed
+  std::size_t packed_bytes() const noexcept { return memory_.packed_bytes(); }
+
+ private:
+  static constexpr std::int64_t aftermath_ns = 1'000'000'000;
+  static constexpr std::size_t events_max = 500, text_max = 300, blocks_a_step = 2;
+  struct Happening {
+    std::int64_t time_ns = 0;
+    std::variant<Event, Fault> what;
+  };
+
+  void keep(Happening happening);
+  void watch(std::int64_t time_ns, double level) noexcept;
+  void write_happenings(std::int64_t until_ns);
+
+  const SignalTable& signals_;
+  RecorderSettings record_;
+  std::int64_t kept_ns_;
+  FlightMemory memory_;
+  std::deque<Happening> happenings_;
+  std::optional<SignalId> level_signal_;
+  double level_ = 0;
+  bool watching_ = true;
+  std::int64_t last_ns_ = 0;
+  std::optional<std::int64_t> latched_ns_, last_latched_ns_;
+
+  std::unique_ptr<RecordWriter> dump_;
+  std::deque<Happening> to_write_;
+  std::uint64_t next_block_ = 0, end_block_ = 0;
+  FlightMemory::Rows rows_;
+  std::string file_, error_;
+  std::uint32_t dumps_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,183 @@
+#include "record_writer.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "config/json/foreign_json.h"
+#include "timing_json.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::int64_t ns_per_s = 1'000'000'000;
+constexpr std::uint64_t parameters_every_ticks = 10;
+
+constexpr const char* parameters_schema = R"({
+  "title": "kadans.Parameters", "type": "object",
+  "description": "All parameters at the start, then those that changed",
+  "properties": { "timestamp": { "type": "object", "title": "time",
+      "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
+    "parameters": { "type": "array", "items": { "type": "object",
+      "properties": { "name": { "type": "string" }, "value": { "type": "number" } } } } }
+})";
+
+bool same(std::span<const double> a, std::span<const double> b) noexcept {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+}  // namespace
+
+const char* const description_schema = R"({
+  "title": "kadans.Description",
+  "description": "Robot, control sets, parameters and charts of a run",
+  "type": "object",
+  "properties": {
+    "robot": { "type": "object" },
+    "sets": { "type": "array" },
+    "objects": { "type": "array" },
+    "parameters": { "type": "array" },
+    "behaviors": { "type": "array" }
+  }
+})";
+
+RecordWriter::RecordWriter(const SignalTable& signals, const RecorderSettings& settings)
+    : settings_(settings), viewers_(signals, settings.subjects), file_(settings.file) {
+  for (SignalTopic& topic : signal_topics(signals, settings_.precision, settings_.every_ticks)) {
+    stride_ = std::gcd(stride_, std::uint64_t{topic.every_ticks});
+    topics_.push_back({.signals = std::move(topic)});
+  }
+  if (!viewers_.channels().empty()) stride_ = std::gcd(stride_, std::uint64_t{settings_.viewer_every_ticks});
+}
+
+std::uint16_t RecordWriter::add_json(const char* topic, const char* schema, const char* text) {
+  return file_.add_channel(topic, "json", file_.add_schema(schema, "jsonschema", text));
+}
+
+bool RecordWriter::open(const std::string& path) {
+  if (!file_.open(path)) return false;
+  for (Topic& topic : topics_) {
+    const std::uint16_t schema = file_.add_schema(topic.signals.type, "ros2msg", topic.signals.definition);
+    topic.channel = file_.add_channel(topic.signals.topic, "cdr", schema,
+                                      {{"signals", topic.signals.description},
+                                       {"every_ticks", std::to_string(topic.signals.every_ticks)},
+                                       {"standstill_ticks", std::to_string(settings_.standstill_ticks)}});
+  }
+  for (const ViewerChannel& viewer : viewers_.channels()) {
+    const std::uint16_t schema = file_.add_schema(viewer.schema_name, viewer.schema_encoding, viewer.schema);
+    viewer_channels_.push_back(file_.add_channel(viewer.topic, viewer.encoding, schema));
+  }
+  log_ = add_json("/log", "foxglove.Log", log_schema);
+  transitions_ = add_json("/transitions", "kadans.Transition", transition_schema);
+  faults_ = add_json("/faults", "kadans.Fault", fault_schema);
+  timing_ = add_json("/timing", "kadans.Timing", timing_schema);
+  parameters_channel_ = add_json("/parameters", "kadans.Parameters", parameters_schema);
+  return true;
+}
+
+bool RecordWriter::describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns) {
+  if (!file_.attach(name + ".urdf", "application/xml", time_ns, bytes_of(urdf))) return false;
+  const ViewerChannel viewer = robot_description_channel();
+  const std::uint16_t schema = file_.add_schema(viewer.schema_name, viewer.schema_encoding, viewer.schema);
+  write_robot_description(urdf, message_);
+  return file_.write(file_.add_channel(viewer.topic, viewer.encoding, schema), 0, time_ns, message_.bytes());
+}
+
+bool RecordWriter::describe_parts(const std::string& description, std::int64_t time_ns) {
+  return file_.write(add_json("/description", "kadans.Description", description_schema), 0, time_ns,
+                     bytes_of(description));
+}
+
+bool RecordWriter::row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
+  bool written = error().empty();
+  for (Topic& topic : topics_) {
+    if (tick % topic.signals.every_ticks == 0) written = put(topic, tick, time_ns, row) && written;
+  }
+  if (tick % settings_.viewer_every_ticks == 0) written = put_viewers(tick, time_ns, row) && written;
+  const bool looks = parameters_.empty() || tick % parameters_every_ticks == 0;
+  if (looks && settings_.parameters != nullptr) written = put_parameters(time_ns) && written;
+  return written;
+}
+
+bool RecordWriter::put(Topic& topic, std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
+  values_.resize(topic.signals.signals.size());
+  std::ranges::transform(topic.signals.signals, values_.begin(), [&](SignalId id) { return row[id]; });
+  const bool stands = topic.written && same(values_, topic.values);
+  if (stands && tick - topic.tick < settings_.standstill_ticks) {
+    topic.waits = true;
+    topic.waiting_tick = tick;
+    topic.waiting_ns = time_ns;
+    return true;
+  }
+  bool written = true;
+  if (!stands && topic.waits) written = put_values(topic, topic.waiting_tick, topic.waiting_ns);
+  topic.waits = false;
+  topic.written = true;
+  topic.tick = tick;
+  topic.values.swap(values_);
+  return put_values(topic, tick, time_ns) && written;
+}
+
+bool RecordWriter::put_values(const Topic& topic, std::uint64_t tick, std::int64_t time_ns) {
+  payload_.resize(cdr_bytes(topic.values.size(), settings_.precision));
+  write_cdr(payload_, topic.values, settings_.precision);
+  return file_.write(topic.channel, static_cast<std::uint32_t>(tick), time_ns, payload_);
+}
+
+bool RecordWriter::put_viewers(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
+  bool written = true;
+  for (std::size_t i = 0; i < viewer_channels_.size(); ++i) {
+    viewers_.write(i, time_ns, row, message_);
+    written = file_.write(viewer_channels_[i], static_cast<std::uint32_t>(tick), time_ns, message_.bytes()) && written;
+  }
+  return written;
+}
+
+// All of them first, then what changed since.
+bool RecordWriter::put_parameters(std::int64_t time_ns) {
+  const ParameterTable& table = *settings_.parameters;
+  const bool first = parameters_.empty();
+  parameters_.resize(table.size());
+  nlohmann::ordered_json changed;
+  for (ParameterId id = 0; id < table.size(); ++id) {
+    const double value = table.newest(id);
+    if (!first && value == parameters_[id]) continue;
+    parameters_[id] = value;
+    changed.push_back({{"name", table.info(id).name}, {"value", value}});
+  }
+  if (changed.empty()) return true;
+  const nlohmann::ordered_json json{{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
+                                    {"parameters", changed}};
+  return file_.write(parameters_channel_, 0, time_ns, bytes_of(json_text(json)));
+}
+
+bool RecordWriter::event(const Event& event) {
+  const std::uint16_t channel = event.kind == Event::Kind::transition ? transitions_ : log_;
+  return file_.write(channel, 0, event.transition.time_ns, bytes_of(json_of(event)));
+}
+
+bool RecordWriter::fault(const Fault& fault, std::int64_t time_ns) {
+  const std::vector<std::string>& joints = settings_.subjects.joints;
+  const std::string joint = fault.joint < joints.size() ? joints[fault.joint] : "";
+  return file_.write(faults_, static_cast<std::uint32_t>(fault.tick), time_ns,
+                     bytes_of(json_of(told(fault, joint, time_ns))));
+}
+
+bool RecordWriter::timing(const std::string& json, std::int64_t time_ns) {
+  return file_.write(timing_, 0, time_ns, bytes_of(json));
+}
+
+// A topic that stands still ends with its last row.
+bool RecordWriter::close() {
+  for (Topic& topic : topics_) {
+    if (!std::exchange(topic.waits, false)) continue;
+    topic.tick = topic.waiting_tick;
+    (void)put_values(topic, topic.waiting_tick, topic.waiting_ns);
+  }
+  return file_.close();
+}
+
+}  // namespace kadans

@@ -1,0 +1,119 @@
+#include "recorder.h"
+
+#include <array>
+#include <cstring>
+#include <stdexcept>
+
+namespace kadans {
+
+static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
+
+Recorder::Recorder(const SignalTable& signals, const RecorderSettings& settings, const FlightSettings& flight)
+    : signals_(signals),
+      signal_count_(signals.size()),
+      settings_(settings),
+      file_(std::make_unique<RecordWriter>(signals, settings)),
+      flight_(flight.kept_s > 0 ? std::make_unique<FlightRecorder>(signals, flight, settings) : nullptr),
+      stride_(flight_ ? 1 : file_->stride()),
+      ring_(std::make_unique<Rows>()),
+      row_(signals.size()) {
+  if (head_size + signal_count_ > Rows::capacity()) throw std::invalid_argument("too many signals for the record");
+}
+
+// What came since the last file was closed is for the flight recorder alone.
+bool Recorder::open(const std::string& path) {
+  if (opened_) {
+    (void)drain();
+    file_ = std::make_unique<RecordWriter>(signals_, settings_);
+    rows_ = lost_ = 0;
+    dropped_.store(0, std::memory_order_relaxed);
+    reported_drops_ = dropped_events();
+  }
+  opened_ = true;
+  return file_->open(path);
+}
+
+void Recorder::record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept {
+  if (stride_ == 0 || tick % stride_ != 0) return;
+  std::array<double, head_size> head{};
+  std::memcpy(&head[0], &tick, sizeof tick);
+  std::memcpy(&head[1], &time_ns, sizeof time_ns);
+  if (row.size() != signal_count_ || !ring_->try_push(head, row)) dropped_.fetch_add(1, std::memory_order_relaxed);
+}
+
+bool Recorder::drain() {
+  const std::size_t row_size = head_size + signal_count_;
+  for (std::size_t waiting = ring_->size() / row_size; waiting > 0; --waiting) {
+    take_row();
+    ring_->drop(row_size);
+  }
+  take_events(end_of_time_ns);
+  take_faults();
+  report_drops();
+  if (flight_) flight_->step();
+  return error().empty();
+}
+
+void Recorder::take_row() {
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  std::memcpy(&tick, &ring_->peek(0), sizeof tick);
+  std::memcpy(&time_ns, &ring_->peek(1), sizeof time_ns);
+  for (std::size_t i = 0; i < row_.size(); ++i) row_[i] = ring_->peek(head_size + i);
+  take_events(time_ns);
+  if (tick > last_tick_) period_ns_ = (time_ns - last_time_ns_) / static_cast<std::int64_t>(tick - last_tick_);
+  last_tick_ = tick;
+  last_time_ns_ = time_ns;
+  if (flight_) flight_->row(tick, time_ns, row_);
+  if (!opened_ || (!is_open() && error().empty())) return;  // closed, or not yet
+  ++rows_;
+  if (!file_->row(tick, time_ns, row_)) ++lost_;
+}
+
+void Recorder::take_events(std::int64_t until_ns) {
+  while (events_.pop(until_ns, event_)) write_event(event_);
+}
+
+void Recorder::write_event(const Event& event) {
+  // A file that failed is told by error(); there is nothing else to do about it here.
+  if (is_open()) (void)file_->event(event);
+  if (flight_) flight_->event(event);
+}
+
+// Faults know their tick; its time is reckoned from the newest row.
+void Recorder::take_faults() {
+  for (Fault fault; faults_.try_pop(fault);) {
+    const std::int64_t time_ns = last_time_ns_ + static_cast<std::int64_t>(fault.tick - last_tick_) * period_ns_;
+    if (is_open()) (void)file_->fault(fault, time_ns);
+    if (flight_) flight_->fault(fault, time_ns);
+  }
+}
+
+void Recorder::timing(const std::string& json, std::int64_t time_ns) {
+  if (is_open()) (void)file_->timing(json, time_ns);
+}
+
+void Recorder::report_drops() {
+  const std::uint32_t drops = dropped() + dropped_events();
+  if (drops == reported_drops_ || !is_open()) return;
+  Event event;
+  event.severity = BehaviorLog::Severity::warning;
+  event.transition.time_ns = last_time_ns_;
+  event.transition.behavior = "recorder";
+  event.text = std::to_string(dropped()) + " rows and " + std::to_string(dropped_events()) +
+               " events so far are not in this record: its writer was too slow";
+  (void)file_->event(event);
+  reported_drops_ = drops;
+}
+
+bool Recorder::close() {
+  (void)drain();
+  if (is_open() && error().empty()) {
+    (void)file_->describe("recorder", {{"rows", std::to_string(rows_)},
+                                       {"dropped_rows", std::to_string(dropped())},
+                                       {"dropped_events", std::to_string(dropped_events())}});
+  }
+  return file_->close();
+}
+
+}  // namespace kadans

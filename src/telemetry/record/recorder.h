@@ -1,0 +1,102 @@
+// Records a run into an MCAP file and into the memory of a flight recorder: rows of signals from the control thread,
+// events from the behavior thread, faults from the supervisor.
+//
+// The control thread only copies its row into a ring buffer. Another thread, or the lockstep loop between ticks, calls
+// drain(), which passes the rows to the open file (record_writer.h) and to the flight recorder. When the ring is full
+// because nobody drains it, rows are dropped; when the disk fails, rows are lost. Both are counted, and drops are also
+// noted in the record itself. The sequence number of a message is its tick, so a gap is visible.
+//
+// Threads: record() control thread; events() behavior thread; fault() supervisor thread; counters any thread; all
+// others the draining thread.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/tick/record_sink.h"
+#include "event_log.h"
+#include "flight_recorder.h"
+#include "kadans/exchange/ring.h"
+#include "record_writer.h"
+
+namespace kadans {
+
+class Recorder final : public RecordSink {
+ public:
+  // Make it before the loop, when all signals are declared. The table must outlive it.
+  explicit Recorder(const SignalTable& signals, const RecorderSettings& settings = {},
+                    const FlightSettings& flight = {});
+  explicit Recorder(SignalTable&&, const RecorderSettings& = {}, const FlightSettings& = {}) = delete;
+
+  // Replaces an existing file. False: error() says why. After close() another file may be opened.
+  [[nodiscard]] bool open(const std::string& path);
+  // After open(): see RecordWriter.
+  [[nodiscard]] bool describe_run(const RunInputs& inputs) { return file_->describe_run(inputs); }
+  [[nodiscard]] bool describe(const std::string& name, const TextMap& facts) { return file_->describe(name, facts); }
+  [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns) {
+    return file_->describe_robot(name, urdf, time_ns);
+  }
+  [[nodiscard]] bool describe_parts(const std::string& description, std::int64_t time_ns) {
+    return file_->describe_parts(description, time_ns);
+  }
+  // Has an effect only while a file is open.
+  void timing(const std::string& json, std::int64_t time_ns);
+
+  void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
+  BehaviorLog& events() noexcept { return events_; }
+  void fault(const Fault& fault) noexcept { (void)faults_.try_push(fault); }
+
+  // Writes all waiting rows, events and faults; the file grows chunk by chunk. False once the file has failed; the ring
+  // is still emptied.
+  [[nodiscard]] bool drain();
+  // Drains, and completes the file. Without a flight recorder, no other thread may record during this call.
+  [[nodiscard]] bool close();
+  // nullptr when there is no flight recorder.
+  FlightRecorder* flight() noexcept { return flight_.get(); }
+
+  bool is_open() const noexcept { return file_->is_open(); }
+  const std::string& error() const noexcept { return file_->error(); }
+  std::uint64_t file_bytes() const noexcept { return file_->file_bytes(); }
+  std::uint64_t rows() const noexcept { return rows_; }  // rows drained while a file was open
+  std::uint64_t lost() const noexcept { return lost_; }  // of these rows, not written because the file had failed
+  std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }  // the ring was full
+  std::uint32_t dropped_events() const noexcept { return events_.dropped(); }
+
+ private:
+  // 2 MB: one second of 260 signals at 1 kHz.
+  using Rows = Ring<double, std::size_t{1} << 18U>;
+  static constexpr std::size_t head_size = 2;  // tick and time, bit for bit
+  static constexpr std::int64_t end_of_time_ns = std::numeric_limits<std::int64_t>::max();
+
+  void take_row();
+  void take_events(std::int64_t until_ns);
+  void take_faults();
+  void write_event(const Event& event);
+  void report_drops();
+
+  const SignalTable& signals_;
+  std::size_t signal_count_;
+  RecorderSettings settings_;
+  std::unique_ptr<RecordWriter> file_;
+  std::unique_ptr<FlightRecorder> flight_;
+  std::uint64_t stride_ = 0;  // ticks between two rows that are needed; 0: none
+  std::unique_ptr<Rows> ring_;
+  std::atomic<std::uint32_t> dropped_{0};
+  EventLog events_;
+  Ring<Fault, 256> faults_;
+
+  bool opened_ = false;
+  std::vector<double> row_;
+  Event event_;
+  std::uint64_t rows_ = 0, lost_ = 0, last_tick_ = 0;
+  std::int64_t last_time_ns_ = 0, period_ns_ = 0;
+  std::uint32_t reported_drops_ = 0;
+};
+
+}  // namespace kadans
