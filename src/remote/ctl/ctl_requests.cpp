@@ -60,6 +60,7 @@ std::string CtlRequests::at_once(CtlSession& session, const OrderRequest& reques
   }
   if (request.is("unwatch")) {
     session.watched.clear();
+    watches_fast(session, false);
   } else {  // estop
     instance_.stop_now(session.who());
   }
@@ -183,8 +184,14 @@ std::string CtlRequests::watch(CtlSession& session, const OrderRequest& request)
   const double every = 1 / (rate_hz * instance_.facts().control_period_s);
   session.every_ticks = static_cast<std::uint32_t>(std::max(1.0, std::round(std::min(every, 1e9))));
   session.next_tick = 0;
-  if (session.every_ticks < row_every_ticks) port_.want_signals(1);
+  watches_fast(session, session.every_ticks < row_every_ticks);
   return json_text({{"ok", true}, {"signals", std::move(signals)}});
+}
+
+void CtlRequests::watches_fast(const CtlSession& session, bool fast) {
+  if (fast) fast_.insert(session.number());
+  if (!fast) fast_.erase(session.number());
+  port_.want_signals(fast_.empty() ? row_every_ticks : 1);
 }
 
 std::string CtlRequests::sample(CtlSession& session) {
@@ -215,6 +222,7 @@ std::string CtlRequests::faults() {
 void CtlRequests::forget(const CtlSession& session) {
   if (session.order != 0) port_.withdraw(session.order);
   asked_.erase(session.number());
+  watches_fast(session, false);
   if (session.has_console) leaving_.push_back(session.number());
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +47,7 @@ class CtlRequests {
   std::string send(CtlSession& session, const OrderRequest& request);
   std::string status(const Answer* report);
   std::string watch(CtlSession& session, const OrderRequest& request);
+  void watches_fast(const CtlSession& session, bool fast);
   std::string faults();
   std::string told(const CtlSession& session, const OrderRequest& request, const Answer& answer);
   std::string get(const std::string& name, const Answer& report);
@@ -56,6 +58,7 @@ class CtlRequests {
   const CtlCounts& counts_;
   std::map<std::uint64_t, OrderRequest> asked_;  // the pending request of each session
   std::vector<std::uint64_t> leaving_;           // clients whose consoles must be closed
+  std::set<std::uint64_t> fast_;                 // sessions that watch faster than the usual row
   std::map<std::pair<FaultCode, std::uint16_t>, Seen> faults_;
 };
 

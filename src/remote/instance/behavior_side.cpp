@@ -146,6 +146,8 @@ void BehaviorSide::begin(Pending& pending) {
     case Order::Kind::undo: {
       const ParameterChange* last = tuning_.newest();
       if (last == nullptr) throw InputError({.message = "there is nothing to undo"});
+      const auto is_undo = [](const Pending& other) { return other.order->order.kind == Order::Kind::undo; };
+      if (std::ranges::any_of(pending_, is_undo)) throw InputError({.message = "somebody else's undo is under way"});
       return begin_change(pending, {last->name, last->now, last->before, last->chunk});
     }
     case Order::Kind::line:
