@@ -11,8 +11,9 @@ void FaultyHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcep
   ++tick_;
 }
 
-// Takes what the host sent and lets the faults of this moment have it.
+// Takes what the host sent in this tick and applies the faults of this moment to it.
 void FaultyHost::collect(std::int64_t time_ns) {
+  const std::size_t before = under_way_.size();
   Command command;
   while (queue_->try_pop(command)) {
     if (command.kind == CommandKind::transaction) {
@@ -23,8 +24,8 @@ void FaultyHost::collect(std::int64_t time_ns) {
   }
   for (const Fault& fault : faults_) {
     if (time_ns < fault.from_ns || time_ns >= fault.until_ns) continue;
-    for (Batch& batch : under_way_) {
-      if (batch.due_tick != tick_) continue;
+    for (std::size_t i = before; i < under_way_.size(); ++i) {
+      Batch& batch = under_way_[i];
       if (fault.kind == Kind::late) batch.due_tick += fault.ticks;
       if (fault.kind == Kind::lost) batch.commands.clear();
       if (fault.kind != Kind::not_finite) continue;
