@@ -64,6 +64,12 @@ const std::map<std::string, std::vector<std::string>> samples{
     {"ctl estop", {"ctl estop"}},
     {"ctl switch", {"ctl switch posture", "ctl switch nothing"}},
     {"ctl lead", {"ctl lead posture.l_knee.position_rad=0.2 --time 1", "ctl lead nothing=1"}},
+    {"ctl drive enable", {"ctl drive enable", "ctl drive enable nothing"}},
+    {"ctl drive disable", {"ctl drive disable l_knee"}},
+    {"ctl drive reset", {"ctl drive reset 'l_*'"}},
+    {"ctl drive home", {"ctl drive home"}},
+    {"ctl drive brake", {"ctl drive brake l_knee"}},
+    {"ctl drive release", {"ctl drive release l_knee"}},
     {"ctl fault list", {"ctl fault list"}},
     {"ctl fault clear", {"ctl fault clear"}},
     {"ctl record start", {"ctl record start seen.mcap"}},
@@ -206,11 +212,13 @@ TEST_CASE("what stdout does not take is told, and the exit code is not 0") {
 TEST_CASE("--json of every verb of ctl is one object a line, whether it is done or refused") {
   const auto folder = project("json_ctl");
   const std::string program = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
-  const std::vector<std::string> order{
-      "ctl status", "ctl list",       "ctl get",          "ctl watch",       "ctl drives",      "ctl set",
-      "ctl save",   "ctl undo",       "ctl play",         "ctl pause",       "ctl resume",      "ctl switch",
-      "ctl lead",   "ctl reload",     "ctl record start", "ctl record stop", "ctl record dump", "ctl repl",
-      "ctl stop",   "ctl fault list", "ctl estop",        "ctl fault clear"};
+  const std::vector<std::string> order{"ctl status",      "ctl list",        "ctl get",           "ctl watch",
+                                       "ctl drives",      "ctl set",         "ctl save",          "ctl undo",
+                                       "ctl play",        "ctl pause",       "ctl resume",        "ctl switch",
+                                       "ctl lead",        "ctl reload",      "ctl record start",  "ctl record stop",
+                                       "ctl record dump", "ctl repl",        "ctl stop",          "ctl fault list",
+                                       "ctl estop",       "ctl fault clear", "ctl drive disable", "ctl drive enable",
+                                       "ctl drive reset", "ctl drive home",  "ctl drive release", "ctl drive brake"};
   std::string script = "export XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/none\"\n'" + program +
                        "' run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time --ctl c "
                        ">out 2>err &\nrun=$!\nuntil '" +

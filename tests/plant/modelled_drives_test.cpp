@@ -106,7 +106,7 @@ TEST_CASE("An order that stands in every frame is carried out once") {
   }
 }
 
-TEST_CASE("Drives as they start leave a world's hash as it was; one that is disabled changes it") {
+TEST_CASE("Drives as they start leave a world's hash as it was, and one that is disabled changes it") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.drive().torque_max_Nm = 5;
   BulletWorld plant(robot.model, robot.settings, 1);

@@ -117,6 +117,7 @@ TEST_CASE("A sample comes off the wire as it went on, bit for bit") {
           same(static_cast<double>(frame.joints[i].temperature_C), static_cast<double>(sent.joints[i].temperature_C)));
       CHECK(frame.joints[i].drive == sent.joints[i].drive);
       CHECK(frame.joints[i].homed == sent.joints[i].homed);
+      CHECK(frame.joints[i].braked == sent.joints[i].braked);
     }
     CHECK(same(frame.imu.angular_velocity_rad_s, sent.imu.angular_velocity_rad_s));
     CHECK(same(frame.imu.acceleration_m_s2, sent.imu.acceleration_m_s2));
@@ -135,6 +136,7 @@ TEST_CASE("An actuation comes off the wire as it went on, and joints that it lea
   const PlantWire wire(robot(5, 0));
   ActuationFrame sent;
   sent.joint_count = 4;
+  for (std::size_t i = 0; i < 4; ++i) sent.drives[i] = {static_cast<DriveOrder>(i + 2), static_cast<std::uint8_t>(i)};
   for (std::size_t i = 0; i < 4; ++i)
     sent.joints[i] = {number(random), number(random), number(random),
                       number(random), number(random), static_cast<ActuationMode>(i + 1)};
@@ -152,6 +154,8 @@ TEST_CASE("An actuation comes off the wire as it went on, and joints that it lea
     CHECK(same(got.joints[i].stiffness_Nm_per_rad, sent.joints[i].stiffness_Nm_per_rad));
     CHECK(same(got.joints[i].damping_Nms_per_rad, sent.joints[i].damping_Nms_per_rad));
     CHECK(got.joints[i].mode == sent.joints[i].mode);
+    CHECK(got.drives[i].order == sent.drives[i].order);
+    CHECK(got.drives[i].number == sent.drives[i].number);
   }
   CHECK(got.joints[4].mode == ActuationMode::off);
 }
@@ -183,10 +187,11 @@ TEST_CASE("The bytes on the wire are those of the description") {
   ActuationFrame frame;
   frame.joint_count = 1;
   frame.joints[0] = {.effort_Nm = 1, .mode = ActuationMode::effort};
+  frame.drives[0] = {DriveOrder::reset, 7};
   Datagram datagram{};
   const WireHead head{.kind = WireKind::actuation, .session = 0x0102030405060708, .sequence = 9, .time_ns = 10};
   const Bytes bytes = wire.actuation(head, frame, datagram);
-  CHECK(bytes.size() == 40 + 41 + 4);
+  CHECK(bytes.size() == 40 + 43 + 4);
   const auto at = [&](std::size_t index) { return std::to_integer<int>(bytes[index]); };
   CHECK(std::memcmp(bytes.data(), "KDNP", 4) == 0);
   CHECK(at(4) == wire_version);
@@ -197,6 +202,8 @@ TEST_CASE("The bytes on the wire are those of the description") {
   CHECK(at(32) == 10);
   CHECK(at(47) == 0x3f);  // 1.0 is 3f f0 00 ...
   CHECK(at(40 + 40) == 1);
+  CHECK(at(40 + 41) == 3);
+  CHECK(at(40 + 42) == 7);
 }
 
 TEST_CASE("No datagram that is cut, longer or changed in a bit passes") {
@@ -239,16 +246,20 @@ TEST_CASE("What is whole but not ours is told apart") {
   Datagram datagram{};
   WireHead head;
   std::vector<std::byte> mode = copy(wire.actuation({.kind = WireKind::actuation}, {}, datagram));
-  mode[40 + 40] = std::byte{5};  // there is no such mode
-  seal(mode);
-  CHECK(wire.check(mode, head) == Check::garbage);
+  for (const std::size_t at : {40 + 40, 40 + 41}) {  // there is no such mode, no such order to a drive
+    std::vector<std::byte> wrong = mode;
+    wrong[at] = std::byte{7};
+    seal(wrong);
+    CHECK(wire.check(wrong, head) == Check::garbage);
+  }
   const std::vector<std::byte> sample = copy(wire.sensors({.kind = WireKind::sensors}, {}, {}, datagram));
   struct Wrong {
     std::size_t at;
     int value;
   };
-  // No drive has such a state; neither yes nor no: released, emergency, the second joint's homed.
-  for (const auto& [at, value] : {Wrong{40 + 70 + 44, 5}, {40 + 8, 2}, {40 + 69, 2}, {40 + 70 + 46 + 45, 2}}) {
+  // No drive has such a state; neither yes nor no: released, emergency, the second joint's homed and braked.
+  for (const auto& [at, value] :
+       {Wrong{40 + 70 + 44, 5}, {40 + 8, 2}, {40 + 69, 2}, {40 + 70 + 47 + 45, 2}, {40 + 70 + 47 + 46, 2}}) {
     std::vector<std::byte> wrong = sample;
     wrong[at] = static_cast<std::byte>(value);
     seal(wrong);

@@ -105,7 +105,7 @@ TEST_CASE("a drive that does not do what it is asked for is named, with what it 
         "hip is enabled, not braked, 5 s after it was asked to brake");
 }
 
-TEST_CASE("under the emergency stop no drive is enabled and no brake released; disabling goes on") {
+TEST_CASE("under the emergency stop no drive is enabled and no brake released, and disabling goes on") {
   LiveInstance live;
   live.start();
   CHECK(live.ask({{"verb", "estop"}})["ok"] == true);

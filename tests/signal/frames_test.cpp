@@ -26,7 +26,7 @@ TEST_CASE("the frames have the same layout on every machine") {
   CHECK(offsetof(SensorFrame, imu) == 3088);
   CHECK(offsetof(SensorFrame, feet) == 3144);
   CHECK(sizeof(JointStates) == 1544);
-  CHECK(sizeof(ActuationFrame) == 3080);
+  CHECK(sizeof(ActuationFrame) == 3208);
   CHECK(offsetof(JointActuation, mode) == 40);
   CHECK(sizeof(Command) == 56);
   CHECK(offsetof(Command, value) == 24);

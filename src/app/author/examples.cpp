@@ -109,6 +109,17 @@ constexpr Examples all_examples[] = {
     {"ctl estop", "  kadans ctl estop\n"},
     {"ctl switch", "  kadans ctl switch posture\n"},
     {"ctl lead", "  kadans ctl lead gaze.x_m=1.2,gaze.y_m=0.3 --time 0.5\n"},
+    {"ctl drive", "  kadans ctl drive enable\n"},
+    {"ctl drive enable",
+     "  kadans ctl drive enable\n"
+     "  kadans ctl drive enable 'l_*'\n"},
+    {"ctl drive disable", "  kadans ctl drive disable l_knee\n"},
+    {"ctl drive reset",
+     "  kadans ctl drive reset\n"
+     "  kadans ctl drive reset l_knee\n"},
+    {"ctl drive home", "  kadans ctl drive home 'l_*'\n"},
+    {"ctl drive brake", "  kadans ctl drive brake\n"},
+    {"ctl drive release", "  kadans ctl drive release l_knee\n"},
     {"ctl fault", "  kadans ctl fault list\n"},
     {"ctl fault list", "  kadans ctl fault list --json\n"},
     {"ctl fault clear", "  kadans ctl fault clear\n"},
