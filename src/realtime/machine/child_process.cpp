@@ -12,10 +12,10 @@
 #include <sched.h>
 #include <spawn.h>
 #include <sys/mman.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -102,7 +102,8 @@ class SpawnPlan {
 }  // namespace
 
 ChildProcess::ChildProcess(pid_t pid, bool own_group) noexcept
-    : pid_(pid), owner_(getpid()), own_group_(own_group), end_(pidfd_open(pid, 0)) {}
+    // The C library declares pidfd_open without extern "C".
+    : pid_(pid), owner_(getpid()), own_group_(own_group), end_(static_cast<int>(syscall(SYS_pidfd_open, pid, 0))) {}
 
 ChildProcess::ChildProcess(const ProgramStart& start) : ChildProcess(SpawnPlan(start).spawn(start), start.own_group) {}
 
