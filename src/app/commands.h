@@ -34,10 +34,10 @@ struct SimOptions : RunRequest {
   std::vector<std::string> push;         // with from
   std::vector<std::string> branches;     // "hard: push torso=0,3,0"
   std::optional<double> hash_every_s;
-  CtlPlace ctl;  // always with realtime, else when a folder is named
-  LivePlace live;
-  ReportPlace report;
-  Ros2Place ros2;
+  CtlServiceOptions ctl;  // always with realtime, else when a folder is named
+  LiveServiceOptions live;
+  ReportOptions report;
+  Ros2Options ros2;
   double speed = 1;  // with live or ros2: multiple of the wall clock's speed
 };
 void add_sim(CLI::App& app, SimOptions& options);
@@ -56,7 +56,7 @@ struct TestOptions {
   bool golden = false;        // state hashes must equal those of the golden file
   bool renew_golden = false;  // write them to the golden file instead
   std::string junit;
-  ReportPlace report;
+  ReportOptions report;
 };
 void add_test(CLI::App& app, TestOptions& options);
 int run_test(const TestOptions& options);
@@ -91,9 +91,9 @@ struct RunOptions {
   double behaviors_patience_s = 0;     // time for the process to answer; 0: the default
   std::uint32_t behaviors_deaths = 0;  // deaths in a row before it stays down; 0: the default
   double behaviors_memory_MB = 256;    // beyond what the process has when it begins to play
-  CtlPlace ctl;                        // on virtual time only when a folder is named
-  LivePlace live;
-  Ros2Place ros2;
+  CtlServiceOptions ctl;               // on virtual time only when a folder is named
+  LiveServiceOptions live;
+  Ros2Options ros2;
 };
 void add_run(CLI::App& app, RunOptions& options);
 int run_live(const RunOptions& options);

@@ -74,9 +74,9 @@ void add_run(CLI::App& app, RunOptions& options) {
                   "What their process may take while it plays, above what it has then (default: 256)")
       ->type_name("MB")
       ->check(number_within(1.0, 1e6));
-  add_ctl_place(*run, options.ctl);
-  add_live_place(*run, options.live);
-  add_ros2_place(*run, options.ros2);
+  add_ctl_service(*run, options.ctl);
+  add_live_service(*run, options.live);
+  add_ros2_service(*run, options.ros2);
   run->add_flag("--json", options.json, "Print one JSON object instead of text");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
 }

@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <ctime>
 
-#include "relax.h"
+#include "realtime/machine/relax.h"
 
 namespace kadans {
 namespace {

@@ -10,7 +10,7 @@ namespace {
 
 using enum StatusField::Part;
 using enum StatusField::Type;
-using Place = StatusPlace;
+using Place = StatusReference;
 
 const char* level_name(std::size_t value) { return name(static_cast<SafetyLevel>(value)); }
 const char* posture_name(std::size_t value) { return name(static_cast<Posture>(value)); }
@@ -104,7 +104,7 @@ constexpr StatusField fields[] = {
 
 }  // namespace
 
-double StatusPlace::value() const noexcept {
+double StatusReference::value() const noexcept {
   if (number_ != nullptr) return *number_;
   if (flag_ != nullptr) return *flag_ ? 1 : 0;
   if (choice_ != nullptr) return *choice_;
@@ -113,7 +113,7 @@ double StatusPlace::value() const noexcept {
   return static_cast<double>(*tick_);
 }
 
-void StatusPlace::set(double value) const noexcept {
+void StatusReference::set(double value) const noexcept {
   if (number_ != nullptr) *number_ = value;
   if (flag_ != nullptr) *flag_ = value != 0;
   if (choice_ != nullptr) *choice_ = static_cast<std::uint8_t>(value);
@@ -122,7 +122,7 @@ void StatusPlace::set(double value) const noexcept {
   if (tick_ != nullptr) *tick_ = static_cast<std::uint64_t>(value);
 }
 
-void StatusPlace::declare(SignalTable& table, Signal signal) const {
+void StatusReference::declare(SignalTable& table, Signal signal) const {
   if (number_ != nullptr) table.add(std::move(signal), number_);
   if (flag_ != nullptr) table.add(std::move(signal), flag_);
   if (choice_ != nullptr) table.add(std::move(signal), choice_);

@@ -15,17 +15,17 @@
 namespace kadans {
 
 // A reference to a field of one of a few types, which reads and writes it as a number.
-class StatusPlace {
+class StatusReference {
  public:
-  StatusPlace(double& at) noexcept : number_(&at) {}  // NOLINT(google-explicit-constructor): a field's own type
-  StatusPlace(bool& at) noexcept : flag_(&at) {}      // NOLINT(google-explicit-constructor)
+  StatusReference(double& at) noexcept : number_(&at) {}  // NOLINT(google-explicit-constructor): a field's own type
+  StatusReference(bool& at) noexcept : flag_(&at) {}      // NOLINT(google-explicit-constructor)
   template <typename Choice>
-  requires(sizeof(Choice) == 1) StatusPlace(Choice& at)
+  requires(sizeof(Choice) == 1) StatusReference(Choice& at)
   noexcept  // NOLINT(google-explicit-constructor)
       : choice_(reinterpret_cast<std::uint8_t*>(&at)) {}
-  StatusPlace(std::uint32_t& at) noexcept : count_(&at) {}  // NOLINT(google-explicit-constructor)
-  StatusPlace(FaultCode& at) noexcept : code_(&at) {}       // NOLINT(google-explicit-constructor)
-  StatusPlace(std::uint64_t& at) noexcept : tick_(&at) {}   // NOLINT(google-explicit-constructor)
+  StatusReference(std::uint32_t& at) noexcept : count_(&at) {}  // NOLINT(google-explicit-constructor)
+  StatusReference(FaultCode& at) noexcept : code_(&at) {}       // NOLINT(google-explicit-constructor)
+  StatusReference(std::uint64_t& at) noexcept : tick_(&at) {}   // NOLINT(google-explicit-constructor)
 
   double value() const noexcept;
   void set(double value) const noexcept;  // within the field's range
@@ -49,9 +49,9 @@ struct StatusField {
   Type type;
   const char* name;  // in `s`: "roll_rad"
   const char* unit;
-  const char* doc;                                           // without its unit and a full stop
-  StatusPlace (*at)(Snapshot& snapshot, std::size_t index);  // nullptr: time_s, which each reader has itself
-  const char* signal = nullptr;                              // its name in records, when that differs from `s`
+  const char* doc;                                               // without its unit and a full stop
+  StatusReference (*at)(Snapshot& snapshot, std::size_t index);  // nullptr: time_s, which each reader has itself
+  const char* signal = nullptr;                                  // its name in records, when that differs from `s`
   // Of a choice: the name of each value; how many there are.
   const char* (*choice)(std::size_t value) = nullptr;
   std::size_t choices = 0;

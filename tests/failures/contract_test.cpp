@@ -91,7 +91,7 @@ TEST_CASE(
   robot.run(100);
   robot.move(0, 0.5, 0.3);
   robot.run(50);
-  robot.spoil(SensorFaultKind::not_finite, SensorPlace::joint);
+  robot.spoil(SensorFaultKind::not_finite, SensorKind::joint);
   robot.run(2);
   robot.heal();
   robot.run(900);
@@ -202,7 +202,7 @@ TEST_CASE("found within the ticks of safety/detection.h, the joint alone is off,
     LightRobot robot(5);
     robot.run(100);
     const std::int64_t onset = robot.ticks();
-    robot.spoil(row.kind, SensorPlace::joint, 0, 0.5);
+    robot.spoil(row.kind, SensorKind::joint, 0, 0.5);
     robot.run(300);
     CHECK(robot.in_time(row.code, onset));
     CHECK(robot.safety.joint_level(0) == SafetyLevel::off);
@@ -215,7 +215,7 @@ TEST_CASE("found once the motor moves or pulls against the reading, the joint al
           description("a joint's sensor is stuck")) {
   LightRobot robot(5);
   robot.run(100);
-  robot.spoil(SensorFaultKind::stuck, SensorPlace::joint);
+  robot.spoil(SensorFaultKind::stuck, SensorKind::joint);
   robot.move(0, -0.8, 0.3);
   robot.run(400);
   CHECK(robot.first(FaultCode::sensor_stuck) > 0);
@@ -237,7 +237,7 @@ TEST_CASE("found in time, the robot holds until it is back (stuck: until cleared
     LightRobot robot(6);
     robot.run(200);
     const std::int64_t onset = robot.ticks();
-    robot.spoil(row.kind, SensorPlace::imu);
+    robot.spoil(row.kind, SensorKind::imu);
     robot.run(100);
     CHECK(robot.in_time(row.code, onset + row.shows));
     CHECK(robot.safety.robot_level() == SafetyLevel::hold);
@@ -250,7 +250,7 @@ TEST_CASE("found in time, the robot goes on, limited and flagged" *
        {SensorFaultKind::silent, SensorFaultKind::stuck, SensorFaultKind::offset, SensorFaultKind::not_finite}) {
     LightRobot robot(7);
     robot.run(200);
-    robot.spoil(kind, SensorPlace::foot, 0, 1e5);
+    robot.spoil(kind, SensorKind::foot, 0, 1e5);
     robot.run(100);
     CHECK(robot.faults.size() == 1);
     CHECK(robot.safety.robot_level() == SafetyLevel::limited);
@@ -272,7 +272,7 @@ TEST_CASE("found in time, the robot goes on, limited and flagged, and the fault 
     CHECK(robot.faults.empty());
     CHECK(robot.control.state().status.channels[0] == 1.5);
     const std::int64_t onset = robot.ticks();
-    robot.spoil(kind, SensorPlace::channel, 0, 10);
+    robot.spoil(kind, SensorKind::channel, 0, 10);
     robot.run(100);
     CHECK(robot.first(code) >= onset);
     CHECK(robot.first(code) < onset + period_ticks + static_cast<std::int64_t>(robot.limits().silent_ticks_max) + 1);
@@ -315,7 +315,7 @@ TEST_CASE("the joint damps, latched until cleared" * description("a joint passes
   robot.run(100);
   // A slow offset, below every jump, takes the reading beyond the limit and its margin.
   for (int i = 0; i < 300; ++i) {
-    robot.spoil(SensorFaultKind::offset, SensorPlace::joint, 0, 0.01);
+    robot.spoil(SensorFaultKind::offset, SensorKind::joint, 0, 0.01);
     robot.saboteur->arm(0, 0);
     robot.tick();
   }

@@ -76,7 +76,7 @@ TEST_CASE("found in time, the knee alone is off, latched, every torque stays wit
     const std::size_t knee = robot.joint("l_knee");
     squat(robot);
     const std::int64_t onset = robot.ticks();
-    robot.spoil(row.kind, SensorPlace::joint, knee, 0.5);
+    robot.spoil(row.kind, SensorKind::joint, knee, 0.5);
     const double share = run(robot, 1500);
     CHECK(robot.faults.at(0).joint == knee);
     CHECK(robot.faults[0].tick == static_cast<std::uint64_t>(robot.first(row.code)));

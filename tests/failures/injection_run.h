@@ -40,7 +40,7 @@ class Injection {
   void joint_sensor(SensorFaultKind kind);
   void imu_sensor(SensorFaultKind kind);
   void foot_sensor(SensorFaultKind kind);
-  void plan(SensorFaultKind kind, SensorPlace place, std::size_t index, double size);
+  void plan(SensorFaultKind kind, SensorKind place, std::size_t index, double size);
   void command();
   void flood();
   void actuation();

@@ -6,7 +6,7 @@
 
 namespace kadans::failures {
 
-void Injection::plan(SensorFaultKind kind, SensorPlace place, std::size_t index, double size) {
+void Injection::plan(SensorFaultKind kind, SensorKind place, std::size_t index, double size) {
   constexpr std::array<const char*, 6> kinds{"silent", "stuck", "offset", "noise", "jump", "not finite"};
   constexpr std::array<const char*, 3> places{"joint", "imu", "foot"};
   begin(std::string(kinds[static_cast<std::size_t>(kind)]) + " " + places[static_cast<std::size_t>(place)] + " " +
@@ -29,7 +29,7 @@ void Injection::sensor() {
 void Injection::joint_sensor(SensorFaultKind kind) {
   using enum SensorFaultKind;
   const std::size_t joint = pick(joints);
-  plan(kind, SensorPlace::joint, joint, sign() * random_.uniform(0.15, 1.5));
+  plan(kind, SensorKind::joint, joint, sign() * random_.uniform(0.15, 1.5));
   const double was_rad = robot_.plant.truth().position_rad[joint];
   robot_.move(joint, was_rad > 0 ? was_rad - 1 : was_rad + 1, 0.3);
   std::int64_t shows = onset_;
@@ -61,7 +61,7 @@ void Injection::joint_sensor(SensorFaultKind kind) {
 
 void Injection::imu_sensor(SensorFaultKind kind) {
   using enum SensorFaultKind;
-  plan(kind, SensorPlace::imu, 0, sign() * random_.uniform(24, 60));
+  plan(kind, SensorKind::imu, 0, sign() * random_.uniform(24, 60));
   robot_.run(1);
   const SafetyLevel at_once = robot_.safety.robot_level();
   robot_.run(400);
@@ -86,7 +86,7 @@ void Injection::imu_sensor(SensorFaultKind kind) {
 
 void Injection::foot_sensor(SensorFaultKind kind) {
   using enum SensorFaultKind;
-  plan(kind, SensorPlace::foot, pick(2), sign() * random_.uniform(5e4, 1e6));
+  plan(kind, SensorKind::foot, pick(2), sign() * random_.uniform(5e4, 1e6));
   robot_.run(1);
   const SafetyLevel at_once = robot_.safety.robot_level();
   robot_.run(200);

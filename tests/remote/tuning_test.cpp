@@ -1,11 +1,11 @@
-#include "remote/instance/tuning.h"
-
 #include <doctest/doctest.h>
+
+#include "remote/instance/parameter_history.h"
 
 using namespace kadans;
 
 TEST_CASE("what is unsaved is the way from the configuration to now, whatever the steps") {
-  TuningHistory history;
+  ParameterHistory history;
   history.note({"kp", 10, 20}, true);
   history.note({"kp", 20, 30}, true);
   history.note({"squat.depth_m", 0.1, 0.2}, false);
@@ -22,7 +22,7 @@ TEST_CASE("what is unsaved is the way from the configuration to now, whatever th
 }
 
 TEST_CASE("undoing what was saved is a change again, and a value set while it was saved stays unsaved") {
-  TuningHistory history;
+  ParameterHistory history;
   history.note({"kp", 10, 20}, true);
   const auto saving = history.unsaved();
   history.note({"kp", 20, 25}, true);
@@ -38,7 +38,7 @@ TEST_CASE("undoing what was saved is a change again, and a value set while it wa
 }
 
 TEST_CASE("what was set in this run is known after it was saved, until it is as it was") {
-  TuningHistory history;
+  ParameterHistory history;
   history.note({"kp", 10, 20}, true);
   history.note({"squat.depth_m", 0.1, 0.2, "squat.lua"}, true);
   history.saved(history.unsaved());
@@ -53,9 +53,9 @@ TEST_CASE("what was set in this run is known after it was saved, until it is as 
 }
 
 TEST_CASE("the way back has an end") {
-  TuningHistory history;
+  ParameterHistory history;
   for (double value = 0; value < 2000; ++value) history.note({"kp", value, value + 1}, true);
   std::size_t steps = 0;
   for (; history.newest() != nullptr; ++steps) history.drop();
-  CHECK(steps == TuningHistory::steps_max);
+  CHECK(steps == ParameterHistory::steps_max);
 }

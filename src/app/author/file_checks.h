@@ -1,6 +1,7 @@
 // Finds mistakes in files, for `kadans check` and `kadans behavior check`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -8,9 +9,9 @@
 
 #include "app/assembly.h"
 #include "checked_files.h"
+#include "config/json/json_value.h"
 
 namespace kadans {
-
 class FileChecks {
  public:
   // `robot` is the configuration against which behaviors are checked; "": the one for their folder. Loading a plug-in
@@ -39,5 +40,13 @@ class FileChecks {
   PluginGate gate_;
   std::map<std::filesystem::path, std::unique_ptr<Known>> robots_;  // the robots that were read
 };
+
+// Tells the kind of one of our JSON files by its keys, for a command that was given the wrong kind.
+enum class JsonKind : std::uint8_t { other, scenario, robot, sweep, tuning };
+
+JsonKind kind_of(const JsonValue& json);
+// Throws InputError for a file of another kind; the message says what it is and which command takes it. A file that
+// cannot be read, or whose kind is unknown, passes: its reader refuses it.
+void require_kind(const std::filesystem::path& file, JsonKind wanted);
 
 }  // namespace kadans

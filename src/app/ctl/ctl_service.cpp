@@ -7,7 +7,7 @@
 
 namespace kadans {
 
-void add_ctl_place(CLI::App& command, CtlPlace& place) {
+void add_ctl_service(CLI::App& command, CtlServiceOptions& place) {
   CLI::Option* folder =
       command.add_option("--ctl", place.folder, "Where 'kadans ctl' finds this run (default: docs/ctl.md says)")
           ->type_name("FOLDER");
@@ -16,7 +16,7 @@ void add_ctl_place(CLI::App& command, CtlPlace& place) {
   command.add_option("--ctl-developers", place.developers, "Group that may also tune it")->type_name("GROUP");
 }
 
-CtlService::CtlService(const CtlPlace& place, Instance& instance) {
+CtlService::CtlService(const CtlServiceOptions& place, Instance& instance) {
   if (!place.wanted) return;
   const bool named = !place.folder.empty();
   try {

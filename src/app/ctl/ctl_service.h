@@ -12,18 +12,18 @@ class App;
 
 namespace kadans {
 
-struct CtlPlace {
+struct CtlServiceOptions {
   std::string folder;  // "": the usual one
   bool wanted = true;
   std::string operators, developers;  // groups; "": the group of the process
 };
-void add_ctl_place(CLI::App& command, CtlPlace& place);
+void add_ctl_service(CLI::App& command, CtlServiceOptions& place);
 
 class CtlService {
  public:
   // Make it before the loop. When the usual folder is in use by another instance, this one says so and runs without
   // being reachable. When a folder was named, it throws InputError instead.
-  CtlService(const CtlPlace& place, Instance& instance);
+  CtlService(const CtlServiceOptions& place, Instance& instance);
 
   void start();
   void stop() noexcept;

@@ -11,7 +11,7 @@
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"
-#include "scenario/disturb/pushes.h"
+#include "scenario/disturb/disturbances.h"
 #include "scenario/run.h"
 
 namespace kadans {
@@ -39,9 +39,9 @@ class SimRemote final : public RunObserver {
     BehaviorLog& all;
   };
   struct Places {
-    CtlPlace ctl;
-    LivePlace live;
-    Ros2Place ros2;
+    CtlServiceOptions ctl;
+    LiveServiceOptions live;
+    Ros2Options ros2;
   };
   // All references must outlive this object. It replaces the assembly's record sink. `plan` is for records that clients
   // order.

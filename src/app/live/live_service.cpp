@@ -11,7 +11,7 @@
 
 namespace kadans {
 
-void add_live_place(CLI::App& command, LivePlace& place) {
+void add_live_service(CLI::App& command, LiveServiceOptions& place) {
   command.add_flag("--live{8765}", place.port, "Show it in a browser and to Foxglove's kin; --live=PORT, 0: any")
       ->check(whole_within(0, 65535));
   command.add_option("--live-address", place.address, "Address to listen on (default: this machine alone)")
@@ -21,7 +21,7 @@ void add_live_place(CLI::App& command, LivePlace& place) {
   add_live_hosts(command, place);
 }
 
-void add_live_hosts(CLI::App& command, LivePlace& place) {
+void add_live_hosts(CLI::App& command, LiveServiceOptions& place) {
   command
       .add_option("--live-host", place.hosts,
                   "A name that clients without the token may call this machine by, beside its addresses")
@@ -43,7 +43,8 @@ RobotTexts robot_texts(const Assembly& assembly) {
           .subjects = viewer_subjects(robot)};
 }
 
-LiveService::LiveService(const LivePlace& place, Instance& instance, const Assembly& assembly, LivePace* pace) {
+LiveService::LiveService(const LiveServiceOptions& place, Instance& instance, const Assembly& assembly,
+                         LivePace* pace) {
   if (!place.wanted()) return;
   if (assembly.own_host() == nullptr)
     throw InputError(

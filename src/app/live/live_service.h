@@ -15,7 +15,7 @@ class App;
 
 namespace kadans {
 
-struct LivePlace {
+struct LiveServiceOptions {
   std::string port;  // "": not served; "0": any free port
   std::string address = "127.0.0.1";
   std::string token;               // "": a new token is made
@@ -24,8 +24,8 @@ struct LivePlace {
   bool wanted() const noexcept { return !port.empty(); }
   std::uint16_t port_number() const { return static_cast<std::uint16_t>(std::stoul(port)); }
 };
-void add_live_place(CLI::App& command, LivePlace& place);
-void add_live_hosts(CLI::App& command, LivePlace& place);
+void add_live_service(CLI::App& command, LiveServiceOptions& place);
+void add_live_hosts(CLI::App& command, LiveServiceOptions& place);
 
 ViewerSubjects viewer_subjects(const RobotConfig& robot);
 // The texts about the assembled robot that viewers need.
@@ -35,7 +35,7 @@ class LiveService {
  public:
   // Make it before the loop: opens the port. Throws InputError when it cannot. `pace` is that of a simulation, else
   // nullptr.
-  LiveService(const LivePlace& place, Instance& instance, const Assembly& assembly, LivePace* pace = nullptr);
+  LiveService(const LiveServiceOptions& place, Instance& instance, const Assembly& assembly, LivePace* pace = nullptr);
 
   // Starts the server and prints its address on stderr.
   void start(const std::vector<TimingSource>& timing);

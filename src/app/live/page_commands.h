@@ -10,7 +10,7 @@ namespace kadans {
 
 struct ViewOptions {
   std::string record;
-  LivePlace live;
+  LiveServiceOptions live;
 };
 void add_view(CLI::App& app, ViewOptions& options);
 // Serves the record until SIGINT or SIGTERM.

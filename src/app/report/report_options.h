@@ -9,12 +9,12 @@ class App;
 
 namespace kadans {
 
-struct ReportPlace {
+struct ReportOptions {
   std::string folder;  // "": no report
   std::string film;    // always, failed, never
 
   bool wanted() const noexcept { return !folder.empty(); }
 };
-void add_report_place(CLI::App& command, ReportPlace& place, const char* what, const char* film);
+void add_report_options(CLI::App& command, ReportOptions& place, const char* what, const char* film);
 
 }  // namespace kadans

@@ -35,7 +35,7 @@ void add_plot(const RunPage& page, HtmlReport& report) {
   }
 }
 
-void add_film(const RunPage& page, const ReportPlace& place, HtmlReport& report) {
+void add_film(const RunPage& page, const ReportOptions& place, HtmlReport& report) {
   if (place.film == "never") report.no_film = "not asked for (--film never)";
   if (place.film == "failed" && page.subject.result.passed)
     report.no_film = "the run passed; --film always draws them all the same";
@@ -56,7 +56,7 @@ void add_film(const RunPage& page, const ReportPlace& place, HtmlReport& report)
 
 }  // namespace
 
-fs::path write_run_page(const RunPage& page, const ReportPlace& place) {
+fs::path write_run_page(const RunPage& page, const ReportOptions& place) {
   HtmlReport report{.subject = page.subject,
                     .scenario = page.name,
                     .doc = page.scenario.doc,

@@ -21,6 +21,6 @@ struct RunPage {
 
 // Writes the page into the folder, which it makes if need be. Plots or pictures that cannot be drawn are left out, and
 // the page says why. Throws InputError when the page cannot be written.
-std::filesystem::path write_run_page(const RunPage& page, const ReportPlace& place);
+std::filesystem::path write_run_page(const RunPage& page, const ReportOptions& place);
 
 }  // namespace kadans

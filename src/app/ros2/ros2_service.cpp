@@ -14,7 +14,7 @@ namespace {
 
 constexpr int domain_max = 232;  // higher numbers would give invalid ports
 
-std::uint32_t domain_of(const Ros2Place& place) {
+std::uint32_t domain_of(const Ros2Options& place) {
   if (place.domain != "-1") return static_cast<std::uint32_t>(std::stoul(place.domain));
   const char* const text = std::getenv("ROS_DOMAIN_ID");  // NOLINT(concurrency-mt-unsafe): before any thread
   if (text == nullptr || *text == '\0') return 0;
@@ -28,7 +28,7 @@ std::uint32_t domain_of(const Ros2Place& place) {
 
 }  // namespace
 
-void add_ros2_place(CLI::App& command, Ros2Place& place) {
+void add_ros2_service(CLI::App& command, Ros2Options& place) {
   CLI::Option* ros2 =
       command
           .add_flag("--ros2{-1}", place.domain,
@@ -41,7 +41,7 @@ void add_ros2_place(CLI::App& command, Ros2Place& place) {
   command.add_flag("--ros2-commands", place.commands, "Obey whoever writes to /kadans/command there")->needs(ros2);
 }
 
-Ros2Service::Ros2Service(const Ros2Place& place, Instance& instance, const Assembly& assembly, LivePace* pace,
+Ros2Service::Ros2Service(const Ros2Options& place, Instance& instance, const Assembly& assembly, LivePace* pace,
                          int avoid_cpu) {
   if (!place.wanted()) return;
   domain_ = domain_of(place);

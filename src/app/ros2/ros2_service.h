@@ -13,20 +13,20 @@ class App;
 
 namespace kadans {
 
-struct Ros2Place {
+struct Ros2Options {
   std::string domain;  // "": not wanted; "-1": from ROS_DOMAIN_ID
   double rate_hz = 100;
   bool commands = false;
 
   bool wanted() const noexcept { return !domain.empty(); }
 };
-void add_ros2_place(CLI::App& command, Ros2Place& place);
+void add_ros2_service(CLI::App& command, Ros2Options& place);
 
 class Ros2Service {
  public:
   // Make it before the loop: joins the domain. Throws InputError when it cannot. `pace` is that of a simulation, else
   // nullptr. `avoid_cpu` is the control thread's CPU; -1: none.
-  Ros2Service(const Ros2Place& place, Instance& instance, const Assembly& assembly, LivePace* pace, int avoid_cpu);
+  Ros2Service(const Ros2Options& place, Instance& instance, const Assembly& assembly, LivePace* pace, int avoid_cpu);
 
   // Begins, and prints the domain on stderr.
   void start();

@@ -7,20 +7,20 @@
 #include <unistd.h>
 
 #include "app/assembly.h"
-#include "app/author/json_kind.h"
+#include "app/author/file_checks.h"
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "app/timing/link_report.h"
+#include "app/timing/run_report.h"
 #include "config/json/foreign_json.h"
 #include "kadans/plant/plant_type.h"
-#include "live_threads.h"
 #include "real_time_start.h"
 #include "realtime/machine/keep_awake.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/rights.h"
 #include "realtime/posix_wait.h"
 #include "realtime/task_thread.h"
+#include "run_threads.h"
 
 namespace kadans {
 namespace {

@@ -12,18 +12,16 @@
 #include <unistd.h>
 
 #include "app/assembly.h"
-#include "app/author/json_kind.h"
+#include "app/author/file_checks.h"
 #include "app/commands.h"
 #include "app/sim/played_behaviors.h"
 #include "app/terminal.h"
-#include "app/timing/live_report.h"
+#include "app/timing/run_report.h"
 #include "behavior_process.h"
 #include "config/robot/project_root.h"
+#include "joystick_task.h"
 #include "last_resort.h"
 #include "leaving.h"
-#include "live_joystick.h"
-#include "live_log.h"
-#include "live_threads.h"
 #include "real_time_start.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/placement.h"
@@ -33,6 +31,8 @@
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"
 #include "remote/instance/truth_task.h"
+#include "run_threads.h"
+#include "threaded_log.h"
 #include "version.h"
 
 namespace kadans {
@@ -61,13 +61,13 @@ Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenar
 
 // Many runs on virtual time may go on at the same time. So a run on virtual time is reachable only when a folder was
 // named.
-CtlPlace place_of(const RunOptions& options) {
-  CtlPlace place = options.ctl;
+CtlServiceOptions place_of(const RunOptions& options) {
+  CtlServiceOptions place = options.ctl;
   place.wanted = place.wanted && (!options.virtual_time || !place.folder.empty());
   return place;
 }
 
-LiveTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
+RunTiming timing_of(const RunOptions& options, const EngineSettings& engine) {
   const std::int64_t period_ns = engine.control_period_ns();
   const bool one_cpu = sysconf(_SC_NPROCESSORS_ONLN) < 2;
   const double spin_us = options.spin_us > 0 ? options.spin_us : 1e-3 * static_cast<double>(default_spin_ns);
@@ -101,9 +101,9 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-class LiveRun {
+class WallClockRun {
  public:
-  explicit LiveRun(const RunOptions& options)
+  explicit WallClockRun(const RunOptions& options)
       : options_(options),
         scenario_(live_scenario(options)),
         link_(std::make_unique<PlantExchange>()),
@@ -136,14 +136,14 @@ class LiveRun {
     if (!options_.record.empty()) record_side_.start(options_.record);
     const bool may_record = flies || !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() ||
                             options_.ros2.commands;
-    const LiveTiming timing = timing_of(options_, assembly_.robot().engine);
+    const RunTiming timing = timing_of(options_, assembly_.robot().engine);
     if (!timing.virtual_time) lock_program(plant_ != nullptr);
     ctl_.start();  // clients that connect before the first tick may read, and stop the robot
     if (!assembly_.plant().open(interrupted)) return exit_interrupted;
     LastResort last_resort(timing.real_time && !timing.virtual_time ? last_resort_priority : 0, exit_failed);
-    LiveThreads threads(timing,
-                        {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()},
-                        interrupted);
+    RunThreads threads(timing,
+                       {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()},
+                       interrupted);
     if (!threads.start(print_error)) return end_before_start(threads, last_resort);
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     live_.start({{"Control tick: late", &threads.control().statistics().lateness},
@@ -157,18 +157,18 @@ class LiveRun {
     leave(threads);
     const std::vector<std::string> hanging = switch_off(threads, last_resort);
     end_services(last_resort);
-    LiveResult result{threads,
-                      control_,
-                      parts_.behaviors,
-                      parts_.control,
-                      plant_.get(),
-                      assembly_.plant().link_counts(),
-                      record_side_.recorder(),
-                      process_.get(),
-                      left_at_s_,
-                      start_ms,
-                      ended,
-                      failed_};
+    WallClockResult result{threads,
+                           control_,
+                           parts_.behaviors,
+                           parts_.control,
+                           plant_.get(),
+                           assembly_.plant().link_counts(),
+                           record_side_.recorder(),
+                           process_.get(),
+                           left_at_s_,
+                           start_ms,
+                           ended,
+                           failed_};
     result.failed = result.failed || log_.has_errors() || !hanging.empty();
     std::fputs((options_.json ? live_json(result) + "\n" : live_text(result)).c_str(), stdout);
     if (!hanging.empty()) leave_behind(hanging);
@@ -176,14 +176,14 @@ class LiveRun {
   }
 
  private:
-  std::unique_ptr<LiveJoystick> make_joystick() {
+  std::unique_ptr<JoystickTask> make_joystick() {
     const JoystickSettings& settings = assembly_.robot().joystick;
     if (options_.joystick.empty() && settings.device.empty()) return nullptr;
-    return std::make_unique<LiveJoystick>(settings, options_.joystick, parts_.control.exchange().joystick);
+    return std::make_unique<JoystickTask>(settings, options_.joystick, parts_.control.exchange().joystick);
   }
 
   // Switches the drives off and closes the record, even when threads hang. Returns the names of hanging threads.
-  std::vector<std::string> switch_off(LiveThreads& threads, LastResort& last_resort) {
+  std::vector<std::string> switch_off(RunThreads& threads, LastResort& last_resort) {
     const auto hangs = [](const std::vector<std::string>& hanging, const char* name) {
       return std::ranges::find(hanging, name) != hanging.end();
     };
@@ -215,7 +215,7 @@ class LiveRun {
     last_resort.expect("the end of the run", record_ns);
   }
 
-  int end_before_start(LiveThreads& threads, LastResort& last_resort) {
+  int end_before_start(RunThreads& threads, LastResort& last_resort) {
     print_error("told to stop before all threads had a CPU; nothing has begun");
     const std::vector<std::string> hanging = switch_off(threads, last_resort);
     end_services(last_resort);
@@ -231,7 +231,7 @@ class LiveRun {
   }
 
   // Watches until the run ends. Returns the reason.
-  std::string watch(LiveThreads& threads) {
+  std::string watch(RunThreads& threads) {
     Wait& wait = threads.supervisor();
     for (std::int64_t at_ns = supervisor_period_ns;; at_ns += supervisor_period_ns) {
       const bool last = options_.duration_s && static_cast<double>(at_ns) >= *options_.duration_s * 1e9;
@@ -252,7 +252,7 @@ class LiveRun {
 
   // The robot moves to the safe posture, damps, and is off. The posture is left out when a thread failed or the robot
   // is already held.
-  void leave(LiveThreads& threads) {
+  void leave(RunThreads& threads) {
     const SafetySettings& safety = parts_.control.safety().settings();
     const bool held = level() >= SafetyLevel::hold;
     failed_ = failed_ || held;
@@ -271,7 +271,7 @@ class LiveRun {
   }
 
   // Lets `seconds` pass. It does not wait for virtual time that stands still, because then a thread hangs.
-  void pass(LiveThreads& threads, double seconds) {
+  void pass(RunThreads& threads, double seconds) {
     Wait& wait = threads.supervisor();
     const std::int64_t end_ns = wait.now_ns() + std::llround(seconds * 1e9);
     std::int64_t moved_ns = WallClock().now_ns();
@@ -326,7 +326,7 @@ class LiveRun {
   ScenarioConfig scenario_;
   ServiceNotifier notifier_{environment("NOTIFY_SOCKET")};
   RecordLog record_log_;
-  LiveLog live_log_{record_log_};
+  ThreadedLog live_log_{record_log_};
   EchoLog echo_{&live_log_};
   RunLog log_{&echo_, kept_lines};
   std::unique_ptr<PlantExchange> link_;
@@ -338,7 +338,7 @@ class LiveRun {
   } parts_;
   std::unique_ptr<TruthTask> truth_;  // of a model, or nullptr
   std::unique_ptr<PlantTask> plant_;  // of a model, or nullptr
-  std::unique_ptr<LiveJoystick> joystick_;
+  std::unique_ptr<JoystickTask> joystick_;
   Leaving leaving_;
   Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog(),
                      parts_.control.safety().emergency_stop()};
@@ -366,7 +366,7 @@ class LiveRun {
 int run_live(const RunOptions& options) {
   require_kind(options.robot, JsonKind::robot);
   if (!options.virtual_time && !rights_suffice(plant_priority, options.soft)) return exit_usage;
-  LiveRun run(options);
+  WallClockRun run(options);
   catch_interrupts();
   return run.run();
 }

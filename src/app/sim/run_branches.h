@@ -7,7 +7,7 @@
 
 #include "app/assembly.h"
 #include "app/run/run_request.h"
-#include "scenario/disturb/pushes.h"
+#include "scenario/disturb/disturbances.h"
 #include "telemetry/record/run_inputs.h"
 
 namespace kadans {

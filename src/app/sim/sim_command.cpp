@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/author/json_kind.h"
+#include "app/author/file_checks.h"
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
@@ -104,10 +104,10 @@ void add_sim(CLI::App& app, SimOptions& options) {
   sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
       ->type_name("S")
       ->check(number_within(0.001, scenario_duration_max_s));
-  add_report_place(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
-  add_ctl_place(*sim, options.ctl);
-  add_live_place(*sim, options.live);
-  add_ros2_place(*sim, options.ros2);
+  add_report_options(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
+  add_ctl_service(*sim, options.ctl);
+  add_live_service(*sim, options.live);
+  add_ros2_service(*sim, options.ros2);
   sim->add_option("--speed", options.speed, "With --live or --ros2: as a multiple of the wall clock's pace")
       ->type_name("X")
       ->check(number_within(0.01, 100.0));

@@ -9,7 +9,6 @@
 #include "app/sweep/job_progress.h"
 #include "app/terminal.h"
 #include "campaign/suite/golden.h"
-#include "campaign/suite/suite_page.h"
 #include "campaign/suite/suite_report.h"
 #include "campaign/work/durable_file.h"
 #include "config/robot/project_root.h"
@@ -157,8 +156,8 @@ void add_test(CLI::App& app, TestOptions& options) {
                                       "Write the states into that file, and say what that changes");
   renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
   test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
-  add_report_place(*test, options.report, "Leave a page about each run in a folder, and index.html about all",
-                   "failed");
+  add_report_options(*test, options.report, "Leave a page about each run in a folder, and index.html about all",
+                     "failed");
   test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
 }
 

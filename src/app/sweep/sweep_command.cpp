@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/author/json_kind.h"
+#include "app/author/file_checks.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "campaign/sweep/shard.h"

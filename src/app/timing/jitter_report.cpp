@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "config/json/foreign_json.h"
+#include "run_report.h"
 #include "signal/number_text.h"
-#include "tick_report.h"
 
 namespace kadans {
 namespace {

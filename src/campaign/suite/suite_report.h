@@ -2,13 +2,13 @@
 // integration.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "run_outcome.h"
 
 namespace kadans {
-
 struct SuiteStyle {
   bool color = false;
   bool unicode = true;
@@ -26,5 +26,9 @@ std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, co
 
 // A <testsuites> document with one <testcase> for each run, as CI servers read it.
 std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s);
+
+// All runs of a suite as an HTML page: the result of each run, how long it took, and a link to its own report.
+// A run gets a link when its report lies in `folder`. `wall_s` is the time of the whole suite.
+std::string suite_page(const std::vector<RunOutcome>& runs, double wall_s, const std::filesystem::path& folder);
 
 }  // namespace kadans

@@ -4,6 +4,7 @@
 
 #include "config/json/name_pattern.h"
 #include "config/scenario/based_on.h"
+#include "config/scenario/play_item.h"
 #include "kadans/model/urdf.h"
 #include "project_root.h"
 #include "robot_reader.h"
@@ -39,6 +40,19 @@ void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
   const std::vector<std::string> names = names_of(config.poses);
   if (std::find(names.begin(), names.end(), config.safe.pose) != names.end()) return;
   problems.add_unknown(f.place("pose"), "pose", config.safe.pose, names);
+}
+
+const std::vector<std::string> axis_names{joystick_axis_names.begin(), joystick_axis_names.end()};
+constexpr std::uint64_t axis_code_max = 63;
+constexpr NumberRange any_value{-2147483648.0, 2147483647.0, ""};
+
+void axis_fields(Fields& f, JoystickAxis& axis, Problems& problems) {
+  f.integer("code", axis.code, {0, axis_code_max}, "the kernel's number of the axis, as `evtest` shows it");
+  f.boolean("inverted", axis.inverted, "the axis counts the other way round");
+  f.number("min", axis.min, any_value, "its value at one end, else what the device says");
+  f.number("max", axis.max, any_value, "its value at the other end");
+  if (f.has("min") == f.has("max") && (!f.has("min") || axis.min < axis.max)) return;
+  problems.add(f.place("min"), f.path() + ": min and max go together, and min is less");
 }
 
 }  // namespace
@@ -143,6 +157,42 @@ FieldInfo describe_robot_config() {
   Problems problems("");
   RobotReader reader(config, problems, {});
   return describe_fields([&](Fields& f) { reader.read(f); });
+}
+
+void RobotReader::behavior(Fields& entry) {
+  constexpr NumberRange any_number{-1e9, 1e9};
+  std::vector<NumberEntry> values;
+  entry.number_entries(values, any_number, "in the parameter's unit");
+  if (!entry.reading() || config_.name.empty()) return;
+  const std::vector<std::string> names = playable_names({.project_file = config_.file, .robot = config_.name});
+  if (std::ranges::find(names, entry.key()) == names.end()) {
+    problems_.add_unknown(entry.key_place(), "behavior", entry.key(), names, "in behaviors/" + config_.name);
+    return;
+  }
+  for (const NumberEntry& value : values) {
+    config_.behavior_values.push_back({.behavior = std::string(entry.key()),
+                                       .parameter = value.key,
+                                       .value = value.value,
+                                       .chunk = "behaviors/" + config_.name + "/" + std::string(entry.key()) + ".lua",
+                                       .file = config_.file,
+                                       .line = value.place.line,
+                                       .column = value.place.column});
+  }
+}
+
+void RobotReader::joystick(Fields& f) {
+  JoystickSettings& settings = config_.joystick;
+  config_.engine.joystick = true;
+  f.string("device", settings.device, "what `kadans run` reads, such as /dev/input/by-id/NAME-event-joystick");
+  f.number("dead_zone", settings.dead_zone, {0, 0.9}, "around the middle of an axis, as a share of the way to an end");
+  f.map("axes", "how axes are read: x, y, twist, throttle", [&](Fields& entry) {
+    const auto axis = std::ranges::find(joystick_axis_names, std::string_view(entry.key()));
+    JoystickAxis scratch;
+    const bool known = axis != joystick_axis_names.end();
+    if (entry.reading() && !known) problems_.add_unknown(entry.key_place(), "axis", entry.key(), axis_names);
+    axis_fields(entry, known ? settings.axes[static_cast<std::size_t>(axis - joystick_axis_names.begin())] : scratch,
+                problems_);
+  });
 }
 
 }  // namespace kadans

@@ -19,14 +19,14 @@ namespace {
 
 [[noreturn]] void fail(const std::string& message) { throw InputError({.message = message}); }
 
-struct Place {
+struct HostPort {
   std::string host, port;
 };
 
-Place parse(const std::string& text) {
+HostPort parse(const std::string& text) {
   const std::size_t colon = text.rfind(':');
-  Place place{text.substr(0, colon == std::string::npos ? 0 : colon),
-              colon == std::string::npos ? "" : text.substr(colon + 1)};
+  HostPort place{text.substr(0, colon == std::string::npos ? 0 : colon),
+                 colon == std::string::npos ? "" : text.substr(colon + 1)};
   const bool digits =
       !place.port.empty() && place.port.size() <= 5 && place.port.find_first_not_of("0123456789") == std::string::npos;
   if (!digits || std::stoul(place.port) > 65535) fail("'" + text + "' must be HOST:PORT, such as 192.168.0.10:7100");
@@ -48,7 +48,7 @@ struct AddressList {
 // Opens and tries `attach` (bind or connect) on each address of the place until one is taken.
 template <typename Attach>
 int open_at(const std::string& text, int flags, Attach attach) {
-  const Place place = parse(text);
+  const HostPort place = parse(text);
   addrinfo wanted{};
   wanted.ai_family = AF_UNSPEC;
   wanted.ai_socktype = SOCK_DGRAM;

@@ -7,7 +7,7 @@
 #include <sched.h>
 #include <unistd.h>
 
-#include "realtime/relax.h"
+#include "realtime/machine/relax.h"
 #include "realtime/signals_blocked.h"
 
 namespace kadans {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
-#include "realtime/machine_findings.h"
-#include "realtime/system_file.h"
+#include "realtime/machine/machine_findings.h"
+#include "realtime/machine/system_file.h"
 #include "rights.h"
 
 namespace kadans {

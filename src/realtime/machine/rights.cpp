@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "realtime/system_file.h"
+#include "realtime/machine/system_file.h"
 
 namespace kadans {
 namespace {

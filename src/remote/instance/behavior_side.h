@@ -14,11 +14,11 @@
 #include "echo_log.h"
 #include "engine/behavior_engine.h"
 #include "instance.h"
+#include "parameter_history.h"
 #include "realtime/engine_tasks.h"
 #include "script/console/console.h"
 #include "script/host/script_host.h"
 #include "script/process/process_host.h"
-#include "tuning.h"
 
 namespace kadans {
 
@@ -87,7 +87,7 @@ class BehaviorSide final : public BesideTick {
   bool stopped_ = false;     // by the emergency stop, as of the last tick
   std::uint16_t lifts_ = 0;  // of the emergency stop, as of the last tick
   std::vector<Pending> pending_;
-  TuningHistory tuning_;
+  ParameterHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client
   std::vector<double> parameters_;
   std::vector<EchoLog::Line> lines_;                   // messages of the last tick, when it carried out an order

@@ -1,4 +1,5 @@
 // Orders: what plays, control sets, parameters.
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,6 +48,12 @@ void check_range(const std::string& name, const std::string& unit, double value,
   throw InputError({.message = name + " = " + number_text(value) + " is outside its range " + number_text(min) + ".." +
                                number_text(max) + (unit.empty() ? "" : " " + unit)});
 }
+
+constexpr ScriptLimits console_limits{.tick_instructions = 200'000,
+                                      .load_instructions = 5'000'000,
+                                      .tick_wall_ns = 20'000'000,
+                                      .load_wall_ns = 100'000'000,
+                                      .memory_bytes = std::size_t{4} << 20};
 
 }  // namespace
 
@@ -217,6 +224,36 @@ void BehaviorSide::begin_change(Pending& pending, const ParameterChange& change)
     return;
   }
   throw InputError({.message = change.name + " is not there any more"});
+}
+
+Console& BehaviorSide::console_of(const Order& order) {
+  if (p_.host == nullptr)
+    throw InputError(
+        {.message = "there is no console while behaviors play in a process of their own: run with --behaviors thread"});
+  const auto found = consoles_.find(order.client);
+  if (found != consoles_.end()) return *found->second;
+  if (consoles_.size() == consoles_max) throw InputError({.message = "all consoles are taken"});
+  const Instance::Facts& facts = p_.instance.facts();
+  return *(consoles_[order.client] = std::make_unique<Console>(
+               Console::Settings{.root = facts.root, .folders = facts.folders, .limits = console_limits},
+               p_.instance.catalog(), *p_.host));
+}
+
+void BehaviorSide::evaluate(const Order& order, Answer& answer) {
+  if (!consoles_.contains(order.client)) return;  // who typed it is gone
+  const ParameterTable& table = p_.instance.catalog().parameters;
+  parameters_.resize(table.size());
+  for (ParameterId id = 0; id < table.size(); ++id) parameters_[id] = table.newest(id);
+  Console& console = console_of(order);
+  const auto snapshot = p_.exchange.snapshot.read(0);
+  const auto row = p_.instance.console_row();
+  const Console::Reply reply = console.evaluate(order.text, {*snapshot, row->values, parameters_, p_.engine.sender()});
+  answer.done = !reply.error && reply.run_s == 0;
+  answer.text = reply.run_s > 0 ? ":run is for a simulation that waits; time goes on by itself here" : reply.text;
+  answer.incomplete = reply.incomplete;
+  answer.writes = console.writes();
+  answer.leaves = reply.quit;
+  if (console.writes()) say(time_ns_, order.who, "typed " + order.text);
 }
 
 }  // namespace kadans

@@ -1,8 +1,19 @@
 #include "disturbances.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace kadans {
+namespace {
+
+// The share of the impulse that has been given by this time.
+double given_share(const ScenarioPush& push, double time_s) {
+  const double share = std::clamp((time_s - push.at_s) / push.duration_s, 0.0, 1.0);
+  return push.shape == ScenarioPush::Shape::constant ? share : 0.5 * (1 - std::cos(std::numbers::pi * share));
+}
+
+}  // namespace
 
 Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& model)
     : pushes_(scenario.pushes, model, scenario.file) {
@@ -28,6 +39,28 @@ void Disturbances::apply(Lockstep& lockstep, World& world) {
   }
   lockstep.silence_behaviors(silent);
   pushes_.apply(world, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
+}
+
+Pushes::Pushes(const std::vector<ScenarioPush>& pushes, const RobotModel& model, const std::string& file) {
+  Problems problems(file);
+  for (const ScenarioPush& push : pushes) {
+    if (const auto link = model.find_link(push.link.name)) {
+      pushes_.push_back({push, *link});
+    } else {
+      problems.add_unknown(push.link.place, "link", push.link.name, model.link_names());
+    }
+  }
+  problems.throw_if_any();
+}
+
+void Pushes::apply(World& world, double time_s, double dt_s) const {
+  for (const auto& [push, link] : pushes_) {
+    const double share = given_share(push, time_s + dt_s) - given_share(push, time_s);
+    if (share <= 0) continue;
+    Vec3 force_N{};
+    for (std::size_t i = 0; i < 3; ++i) force_N[i] = push.impulse_Ns[i] * share / dt_s;
+    world.push(link, force_N, push.point_m);
+  }
 }
 
 }  // namespace kadans

@@ -7,26 +7,26 @@ namespace {
 
 // The one value of a sensor that an error of some size is added to.
 double& value_of(const SensorFault& fault, SensorFrame& frame) noexcept {
-  if (fault.place == SensorPlace::imu) return frame.imu.angular_velocity_rad_s[0];
-  if (fault.place == SensorPlace::channel) return frame.channels[fault.index].value;
-  return fault.place == SensorPlace::foot ? frame.feet[fault.index].force_N[0] : frame.joints[fault.index].position_rad;
+  if (fault.place == SensorKind::imu) return frame.imu.angular_velocity_rad_s[0];
+  if (fault.place == SensorKind::channel) return frame.channels[fault.index].value;
+  return fault.place == SensorKind::foot ? frame.feet[fault.index].force_N[0] : frame.joints[fault.index].position_rad;
 }
 
 // All that the sensor says is as it was in `from`, but for the sequence numbers.
 void repeat(const SensorFault& fault, const SensorFrame& from, SensorFrame& frame) noexcept {
-  if (fault.place == SensorPlace::joint) frame.joints[fault.index].position_rad = from.joints[fault.index].position_rad;
-  if (fault.place == SensorPlace::foot) frame.feet[fault.index].force_N = from.feet[fault.index].force_N;
-  if (fault.place == SensorPlace::channel) frame.channels[fault.index].value = from.channels[fault.index].value;
-  if (fault.place != SensorPlace::imu) return;
+  if (fault.place == SensorKind::joint) frame.joints[fault.index].position_rad = from.joints[fault.index].position_rad;
+  if (fault.place == SensorKind::foot) frame.feet[fault.index].force_N = from.feet[fault.index].force_N;
+  if (fault.place == SensorKind::channel) frame.channels[fault.index].value = from.channels[fault.index].value;
+  if (fault.place != SensorKind::imu) return;
   frame.imu.angular_velocity_rad_s = from.imu.angular_velocity_rad_s;
   frame.imu.acceleration_m_s2 = from.imu.acceleration_m_s2;
 }
 
 void silence(const SensorFault& fault, const SensorFrame& from, SensorFrame& frame) noexcept {
-  if (fault.place == SensorPlace::joint) frame.joints[fault.index] = from.joints[fault.index];
-  if (fault.place == SensorPlace::foot) frame.feet[fault.index] = from.feet[fault.index];
-  if (fault.place == SensorPlace::channel) frame.channels[fault.index] = from.channels[fault.index];
-  if (fault.place == SensorPlace::imu) frame.imu = from.imu;
+  if (fault.place == SensorKind::joint) frame.joints[fault.index] = from.joints[fault.index];
+  if (fault.place == SensorKind::foot) frame.feet[fault.index] = from.feet[fault.index];
+  if (fault.place == SensorKind::channel) frame.channels[fault.index] = from.channels[fault.index];
+  if (fault.place == SensorKind::imu) frame.imu = from.imu;
 }
 
 // Of any kind of fault.

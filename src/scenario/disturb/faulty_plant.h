@@ -21,11 +21,11 @@ enum class SensorFaultKind : std::uint8_t {
   jump,        // `size` is added to one reading
   not_finite,  // NaN
 };
-enum class SensorPlace : std::uint8_t { joint, imu, foot, channel };
+enum class SensorKind : std::uint8_t { joint, imu, foot, channel };
 
 struct SensorFault {
   SensorFaultKind kind = SensorFaultKind::silent;
-  SensorPlace place = SensorPlace::joint;
+  SensorKind place = SensorKind::joint;
   std::size_t index = 0;  // of the joint, foot or channel
   std::int64_t from_ns = 0;
   std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included

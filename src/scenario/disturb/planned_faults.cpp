@@ -71,14 +71,14 @@ class PlantFaults {
     const auto& channels = variant_.plant.channels;
     const auto channel = std::ranges::find(channels, of.name, &SensorChannel::name);
     if (of.name == "imu") {
-      planned.place = SensorPlace::imu;
+      planned.place = SensorKind::imu;
     } else if (joint != joints_.end()) {
       planned.index = static_cast<std::size_t>(joint - joints_.begin());
     } else if (foot != feet.end()) {
-      planned.place = SensorPlace::foot;
+      planned.place = SensorKind::foot;
       planned.index = static_cast<std::size_t>(foot - feet.begin());
     } else if (channel != channels.end()) {
-      planned.place = SensorPlace::channel;
+      planned.place = SensorKind::channel;
       planned.index = static_cast<std::size_t>(channel - channels.begin());
     } else {
       std::vector<std::string> known = joints_;

@@ -3,7 +3,38 @@
 #include <algorithm>
 #include <cmath>
 
+#include "signal/number_text.h"
+
 namespace kadans {
+namespace {
+
+std::string bounds_text(const ScenarioCheck& check) {
+  if (!check.that.empty()) return check.that;
+  if (std::isfinite(check.min) && std::isfinite(check.max)) return printed("%g .. %g", check.min, check.max);
+  return std::isfinite(check.min) ? printed(">= %g", check.min) : printed("<= %g", check.max);
+}
+
+std::string wanted_text(const ScenarioCheck& check) {
+  const std::string bounds = bounds_text(check);
+  switch (check.kind) {
+    case CheckKind::always:
+      return bounds;
+    case CheckKind::never:
+      return "never " + bounds;
+    case CheckKind::eventually:
+      return "at least once " + bounds;
+    case CheckKind::at_end:
+      return "at the end " + bounds;
+    case CheckKind::within:
+      return bounds + printed(" within %g s of ", check.within_s) + check.when;
+    case CheckKind::settles:
+      return bounds + printed(" for good within %g s", check.within_s) +
+             (check.when.empty() ? "" : " of " + check.when);
+  }
+  return bounds;
+}
+
+}  // namespace
 
 Checks::Checks(const SignalTable& signals, const std::vector<ScenarioCheck>& checks, const std::string& file)
     : conditions_(signals) {
@@ -77,6 +108,91 @@ std::vector<SignalId> Checks::signals_of(std::size_t index) const {
     }
   }
   return signals;
+}
+
+void Check::update(double time_s, const Observation& seen) noexcept {
+  if (!(time_s >= check_.from_s && time_s <= check_.until_s)) return;
+  last_s_ = time_s;
+  switch (check_.kind) {
+    case CheckKind::always:
+      return keep_worst(time_s, seen, seen.excess);
+    case CheckKind::never:
+    case CheckKind::eventually:
+      return keep_worst(time_s, seen, -seen.excess);  // what is deepest inside
+    case CheckKind::at_end:
+      return keep_worst(time_s, seen, std::numeric_limits<double>::infinity());  // the last
+    case CheckKind::within:
+      return update_within(time_s, seen);
+    case CheckKind::settles:
+      return update_settling(time_s, seen);
+  }
+}
+
+void Check::keep_worst(double time_s, const Observation& seen, double badness) noexcept {
+  if (!seen_ || badness > worst_ || check_.kind == CheckKind::at_end) {
+    worst_ = badness;
+    value_ = seen.value;
+    excess_ = seen.excess;
+    at_s_ = time_s;
+  }
+  seen_ = true;
+}
+
+void Check::update_within(double time_s, const Observation& seen) noexcept {
+  if (seen.when && !when_ && !waiting_) {
+    started_ = waiting_ = true;
+    began_s_ = time_s;
+  }
+  when_ = seen.when;
+  if (failed_ || !waiting_) return;
+  value_ = seen.value;
+  at_s_ = time_s;
+  failed_ = time_s - began_s_ > check_.within_s;
+  if (seen.excess <= 0) waiting_ = false;
+}
+
+void Check::update_settling(double time_s, const Observation& seen) noexcept {
+  if (!started_ && seen.when) {
+    started_ = true;
+    began_s_ = time_s;
+  }
+  if (!started_ || seen.excess <= 0) return;
+  outside_s_ = time_s;
+  at_s_ = time_s;
+}
+
+CheckResult Check::settled() const {
+  CheckResult result{.name = check_.name,
+                     .value = std::max(0.0, outside_s_ - began_s_),
+                     .at_s = at_s_,
+                     .note = {},
+                     .wanted = wanted_text(check_)};
+  if (last_s_ - began_s_ < check_.within_s) {
+    result.note = "the run ended before within_s had passed";
+  } else {
+    result.passed = result.value <= check_.within_s;
+  }
+  return result;
+}
+
+CheckResult Check::result() const {
+  CheckResult result{.name = check_.name, .value = value_, .at_s = at_s_, .note = {}, .wanted = wanted_text(check_)};
+  if (check_.kind == CheckKind::within || check_.kind == CheckKind::settles) {
+    if (!started_) {
+      result.note = "its `when` never became true";
+      return result;
+    }
+    if (check_.kind == CheckKind::settles) return settled();
+    result.passed = !failed_;
+    return result;
+  }
+  if (!seen_) {
+    result.note = "never looked at";
+    return result;
+  }
+  const bool holds = excess_ <= 0;
+  result.passed = check_.kind == CheckKind::never ? !holds : holds;
+  return result;
 }
 
 }  // namespace kadans

@@ -3,9 +3,15 @@
 #include <algorithm>
 
 #include "behavior_parts.h"
+#include "behavior_status.h"
 #include "engine/clock.h"
 #include "engine/refusal_text.h"
+#include "script/bindings/machine_sets.h"
+#include "script/chart/chart_nodes.h"
+#include "script/chart/chart_reader.h"
+#include "script/chart/transition_lines.h"
 #include "script/lua/lua_core.h"
+#include "script/sandbox/sandbox.h"
 
 namespace kadans {
 namespace {
@@ -46,6 +52,30 @@ int stop_chart(lua_State* state) {
   parts.runner->stop(state, parts.bindings.now_ns);
   return 0;
 }
+
+// Runs the file and reads the chart from what it returns.
+int read_file(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  if (!parts.lua->load_file(state, parts.settings.file)) return lua_error(state);
+  lua_call(state, 0, 1);
+  const int result = lua_gettop(state);
+  NodeKind kind{};
+  if (!is_node(state, result, &kind) || kind != NodeKind::behavior) {
+    return luaL_error(state, "%s:1: the file must return k.behavior \"name\" { ... }",
+                      parts.lua->sources().front().chunk.c_str());
+  }
+  read_chart(state, result, parts.chart);
+  return 0;
+}
+
+int open_bindings(lua_State* state) {
+  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+  open_machines(state, parts.chart, parts.bindings, parts.tables);
+  parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, parts.settings.feet, true);
+  return 0;
+}
+
+InputProblem problem_of(const ScriptError& error) { return {error.file.data(), error.line, 0, error.message.data()}; }
 
 }  // namespace
 
@@ -234,6 +264,54 @@ bool Behavior::set_parameter(const std::string& name, double value) noexcept {
     return true;
   }
   return false;
+}
+
+void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
+  const Behavior::Settings& settings = parts.settings;
+  if (instructions == 0) instructions = settings.limits.load_instructions;
+  parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = settings.root,
+                                                            .folder = settings.file.parent_path(),
+                                                            .name = settings.file.stem().string(),
+                                                            .seed = settings.seed,
+                                                            .limits = settings.limits,
+                                                            .voice = &parts});
+  parts.bindings.catalog = &parts.catalog;
+  parts.lua->core().bindings = &parts.bindings;
+  if (!parts.lua->call(read_file, &parts, instructions, settings.limits.load_wall_ns)) {
+    throw InputError(problem_of(parts.lua->error()));
+  }
+  find_transition_lines(parts.lua->sources(), parts.chart);
+  parts.chart.resolve(parts.problems);
+  find_control_sets(parts);
+  if (!parts.problems.empty()) throw InputError(parts.problems);
+  give_robot_values(parts);
+  give_arguments(parts, instructions);
+  if (!parts.lua->call(open_bindings, &parts, instructions, settings.limits.load_wall_ns)) {
+    throw InputError(problem_of(parts.lua->error()));
+  }
+  parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);
+  parts.bindings.runner = parts.runner.get();
+  parts.lua->core().loading = false;
+}
+
+static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
+
+void BehaviorStatus::declare(SignalTable& signals, const std::string& name) const {
+  const std::string prefix = "behavior." + name + ".";
+  signals.add({prefix + "heap_bytes", "B", "Memory of the behavior's Lua state."}, &heap_bytes);
+  signals.add({prefix + "instructions", "", "Lua instructions of its last tick, in steps of a thousand."},
+              &instructions);
+  signals.add({prefix + "gc_pause_ns", "ns", "Pause of the collector after its last tick; 0 in virtual time."},
+              &gc_pause_ns);
+  signals.add({prefix + "state", "", "Number of its innermost active state; 0: the behavior itself."}, &state);
+  signals.add({prefix + "reloads", "", "New versions taken since the start."}, &reloads);
+}
+
+void BehaviorStatus::declare_numbered(SignalTable& signals, const std::string& name) const {
+  std::string free = name;
+  for (int number = 2; signals.find("behavior." + free + ".state"); ++number)
+    free = name + "_" + std::to_string(number);
+  declare(signals, free);
 }
 
 }  // namespace kadans

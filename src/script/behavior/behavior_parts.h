@@ -5,15 +5,18 @@
 #include <string>
 #include <vector>
 
+#include <lua.hpp>
+
 #include "behavior.h"
+#include "kadans/control/catalog.h"
 #include "script/bindings/bindings.h"
 #include "script/bindings/log_bound.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/chart/chart_runner.h"
 #include "script/lua/lua_state.h"
+#include "signal/byte_order.h"
 
 namespace kadans {
-
 struct Behavior::Parts final : ScriptVoice, TransitionSink {
   Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to);
   ~Parts() override = default;
@@ -84,5 +87,21 @@ void give_vars(lua_State* state, const Chart::Machine& machine, int version);
 // Leaves the marked states in a transaction of its own. False: an `exit` raised.
 bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
                   CommandSender& commands) noexcept;
+
+// Writes the vars of a behavior as bytes and reads them back, for another process that continues where this one ended.
+// [-0 +0] Appends the value at `index` (> 0): plain data and handles of motions. False: it contains something else, and
+// `why` says what; then the stack may hold more than before. Never raises.
+bool put_value(lua_State* state, int index, ByteWriter& bytes, std::string& why, int depth = 0);
+
+// [-0 +1] Pushes the next value of the bytes. Raises when there is none.
+void push_value(lua_State* state, ByteReader& bytes, const Catalog& catalog, int depth = 0);
+
+// Copies the vars of a behavior from one Lua state to another.
+// The greatest depth of nested tables in vars, in copies of them, and in what a reload or a file carries over.
+inline constexpr int vars_depth_max = 16;
+
+// [-0 +1 on `to`, -0 +0 on `from`] Pushes a deep copy of the value at `index` of `from`: plain data and handles of
+// motions. Raises in `to` on anything else; then the stack of `from` may hold more than before. Never raises in `from`.
+void push_copy_across(lua_State* from, int index, lua_State* to, int depth = 0);
 
 }  // namespace kadans

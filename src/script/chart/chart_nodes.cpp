@@ -53,7 +53,7 @@ const char* wanted_type(const char* key) noexcept {
   return std::strcmp(key, "deep") == 0 || std::strcmp(key, "endless") == 0 ? "boolean" : nullptr;
 }
 
-void check_types(lua_State* state, int table, const Place& place, const char* const* names) {
+void check_types(lua_State* state, int table, const ScriptPlace& place, const char* const* names) {
   for (; *names != nullptr; ++names) {
     lua_getfield(state, table, *names);
     const char* wanted = wanted_type(*names);
@@ -67,7 +67,7 @@ void check_types(lua_State* state, int table, const Place& place, const char* co
   }
 }
 
-void check_after(lua_State* state, int table, const Place& place) {
+void check_after(lua_State* state, int table, const ScriptPlace& place) {
   lua_getfield(state, table, "after");
   std::size_t number = 0;
   if (!lua_isnil(state, -1) && !is_parameter(state, -1, &number)) {
@@ -78,11 +78,11 @@ void check_after(lua_State* state, int table, const Place& place) {
   lua_pop(state, 1);
 }
 
-void check_transition(lua_State* state, int table, const Place& place) {
+void check_transition(lua_State* state, int table, const ScriptPlace& place) {
   core_of(state).budget.charge(state, transition_instructions);
   lua_getfield(state, table, "to");
   const char* to = lua_tostring(state, -1);
-  Place nearer = place;
+  ScriptPlace nearer = place;
   if (to == nullptr) {
     lua_getfield(state, table, "on");
     const char* on = lua_tostring(state, -1);
@@ -94,7 +94,7 @@ void check_transition(lua_State* state, int table, const Place& place) {
   lua_pop(state, 1);
 }
 
-void check_transitions(lua_State* state, int list, const Place& place, bool nodes_too) {
+void check_transitions(lua_State* state, int list, const ScriptPlace& place, bool nodes_too) {
   const int count = static_cast<int>(lua_objlen(state, list));
   for (int i = 1; i <= count; ++i) {
     lua_rawgeti(state, list, i);
@@ -116,7 +116,7 @@ void check_transitions(lua_State* state, int list, const Place& place, bool node
 }
 
 // [-1 +1] The body at the top becomes a node.
-void make_node(lua_State* state, NodeKind kind, const char* name, const Place& place) {
+void make_node(lua_State* state, NodeKind kind, const char* name, const ScriptPlace& place) {
   lua_createtable(state, 0, 5);
   lua_insert(state, -2);
   lua_setfield(state, -2, "body");
@@ -137,8 +137,8 @@ void make_node(lua_State* state, NodeKind kind, const char* name, const Place& p
 int finish_node(lua_State* state) {
   const auto kind = static_cast<NodeKind>(lua_tointeger(state, lua_upvalueindex(1)));
   const char* name = lua_tostring(state, lua_upvalueindex(2));
-  const Place place{lua_tostring(state, lua_upvalueindex(3)),
-                    static_cast<int>(lua_tointeger(state, lua_upvalueindex(4)))};
+  const ScriptPlace place{lua_tostring(state, lua_upvalueindex(3)),
+                          static_cast<int>(lua_tointeger(state, lua_upvalueindex(4)))};
   if (!lua_istable(state, 1)) {
     return raise_at(state, place, nullptr, "%s \"%s\" needs a table { ... }", node_word(kind), name);
   }
@@ -162,7 +162,7 @@ bool good_name(const char* name) noexcept {
 // k.state "name" { ... } and its kin; upvalue: kind.
 int begin_node(lua_State* state) {
   const auto kind = static_cast<NodeKind>(lua_tointeger(state, lua_upvalueindex(1)));
-  const Place place = calling_place(state);
+  const ScriptPlace place = calling_place(state);
   if (lua_type(state, 1) != LUA_TSTRING) return raise_at(state, place, nullptr, "%s needs a name", node_word(kind));
   const char* name = lua_tostring(state, 1);
   if (lua_objlen(state, 1) > name_max) {
@@ -183,7 +183,7 @@ int begin_node(lua_State* state) {
 
 // k.call "name" or k.call "name" { argument = value }: a node at once, that can be called with the arguments.
 int make_call(lua_State* state) {
-  const Place place = calling_place(state);
+  const ScriptPlace place = calling_place(state);
   if (lua_type(state, 1) != LUA_TSTRING) return raise_at(state, place, nullptr, "k.call needs the name of a behavior");
   lua_settop(state, 1);
   charge_text(state, static_cast<double>(lua_objlen(state, 1)));
@@ -229,10 +229,10 @@ const char* node_name(lua_State* state, int index) {
   return name;  // anchored by the node
 }
 
-Place node_place(lua_State* state, int index) {
+ScriptPlace node_place(lua_State* state, int index) {
   lua_getfield(state, index, "chunk");
   lua_getfield(state, index, "line");
-  const Place place{lua_tostring(state, -2), static_cast<int>(lua_tointeger(state, -1))};
+  const ScriptPlace place{lua_tostring(state, -2), static_cast<int>(lua_tointeger(state, -1))};
   lua_pop(state, 2);
   return place;
 }

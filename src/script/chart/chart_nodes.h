@@ -6,7 +6,7 @@
 
 #include <lua.hpp>
 
-#include "place.h"
+#include "script/lua/script_place.h"
 
 namespace kadans {
 
@@ -17,7 +17,7 @@ const char* node_word(NodeKind kind) noexcept;  // "k.state"
 bool is_node(lua_State* state, int index, NodeKind* kind);
 // The name, the place and the body of the node at `index`.
 const char* node_name(lua_State* state, int index);
-Place node_place(lua_State* state, int index);
+ScriptPlace node_place(lua_State* state, int index);
 void push_node_body(lua_State* state, int index);  // [-0 +1]
 
 // [-1 +1] Adds behavior, state, parallel, region, final, history and call to the module's table at the top of the

@@ -18,7 +18,7 @@ constexpr std::size_t parameters_max = 1000, parameter_text_max = 512;  // they 
 constexpr double parameter_instructions = 200;
 constexpr const char* spec_keys[] = {"min", "max", "unit", "doc", nullptr};
 
-double number_field(lua_State* state, int table, const char* name, double fallback, const Place& place) {
+double number_field(lua_State* state, int table, const char* name, double fallback, const ScriptPlace& place) {
   lua_getfield(state, table, name);
   if (!lua_isnil(state, -1) && lua_type(state, -1) != LUA_TNUMBER) {
     raise_at(state, place, name, "'%s' must be a number, not a %s", name, luaL_typename(state, -1));
@@ -28,7 +28,7 @@ double number_field(lua_State* state, int table, const char* name, double fallba
   return value;
 }
 
-const char* text_field(lua_State* state, int table, const char* name, const Place& place) {
+const char* text_field(lua_State* state, int table, const char* name, const ScriptPlace& place) {
   lua_getfield(state, table, name);
   if (!lua_isnil(state, -1) && lua_type(state, -1) != LUA_TSTRING) {
     raise_at(state, place, name, "'%s' must be a string, not a %s", name, luaL_typename(state, -1));
@@ -48,7 +48,7 @@ struct Spec {
 };
 
 // The specification at the top, of parameter `name`.
-Spec read_spec(lua_State* state, const char* name, const Place& place) {
+Spec read_spec(lua_State* state, const char* name, const ScriptPlace& place) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (lua_type(state, -1) == LUA_TNUMBER) return {name, lua_tonumber(state, -1), -infinity, infinity, "", ""};
   if (!lua_istable(state, -1))
@@ -68,7 +68,7 @@ Spec read_spec(lua_State* state, const char* name, const Place& place) {
           text_field(state, table, "doc", place)};
 }
 
-void add_parameter(lua_State* state, const Spec& spec, const Place& place) {
+void add_parameter(lua_State* state, const Spec& spec, const ScriptPlace& place) {
   if (!(spec.initial >= spec.min && spec.initial <= spec.max)) {
     raise_at(state, place, spec.name, "parameter '%s': the default %f is outside %f..%f", spec.name, spec.initial,
              spec.min, spec.max);
@@ -100,7 +100,7 @@ int refuse_arithmetic(lua_State* state) {
 
 // params(table) -> the parameters by name.
 int params(lua_State* state) {
-  const Place place = calling_place(state);
+  const ScriptPlace place = calling_place(state);
   if (!lua_istable(state, 1)) return raise_at(state, place, nullptr, "k.params needs a table { name = { ... } }");
   lua_settop(state, 1);
   lua_newtable(state);

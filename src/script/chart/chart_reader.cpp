@@ -31,7 +31,7 @@ struct Reader {
   }
 
   // Both look through what is there already.
-  int find_line(const Place& place, const char* text) const {
+  int find_line(const ScriptPlace& place, const char* text) const {
     const LuaState& owner = *core_of(state).owner;
     core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
     return owner.line_of(place.chunk, place.line, text);
@@ -41,7 +41,7 @@ struct Reader {
     return chart.intern(event);
   }
 
-  void read_transition(int table, StateIndex source, const Place& place) {
+  void read_transition(int table, StateIndex source, const ScriptPlace& place) {
     if (chart.transitions.size() >= transitions_max)
       raise_at(state, place, nullptr, "more than %d transitions", static_cast<int>(transitions_max));
     Chart::Transition& made = chart.transitions.emplace_back();
@@ -66,7 +66,7 @@ struct Reader {
   }
 
   // The transitions in the list at `list`, nodes passed over.
-  std::uint16_t read_transitions(int list, StateIndex source, const Place& place) {
+  std::uint16_t read_transitions(int list, StateIndex source, const ScriptPlace& place) {
     const std::size_t before = chart.transitions.size();
     const int count = static_cast<int>(lua_objlen(state, list));
     for (int i = 1; i <= count; ++i) {
@@ -79,7 +79,7 @@ struct Reader {
   }
 
   StateIndex add_state(const char* name, Chart::Kind kind, StateIndex parent, std::uint16_t machine,
-                       const Place& place) {
+                       const ScriptPlace& place) {
     if (chart.states.size() >= states_max)
       raise_at(state, place, nullptr, "more than %d states", static_cast<int>(states_max));
     const auto index = static_cast<StateIndex>(chart.states.size());
@@ -97,7 +97,7 @@ struct Reader {
     return index;
   }
 
-  void read_body(int body, StateIndex index, const Place& place, int depth) {
+  void read_body(int body, StateIndex index, const ScriptPlace& place, int depth) {
     {
       Chart::State& made = chart.states[index];
       made.enter = reference(body, "enter");
@@ -142,7 +142,7 @@ struct Reader {
   }
 
   void read_node(int node, NodeKind kind, StateIndex parent, int depth) {
-    const Place place = node_place(state, node);
+    const ScriptPlace place = node_place(state, node);
     const char* name = node_name(state, node);
     if (kind == NodeKind::call) return read_call(node, name, parent, place, depth);
     if (kind == NodeKind::behavior)
@@ -156,7 +156,7 @@ struct Reader {
   }
 
   // [-0 +0] Grafts the behavior that is called in below `parent`.
-  void read_call(int node, const char* name, StateIndex parent, const Place& place, int depth) {
+  void read_call(int node, const char* name, StateIndex parent, const ScriptPlace& place, int depth) {
     if (depth >= call_depth_max)
       raise_at(state, place, name, "behaviors call each other too deeply; does '%s' call itself?", name);
     lua_pushcfunction(state, sandbox_require);
@@ -181,7 +181,7 @@ struct Reader {
     chart.machines[number].call_line = place.line;
   }
 
-  void check_arguments(int behavior, int given, const char* name, const Place& place) const {
+  void check_arguments(int behavior, int given, const char* name, const ScriptPlace& place) const {
     push_node_body(state, behavior);
     lua_getfield(state, -1, "args");
     for (lua_pushnil(state); lua_next(state, given) != 0; lua_pop(state, 1)) {
@@ -198,7 +198,7 @@ struct Reader {
   }
 
   StateIndex read_machine(int behavior, StateIndex parent, int given, int depth) {
-    const Place place = node_place(state, behavior);
+    const ScriptPlace place = node_place(state, behavior);
     const char* name = node_name(state, behavior);
     const auto number = static_cast<std::uint16_t>(chart.machines.size());
     chart.machines.emplace_back();

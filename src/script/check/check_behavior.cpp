@@ -1,16 +1,127 @@
 #include "check_behavior.h"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
 
 #include "check_chart.h"
 #include "check_source.h"
-#include "check_vars.h"
+#include "hint.h"
 #include "known_names.h"
 #include "script/behavior/behavior_parts.h"
+#include "script/chart/chart_nodes.h"
 #include "script/host/silent_log.h"
+#include "script/lua/lua_core.h"
+#include "script/sandbox/sandbox.h"
+#include "script/test/test_globals.h"
+#include "script/test/test_prelude.h"
 
 namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Catalog no_robot;
+
+// What stands for the names of tests while a file is read: nothing is played, and no test runs.
+constexpr char test_stubs[] =
+    "local stub = setmetatable({}, { __index = function(t) return t end, __call = function(t) return t end })\n"
+    "local function nothing() end\n"
+    "return nothing, nothing, nothing, stub, stub";
+
+struct Looked {
+  Behavior::Parts& parts;
+  CheckedScript found{};
+  bool returned = false;
+};
+
+// Runs the file and looks at what it returns.
+int look_at_file(lua_State* state) {
+  auto& looked = *static_cast<Looked*>(lua_touserdata(state, 1));
+  if (looked.found.kind == ScriptKind::test) {
+    if (luaL_loadbuffer(state, test_stubs, sizeof test_stubs - 1, "=kadans test") != 0) return lua_error(state);
+    push_environment(state);
+    lua_setfenv(state, -2);
+    lua_call(state, 0, 5);
+    open_test_names(state);
+  }
+  if (!looked.parts.lua->load_file(state, looked.parts.settings.file)) return lua_error(state);
+  lua_call(state, 0, 1);
+  NodeKind kind{};
+  looked.returned = !lua_isnil(state, -1);
+  if (is_node(state, lua_gettop(state), &kind) && kind == NodeKind::behavior) looked.found.kind = ScriptKind::behavior;
+  return 0;
+}
+
+// expect(x).to_equal, k.play "file" { options }: what is written out.
+class TestCalls {
+ public:
+  TestCalls(const LuaState::Source& source, const Behavior::Settings& settings, std::vector<InputProblem>& problems)
+      : source_(source), settings_(settings), problems_(problems), tokens_(lex_source(source.text)) {
+    tokens_.resize(tokens_.size() + 4, SourceToken{Kind::end, "", tokens_.back().line});
+  }
+
+  void run() {
+    for (std::size_t i = 0; tokens_[i].kind != Kind::end; ++i) {
+      if (tokens_[i].kind != Kind::name) continue;
+      const bool of_module = i > 0 && tokens_[i - 1].is(".");
+      if (tokens_[i].text == "expect" && tokens_[i + 1].is("(") && !of_module) matcher(end_of_call(tokens_, i + 2));
+      if (tokens_[i].text == "play" && of_module) played(i + 1);
+    }
+  }
+
+ private:
+  using Kind = SourceToken::Kind;
+
+  void problem(const SourceToken& at, const std::string& message) {
+    problems_.push_back({source_.chunk, at.line, 0, message});
+  }
+
+  void matcher(std::size_t at) {
+    const std::vector<std::string> known(std::begin(test_matchers), std::end(test_matchers));
+    if (tokens_[at].is(".") && tokens_[at + 1].text == "never") at += 2;
+    const SourceToken& name = tokens_[at + 1];
+    if (!tokens_[at].is(".") || name.kind != Kind::name || std::ranges::find(known, name.text) != known.end()) return;
+    problem(name, "expect(...) has no '" + name.text + "'" + hint_text(name.text, known));
+  }
+
+  void played(std::size_t at) {
+    if (tokens_[at].is("(")) ++at;
+    if (tokens_[at].kind != Kind::text) return;
+    const std::string& file = tokens_[at].text;
+    std::error_code ignored;
+    if (!fs::exists(settings_.file.parent_path() / file, ignored) && !fs::exists(settings_.root / file, ignored))
+      problem(tokens_[at], "k.play: there is no " + file + " beside this file, nor from the project's root on");
+    if (!tokens_[at + 1].is(",") || !tokens_[at + 2].is("{")) return;
+    for (const std::size_t part : parts_of(tokens_, at + 3)) {
+      const SourceToken& key = tokens_[part];
+      if (key.kind == Kind::name && tokens_[part + 1].is("=") && key.text != "robot")
+        problem(key, "k.play has no option '" + key.text + "'; there is: robot");
+    }
+  }
+
+  const LuaState::Source& source_;
+  const Behavior::Settings& settings_;
+  std::vector<InputProblem>& problems_;
+  std::vector<SourceToken> tokens_;
+};
+
+void check_loaded(Looked& looked) {
+  Behavior::Parts& parts = looked.parts;
+  std::vector<InputProblem>& problems = looked.found.problems;
+  const LuaState::Source& own = parts.lua->sources().front();
+  KnownNames known = read_known_names(parts);
+  check_sources(parts, known, problems);
+  if (looked.found.kind == ScriptKind::test) {
+    TestCalls(own, parts.settings, problems).run();
+  } else if (!looked.returned) {
+    problems.push_back({own.chunk, 1, 0,
+                        "returns nothing: a behavior returns k.behavior \"name\" { ... }, a module its "
+                        "table"});
+  }
+}
+
+}  // namespace
 
 std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
                                          const Catalog& catalog) {
@@ -36,6 +147,36 @@ void tell_once(std::vector<InputProblem>& problems) {
   std::ranges::stable_sort(problems, {}, key);
   const auto same = [&](const InputProblem& a, const InputProblem& b) { return key(a) == key(b); };
   problems.erase(std::unique(problems.begin(), problems.end(), same), problems.end());
+}
+
+CheckedScript check_script(const fs::path& root, const fs::path& file, const Catalog* catalog) {
+  SilentLog silence;
+  const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
+  Behavior::Parts parts(settings, catalog == nullptr ? no_robot : *catalog, silence);
+  parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = root,
+                                                            .folder = settings.file.parent_path(),
+                                                            .name = settings.file.stem().string(),
+                                                            .limits = settings.limits});
+  parts.bindings.catalog = &parts.catalog;
+  if (catalog != nullptr) parts.lua->core().bindings = &parts.bindings;
+  Looked looked{parts};
+  looked.found.kind = file.string().ends_with("_test.lua") ? ScriptKind::test : ScriptKind::module;
+  if (!parts.lua->call(look_at_file, &looked, settings.limits.load_instructions, 0)) {
+    const ScriptError& error = parts.lua->error();
+    looked.found.problems = {{error.file.data(), error.line, 0, error.message.data()}};
+    return looked.found;
+  }
+  try {
+    if (looked.found.kind == ScriptKind::behavior) {
+      if (catalog != nullptr) looked.found.problems = check_behavior(root, file, *catalog);
+    } else {
+      check_loaded(looked);
+    }
+  } catch (const InputError& error) {
+    looked.found.problems = error.problems();
+  }
+  tell_once(looked.found.problems);
+  return looked.found;
 }
 
 }  // namespace kadans

@@ -1,6 +1,13 @@
 #include "check_chart.h"
 
 #include <algorithm>
+#include <set>
+
+#include "hint.h"
+#include "kadans/signal/input_error.h"
+#include "script/behavior/behavior_parts.h"
+#include "script/chart/chart_nodes.h"
+#include "script/lua/lua_core.h"
 
 namespace kadans {
 namespace {
@@ -114,8 +121,168 @@ class ChartCheck {
   std::vector<bool> reached_;
 };
 
+using Kind = SourceToken::Kind;
+using Tokens = std::vector<SourceToken>;
+
+// What the functions emit, as far as their text tells.
+struct Emitted {
+  std::set<std::string> events;
+  std::set<std::string> beginnings;  // of those that are put together: "refused:" .. why
+  bool unknown = false;              // one that only the run knows
+
+  bool may_be(const std::string& event) const {
+    return unknown || events.contains(event) ||
+           std::ranges::any_of(beginnings, [&](const std::string& start) { return event.starts_with(start); });
+  }
+};
+
+// The values that an argument may have, from `at` up to `end`: `a and "b" or "c"` is b or c.
+void add_values(const Tokens& tokens, std::size_t at, std::size_t end, Emitted& emitted) {
+  int depth = 0;
+  std::size_t value = at;
+  const auto take = [&](std::size_t from, std::size_t to) {
+    const bool text = from < to && tokens[from].kind == Kind::text;
+    if (text && to == from + 1) {
+      emitted.events.insert(tokens[from].text);
+    } else if (text && tokens[from + 1].is("..")) {
+      emitted.beginnings.insert(tokens[from].text);
+    } else {
+      emitted.unknown = true;
+    }
+  };
+  for (std::size_t i = at; i < end; ++i) {
+    for (const char* opening : {"(", "{", "[", "function"}) depth += tokens[i].is(opening) ? 1 : 0;
+    for (const char* closing : {")", "}", "]", "end"}) depth -= tokens[i].is(closing) ? 1 : 0;
+    if (depth != 0) continue;
+    if (tokens[i].is("and")) value = i + 1;
+    if (!tokens[i].is("or")) continue;
+    take(value, i);
+    value = i + 1;
+  }
+  take(value, end);
+}
+
+void add_emitted(const Tokens& tokens, Emitted& emitted) {
+  for (std::size_t i = 1; i + 2 < tokens.size(); ++i) {
+    const bool name = tokens[i].kind == Kind::name || tokens[i].kind == Kind::text;
+    if (!name || tokens[i].text != "emit") continue;
+    const bool method = tokens[i].kind == Kind::name && tokens[i - 1].is(":");
+    if (method && tokens[i + 1].kind == Kind::text) {
+      emitted.events.insert(tokens[i + 1].text);
+    } else if (method && tokens[i + 1].is("(")) {
+      add_values(tokens, i + 2, end_of_call(tokens, i + 2) - 1, emitted);
+    } else {
+      emitted.unknown = true;  // m.emit as a value, m["emit"]
+    }
+  }
+}
+
+// How what is inside a state may end: events that only it, not what is around it, hears.
+std::set<std::string> outcomes_of(const Chart& chart, StateIndex index) {
+  std::set<std::string> outcomes;
+  const bool parallel = chart.states[index].kind == Chart::Kind::parallel;
+  for (StateIndex i = static_cast<StateIndex>(index + 1); i < chart.states[index].end; ++i) {
+    const Chart::State& child = chart.states[i];
+    if (child.parent != index) continue;
+    if (child.kind == Chart::Kind::final_state) outcomes.insert(child.outcome_name);
+    if (parallel || child.machine_root) outcomes.merge(outcomes_of(chart, i));
+  }
+  return outcomes;
+}
+
+// A behavior that is called may end in other ways tomorrow: waiting for the usual ones is foresight.
+bool ends_by_others(const Chart& chart, StateIndex index) {
+  const bool parallel = chart.states[index].kind == Chart::Kind::parallel;
+  for (StateIndex i = static_cast<StateIndex>(index + 1); i < chart.states[index].end; ++i) {
+    if (chart.states[i].parent != index) continue;
+    if (chart.states[i].machine_root || (parallel && ends_by_others(chart, i))) return true;
+  }
+  return false;
+}
+
+struct Looking {
+  Behavior::Parts& parts;
+  std::vector<InputProblem>& problems;
+  std::string chunk{};
+  int line = 0;  // where the table is declared, or after it
+};
+
+void tell(Looking& looking, const std::string& path, const std::string& key, const std::string& what) {
+  const int line = looking.parts.lua->line_of(looking.chunk, looking.line, key);
+  looking.problems.push_back({looking.chunk, line, 0, path + what + ": vars and args hold plain data"});
+}
+
+// [-0 +0] The value at the top. Nothing here raises but for want of memory.
+void look_into(lua_State* state, Looking& looking, const std::string& path, const std::string& key, int depth) {
+  const int type = lua_type(state, -1);
+  std::size_t number = 0;
+  if (is_parameter(state, lua_gettop(state), &number))
+    return tell(looking, path, key, " is a parameter, which is read where it is needed");
+  if (type == LUA_TFUNCTION || type == LUA_TUSERDATA || type == LUA_TTHREAD)
+    return tell(looking, path, key, std::string(" is a ") + lua_typename(state, type));
+  if (type != LUA_TTABLE) return;
+  if (depth > vars_depth_max) return tell(looking, path, key, " is nested too deeply, or holds itself");
+  luaL_checkstack(state, 6, "vars");
+  const int table = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, table) != 0; lua_pop(state, 1)) {
+    const std::string name = lua_type(state, -2) == LUA_TSTRING   ? lua_tostring(state, -2)
+                             : lua_type(state, -2) == LUA_TNUMBER ? std::to_string(lua_tointeger(state, -2))
+                                                                  : "?";
+    const std::size_t known = looking.problems.size();
+    look_into(state, looking, path + "." + name, name, depth + 1);
+    if (depth > 1 && looking.problems.size() > known) break;  // one of a nested table: it may hold itself
+  }
+  lua_settop(state, table);
+}
+
+void look_at(lua_State* state, Looking& looking, int reference, const char* name) {
+  if (reference == Chart::no_function) return;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
+  look_into(state, looking, name, name, 0);
+  lua_pop(state, 1);
+}
+
+int look(lua_State* state) {
+  auto& looking = *static_cast<Looking*>(lua_touserdata(state, 1));
+  const Chart& chart = looking.parts.chart;
+  for (const Chart::Machine& machine : chart.machines) {
+    looking.chunk = chart.states[machine.root].chunk;
+    looking.line = chart.states[machine.root].line;
+    look_at(state, looking, machine.vars, "vars");
+    look_at(state, looking, machine.arguments, "args");
+    looking.chunk = machine.call_chunk;
+    looking.line = machine.call_line;
+    if (!machine.call_chunk.empty()) look_at(state, looking, machine.given, "args");
+  }
+  return 0;
+}
+
 }  // namespace
 
 void check_chart(const Chart& chart, std::vector<InputProblem>& problems) { ChartCheck(chart, problems).run(); }
+
+void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::vector<InputProblem>& problems) {
+  Emitted emitted;
+  for (const ReadSource& one : read) add_emitted(one.scopes.tokens(), emitted);
+  for (const Chart::Transition& transition : chart.transitions) {
+    if (transition.on == no_event || transition.on == run_done_event) continue;
+    const std::string& event = chart.events[static_cast<std::size_t>(transition.on)];
+    if (emitted.may_be(event)) continue;
+    std::set<std::string> known = outcomes_of(chart, transition.source);
+    if (ends_by_others(chart, transition.source)) known.insert({"done", "failed"});
+    if (known.contains(event)) continue;
+    known.insert(emitted.events.begin(), emitted.events.end());
+    problems.push_back(
+        {chart.states[transition.source].chunk, transition.line, 0,
+         "nobody emits the event '" + event + "' here" + hint_text(event, {known.begin(), known.end()})});
+  }
+}
+
+void check_vars(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
+  Looking looking{parts, problems};
+  if (parts.lua->call(look, &looking, parts.settings.limits.load_instructions, 0)) return;
+  const ScriptError& error = parts.lua->error();
+  throw InputError({error.file.data(), error.line, 0, error.message.data()});
+}
 
 }  // namespace kadans

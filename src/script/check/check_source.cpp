@@ -4,7 +4,7 @@
 #include <array>
 
 #include "check_arguments.h"
-#include "check_events.h"
+#include "check_chart.h"
 #include "check_modules.h"
 #include "hint.h"
 #include "source_scopes.h"

@@ -3,9 +3,17 @@
 #include <algorithm>
 
 #include "kadans/signal/input_error.h"
+#include "play_order_bytes.h"
 #include "script/bindings/machine_sets.h"
+#include "signal/byte_order.h"
+#include "silent_log.h"
 
 namespace kadans {
+namespace {
+
+constexpr std::uint32_t kept_format = 1;
+
+}  // namespace
 
 ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
     : settings_(settings), catalog_(catalog), log_(log), pause_(catalog), safe_(settings.safe, catalog) {
@@ -119,6 +127,174 @@ void ScriptHost::declare_signals(SignalTable& signals) const {
   };
   std::ranges::for_each(list_.entries(), declare);
   for (const Due& due : events_) std::ranges::for_each(due.loaded, declare);
+}
+
+std::vector<std::filesystem::path> ScriptHost::files() const {
+  std::vector<std::filesystem::path> all;
+  const auto add = [&all](const Behavior& behavior) {
+    for (std::filesystem::path& file : behavior.files()) all.push_back(std::move(file));
+  };
+  for (const PlayList::Entry& entry : list_.entries()) add(*entry.behavior);
+  SilentLog silence;
+  for (const Due& due : events_) {
+    for (const PlayList::Entry& entry : due.loaded) add(*entry.behavior);
+    if (due.order.file.empty()) continue;
+    all.push_back(due.order.file);
+    try {
+      const Behavior::Settings settings{
+          .root = settings_.root, .file = due.order.file, .seed = settings_.seed, .limits = settings_.limits};
+      add(Behavior(settings, catalog_, silence));
+    } catch (const InputError&) {  // the reload will be refused
+    }
+  }
+  return all;
+}
+
+void ScriptHost::order(const PlayOrder& order) {
+  std::vector<InputProblem> problems;
+  Due due{0, order, load(order.list, false, problems)};
+  if (!problems.empty()) throw InputError(problems);
+  if (order.kind == PlayOrder::Kind::play) {
+    if (const std::string why = clash(due.loaded); !why.empty()) throw InputError({.message = why});
+  }
+  const std::vector<std::string> known = names();
+  if (order.kind == PlayOrder::Kind::reload && std::ranges::find(known, order.behavior.name) == known.end())
+    throw InputError({.message = unknown_name("behavior", order.behavior.name, known)});
+  orders_.push_back(std::move(due));
+}
+
+void ScriptHost::take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  for (; events_done_ < events_.size() && events_[events_done_].at_ns <= snapshot.time_ns; ++events_done_) {
+    carry_out(events_[events_done_], snapshot, commands);
+  }
+  for (Due& due : orders_) carry_out(due, snapshot, commands);
+  orders_.clear();
+}
+
+void ScriptHost::carry_out(Due& due, const Snapshot& snapshot, CommandSender& commands) noexcept {
+  using Kind = PlayOrder::Kind;
+  const Kind kind = due.order.kind;
+  if (kind == Kind::reload) return reload(due.order, snapshot, commands);
+  std::string text = play_order_names[static_cast<std::size_t>(kind)];
+  for (const PlayList::Entry& entry : due.loaded) text += " " + entry.behavior->name();
+  log_.message(snapshot.time_ns, BehaviorLog::Severity::info, "supervisor", text);
+  if (kind == Kind::pause) pause_.begin();
+  if (kind == Kind::resume) pause_.end();
+  if (kind == Kind::stop || kind == Kind::replace) leave_all(snapshot, commands);
+  if (const std::string why = clash(due.loaded); !why.empty()) {
+    log_.message(snapshot.time_ns, BehaviorLog::Severity::error, "supervisor", why);
+    return;
+  }
+  begin(due.loaded);
+}
+
+// Motions come to rest first, so that what an `exit` moves does move.
+void ScriptHost::leave_all(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  pause_.finish(snapshot, commands);
+  for (PlayList::Entry& entry : list_.entries()) {
+    if (entry.over) continue;
+    entry.behavior->hold_clock(pause_.held_ns());
+    entry.behavior->stop(snapshot, commands);
+    pause_.note(snapshot, commands);
+    if (entry.behavior->failed()) report_failure(*entry.behavior, snapshot.time_ns);
+  }
+  list_.end_all();
+}
+
+void ScriptHost::begin(std::vector<PlayList::Entry>& entries) {
+  if (entries.empty()) return;
+  list_.append(entries);
+  if (watch_ != nullptr) watch_folders();
+}
+
+void ScriptHost::reload(const PlayOrder& order, const Snapshot& snapshot, CommandSender& commands) noexcept {
+  for (PlayList::Entry& entry : list_.entries()) {
+    if (entry.over || entry.behavior->name() != order.behavior.name) continue;
+    entry.behavior->hold_clock(pause_.held_ns());
+    (void)entry.behavior->reload(snapshot, commands, order.file, PlayList::sets_beside(entry.lane, list_.entries()));
+  }
+}
+
+void ScriptHost::reload_saved(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  if (watch_ == nullptr || !watch_->poll()) return;
+  for (PlayList::Entry& entry : list_.entries()) {
+    if (entry.over) continue;
+    entry.behavior->hold_clock(pause_.held_ns());
+    (void)entry.behavior->reload(snapshot, commands, {}, PlayList::sets_beside(entry.lane, list_.entries()));
+  }
+  watch_folders();  // of modules that are new
+}
+
+void ScriptHost::watch() {
+  watch_ = std::make_unique<FileWatch>();
+  watch_folders();
+}
+
+void ScriptHost::watch_folders() {
+  (void)watch_->add(settings_.root / "behaviors/lib");
+  for (const PlayList::Entry& entry : list_.entries()) {
+    for (const std::filesystem::path& file : entry.behavior->files()) (void)watch_->add(file.parent_path());
+  }
+}
+
+std::string ScriptHost::keep(ByteWriter& bytes, std::int64_t time_ns) {
+  bytes.put(kept_format);
+  bytes.put(static_cast<std::uint32_t>(list_.entries().size()));
+  for (const PlayList::Entry& entry : list_.entries()) {
+    const Behavior::Settings& settings = entry.behavior->settings();
+    put_item({.file = settings.file, .lane = entry.lane, .arguments = settings.arguments, .source = settings.source},
+             bytes);
+    bytes.put<std::uint8_t>(entry.lasting);
+  }
+  bytes.put(static_cast<std::uint32_t>(events_done_));
+  bytes.put(list_.status().done.load(std::memory_order_relaxed));
+  bytes.put(list_.status().not_done.load(std::memory_order_relaxed));
+  pause_.keep(bytes, time_ns);
+  safe_.keep(bytes);
+  std::string why;
+  for (const PlayList::Entry& entry : list_.entries()) {
+    bytes.put<std::uint8_t>(entry.over);
+    const std::string its = entry.over ? "" : entry.behavior->keep(bytes);
+    if (why.empty() && !its.empty()) why = entry.behavior->name() + ": " + its;
+  }
+  return why;
+}
+
+std::vector<PlayList::Entry> ScriptHost::load_kept(std::vector<InputProblem>& problems) {
+  ByteReader bytes(settings_.kept);
+  std::vector<PlayItem> items;
+  std::vector<bool> lasting;
+  const bool known = bytes.take<std::uint32_t>() == kept_format;
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && known && bytes.ok(); --left) {
+    items.push_back(take_item(bytes));
+    lasting.push_back(bytes.take<std::uint8_t>() != 0);
+  }
+  if (!known || !bytes.ok()) problems.push_back({.message = "what was kept of the behaviors cannot be read"});
+  std::vector<PlayList::Entry> loaded;
+  if (problems.empty()) loaded = load(items, true, problems);
+  for (std::size_t i = 0; i < loaded.size(); ++i) loaded[i].lasting = lasting[i];
+  settings_.kept = settings_.kept.last(bytes.left());
+  return loaded;
+}
+
+void ScriptHost::go_on(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  ByteReader bytes(settings_.kept);
+  settings_.kept = {};
+  events_done_ = std::min<std::size_t>(bytes.take<std::uint32_t>(), events_.size());
+  const auto done = bytes.take<std::uint32_t>();
+  list_.count(done, bytes.take<std::uint32_t>());
+  pause_.restore(bytes);
+  safe_.restore(bytes);
+  for (PlayList::Entry& entry : list_.entries()) {
+    entry.over = bytes.take<std::uint8_t>() != 0;
+    if (entry.over) continue;
+    entry.behavior->hold_clock(pause_.held_ns());
+    if (!entry.behavior->go_on(bytes, snapshot, commands)) {
+      lost_ = entry.behavior->name() + ": " + entry.behavior->error().text();
+      return;
+    }
+  }
+  if (!bytes.ok() || bytes.left() > 0) lost_ = "what was kept of the behaviors cannot be read";
 }
 
 }  // namespace kadans

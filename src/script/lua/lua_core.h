@@ -8,7 +8,7 @@
 #include "budget.h"
 #include "kadans/signal/random.h"
 #include "lua_heap.h"
-#include "script/bindings/table_slots.h"
+#include "script/bindings/snapshot_tables.h"
 #include "script/host/script_parameter.h"
 #include "script_error.h"
 

@@ -8,7 +8,7 @@
 #include "motion_targets.h"
 #include "script/bindings/bindings.h"
 #include "script/bindings/object_binding.h"
-#include "script/chart/place.h"
+#include "script/lua/script_place.h"
 #include "script/sandbox/library_function.h"
 
 namespace kadans {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "script/chart/place.h"
 #include "script/check/hint.h"
+#include "script/lua/script_place.h"
 
 namespace kadans {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "script/bindings/bindings.h"
 #include "script/bindings/object_binding.h"
-#include "script/chart/place.h"
 #include "script/check/hint.h"
+#include "script/lua/script_place.h"
 
 namespace kadans {
 namespace {

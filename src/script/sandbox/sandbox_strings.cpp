@@ -1,9 +1,13 @@
 // The string library under a budget, but for patterns: what works long in C is charged before it begins.
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "library_function.h"
+#include "pattern_matcher.h"
 #include "sandbox.h"
 #include "script/lua/lua_core.h"
 
@@ -107,6 +111,171 @@ int format_text(lua_State* state) {
   return results;
 }
 
+constexpr std::string_view special_characters = "^$*+?.([%-";
+constexpr double plain_bytes_per_instruction = 4;
+constexpr std::size_t template_steps = 3, text_steps = 48, value_steps = 160,
+                      number_steps = 1200;  // of what replaces a match
+
+std::string_view check_text(lua_State* state, int index) {
+  std::size_t length = 0;
+  const char* text = luaL_checklstring(state, index, &length);
+  return {text, length};
+}
+
+// The place of the subject where the search begins: argument `index`, counted from 1, or from the end when negative.
+std::size_t search_start(lua_State* state, int index, std::size_t length) {
+  std::int64_t start = optional_place(state, index, 1);
+  start = start < 0 ? start + static_cast<std::int64_t>(length) : start - 1;
+  return std::min(static_cast<std::size_t>(std::max<std::int64_t>(start, 0)), length);
+}
+
+int push_places(lua_State* state, const char* text, const char* begin, const char* end) {
+  lua_pushinteger(state, begin - text + 1);
+  lua_pushinteger(state, end - text);
+  return 2;
+}
+
+int find_plain(lua_State* state, std::string_view subject, std::string_view wanted, std::size_t start) {
+  // memmem takes time in proportion to the two lengths, whatever they hold.
+  core_of(state).budget.charge(
+      state, static_cast<double>(subject.size() - start + wanted.size()) / plain_bytes_per_instruction);
+  const void* found = memmem(subject.data() + start, subject.size() - start, wanted.data(), wanted.size());
+  if (found == nullptr) return lua_pushnil(state), 1;
+  const auto* begin = static_cast<const char*>(found);
+  return push_places(state, subject.data(), begin, begin + wanted.size());
+}
+
+int search(lua_State* state, bool finds) {
+  const std::string_view subject = check_text(state, 1), pattern = check_text(state, 2);
+  const std::size_t start = search_start(state, 3, subject.size());
+  if (finds && (lua_toboolean(state, 4) != 0 || pattern.find_first_of(special_characters) == std::string_view::npos))
+    return find_plain(state, subject, pattern, start);
+  const bool anchored = pattern.starts_with('^');
+  PatternMatcher matcher(state, subject, pattern.data() + (anchored ? 1 : 0));
+  int results = 0;
+  if (!matcher.find(subject.data() + start, anchored)) {
+    lua_pushnil(state);
+    results = 1;
+  } else if (finds) {
+    results = push_places(state, subject.data(), matcher.begin(), matcher.end()) + matcher.push_captures(false);
+  } else {
+    results = matcher.push_captures(true);
+  }
+  matcher.settle();
+  return results;
+}
+
+// find(text, pattern [, init [, plain]]), match(text, pattern [, init]): as in Lua.
+int find(lua_State* state) { return search(state, true); }
+int match(lua_State* state) { return search(state, false); }
+
+// Upvalues: the subject, the pattern, where to go on.
+int next_match(lua_State* state) {
+  std::size_t length = 0;
+  const char* text = lua_tolstring(state, lua_upvalueindex(1), &length);
+  const auto from = static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(3)));
+  if (from > length) return 0;
+  PatternMatcher matcher(state, {text, length}, lua_tostring(state, lua_upvalueindex(2)));
+  const bool found = matcher.find(text + from, false);
+  int results = 0;
+  if (found) {
+    const std::ptrdiff_t behind = matcher.end() - text;
+    lua_pushinteger(state, matcher.end() == matcher.begin() ? behind + 1 : behind);  // goes on behind an empty match
+    lua_replace(state, lua_upvalueindex(3));
+    results = matcher.push_captures(true);
+  }
+  matcher.settle();
+  return results;
+}
+
+// gmatch(text, pattern): as in Lua; '^' is a character like others.
+int gmatch(lua_State* state) {
+  (void)check_text(state, 1);
+  (void)check_text(state, 2);
+  lua_settop(state, 2);
+  lua_pushinteger(state, 0);
+  lua_pushcclosure(state, next_match, 3);
+  return 1;
+}
+
+// Adds argument 3, where %1 is a capture and %0 the match.
+void add_template(lua_State* state, luaL_Buffer& buffer, PatternMatcher& matcher) {
+  const std::string_view text = check_text(state, 3);
+  matcher.meter().spend(template_steps * text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      luaL_addchar(&buffer, text[i]);
+      continue;
+    }
+    const char c = text.data()[++i];  // '\0' behind the end
+    if (c == '0') {
+      const auto length = static_cast<std::size_t>(matcher.end() - matcher.begin());
+      matcher.meter().spend(StepMeter::of_bytes(length));
+      luaL_addlstring(&buffer, matcher.begin(), length);
+    } else if (c >= '1' && c <= '9') {
+      matcher.push_capture(c - '1');
+      luaL_addvalue(&buffer);
+    } else {
+      luaL_addchar(&buffer, c);
+    }
+  }
+}
+
+// Adds what takes the place of the last match: from a text, a table or a function at argument 3.
+void add_replacement(lua_State* state, luaL_Buffer& buffer, PatternMatcher& matcher, int type) {
+  matcher.meter().spend(type == LUA_TSTRING || type == LUA_TNUMBER ? text_steps : value_steps);
+  if (type == LUA_TTABLE) {
+    matcher.push_capture(0);
+    lua_gettable(state, 3);
+  } else if (type == LUA_TFUNCTION) {
+    lua_pushvalue(state, 3);
+    lua_call(state, matcher.push_captures(true), 1);
+  } else {
+    return add_template(state, buffer, matcher);
+  }
+  const auto length = static_cast<std::size_t>(matcher.end() - matcher.begin());
+  if (lua_toboolean(state, -1) == 0) {  // stays as it was
+    lua_pop(state, 1);
+    matcher.meter().spend(StepMeter::of_bytes(length));
+    return luaL_addlstring(&buffer, matcher.begin(), length);
+  }
+  if (lua_isstring(state, -1) == 0) luaL_error(state, "invalid replacement value (a %s)", luaL_typename(state, -1));
+  matcher.meter().spend(lua_type(state, -1) == LUA_TNUMBER ? number_steps : StepMeter::of_bytes(lua_objlen(state, -1)));
+  luaL_addvalue(&buffer);
+}
+
+// gsub(text, pattern, replacement [, n]): as in Lua.
+int gsub(lua_State* state) {
+  const std::string_view subject = check_text(state, 1), pattern = check_text(state, 2);
+  const int type = lua_type(state, 3);
+  const int most = luaL_optint(state, 4, static_cast<int>(subject.size() + 1));
+  if (type != LUA_TNUMBER && type != LUA_TSTRING && type != LUA_TFUNCTION && type != LUA_TTABLE)
+    return luaL_argerror(state, 3, "string/function/table expected");
+  begin_callback(state, "string.gsub");
+  const bool anchored = pattern.starts_with('^');
+  PatternMatcher matcher(state, subject, pattern.data() + (anchored ? 1 : 0));
+  const char* from = subject.data();
+  const char* const last = from + subject.size();
+  luaL_Buffer buffer;
+  luaL_buffinit(state, &buffer);
+  int count = 0;
+  while (count < most && matcher.find(from, anchored)) {
+    luaL_addlstring(&buffer, from, static_cast<std::size_t>(matcher.begin() - from));
+    ++count;
+    add_replacement(state, buffer, matcher, type);
+    from = matcher.end();
+    const bool empty = matcher.end() == matcher.begin();
+    if (empty && from < last) luaL_addchar(&buffer, *from++);
+    if (anchored || (empty && matcher.end() == last)) break;
+  }
+  luaL_addlstring(&buffer, from, static_cast<std::size_t>(last - from));
+  luaL_pushresult(&buffer);
+  matcher.settle();
+  end_callback(state);
+  lua_pushinteger(state, count);
+  return 2;
+}
+
 }  // namespace
 
 void open_strings(lua_State* state) {
@@ -117,6 +286,14 @@ void open_strings(lua_State* state) {
   wrap(state, "byte", byte);
   wrap(state, "char", character);
   wrap(state, "format", format_text);
+}
+
+void open_patterns(lua_State* state) {
+  const int strings = lua_gettop(state);
+  set_function(state, strings, "find", find);
+  set_function(state, strings, "match", match);
+  set_function(state, strings, "gmatch", gmatch);
+  set_function(state, strings, "gsub", gsub);
 }
 
 }  // namespace kadans

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <system_error>
 
+#include "kadans/signal/input_error.h"
 #include "plot_ink.h"
+#include "realtime/machine/child_process.h"
 #include "signal/number_text.h"
 #include "signal/utf8.h"
 #include "signal_plot.h"
@@ -235,6 +238,19 @@ std::string dark_plot_style() {
   for (const PlotColor& color : plot_ink::states) add(color);
   for (const PlotColor& color : plot_ink::lines) add(color);
   return style + "}\n";
+}
+
+std::string draw(const SignalPlot& plot, PlotFormat format, PlotSize size) {
+  ProgramOutput drawn;
+  try {
+    drawn = run_program({"gnuplot", "-d"}, gnuplot_script(plot, format, size));  // -d: nobody's settings but ours
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::no_such_file_or_directory) throw;
+    throw InputError({.message = "plots are drawn by gnuplot, which is not here: install the package gnuplot-nox"});
+  }
+  if (drawn.exit_code != 0 || drawn.out.empty())
+    throw InputError({.message = "gnuplot failed: " + drawn.err.substr(0, 500)});
+  return drawn.out;
 }
 
 }  // namespace kadans

@@ -2,7 +2,35 @@
 
 #include <cstring>
 
+#include <nlohmann/json.hpp>
+
+#include "config/json/foreign_json.h"
+
 namespace kadans {
+namespace {
+
+constexpr std::int64_t ns_per_s = 1'000'000'000;
+
+int foxglove_level(BehaviorLog::Severity severity) noexcept {
+  switch (severity) {
+    case BehaviorLog::Severity::info:
+      return 2;
+    case BehaviorLog::Severity::warning:
+      return 3;
+    case BehaviorLog::Severity::error:
+      return 4;
+  }
+  return 0;
+}
+
+void put_what(nlohmann::ordered_json& json, const ToldFault& fault) {
+  if (!fault.joint.empty()) json["joint"] = fault.joint;
+  json["value"] = fault.value;
+  json["limit"] = fault.limit;
+  if (!fault.words.empty()) json["words"] = fault.words;
+}
+
+}  // namespace
 
 // An event in the ring: its size in bytes (u32, the head not counted), its time (i64), its kind (u8), then its fields.
 
@@ -63,5 +91,102 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
   }
   return true;
 }
+
+std::string json_of(const Event& event) {
+  const Transition& transition = event.transition;
+  nlohmann::json json{{"timestamp", {{"sec", transition.time_ns / ns_per_s}, {"nsec", transition.time_ns % ns_per_s}}}};
+  if (event.kind == Event::Kind::transition) {
+    json["behavior"] = transition.behavior;
+    json["from"] = transition.from;
+    json["to"] = transition.to;
+    json["why"] = transition.why;
+  } else {
+    json["level"] = foxglove_level(event.severity);
+    json["message"] = event.text;
+    json["name"] = transition.behavior;
+    json["file"] = "";
+    json["line"] = 0;
+  }
+  // Scripts may say bytes that are no UTF-8.
+  return json_text(json);
+}
+
+std::string json_of(const ToldFault& fault) {
+  nlohmann::ordered_json json{{"timestamp", {{"sec", fault.time_ns / ns_per_s}, {"nsec", fault.time_ns % ns_per_s}}},
+                              {"name", fault.name}};
+  put_what(json, fault);
+  return json_text(json);
+}
+
+nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model) {
+  const ToldFault what = told(fault, model);
+  nlohmann::ordered_json json{{"code", what.name}, {"tick", fault.tick}, {"text", fault_text(what)}};
+  put_what(json, what);
+  json["key"] = configuration_key(fault.code);
+  return json;
+}
+
+const char* const log_schema = R"({
+  "title": "foxglove.Log",
+  "description": "A line of text for people",
+  "type": "object",
+  "properties": {
+    "timestamp": {
+      "type": "object",
+      "title": "time",
+      "properties": {
+        "sec": { "type": "integer", "minimum": 0 },
+        "nsec": { "type": "integer", "minimum": 0, "maximum": 999999999 }
+      },
+      "description": "Time of the run"
+    },
+    "level": {
+      "title": "foxglove.LogLevel",
+      "description": "How much it matters",
+      "oneOf": [
+        { "title": "UNKNOWN", "const": 0 },
+        { "title": "DEBUG", "const": 1 },
+        { "title": "INFO", "const": 2 },
+        { "title": "WARNING", "const": 3 },
+        { "title": "ERROR", "const": 4 },
+        { "title": "FATAL", "const": 5 }
+      ]
+    },
+    "message": { "type": "string", "description": "What is said" },
+    "name": { "type": "string", "description": "The behavior, or the part of the runtime, that says it" },
+    "file": { "type": "string", "description": "File it came from, or empty" },
+    "line": { "type": "integer", "minimum": 0, "description": "Line in that file" }
+  }
+})";
+
+const char* const transition_schema = R"({
+  "title": "kadans.Transition",
+  "description": "A change of state of a behavior",
+  "type": "object",
+  "properties": {
+    "timestamp": {
+      "type": "object",
+      "title": "time",
+      "properties": {
+        "sec": { "type": "integer", "minimum": 0 },
+        "nsec": { "type": "integer", "minimum": 0, "maximum": 999999999 }
+      },
+      "description": "Time of the run"
+    },
+    "behavior": { "type": "string" },
+    "from": { "type": "string", "description": "Path of the state that was left, empty on entry" },
+    "to": { "type": "string", "description": "Path of the state that was entered" },
+    "why": { "type": "string" }
+  }
+})";
+
+const char* const fault_schema = R"({
+  "title": "kadans.Fault", "type": "object",
+  "properties": { "timestamp": { "type": "object", "title": "time",
+      "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
+    "name": { "type": "string" }, "joint": { "type": "string" },
+    "words": { "type": "string", "description": "In place of value and limit" },
+    "value": { "type": "number" }, "limit": { "type": "number" } }
+})";
 
 }  // namespace kadans

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
@@ -127,6 +128,168 @@ PlacedBox placed(const btConvexShape& box, const btTransform& pose) {
   return {pose, static_cast<const btBoxShape&>(box).getHalfExtentsWithMargin()};
 }
 
+constexpr double preference_m = 1e-3;  // another axis must be so much better than a face of the second box
+constexpr double outline_m = 2e-4;     // faces are cut that much inside their outline: what only grazes a side is free
+constexpr std::size_t corners_max = 8;
+
+// The corners of a face in the other box's frame while they are cut, in order around it.
+struct Polygon {
+  std::array<btVector3, corners_max> corners;
+  std::size_t count = 0;
+
+  void add(const btVector3& corner) {
+    if (count < corners_max) corners[count++] = corner;
+  }
+};
+
+struct Face {
+  int axis = 0;
+  double sign = 1;
+  double separation_m = -std::numeric_limits<double>::infinity();
+};
+
+struct Edges {
+  int axis_a = 0, axis_b = 0;
+  btVector3 normal{0, 0, 0};  // from b to a
+  double separation_m = -std::numeric_limits<double>::infinity();
+};
+
+double reach_m(const PlacedBox& box, const btVector3& direction) {
+  double reach = 0;
+  for (int i = 0; i < 3; ++i) reach += std::abs(direction.dot(box.pose.getBasis().getColumn(i))) * box.half_m[i];
+  return reach;
+}
+
+// The face of `box` that looks at `other` with the least overlap.
+Face best_face(const PlacedBox& box, const PlacedBox& other) {
+  const btVector3 way = other.pose.getOrigin() - box.pose.getOrigin();
+  Face best;
+  for (int i = 0; i < 3; ++i) {
+    const btVector3 axis = box.pose.getBasis().getColumn(i);
+    const double along = way.dot(axis);
+    const double separation = std::abs(along) - box.half_m[i] - reach_m(other, axis);
+    if (separation > best.separation_m) best = {i, along < 0 ? -1.0 : 1.0, separation};
+  }
+  return best;
+}
+
+Edges best_edges(const PlacedBox& a, const PlacedBox& b) {
+  const btVector3 way = a.pose.getOrigin() - b.pose.getOrigin();
+  Edges best;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      btVector3 axis = a.pose.getBasis().getColumn(i).cross(b.pose.getBasis().getColumn(j));
+      if (axis.length2() < 1e-6) continue;  // parallel edges: the faces say it better
+      axis.normalize();
+      if (way.dot(axis) < 0) axis = -axis;
+      const double separation = way.dot(axis) - reach_m(a, axis) - reach_m(b, axis);
+      if (separation > best.separation_m) best = {i, j, axis, separation};
+    }
+  }
+  return best;
+}
+
+// Keeps what lies at or below `limit` along sign * axis.
+Polygon cut(const Polygon& polygon, int axis, double sign, double limit) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const btVector3 &from = polygon.corners[i], &to = polygon.corners[(i + 1) % polygon.count];
+    const double over_from = sign * from[axis] - limit, over_to = sign * to[axis] - limit;
+    if (over_from <= 0) kept.add(from);
+    if ((over_from <= 0) != (over_to <= 0)) kept.add(from + (to - from) * (over_from / (over_from - over_to)));
+  }
+  return kept;
+}
+
+// The face of `box` that looks most against `normal`, in the frame of `reference`.
+Polygon facing(const PlacedBox& box, const btVector3& normal, const PlacedBox& reference) {
+  const btVector3 local = normal * box.pose.getBasis();
+  const int axis = local.absolute().maxAxis();
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const btTransform to_reference = reference.pose.inverseTimes(box.pose);
+  Polygon polygon;
+  for (const auto& [su, sv] : {std::pair{-1, -1}, std::pair{1, -1}, std::pair{1, 1}, std::pair{-1, 1}}) {
+    btVector3 corner;
+    corner[axis] = local[axis] > 0 ? -box.half_m[axis] : box.half_m[axis];
+    corner[u] = su * box.half_m[u];
+    corner[v] = sv * box.half_m[v];
+    polygon.add(to_reference * corner);
+  }
+  return polygon;
+}
+
+double inside(double half_m) { return std::max(half_m - outline_m, half_m / 2); }
+
+// Drops all but four: the deepest, the one furthest from it, and those that span the widest to both sides.
+Polygon spread(const Polygon& polygon, int axis, double sign) {
+  if (polygon.count <= TouchPoints::capacity) return polygon;
+  const auto height = [&](std::size_t i) { return sign * polygon.corners[i][axis]; };
+  std::size_t deepest = 0, furthest = 0, left = 0, right = 0;
+  for (std::size_t i = 1; i < polygon.count; ++i) {
+    if (height(i) < height(deepest)) deepest = i;
+  }
+  const btVector3 from = polygon.corners[deepest];
+  const auto distance2 = [&](std::size_t i) { return (polygon.corners[i] - from).length2(); };
+  for (std::size_t i = 1; i < polygon.count; ++i) {
+    if (distance2(i) > distance2(furthest)) furthest = i;
+  }
+  btVector3 normal(0, 0, 0);
+  normal[axis] = 1;
+  const btVector3 across = normal.cross(polygon.corners[furthest] - from);
+  const auto aside = [&](std::size_t i) { return across.dot(polygon.corners[i] - from); };
+  for (std::size_t i = 1; i < polygon.count; ++i) {
+    if (aside(i) > aside(left)) left = i;
+    if (aside(i) < aside(right)) right = i;
+  }
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    if (i == deepest || i == furthest || i == left || i == right) kept.add(polygon.corners[i]);
+  }
+  return kept;
+}
+
+// `incident` stands on a face of `reference`. The points of the incident box come first in each pair.
+TouchPoints touch_face(const PlacedBox& reference, const Face& face, const PlacedBox& incident) {
+  const btVector3 normal = face.sign * reference.pose.getBasis().getColumn(face.axis);
+  Polygon polygon = facing(incident, normal, reference);
+  for (const int side : {(face.axis + 1) % 3, (face.axis + 2) % 3}) {
+    for (const double sign : {1.0, -1.0}) polygon = cut(polygon, side, sign, inside(reference.half_m[side]));
+  }
+  polygon = cut(polygon, face.axis, face.sign, reference.half_m[face.axis] + contact_distance_m);
+  polygon = spread(polygon, face.axis, face.sign);
+  TouchPoints points;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const double distance = face.sign * polygon.corners[i][face.axis] - reference.half_m[face.axis];
+    const btVector3 at = reference.pose * polygon.corners[i];
+    points.add({at, at - distance * normal, normal, distance});
+  }
+  return points;
+}
+
+// The middle of the edge of `box` along `axis` that reaches furthest in `direction`.
+btVector3 edge_middle(const PlacedBox& box, int axis, const btVector3& direction) {
+  btVector3 middle = box.pose.getOrigin();
+  for (int i = 0; i < 3; ++i) {
+    const btVector3 column = box.pose.getBasis().getColumn(i);
+    if (i != axis) middle += (direction.dot(column) < 0 ? -1 : 1) * box.half_m[i] * column;
+  }
+  return middle;
+}
+
+TouchPoints touch_edges(const PlacedBox& a, const PlacedBox& b, const Edges& edges) {
+  const btVector3 along_a = a.pose.getBasis().getColumn(edges.axis_a),
+                  along_b = b.pose.getBasis().getColumn(edges.axis_b);
+  const btVector3 from_a = edge_middle(a, edges.axis_a, -edges.normal),
+                  from_b = edge_middle(b, edges.axis_b, edges.normal);
+  const btVector3 way = from_a - from_b;
+  const double cosine = along_a.dot(along_b), da = along_a.dot(way), db = along_b.dot(way);
+  const double t_a = (cosine * db - da) / (1 - cosine * cosine), t_b = db + cosine * t_a;
+  TouchPoints points;
+  if (std::abs(t_a) > a.half_m[edges.axis_a] || std::abs(t_b) > b.half_m[edges.axis_b]) return points;
+  points.add({from_a + t_a * along_a, from_b + t_b * along_b, edges.normal, edges.separation_m});
+  return points;
+}
+
 }  // namespace
 
 TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
@@ -145,6 +308,23 @@ TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, cons
   }
   if (type_a == BOX_SHAPE_PROXYTYPE) return swapped(touch_points(b, pose_b, a, pose_a));
   return touch_nearest(a, pose_a, b, pose_b);
+}
+
+TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b) {
+  const Face face_b = best_face(b, a), face_a = best_face(a, b);
+  if (std::max(face_a.separation_m, face_b.separation_m) > contact_distance_m) return {};
+  const Edges edges = best_edges(a, b);
+  if (edges.separation_m > contact_distance_m) return {};
+  const bool on_a = face_a.separation_m > face_b.separation_m + preference_m;
+  const double face_m = on_a ? face_a.separation_m : face_b.separation_m;
+  if (edges.separation_m > face_m + preference_m) return touch_edges(a, b, edges);
+  if (!on_a) return touch_face(b, face_b, a);
+  TouchPoints points = touch_face(a, face_a, b);
+  for (TouchPoint& point : points) {
+    std::swap(point.on_a, point.on_b);
+    point.normal = -point.normal;
+  }
+  return points;
 }
 
 }  // namespace kadans::bullet

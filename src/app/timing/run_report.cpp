@@ -1,4 +1,4 @@
-#include "live_report.h"
+#include "run_report.h"
 
 #include <array>
 #include <cstdio>
@@ -8,8 +8,6 @@
 #include <unistd.h>
 
 #include "config/json/foreign_json.h"
-#include "link_report.h"
-#include "tick_report.h"
 
 namespace kadans {
 namespace {
@@ -72,17 +70,17 @@ std::string rows_of(const TaskThread& thread) {
 }
 
 // A recorder may exist only for its flight recorder.
-bool has_record(const LiveResult& result) {
+bool has_record(const WallClockResult& result) {
   return result.recorder != nullptr && (result.recorder->rows() > 0 || !result.recorder->error().empty());
 }
 
-std::uint64_t refused(const LiveResult& result) {
+std::uint64_t refused(const WallClockResult& result) {
   return result.behaviors.commands().refused() + result.engine.inbox().state().refused;
 }
 
 }  // namespace
 
-std::string live_text(const LiveResult& result) {
+std::string live_text(const WallClockResult& result) {
   std::array<char, 400> text{};
   std::snprintf(text.data(), text.size(), "%s after %.3f s, %.1f MB resident, first tick %.0f ms after the start\n\n",
                 result.ended.c_str(), result.duration_s, resident_MB(), result.start_ms);
@@ -117,7 +115,7 @@ std::string live_text(const LiveResult& result) {
   return all;
 }
 
-std::string live_json(const LiveResult& result) {
+std::string live_json(const WallClockResult& result) {
   Json threads;
   for (const auto& thread : result.threads.all()) threads[thread->settings().name] = json_of(*thread);
   if (result.threads.keep_awake() != nullptr) {
@@ -155,6 +153,26 @@ std::string live_json(const LiveResult& result) {
                       {"error", result.recorder->error()}};
   }
   return json_text(json);
+}
+
+nlohmann::ordered_json tick_json(const TickStatistics& statistics, std::span<const TickQuantile> quantiles) {
+  nlohmann::ordered_json json{{"min", in_us(statistics.min_ns())}, {"mean", in_us(statistics.mean_ns())}};
+  for (const TickQuantile& quantile : quantiles) json[quantile.name] = in_us(statistics, quantile);
+  json["max"] = in_us(statistics.max_ns());
+  return json;
+}
+
+std::string link_text(const std::vector<PlantCount>& counts) {
+  std::string text;
+  for (const PlantCount& count : counts)
+    text += (text.empty() ? "" : ", ") + std::to_string(count.value) + " " + std::string(count.name);
+  return text;
+}
+
+nlohmann::ordered_json link_json(const std::vector<PlantCount>& counts) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const PlantCount& count : counts) json[count.name] = count.value;
+  return json;
 }
 
 }  // namespace kadans

@@ -1,4 +1,4 @@
-#include "live_threads.h"
+#include "run_threads.h"
 
 #include <chrono>
 #include <thread>
@@ -13,7 +13,7 @@ constexpr std::int64_t record_period_ns = 20'000'000, joystick_period_ns = 10'00
 
 }  // namespace
 
-LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks, bool (*give_up)() noexcept)
+RunThreads::RunThreads(const RunTiming& timing, const RunTasks& tasks, bool (*give_up)() noexcept)
     : timing_(timing),
       give_up_(give_up),
       line_(2 + std::size_t{tasks.plant != nullptr} + std::size_t{tasks.record != nullptr} +
@@ -58,17 +58,17 @@ LiveThreads::LiveThreads(const LiveTiming& timing, const LiveTasks& tasks, bool 
   add({.name = "record", .period_ns = record_period_ns, .priority = priority(record_priority)}, *tasks.record, 0);
 }
 
-std::unique_ptr<Wait> LiveThreads::make_wait(std::int64_t spin_ns) {
+std::unique_ptr<Wait> RunThreads::make_wait(std::int64_t spin_ns) {
   if (timing_.virtual_time) return virtual_time_.make_wait();
   return std::make_unique<PosixWait>(spin_ns, line_);
 }
 
-void LiveThreads::add(const TaskSettings& settings, Task& task, std::int64_t spin_ns) {
+void RunThreads::add(const TaskSettings& settings, Task& task, std::int64_t spin_ns) {
   waits_.push_back(make_wait(spin_ns));
   threads_.push_back(std::make_unique<TaskThread>(settings, task, *waits_.back()));
 }
 
-bool LiveThreads::start(void (*tell)(const std::string& message)) {
+bool RunThreads::start(void (*tell)(const std::string& message)) {
   if (!timing_.virtual_time) {
     if (timing_.keep_awake) awake_.emplace(timing_.cpu);
     (void)leave_cpu(timing_.cpu);  // the threads that are started here do so, too
@@ -85,7 +85,7 @@ bool LiveThreads::start(void (*tell)(const std::string& message)) {
   return all;
 }
 
-bool LiveThreads::wait_for_all(void (*tell)(const std::string& message)) {
+bool RunThreads::wait_for_all(void (*tell)(const std::string& message)) {
   constexpr std::chrono::milliseconds look_again{10};
   constexpr std::int64_t patience_ns = 1'000'000'000, say_again_ns = 10'000'000'000;
   std::int64_t say_ns = WallClock().now_ns() + patience_ns;
@@ -103,7 +103,7 @@ bool LiveThreads::wait_for_all(void (*tell)(const std::string& message)) {
   return true;
 }
 
-std::string LiveThreads::not_begun() const {
+std::string RunThreads::not_begun() const {
   std::string names;
   for (const auto& thread : threads_) {
     if (!thread->begun()) names += (names.empty() ? "" : ", ") + thread->settings().name;
@@ -112,12 +112,12 @@ std::string LiveThreads::not_begun() const {
 }
 
 // A thread that is stopped before the line opens does not beat even once.
-void LiveThreads::cancel() noexcept {
+void RunThreads::cancel() noexcept {
   for (const auto& thread : threads_) thread->stop();
   line_.open();
 }
 
-std::vector<std::string> LiveThreads::stop(std::int64_t patience_ns) noexcept {
+std::vector<std::string> RunThreads::stop(std::int64_t patience_ns) noexcept {
   for (const auto& thread : threads_) thread->stop();
   if (supervisor_wait_) supervisor_wait_->end();
   // When a thread hangs, virtual time stands still and all other threads wait for it.
@@ -125,7 +125,7 @@ std::vector<std::string> LiveThreads::stop(std::int64_t patience_ns) noexcept {
   return join_all(patience_ns);
 }
 
-std::vector<std::string> LiveThreads::join_all(std::int64_t patience_ns) noexcept {
+std::vector<std::string> RunThreads::join_all(std::int64_t patience_ns) noexcept {
   const std::int64_t end_ns = WallClock().now_ns() + patience_ns;
   std::vector<std::string> hanging;
   for (const auto& thread : threads_) {

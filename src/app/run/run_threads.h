@@ -27,7 +27,7 @@ inline constexpr int control_priority = 90, plant_priority = 92, behavior_priori
 // thread that kills it.
 inline constexpr int last_resort_priority = 95, supervisor_priority = 45, behavior_process_priority = 39;
 
-struct LiveTasks {
+struct RunTasks {
   ControlTask& control;
   BehaviorTask& behaviors;
   PlantTask* plant = nullptr;  // of a model, else nullptr
@@ -35,7 +35,7 @@ struct LiveTasks {
   Task* joystick = nullptr;
 };
 
-struct LiveTiming {
+struct RunTiming {
   std::int64_t control_period_ns = 1'000'000, behavior_period_ns = 10'000'000;
   bool virtual_time = false;
   bool real_time = true;  // use real-time priorities
@@ -44,12 +44,12 @@ struct LiveTiming {
   int cpu = 0;  // of the control thread
 };
 
-class LiveThreads {
+class RunThreads {
  public:
   // The tasks must outlive this object. Time 0 is a little after all threads have started. While the supervisor waits
   // for the threads, or for virtual time that stands still, it calls `give_up`; when that returns true, it stops
   // waiting.
-  LiveThreads(const LiveTiming& timing, const LiveTasks& tasks, bool (*give_up)() noexcept);
+  RunThreads(const RunTiming& timing, const RunTasks& tasks, bool (*give_up)() noexcept);
 
   // Waits until all threads have a CPU. After a second, and then every ten seconds, it calls `tell` with the threads
   // that have none. False: the wait was given up and nothing has begun. Throws std::system_error.
@@ -74,7 +74,7 @@ class LiveThreads {
   bool wait_for_all(void (*tell)(const std::string& message));
   void cancel() noexcept;
 
-  LiveTiming timing_;
+  RunTiming timing_;
   bool (*give_up_)() noexcept;
   StartLine line_;
   VirtualTime virtual_time_;

@@ -10,7 +10,7 @@
 
 namespace kadans {
 
-class TuningHistory {
+class ParameterHistory {
  public:
   static constexpr std::size_t steps_max = 1000;
 

@@ -1,8 +1,8 @@
-#include "tuning.h"
+#include "parameter_history.h"
 
 namespace kadans {
 
-void TuningHistory::note(const ParameterChange& change, bool lasting) {
+void ParameterHistory::note(const ParameterChange& change, bool lasting) {
   if (steps_.size() == steps_max) {
     steps_.erase(steps_.begin());
     lasting_.erase(lasting_.begin());
@@ -12,7 +12,7 @@ void TuningHistory::note(const ParameterChange& change, bool lasting) {
   if (lasting) move_on(change);
 }
 
-void TuningHistory::drop() {
+void ParameterHistory::drop() {
   const ParameterChange step = steps_.back();
   const bool lasting = lasting_.back();
   steps_.pop_back();
@@ -20,7 +20,7 @@ void TuningHistory::drop() {
   if (lasting) move_on({step.name, step.now, step.before, step.chunk});
 }
 
-void TuningHistory::move_on(const ParameterChange& change) {
+void ParameterHistory::move_on(const ParameterChange& change) {
   for (auto* const known : {&unsaved_, &set_}) {
     ParameterChange& all = known->try_emplace(change.name, change).first->second;
     all.now = change.now;
@@ -28,7 +28,7 @@ void TuningHistory::move_on(const ParameterChange& change) {
   }
 }
 
-void TuningHistory::saved(const std::vector<ParameterChange>& changes) {
+void ParameterHistory::saved(const std::vector<ParameterChange>& changes) {
   for (const ParameterChange& change : changes) {
     const auto found = unsaved_.find(change.name);
     if (found == unsaved_.end()) continue;
@@ -37,13 +37,13 @@ void TuningHistory::saved(const std::vector<ParameterChange>& changes) {
   }
 }
 
-std::vector<ParameterChange> TuningHistory::unsaved() const {
+std::vector<ParameterChange> ParameterHistory::unsaved() const {
   std::vector<ParameterChange> all;
   for (const auto& [name, change] : unsaved_) all.push_back(change);
   return all;
 }
 
-std::vector<ParameterChange> TuningHistory::set() const {
+std::vector<ParameterChange> ParameterHistory::set() const {
   std::vector<ParameterChange> all;
   for (const auto& [name, change] : set_) all.push_back(change);
   return all;

@@ -13,10 +13,10 @@
 
 namespace kadans {
 
-class LiveJoystick final : public Task {
+class JoystickTask final : public Task {
  public:
   // `path` is a device or a recording; "": the one in the settings. Throws InputError when it cannot be read.
-  LiveJoystick(const JoystickSettings& settings, const std::string& path, JoystickStorage& storage)
+  JoystickTask(const JoystickSettings& settings, const std::string& path, JoystickStorage& storage)
       : storage_(storage), source_(make_joystick(settings, path.empty() ? settings.device : path)) {}
 
   bool beat(const Beat& beat) override {

@@ -6,9 +6,9 @@
 
 namespace kadans {
 
-class LiveLog final : public BehaviorLog {
+class ThreadedLog final : public BehaviorLog {
  public:
-  explicit LiveLog(BehaviorLog& record) noexcept : record_(record) {}
+  explicit ThreadedLog(BehaviorLog& record) noexcept : record_(record) {}
 
   // Behavior thread.
   void transition(const Transition& transition) override {

@@ -1,4 +1,4 @@
-#include "place.h"
+#include "script_place.h"
 
 #include <cstdarg>
 #include <cstring>
@@ -22,14 +22,14 @@ bool is_among(const char* key, const char* const* names) noexcept {
 
 }  // namespace
 
-Place calling_place(lua_State* state, int level) {
+ScriptPlace calling_place(lua_State* state, int level) {
   lua_Debug activation;
   if (lua_getstack(state, level, &activation) == 0 || lua_getinfo(state, "Sl", &activation) == 0) return {};
   if (activation.source[0] != '@') return {};
   return {activation.source + 1, activation.currentline};
 }
 
-int raise_at(lua_State* state, const Place& place, const char* needle, const char* format, ...) {
+int raise_at(lua_State* state, const ScriptPlace& place, const char* needle, const char* format, ...) {
   int line = place.line;
   if (needle != nullptr) {
     const LuaCore& core = core_of(state);
@@ -45,7 +45,7 @@ int raise_at(lua_State* state, const Place& place, const char* needle, const cha
   return lua_error(state);
 }
 
-void check_keys(lua_State* state, int table, const Place& place, const char* what, const char* const* names) {
+void check_keys(lua_State* state, int table, const ScriptPlace& place, const char* what, const char* const* names) {
   const char* wrong = nullptr;
   std::size_t name_count = 0;
   while (names[name_count] != nullptr) ++name_count;
