@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <initializer_list>
 #include <optional>
 #include <sstream>
 
@@ -256,6 +257,26 @@ Findings check_test_names(std::string_view path, std::string_view text) {
     if (name.find_first_of("[];") != std::string_view::npos) {
       findings.push_back(std::string(path) + ": the name of test \"" + std::string(name) + "\" holds one of [ ] ;");
     }
+  }
+  return findings;
+}
+
+Findings check_words(std::string_view path, std::string_view text) {
+  const auto in_one_of = [path](std::initializer_list<std::string_view> folders) {
+    return std::ranges::any_of(folders, [path](std::string_view folder) { return path.starts_with(folder); });
+  };
+  Findings findings;
+  for (const std::string& type : types_defined_in(text)) {
+    const std::string_view name = std::string_view(type).substr(type.rfind(':') + 1);
+    const auto begins = [name](std::string_view word) { return name.starts_with(word); };
+    std::string wrong;
+    if (begins("Live") && !in_one_of({"remote/page/", "app/live/"})) wrong = "'Live' is the server for viewers";
+    if (name.ends_with("Place") && name != "TextPlace" && name != "ScriptPlace" && name != "SourcePlace")
+      wrong = "a 'Place' is one in a text";
+    if ((begins("Tune") || begins("Tuning")) && !in_one_of({"campaign/", "config/plan/", "app/tune/", "app/sweep/"}))
+      wrong = "'tuning' searches for parameters";
+    if (!wrong.empty())
+      findings.push_back(std::string(path) + ": " + type + ": " + wrong + " (docs/architecture.md, words)");
   }
   return findings;
 }

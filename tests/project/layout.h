@@ -37,6 +37,8 @@ Findings check_writing(std::string_view path, std::string_view text);
 // The types that a file defines for all files to see: those whose line begins in the first column, outside of unnamed
 // namespaces, with their namespace in front: "kadans::TextPlace". Two files with the same one are two programs.
 std::vector<std::string> types_defined_in(std::string_view text);
+// The words of docs/architecture.md in the names of types: Live, Place, Tune and Tuning each mean one thing.
+Findings check_words(std::string_view path, std::string_view text);
 // CTest takes the names of test cases as a list: ';', '[' and ']' would tear them apart and the case would never run.
 Findings check_test_names(std::string_view path, std::string_view text);
 

@@ -146,6 +146,20 @@ TEST_CASE("no type is defined in two files") {
         std::vector<std::string>{"kadans::A", "kadans::C", "kadans::C::F", "kadans::E"});
 }
 
+TEST_CASE("a word of docs/architecture.md stands for one idea in the names of types") {
+  for (const fs::path& folder : {root / "src", root / "include/kadans"}) {
+    for (const fs::path& file : files_below(folder)) {
+      if (is_code(file)) report(check_words(fs::relative(file, folder).generic_string(), read(file)));
+    }
+  }
+  const std::string live = "namespace kadans {\nclass LiveThing {\n};\n}\n";
+  CHECK(check_words("remote/page/a.h", live).empty());
+  CHECK(check_words("app/run/a.h", live) ==
+        Findings{"app/run/a.h: kadans::LiveThing: 'Live' is the server for viewers (docs/architecture.md, words)"});
+  CHECK(check_words("app/a.h", "namespace kadans {\nstruct CtlPlace {\n};\nstruct TextPlace {\n};\n}\n").size() == 1);
+  CHECK(check_words("remote/a.h", "namespace kadans {\nstruct TuningStep {\n};\n}\n").size() == 1);
+}
+
 TEST_CASE("no test has a name that CTest would tear apart") {
   for (const fs::path& file : files_below(root / "tests")) {
     if (file.extension() == ".cpp") report(check_test_names(fs::relative(file, root).generic_string(), read(file)));
