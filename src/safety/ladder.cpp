@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace kadans {
-
 FaultMask Ladder::update(FaultMask faults, double dt_s, const Reactions& reactions,
                          SafetyLevel Reaction::*rung) noexcept {
   for (double& left_s : left_s_) left_s = std::max(0.0, left_s - dt_s);
@@ -39,6 +38,43 @@ void Ladder::settle() noexcept {
       reported_[at] = 0;
     }
   }
+}
+
+Reactions default_reactions() noexcept {
+  using enum FaultCode;
+  using enum SafetyLevel;
+  Reactions reactions{};
+  const auto set = [&](FaultCode code, const Reaction& reaction) {
+    reactions[static_cast<std::size_t>(code)] = reaction;
+  };
+  for (const FaultCode code : {soft_stop, soft_speed, effort_limit, effort_rate_limit, power_limit, motor_warm}) {
+    set(code, {.joint = limited});
+  }
+  for (const FaultCode code : {position_limit, velocity_limit, actuation_not_finite, motor_hot, drive_hot}) {
+    set(code, {.joint = damp, .latch = true});
+  }
+  for (const FaultCode code :
+       {sensor_not_finite, sensor_silent, sensor_stuck, sensor_jump, drive_fault, drive_not_enabled, sample_old}) {
+    set(code, {.joint = off, .latch = true});
+  }
+  for (const FaultCode code : {imu_silent, imu_not_finite}) set(code, {.robot = hold, .exit_s = 0.1});
+  set(imu_stuck, {.robot = hold, .latch = true});
+  set(imu_jump, {.robot = limited});
+  for (const FaultCode code :
+       {foot_silent, foot_stuck, foot_jump, foot_not_finite, channel_silent, channel_range, channel_not_finite}) {
+    set(code, {.robot = limited});
+  }
+  set(heartbeat_lost, {.robot = hold, .escalate = true, .exit_s = 0.02});
+  set(overruns, {.robot = damp, .latch = true});
+  set(joints_lost, {.robot = damp, .latch = true});
+  set(tilt, {.robot = limited});
+  set(fall, {.robot = limited});
+  set(supply_low, {.robot = hold, .escalate = true, .exit_s = 0.5});
+  set(supply_high, {.robot = damp, .latch = true});
+  for (const FaultCode code : {emergency_stop, emergency_input}) {
+    set(code, {.robot = damp, .latch = true});  // and off after damp_s; no configuration changes it
+  }
+  return reactions;
 }
 
 }  // namespace kadans

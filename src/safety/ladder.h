@@ -8,11 +8,38 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "fault_mask.h"
-#include "reaction.h"
+#include "kadans/signal/fault.h"
+#include "kadans/signal/status.h"
 
 namespace kadans {
+
+// The reaction to a fault: the rungs of the ladder that it asks for, and how they are left again. Each fault code has a
+// reaction, and each reaction is a key of the robot's configuration.
+//
+// The ladder:  normal   everything goes on
+//              limited  a command was reduced, or something is reported that has no effect yet
+//              hold     the control set keeps its last set-points, a motion under way goes on to its end; commands that
+//                       would change what is asked of the joint, or of any joint when the robot holds, are refused
+//              damp     every torque is -damping times velocity
+//              off      no torque
+// A joint is on the worse of its own rung and the robot's.
+struct Reaction {
+  SafetyLevel joint = SafetyLevel::normal;  // of the joint concerned, if there is one
+  SafetyLevel robot = SafetyLevel::normal;
+  bool latch = false;     // the rung stays until faults are cleared; else it is left when the fault is over for exit_s
+  bool escalate = false;  // while it lasts the robot goes on: after hold_s from hold to damp, after damp_s to off,
+                          // and both stay until cleared
+  double exit_s = 0.05;   // how long the fault must be over before its rung is left
+};
+
+using Reactions = std::array<Reaction, fault_codes>;  // by fault code
+
+// A joint whose own limit or actuation failed damps. A joint that is not measured any more is off, because damping
+// needs its velocity. Without an IMU or a heartbeat the robot holds.
+Reactions default_reactions() noexcept;
 
 class Ladder {
  public:

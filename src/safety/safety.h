@@ -3,7 +3,7 @@
 // damp, off.
 //
 // Watches find faults (joint_watch.h, drive_watch.h, body_watch.h, fall_watch.h, engine_watch.h); detection.h says how
-// soon. Reactions say which rung follows (reaction.h), ladders keep the rung until it may be left (ladder.h). An
+// soon. Reactions say which rung follows, ladders keep the rung until it may be left (ladder.h). An
 // emergency stop also brings the robot down (emergency_stop.h). What is asked of a joint that still works is cut to its
 // limits (joint_limiter.h). An actuation that is not finite is never written, whatever the configuration says.
 //

@@ -6,7 +6,7 @@
 
 #include "kadans/signal/fault.h"
 #include "kadans/signal/sensor_channel.h"
-#include "reaction.h"
+#include "ladder.h"
 
 namespace kadans {
 

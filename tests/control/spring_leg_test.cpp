@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "control/drive/spring_torque_loop.h"
+#include "control/drive/spring_torque.h"
 #include "kadans/estimate/velocity_filter.h"
 
 using namespace kadans;

@@ -1,8 +1,8 @@
-#include "control/balance/step_geometry.h"
-
 #include <cmath>
 
 #include <doctest/doctest.h>
+
+#include "control/balance/step_plan.h"
 
 using namespace kadans;
 

@@ -1,5 +1,3 @@
-#include "engine/tick/rehearsal.h"
-
 #include <cmath>
 #include <cstring>
 
@@ -7,6 +5,7 @@
 
 #include "bench.h"
 #include "control/drive/spring_torque.h"
+#include "engine/tick/control_engine.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;

@@ -4,7 +4,7 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
 #include "script/fixture.h"
-#include "script/process/restart_policy.h"
+#include "script/process/process_host.h"
 #include "signal/byte_order.h"
 
 using namespace kadans;

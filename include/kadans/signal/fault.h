@@ -1,5 +1,5 @@
 // Fault codes: what went wrong, where and when. A fault names the limit behind it and the key of the robot's
-// configuration that sets this limit, so that a person can look it up. safety/reaction.h says what follows from a
+// configuration that sets this limit, so that a person can look it up. safety/ladder.h says what follows from a
 // fault, safety/detection.h how soon each is found.
 #pragma once
 

@@ -12,6 +12,7 @@
 #include "config/json/json_value.h"
 
 namespace kadans {
+
 class FileChecks {
  public:
   // `robot` is the configuration against which behaviors are checked; "": the one for their folder. Loading a plug-in

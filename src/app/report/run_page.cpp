@@ -1,10 +1,12 @@
 #include "run_page.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "app/live/record_pictures.h"
 #include "campaign/work/durable_file.h"
-#include "run_plot.h"
+#include "config/json/name_pattern.h"
 #include "version.h"
 
 namespace kadans {
@@ -54,6 +56,113 @@ void add_film(const RunPage& page, const ReportOptions& place, HtmlReport& repor
   }
 }
 
+constexpr std::size_t joints_shown = 4, lines_max = 12;
+
+struct Usual {
+  const char* title;
+  std::vector<const char*> patterns;
+};
+const std::vector<Usual>& usual_panels() {
+  static const std::vector<Usual> all{
+      {"height of the base", {"plant.base.height_m", "reference.base.height_m"}},
+      {"lean of the base", {"plant.base.tilt_rad", "base.tilt_rad"}},
+      {"force on the feet", {"plant.foot.*.force_N"}},
+      {"how much of the limits is used", {"plant.limits.torque_share", "plant.limits.speed_share"}},
+      {"how far off the gaze is", {"plant.*.error_rad"}},
+      {"rung of the safety layer", {"safety.robot_level"}},
+      {"what ticks cost", {"timing.*_ns", "timing.*_us"}},
+  };
+  return all;
+}
+
+// The same as choose_signals, but missing signals are left out.
+std::vector<ChosenSignal> present(const std::vector<ChosenSignal>& all, const std::vector<std::string>& patterns) {
+  std::vector<ChosenSignal> chosen;
+  for (const std::string& pattern : patterns) {
+    for (const ChosenSignal& signal : all) {
+      const auto same = [&](const ChosenSignal& one) { return one.info.name == signal.info.name; };
+      if (chosen.size() < lines_max && matches(pattern, signal.info.name) && std::ranges::none_of(chosen, same))
+        chosen.push_back(signal);
+    }
+  }
+  return chosen;
+}
+
+struct Mover {
+  ChosenSignal signal;
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  double range() const noexcept { return high >= low ? high - low : 0; }
+};
+
+// The positions of joints; those that moved most come first.
+std::vector<Mover> movers(const RecordOutline& record, const std::vector<ChosenSignal>& all) {
+  std::vector<Mover> joints;
+  for (const ChosenSignal& signal : all) {
+    if (matches("joint.*.position_rad", signal.info.name)) joints.push_back({signal});
+  }
+  RecordRows rows(record.file);
+  while (rows.next()) {
+    if (rows.values().empty()) continue;
+    for (Mover& joint : joints) {
+      if (joint.signal.channel != rows.channel()) continue;
+      joint.low = std::min(joint.low, rows.values()[joint.signal.place]);
+      joint.high = std::max(joint.high, rows.values()[joint.signal.place]);
+    }
+  }
+  std::ranges::stable_sort(joints, std::ranges::greater{}, &Mover::range);
+  joints.resize(std::min(joints.size(), joints_shown));
+  return joints;
+}
+
+// "joint.l_knee.position_rad" -> "l_knee"
+std::string joint_in(const std::string& name) {
+  const std::size_t begin = name.find('.') + 1;
+  return name.substr(begin, name.rfind('.') - begin);
+}
+
+std::vector<PanelWish> wishes_of(const RecordOutline& record, const std::vector<std::string>& check_signals) {
+  const std::vector<ChosenSignal> all = choose_signals(record, {});
+  std::vector<PanelWish> wishes;
+  const auto wish = [&](const std::string& title, const std::vector<std::string>& patterns) {
+    if (std::vector<ChosenSignal> chosen = present(all, patterns); !chosen.empty())
+      wishes.push_back({title, std::move(chosen)});
+  };
+  for (const Usual& usual : usual_panels()) wish(usual.title, {usual.patterns.begin(), usual.patterns.end()});
+  for (const Mover& joint : movers(record, all)) {
+    const std::string name = joint_in(joint.signal.info.name);
+    if (joint.range() > 0)
+      wish(name + ", commanded and measured", {"control.*." + name + ".reference_rad", joint.signal.info.name});
+  }
+  for (const std::string& signal : check_signals) {
+    const auto shown = [&](const PanelWish& one) {
+      return std::ranges::any_of(one.signals, [&](const ChosenSignal& s) { return s.info.name == signal; });
+    };
+    if (std::ranges::none_of(wishes, shown)) wish("of a check that failed", {signal});
+  }
+  return wishes;
+}
+
+void add_marks(const RunPage& page, SignalPlot& plot) {
+  const RunResult& run = page.subject.result;
+  plot.marks.clear();  // the faults are taken from the run, because the record may lack them
+  for (const Fault& fault : run.faults) {
+    const double share =
+        static_cast<double>(fault.tick) / static_cast<double>(std::max<std::uint64_t>(run.control_ticks, 1));
+    plot.marks.push_back({share * run.duration_s, fault_name(told(fault, page.subject.model))});
+  }
+  for (const ScenarioPush& push : page.scenario.pushes)
+    plot.marks.push_back({push.at_s, "push on " + push.link.name, false});
+  std::erase_if(plot.marks, [&](const PlotMark& mark) { return mark.time_s > plot.to_s; });
+  std::ranges::stable_sort(plot.marks, {}, &PlotMark::time_s);
+}
+
+// True when all values are 0 (no error, no contact), so that the panel shows nothing.
+bool is_zero(const PlotPanel& panel) {
+  return std::ranges::all_of(panel.lines, [](const PlotLine& line) {
+    return std::ranges::all_of(line.points, [](const PlotPoint& point) { return point.y == 0; });
+  });
+}
+
 }  // namespace
 
 fs::path write_run_page(const RunPage& page, const ReportOptions& place) {
@@ -77,6 +186,13 @@ fs::path write_run_page(const RunPage& page, const ReportOptions& place) {
   const fs::path file = fs::path(place.folder) / report_file(page.name, page.subject.result.seed);
   write_durably(file, html_report(report));
   return file;
+}
+
+SignalPlot run_plot(const RecordOutline& record, const RunPage& page) {
+  SignalPlot plot = plot_of(record, wishes_of(record, page.check_signals), {}, 300);
+  std::erase_if(plot.panels, is_zero);
+  add_marks(page, plot);
+  return plot;
 }
 
 }  // namespace kadans

@@ -17,6 +17,7 @@
 #include "telemetry/record/recorder.h"
 
 namespace kadans {
+
 struct WallClockResult {
   const RunThreads& threads;
   const ControlTask& control;

@@ -9,6 +9,7 @@
 #include "run_outcome.h"
 
 namespace kadans {
+
 struct SuiteStyle {
   bool color = false;
   bool unicode = true;

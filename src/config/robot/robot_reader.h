@@ -32,7 +32,7 @@ class RobotReader {
   void estimate(Fields& f);
   void sensor(Fields& entry);
 
-  // robot_joystick.cpp
+  // robot_config.cpp
   void joystick(Fields& f);
 
   // robot_safety.cpp
@@ -41,7 +41,7 @@ class RobotReader {
   void limits(Fields& entry);
   bool within_urdf(const Fields& entry, const JointLimits& limits, const Joint& joint);
 
-  // robot_behaviors.cpp
+  // robot_config.cpp
   void behavior(Fields& entry);
 
   // robot_control.cpp

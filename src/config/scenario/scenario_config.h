@@ -12,8 +12,6 @@
 #include "play_item.h"
 #include "scenario_check.h"
 #include "scenario_event.h"
-#include "scenario_fault.h"
-#include "scenario_push.h"
 #include "world_config.h"
 
 namespace kadans {

@@ -15,12 +15,40 @@
 #include "kadans/exchange/latest.h"
 #include "kadans/plant/plant.h"
 #include "kadans/signal/command.h"
+#include "kadans/signal/frames.h"
 #include "kadans/signal/status.h"
 #include "record_sink.h"
-#include "rehearsal.h"
 #include "safety/safety.h"
 
 namespace kadans {
+
+// A rehearsal of the tick. Between two ticks the CPU works for others, and afterwards the tick's code and memory are no
+// longer in its caches: a tick of one microsecond takes five. Therefore, in the last part of its wait, the control
+// thread goes through the tick beforehand: it calls the same functions, on copies of what they would change.
+//
+// A rehearsal changes nothing that counts. It reads and writes no plant, takes no command and publishes nothing. So a
+// run with rehearsals computes the same as a run without (tests/engine/rehearsal_test.cpp). No allocation, no system
+// call.
+// What a rehearsal works on. Control thread.
+struct Rehearsal {
+  Rehearsal(double period_s, const Estimator& estimated, const Safety& guarded, const RobotModel& model)
+      : dt_s(period_s), estimator(estimated), safety(guarded.settings(), model) {}
+
+  // The last sample once more, as if it were a new one.
+  void sample(const SensorFrame& last) noexcept {
+    copy_used(last, sensors);
+    for (std::uint32_t i = 0; i < last.joint_count; ++i) ++sensors.joints[i].sequence;
+    for (std::uint32_t i = 0; i < last.foot_count; ++i) ++sensors.feet[i].sequence;
+    ++sensors.imu.sequence;
+  }
+
+  double dt_s;
+  SensorFrame sensors;
+  Estimator estimator;
+  Safety safety;
+  Snapshot snapshot;
+  ActuationFrame actuation;
+};
 
 inline constexpr std::size_t snapshot_readers = 2;  // 0: behavior engine, 1: supervisor
 using SnapshotStorage = Latest<Snapshot, snapshot_readers>;
@@ -47,7 +75,7 @@ class ControlEngine {
   // Control thread. `missed` ticks were skipped before this one; dt_s is the true time since the last tick.
   void tick(std::int64_t time_ns, double dt_s, std::uint32_t missed = 0) noexcept;
 
-  // Control thread, in the wait before a tick: rehearsal.h. Changes nothing that counts.
+  // Control thread, in the wait before a tick: goes through it on copies (Rehearsal). Changes nothing that counts.
   void rehearse() noexcept;
 
   std::uint64_t ticks() const noexcept { return tick_; }

@@ -1,9 +1,11 @@
 #include "body.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "convert.h"
+#include "principal_axes.h"
 
 namespace kadans::bullet {
 namespace {
@@ -21,6 +23,49 @@ bool overlaps(const btPersistentManifold& manifold) {
     if (manifold.getContactPoint(i).getDistance() <= 0) return true;
   }
   return false;
+}
+
+void set_up_joint(btMultiBody& body, const RobotModel& model, const std::vector<LinkFrame>& frames, std::size_t index) {
+  const Joint& joint = model.joints[index];
+  const LinkFrame& parent = frames[joint.parent];
+  const LinkFrame& child = frames[index + 1];
+  const btTransform origin = to_bullet(joint.origin);
+  const btQuaternion child_to_parent =
+      parent.link_in_com.getRotation() * origin.getRotation() * child.com_in_link.getRotation();
+  const btVector3 axis = to_bullet(joint.axis) * child.com_in_link.getBasis();
+  const btVector3 parent_com_to_pivot = parent.link_in_com * origin.getOrigin();
+  const btVector3 pivot_to_com = child.com_in_link.getOrigin() * child.com_in_link.getBasis();
+  const double mass_kg = model.links[index + 1].inertia.mass_kg;
+  const int link = static_cast<int>(index), parent_link = static_cast<int>(joint.parent) - 1;
+  if (joint.type == JointType::prismatic) {
+    body.setupPrismatic(link, mass_kg, child.moments_kg_m2, parent_link, child_to_parent.inverse(), axis,
+                        parent_com_to_pivot, pivot_to_com, false);
+  } else {
+    body.setupRevolute(link, mass_kg, child.moments_kg_m2, parent_link, child_to_parent.inverse(), axis,
+                       parent_com_to_pivot, pivot_to_com, false);
+  }
+}
+
+void set_up_payload(btMultiBody& body, const RobotModel& model, const std::vector<LinkFrame>& frames,
+                    const PayloadSettings& payload, int link) {
+  const std::size_t carrier = model.find_link(payload.link).value();
+  body.setupFixed(link, 0, {0, 0, 0}, static_cast<int>(carrier) - 1, btQuaternion::getIdentity(),
+                  frames[carrier].link_in_com * to_bullet(payload.point_m), {0, 0, 0}, false);
+}
+
+// One Jacobi rotation: makes a[p][q] zero and turns the axes with it.
+void rotate_to_zero(btMatrix3x3& a, btMatrix3x3& axes, int p, int q) {
+  if (a[p][q] == 0) return;
+  const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+  const double t = (theta < 0 ? -1 : 1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+  const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+  btMatrix3x3 turn = btMatrix3x3::getIdentity();
+  turn[p][p] = turn[q][q] = c;
+  turn[p][q] = s;
+  turn[q][p] = -s;
+  a = turn.transpose() * a * turn;
+  a[p][q] = a[q][p] = 0;
+  axes = axes * turn;
 }
 
 }  // namespace
@@ -136,6 +181,48 @@ PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings) 
   }
   for (const auto& [a, b] : touching) mask.forbid(model_link(a), model_link(b));
   return mask;
+}
+
+std::vector<LinkFrame> link_frames(const RobotModel& model) {
+  std::vector<LinkFrame> frames;
+  frames.reserve(model.links.size());
+  for (const Link& link : model.links) {
+    const PrincipalAxes axes = principal_axes(link.inertia);
+    const btTransform com_in_link(axes.rotation, to_bullet(link.inertia.com_m));
+    frames.push_back({com_in_link, com_in_link.inverse(), axes.moments_kg_m2});
+  }
+  return frames;
+}
+
+std::unique_ptr<btMultiBody> make_multibody(const RobotModel& model, const std::vector<LinkFrame>& frames,
+                                            const PlantSettings& settings) {
+  const bool can_sleep = false;
+  const int joints = static_cast<int>(model.joints.size()), payloads = static_cast<int>(settings.world.payloads.size());
+  auto body = std::make_unique<btMultiBody>(joints + payloads, model.links[0].inertia.mass_kg, frames[0].moments_kg_m2,
+                                            settings.fixed_base, can_sleep);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) set_up_joint(*body, model, frames, i);
+  for (int i = 0; i < payloads; ++i) {
+    set_up_payload(*body, model, frames, settings.world.payloads[static_cast<std::size_t>(i)], joints + i);
+  }
+  body->finalizeMultiDof();
+  body->setLinearDamping(0);  // 0.04 by default: not physics
+  body->setAngularDamping(0);
+  body->setMaxCoordinateVelocity(1e6);  // 100 by default, a silent clamp
+  return body;
+}
+
+PrincipalAxes principal_axes(const Inertia& inertia) {
+  btMatrix3x3 a(inertia.xx, inertia.xy, inertia.xz,  //
+                inertia.xy, inertia.yy, inertia.yz,  //
+                inertia.xz, inertia.yz, inertia.zz);
+  btMatrix3x3 axes = btMatrix3x3::getIdentity();
+  constexpr int sweeps = 12;  // converges quadratically: 3 x 3 needs 4 or 5
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    rotate_to_zero(a, axes, 0, 1);
+    rotate_to_zero(a, axes, 0, 2);
+    rotate_to_zero(a, axes, 1, 2);
+  }
+  return {axes, btVector3(a[0][0], a[1][1], a[2][2])};
 }
 
 }  // namespace kadans::bullet

@@ -4,15 +4,31 @@
 #include <memory>
 #include <vector>
 
+#include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include "body_frames.h"
+#include "kadans/model/robot_model.h"
 #include "kadans/plant/settings.h"
 #include "plant/bullet/contact/contact_world.h"
 #include "plant/bullet/contact/pair_mask.h"
 #include "plant/bullet/contact/shapes.h"
 
 namespace kadans::bullet {
+
+// Where Bullet's frames lie in ours. Bullet moves each link's centre of mass frame (principal axes, see
+// principal_axes.h), the model uses link frames at the joints. This is the one place that knows both.
+struct LinkFrame {
+  btTransform com_in_link;
+  btTransform link_in_com;
+  btVector3 moments_kg_m2;
+};
+
+std::vector<LinkFrame> link_frames(const RobotModel& model);
+
+// A multibody with the model's links and joints, all joints at 0, its base at the world's origin. The payloads follow
+// as links on fixed joints, without mass as yet.
+std::unique_ptr<btMultiBody> make_multibody(const RobotModel& model, const std::vector<LinkFrame>& frames,
+                                            const PlantSettings& settings);
 
 class Body {
  public:

@@ -6,6 +6,7 @@
 #include "kadans/plant/world_settings.h"
 
 namespace kadans::bullet {
+
 // Throws std::invalid_argument naming the setting, its value and what it must be.
 void check_settings(const RobotModel& model, const PlantSettings& settings);
 

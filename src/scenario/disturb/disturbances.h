@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "config/scenario/scenario_config.h"
-#include "config/scenario/scenario_push.h"
+#include "config/scenario/scenario_event.h"
 #include "engine/lockstep.h"
 #include "kadans/plant/world.h"
 
 namespace kadans {
+
 // Applies the pushes of a scenario to the model at their times.
 class Pushes {
  public:

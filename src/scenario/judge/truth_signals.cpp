@@ -4,7 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "kadans/model/kinematics.h"
+
 namespace kadans {
+namespace {
+
+double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+}  // namespace
+
 TruthSignals::TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
                            const WorldSettings& world)
     : plant_(plant), model_(*catalog.model), settle_s_(settle_s), kinematics_(*catalog.model) {
@@ -151,6 +159,78 @@ void TruthSignals::update(double time_s, std::span<const double> row) noexcept {
   for (const auto& gaze : gazes_) gaze->update(row);
   state_.reference_height_m = reference_height_m(row);
   state_.reference_error_m = state_.height_m - state_.reference_height_m;
+}
+
+GazeTruth::GazeTruth(const TruthSource& plant, const Catalog& catalog, const Eyes& eyes)
+    : plant_(plant),
+      object_(eyes.object),
+      joints_(catalog.model->joints.size()),
+      kinematics_(*catalog.model),
+      links_{catalog.model->find_link(eyes.left).value(), catalog.model->find_link(eyes.right).value()} {
+  const char* const names[] = {"x", "y", "z"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    target_[i] = catalog.signals.find("control." + object_ + ".target_" + names[i] + "_m").value();
+  }
+}
+
+void GazeTruth::declare(SignalTable& table) {
+  const std::string prefix = "plant." + object_ + ".";
+  table.add({prefix + "left_error_rad", "rad", "True angle between the left eye and the target."}, &error_rad_[0]);
+  table.add({prefix + "right_error_rad", "rad", "True angle between the right eye and the target."}, &error_rad_[1]);
+  table.add({prefix + "error_rad", "rad", "The larger of the two."}, &worst_rad_);
+}
+
+// In the base frame, where the target is given.
+void GazeTruth::update(std::span<const double> row) noexcept {
+  kinematics_.update({plant_.truth().position_rad.data(), joints_});
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const Pose& pose = kinematics_.link(links_[eye]);
+    Vec3 way{};
+    for (std::size_t i = 0; i < 3; ++i) way[i] = row[target_[i]] - pose.position_m[i];
+    const Vec3 seen = rotate_inverse(pose.orientation, way);
+    error_rad_[eye] = std::atan2(std::hypot(seen[1], seen[2]), seen[0]);
+  }
+  worst_rad_ = std::max(error_rad_[0], error_rad_[1]);
+}
+
+WorldSignals::WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet)
+    : objects_(world.objects.size()) {
+  for (const std::size_t link : feet) feet_.set(link);
+  table.add({"plant.contact.other_links", "", "Links other than feet that press on the ground or an object."},
+            &other_links_);
+  table.add({"plant.self_penetration_m", "m", "Largest overlap of two links of the robot."}, &self_penetration_m_);
+  for (std::size_t i = 0; i < objects_.size(); ++i) declare(table, world.objects[i], objects_[i]);
+}
+
+void WorldSignals::declare(SignalTable& table, const WorldObject& object, State& state) {
+  const std::string name = "world." + object.name + ".";
+  table.add({name + "force_N", "N", "Force of the robot on the object."}, &state.force_N);
+  table.add({name + "links", "", "Links of the robot that press on the object."}, &state.links);
+  if (!object.free() && !object.motion.moves()) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string axis(1, "xyz"[i]);
+    std::string velocity = name;
+    velocity += "v" + axis + "_m_s";
+    table.add({name + axis + "_m", "m", "Position of the object."}, &state.position_m[i]);
+    table.add({velocity, "m/s", "Velocity of the object."}, &state.velocity_m_s[i]);
+  }
+  table.add({name + "tilt_rad", "rad", "Angle between the object's z axis and up."}, &state.tilt_rad);
+}
+
+void WorldSignals::update(const PlantTruth& truth) noexcept {
+  other_links_ = static_cast<double>((truth.touching_links & ~feet_).count());
+  self_penetration_m_ = truth.self_penetration_m;
+  const std::size_t count = std::min<std::size_t>(objects_.size(), truth.object_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ObjectTruth& object = truth.objects[i];
+    State& state = objects_[i];
+    const Vec3 up = rotate(object.pose.orientation, {0, 0, 1});
+    state.force_N = length(object.force_N);
+    state.links = static_cast<double>(object.links.count());
+    state.position_m = object.pose.position_m;
+    state.velocity_m_s = object.velocity_m_s;
+    state.tilt_rad = std::atan2(std::hypot(up[0], up[1]), up[2]);
+  }
 }
 
 }  // namespace kadans

@@ -13,23 +13,79 @@
 //   plant.limits.overspeed_s    for how long a joint has now been above its limit without a break
 //   reference.base.height_m     the height of the base if every joint were at its set-point
 //   reference.base.error_m      plant.base.height_m minus reference.base.height_m
-// It also declares the signals of world_signals.h, and those of gaze_truth.h for eyes that are watched.
+// It also declares the signals of WorldSignals, and those of GazeTruth for eyes that are watched.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "gaze_truth.h"
 #include "kadans/control/catalog.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/plant/world.h"
-#include "world_signals.h"
 
 namespace kadans {
+
+// The true error of the eyes of a control object of type "gaze", as signals:
+//
+//   plant.<object>.left_error_rad, right_error_rad   angle between an eye's x axis and the direction to the target
+//   plant.<object>.error_rad                         the larger of the two
+//
+// The error is computed from the model's joint angles, not from the measured ones, so checks see what the control side
+// cannot.
+class GazeTruth {
+ public:
+  struct Eyes {
+    std::string object, left, right;  // the control object, the eyes' links
+  };
+  // Looks the object's target up in the catalog's signals.
+  GazeTruth(const TruthSource& plant, const Catalog& catalog, const Eyes& eyes);
+
+  // Declares the signals. This object must not move from then on.
+  void declare(SignalTable& table);
+  void update(std::span<const double> row) noexcept;
+
+ private:
+  const TruthSource& plant_;
+  std::string object_;
+  std::size_t joints_;
+  Kinematics kinematics_;
+  std::array<std::size_t, 2> links_;
+  std::array<SignalId, 3> target_;
+  std::array<double, 2> error_rad_{};
+  double worst_rad_ = 0;
+};
+
+// Contacts and the positions of the world's objects, as signals:
+//
+//   plant.contact.other_links      links of the robot, other than feet, that press on the ground or an object
+//   plant.self_penetration_m       largest overlap of two links of the robot
+//   world.<name>.force_N, links    force of the robot on the object, and number of its links that press
+//   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    position, velocity and tilt of an object that can
+//   move
+class WorldSignals {
+ public:
+  // Declares the signals. `feet` are the indices of the foot links.
+  WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet);
+
+  void update(const PlantTruth& truth) noexcept;
+
+ private:
+  struct State {
+    double force_N = 0, links = 0;
+    Vec3 position_m{}, velocity_m_s{};
+    double tilt_rad = 0;
+  };
+  void declare(SignalTable& table, const WorldObject& object, State& state);
+
+  LinkSet feet_;
+  double other_links_ = 0, self_penetration_m_ = 0;
+  std::vector<State> objects_;
+};
 
 class TruthSignals {
  public:

@@ -9,7 +9,6 @@
 #include "script/bindings/machine_sets.h"
 #include "script/chart/chart_nodes.h"
 #include "script/chart/chart_reader.h"
-#include "script/chart/transition_lines.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/sandbox.h"
 

@@ -1,4 +1,4 @@
-// A behavior as bytes and back: what a reload carries from one Lua state to the next (behavior_adoption.cpp), from one
+// A behavior as bytes and back: what a reload carries from one Lua state to the next (behavior_reload.cpp), from one
 // process to the next.
 
 #include <cstring>

@@ -1,6 +1,7 @@
-// The parts of a behavior. behavior_loading.cpp makes them, behavior.cpp runs them.
+// The parts of a behavior. behavior.cpp makes and runs them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,13 +11,44 @@
 #include "behavior.h"
 #include "kadans/control/catalog.h"
 #include "script/bindings/bindings.h"
-#include "script/bindings/log_bound.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/chart/chart_runner.h"
 #include "script/lua/lua_state.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
+
+// Bounds the log lines of a behavior to lines_max in a second of the engine's clock, so that a script that logs in
+// every tick floods neither the record nor the console. Further lines are dropped and counted.
+class LogBound {
+ public:
+  static constexpr std::uint32_t lines_max = 100;
+
+  enum class Answer : std::uint8_t { say, warn, drop };  // warn: the first line that is dropped in this second
+  Answer admit(std::int64_t now_ns) noexcept {
+    if (now_ns - began_ns_ >= second_ns || now_ns < began_ns_) {
+      began_ns_ = now_ns;
+      said_ = 0;
+    }
+    if (said_ < lines_max) return ++said_, Answer::say;
+    ++dropped_;
+    return said_++ == lines_max ? Answer::warn : Answer::drop;
+  }
+  // Returns the lines dropped since the last call once their second is over, or with `at_once`; else 0.
+  std::uint64_t take_dropped(std::int64_t now_ns, bool at_once) noexcept {
+    if (dropped_ == 0 || (now_ns - began_ns_ < second_ns && !at_once)) return 0;
+    const std::uint64_t count = dropped_;
+    dropped_ = 0;
+    return count;
+  }
+
+ private:
+  static constexpr std::int64_t second_ns = 1'000'000'000;
+  std::int64_t began_ns_ = 0;
+  std::uint32_t said_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
 struct Behavior::Parts final : ScriptVoice, TransitionSink {
   Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to);
   ~Parts() override = default;
@@ -73,7 +105,7 @@ void give_robot_values(Behavior::Parts& parts);
 // behavior_arguments.cpp. Gives the behavior the values of Settings::arguments. Throws InputError.
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
 
-// behavior_adoption.cpp. Copies the state of `old` into the newly loaded `fresh`: active states, vars, parameters,
+// behavior_reload.cpp. Copies the state of `old` into the newly loaded `fresh`: active states, vars, parameters,
 // random numbers. `old` is not changed. False: fresh.lua->error() says why.
 bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,
                     const Snapshot& snapshot, CommandSender& commands) noexcept;

@@ -14,6 +14,7 @@
 #include "signal/status_fields.h"
 
 namespace kadans {
+
 class SnapshotTables {
  public:
   // Makes the tables and returns the registry reference of `s`. `feet` are the names of the feet in their order. With

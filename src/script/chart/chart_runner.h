@@ -110,7 +110,6 @@ class ChartRunner {
   };
   enum class Guard : std::uint8_t { unknown, no, yes };
 
-  // chart_selection.cpp
   void select(lua_State* state, EventId event, bool events_only);
   std::uint16_t select_always(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event, bool events_only);
   std::uint16_t select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event, bool events_only);
@@ -120,7 +119,6 @@ class ChartRunner {
   void add_selected(std::uint16_t transition) noexcept;
   bool took(EventId event) const noexcept;
 
-  // chart_runner.cpp
   void look_for_transitions(lua_State* state);
   void take_step(lua_State* state);
   void leave(lua_State* state, StateIndex index);
@@ -135,7 +133,7 @@ class ChartRunner {
   void list_active() noexcept;
   void report(std::uint16_t transition) noexcept;
 
-  // chart_adoption.cpp
+  // chart_keeping.cpp
   void take_over_state(const ChartRunner& old, StateIndex from, StateIndex to) noexcept;
   void take_over_history(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept;
   void fill_gaps() noexcept;

@@ -9,6 +9,7 @@
 #include "script/chart/chart.h"
 
 namespace kadans {
+
 // The chart must be resolved and free of other problems.
 void check_chart(const Chart& chart, std::vector<InputProblem>& problems);
 

@@ -96,7 +96,7 @@ class SourceScopes {
   void open(std::size_t function, bool body = false);
   void close();
 
-  // source_values.cpp: what an expression stands for.
+  // source_facts.cpp: what an expression stands for.
   bool in_table() const { return !braces_.empty() && braces_.back().blocks == blocks_.size(); }
   bool is_key(std::size_t at) const;
   bool is_assigned(std::size_t at) const;

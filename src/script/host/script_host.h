@@ -97,11 +97,9 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   // Why the loaded behaviors cannot play beside those in the list; "" when they can.
   std::string clash(const std::vector<PlayList::Entry>& loaded) const;
 
-  // script_host_keeping.cpp
   std::vector<PlayList::Entry> load_kept(std::vector<InputProblem>& problems);
   void go_on(const Snapshot& snapshot, CommandSender& commands) noexcept;
 
-  // script_host_orders.cpp
   void take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept;
   void carry_out(Due& due, const Snapshot& snapshot, CommandSender& commands) noexcept;
   void leave_all(const Snapshot& snapshot, CommandSender& commands) noexcept;

@@ -10,13 +10,14 @@
 // time, vars, the list. A coroutine of `run` begins anew, as after a reload.
 //
 // Until then the robot holds its last set-points, and motions under way go on to their end. After safe.after_s it moves
-// to the safe posture, unless nothing played. A process that dies is started again (restart_policy.h). A process that
+// to the safe posture, unless nothing played. A process that dies is started again (RestartPolicy). A process that
 // does not answer within patience_ns, or breaks the rules of the link, is killed first. When it dies too often in a
 // row, or when its state cannot be kept, it stays down: an error is logged, and the robot stays in its posture.
 //
 // Behavior thread, except for the constructor and attach(), which are called before the threads start.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -31,10 +32,43 @@
 #include "engine/tick/tick_statistics.h"
 #include "kadans/control/catalog.h"
 #include "realtime/machine/child_process.h"
-#include "restart_policy.h"
 #include "script/host/safe_posture.h"
 
 namespace kadans {
+
+// Decides when a process that died is started again: the first time at once, then after growing delays, and no more
+// when it dies too often in a row. A process that has answered enough ticks begins a new row. Times are of the engine's
+// clock.
+class RestartPolicy {
+ public:
+  struct Settings {
+    std::uint32_t deaths_max = 8;         // deaths in a row after which it stays down
+    std::uint32_t proved_ticks = 10;      // answered ticks after which the next death is the first of a row
+    std::int64_t delay_ns = 100'000'000;  // before the second restart of a row; then twice as long each time
+    std::int64_t delay_max_ns = 2'000'000'000;
+  };
+  explicit RestartPolicy(const Settings& settings) noexcept : settings_(settings) {}
+
+  void answered() noexcept {
+    if (++ticks_ == settings_.proved_ticks) in_a_row_ = 0;
+  }
+  // Returns when to start the next process; nullopt: it stays down.
+  std::optional<std::int64_t> died(std::int64_t now_ns) noexcept {
+    ticks_ = 0;
+    ++deaths_;
+    if (++in_a_row_ >= settings_.deaths_max) return std::nullopt;
+    std::int64_t delay_ns = in_a_row_ > 1 ? settings_.delay_ns : 0;
+    for (std::uint32_t i = 2; i < in_a_row_ && delay_ns < settings_.delay_max_ns; ++i) delay_ns *= 2;
+    return now_ns + std::min(delay_ns, settings_.delay_max_ns);
+  }
+  std::uint32_t in_a_row() const noexcept { return in_a_row_; }
+  std::uint64_t deaths() const noexcept { return deaths_; }
+
+ private:
+  Settings settings_;
+  std::uint32_t in_a_row_ = 0, ticks_ = 0;
+  std::uint64_t deaths_ = 0;
+};
 
 class ProcessHost final : public BehaviorHost, public OrderTaker {
  public:
