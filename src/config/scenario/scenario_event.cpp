@@ -33,7 +33,7 @@ struct KindInfo {
   const char* name;
   const char* size;  // what `size` means; "" when it means nothing
 };
-constexpr std::array<KindInfo, 22> kinds{{
+constexpr std::array<KindInfo, 22> fault_kinds{{
     {"sensor_silent", ""},
     {"sensor_stuck", ""},
     {"sensor_offset", "added: rad, of the IMU rad/s, of a foot N"},
@@ -58,14 +58,14 @@ constexpr std::array<KindInfo, 22> kinds{{
     {"clock_missed", "control ticks missed in a row, each time"},
 }};
 
-std::array<std::string, kinds.size()> names_of_kinds() {
-  std::array<std::string, kinds.size()> names;
-  for (std::size_t i = 0; i < kinds.size(); ++i) names[i] = kinds[i].name;
+std::array<std::string, fault_kinds.size()> names_of_kinds() {
+  std::array<std::string, fault_kinds.size()> names;
+  for (std::size_t i = 0; i < fault_kinds.size(); ++i) names[i] = fault_kinds[i].name;
   return names;
 }
 
 void verify(const Fields& f, const ScenarioFault& fault, Problems& problems) {
-  const KindInfo& info = kinds.at(static_cast<std::size_t>(fault.kind));
+  const KindInfo& info = fault_kinds.at(static_cast<std::size_t>(fault.kind));
   const std::string kind = std::string(" of kind '") + info.name + "'";
   if (info.size[0] != '\0' && !f.has("size"))
     problems.add(f.place(), f.path() + " is" + kind + " and needs size: " + info.size);

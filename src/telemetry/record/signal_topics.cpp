@@ -9,7 +9,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::array<std::byte, cdr_head_bytes> cdr_head{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+constexpr std::array<std::byte, cdr_head_bytes> cdr_beginning{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
 constexpr SignalId no_signal = 0xffffffff;
 
 bool is_small(char c) noexcept { return c >= 'a' && c <= 'z'; }
@@ -176,7 +176,7 @@ std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision preci
 }
 
 void write_cdr(std::span<std::byte> payload, std::span<const double> values, Precision precision) noexcept {
-  std::ranges::copy(cdr_head, payload.begin());
+  std::ranges::copy(cdr_beginning, payload.begin());
   std::byte* to = payload.data() + cdr_head_bytes;
   if (precision == Precision::full) {
     std::memcpy(to, values.data(), values.size_bytes());
@@ -191,7 +191,7 @@ void write_cdr(std::span<std::byte> payload, std::span<const double> values, Pre
 
 bool read_cdr(std::span<const std::byte> payload, std::span<double> values, Precision precision) noexcept {
   if (payload.size() != cdr_bytes(values.size(), precision)) return false;
-  if (!std::ranges::equal(payload.first(cdr_head_bytes), cdr_head)) return false;
+  if (!std::ranges::equal(payload.first(cdr_head_bytes), cdr_beginning)) return false;
   const std::byte* from = payload.data() + cdr_head_bytes;
   if (precision == Precision::full) {
     std::memcpy(values.data(), from, values.size_bytes());
