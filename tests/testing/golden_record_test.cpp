@@ -63,7 +63,7 @@ TEST_CASE("A value beyond the tolerance is named with its column and row, and bo
   CHECK(result.found[70] == 0.75);
   std::ostringstream out;
   out << result;
-  CHECK(out.str().find("golden, over rows") != std::string::npos);
+  for (const char* part : {"golden", "found", "rows"}) CHECK(out.str().find(part) != std::string::npos);
   CHECK_FALSE(record(std::numeric_limits<double>::quiet_NaN()).compare_to(folder.file));
 }
 
