@@ -1,7 +1,7 @@
 # kadans_plugin(NAME SOURCES file... [LINKS target...]): a shared library NAME.so of control objects and types of plants, to
-# be named under "plugins" in a robot's configuration. It brings its own copy of what it uses of Kadans and shows nothing
-# but its descriptor; kadans/control/plugin.h says why, and what it fits. LINKS may name layers without a state that a
-# process has once.
+# be named under "plugins" in a robot's configuration. It has its own copy of what it uses of Kadans, and exports nothing but
+# its descriptor. kadans/control/plugin.h says why, and which programs it fits. LINKS may name only layers that have no
+# state of which a process has one.
 function(kadans_plugin name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
   set(layers exchange signal model plant plant_ideal plant_udp estimate safety control engine realtime)

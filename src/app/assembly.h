@@ -46,11 +46,11 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
 std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept = {});
-// The robot's type of plant of this name, shipped, of this program or a plug-in's, for which `is` holds. Throws
-// InputError that says which there are.
+// The type of plant of this name for which `is` holds: a shipped one, one of this program, or one of the robot's
+// plug-ins. Throws InputError that lists the known names.
 const PlantType& plant_type_named(const RobotConfig& robot, const std::string& file, const PlacedName& name,
                                   bool (PlantType::*is)() const noexcept = nullptr);
-// What a plant that is no model is made for. `peer`: where it is; "": where the configuration says.
+// The data from which a plant that is no model is made. `peer` is its address; "": the one in the configuration.
 PlantSite plant_site(const RobotConfig& robot, const std::string& peer);
 
 class Assembly {

@@ -7,7 +7,7 @@
 // KDL, LuaJIT (`^` and math.*), plug-ins. tests/project/math_bindings.sh reads the bindings of all that is loaded. It
 // fails on a function of the C library that is not exact by its definition, as sqrt, fmod and floor are.
 //
-// Sine, cosine and the angle of a point, which are called most, are ours (kadans/signal/sine_cosine.h, arc_tangent.h).
+// Sine, cosine and the angle of a point, which are called most, are ours (signal/sine_cosine.h, arc_tangent.h).
 // Normal random numbers hardly ever need a logarithm (kadans/signal/random.h). All else is SLEEF's (N. Shibata and
 // F. Petrogalli, SLEEF: A Portable Vectorized Library of C Standard Mathematical Functions, 2020), by the names that
 // begin with Sleef_cinz_ and end with purec: plain C without fused multiply-add, wrong by at most one unit in the last

@@ -13,14 +13,14 @@ namespace kadans {
 std::size_t utf8_length(std::string_view text, std::size_t at) noexcept;
 // Where the text stops being UTF-8; npos when it is UTF-8 throughout.
 std::size_t find_invalid_utf8(std::string_view text) noexcept;
-// In UTF-8, not where a character begins: what counts characters leaves it out.
+// True for a continuation byte of UTF-8. Code that counts characters leaves these bytes out.
 constexpr bool inside_character(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
-// The character of this code, which is one.
+// Appends the character of this code, which must be a valid one.
 void append_utf8(std::uint32_t code, std::string& text);
-// With U+FFFD for each byte that is none, and without the characters that XML cannot hold however they are written: all
-// controls but tab and line ends.
+// The text with U+FFFD in place of each byte that is not UTF-8, and without the characters that XML cannot hold in any
+// form: all control characters but tab and line ends.
 std::string xml_characters(std::string_view text);
-// The same, safe between tags and in attributes.
+// The same, escaped for use between tags and in attributes.
 std::string html_text(std::string_view text);
 
 }  // namespace kadans

@@ -18,8 +18,6 @@
 // - KADANS_REGISTER_CONTROL_OBJECT and KADANS_REGISTER_PLANT_TYPE fill a list that only the plug-in has: name the types
 //   in KADANS_PLUGIN.
 // - Bullet's memory, the types of plants, scripts and the program itself: kadans_plugin() refuses to link them.
-// - read_urdf() keeps other calls out of urdfdom, but not those of the program: call it where PlantType and Plant are
-//   called off the tick, not in a thread of your own.
 #pragma once
 
 #include <cstddef>

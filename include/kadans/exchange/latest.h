@@ -64,9 +64,9 @@ class Latest {
     }
   }
 
-  // The value that a reader looks at, for as long as this lives. Who reads again meanwhile finds the same value: what
-  // is looked at is never given back to the writer, however deep the call that reads again. Give it a name: of one
-  // without nothing can be kept.
+  // The value that a reader looks at, for as long as the Reading lives. If the same reader reads again meanwhile,
+  // however deep the call, it finds the same value: the slot is not given back to the writer. Give the Reading a name:
+  // a temporary gives no access to the value.
   class Reading {
    public:
     Reading(const Reading&) = delete;

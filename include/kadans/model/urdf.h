@@ -1,4 +1,4 @@
-// URDF, read strictly: what other readers repair, drop or only log is refused here, with its place.
+// Reads URDF strictly. Mistakes that other readers repair, drop or only log are refused here, with their places.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ struct UrdfOptions {
   bool mesh_hulls = false;  // meshes collide as their convex hulls; else a collision mesh is refused
 };
 
-// Throws InputError on anything that keeps the text from being a model, all mistakes found in one message, one a line.
-// `warnings`, when given, gets what is odd but leaves the model what the text says, sorted by place.
+// Throws InputError (signal/input_error.h) on any mistake: one message with all mistakes that were found, one per line.
+// `warnings`, when given, gets oddities that do not change the model, sorted by place.
 RobotModel read_urdf(const std::string& file, const UrdfOptions& options = {},
                      std::vector<InputProblem>* warnings = nullptr);
 // `file` only names the text in messages, and is where the paths of meshes start from.

@@ -6,7 +6,7 @@
 //
 //   KADANS_REGISTER_PLANT_TYPE(make_bench_type);  // std::unique_ptr<kadans::PlantType> make_bench_type();
 //
-// and a plug-in brings them to any program (kadans/control/plugin.h). docs/hardware.md says how one is written.
+// and a plug-in brings them to any program (kadans/control/plugin.h). docs/hardware.md says how to write one.
 //
 // Before the loop, one thread. The plants and emulators that a type makes state their threads themselves.
 #pragma once
@@ -24,7 +24,7 @@
 
 namespace kadans {
 
-// Visits a list of fields, to read or to describe them: see config/fields.h. `doc` is a sentence for people.
+// Visits a list of fields, to read or to describe them (src/config/json/fields.h). `doc` is a sentence for people.
 class PlantFields {
  public:
   struct Range {
@@ -123,13 +123,13 @@ class PlantType {
 using MakePlantType = std::unique_ptr<PlantType> (*)();
 using PlantTypes = std::vector<std::shared_ptr<PlantType>>;
 
-// Those of this program, each with its default settings: the shipped ones by name, then those that were registered,
-// then those that `others` make, which plug-ins bring. Throws std::invalid_argument when two have one name.
+// The types of this program, each with its default settings: the shipped ones by name, then the registered ones, then
+// those that `others` make, which plug-ins bring. Throws std::invalid_argument when two have the same name.
 PlantTypes plant_types(std::span<const MakePlantType> others = {});
-// One that is there. Throws std::out_of_range.
+// The type of this name. Throws std::out_of_range when there is none.
 const PlantType& plant_type(const PlantTypes& types, std::string_view name);
 
-// Names of the types for which `is` holds; of all. Those of this program, or among `types`.
+// Names of the types for which `is` holds; without `is`, of all: among the types of this program, or among `types`.
 std::vector<std::string> plant_type_names(bool (PlantType::*is)() const noexcept = nullptr);
 std::vector<std::string> plant_type_names(const PlantTypes& types, bool (PlantType::*is)() const noexcept = nullptr);
 
@@ -137,7 +137,7 @@ std::vector<std::string> plant_type_names(const PlantTypes& types, bool (PlantTy
 class RegisteredPlantType {
  public:
   explicit RegisteredPlantType(MakePlantType make) noexcept;
-  // And behind them what `others` make.
+  // Adds the registered types, and behind them those that `others` make.
   static void add_all(PlantTypes& types, std::span<const MakePlantType> others = {});
 
  private:

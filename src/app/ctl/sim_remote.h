@@ -1,5 +1,5 @@
-// Makes a simulation reachable from outside. The parts of an instance (kadans/remote/instance.h) that are threads in a
-// live run are executed in turn by the simulation's one thread, between its ticks.
+// Makes a simulation reachable from outside. The parts of an instance (remote/instance/instance.h) that are threads in
+// a live run are executed in turn by the simulation's one thread, between its ticks.
 #pragma once
 
 #include <optional>

@@ -8,7 +8,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t signals_max = 64;  // nobody tells more lines apart
+constexpr std::size_t signals_max = 64;  // nobody can distinguish more lines
 constexpr std::size_t sketch_columns = 72;
 
 PlotFormat format_of(const std::string& file) {

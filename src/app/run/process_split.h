@@ -8,10 +8,11 @@
 
 namespace kadans {
 
-// The output of each new process is kept, and printed in their order.
+// Keeps the output of each new process. finish() prints it, in the order of the processes.
 class ProcessSplit {
  public:
-  // In the new process: true, and this object is of no more use there. Throws std::system_error.
+  // Returns true in the new process, where this object must not be used any more. At most `at_once` processes run at a
+  // time. Throws std::system_error.
   bool split(std::size_t at_once);
   // In the first process: waits for all, prints their output, and returns the greatest of their exit codes.
   int finish();

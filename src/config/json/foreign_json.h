@@ -12,7 +12,7 @@
 
 namespace kadans {
 
-// nullopt when the text is no JSON, or when its values nest deeper than json_depth_max (kadans/config/json_value.h).
+// nullopt when the text is no JSON, or when its values nest deeper than json_depth_max (config/json/json_value.h).
 std::optional<nlohmann::ordered_json> read_foreign_json(std::string_view text);
 
 // The same, but throws InputError with the place. The message never quotes the text. `file` only names it.

@@ -74,9 +74,10 @@ struct RobotConfig {
   RecordConfig record;
 };
 
-// Throws InputError with everything that is wrong, the URDF's mistakes included. `object_types`: the types of control
-// objects that the program knows; none: any, and the settings of any type of plant, where the file names plug-ins: what
-// they would bring is not asked. `plants`: types that its plug-ins brought.
+// Throws InputError with all mistakes, those of the URDF included. `object_types` are the types of control objects that
+// the program knows. When it is empty, types of control objects are not checked, and a file that names plug-ins may
+// have settings of any type of plant, for the plug-ins that may bring them are not loaded. `plants` are the types of
+// plants that the robot's plug-ins brought.
 RobotConfig read_robot_config(const std::filesystem::path& file, std::span<const std::string> object_types,
                               std::span<const MakePlantType> plants = {});
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,
@@ -88,8 +89,9 @@ struct PluginFile {
   std::filesystem::path file;
   TextPlace place;
 };
-// The plug-ins alone: they must be loaded before the types are known. Throws InputError when the
-// file is no JSON or names a plug-in that is not there; other mistakes are read_robot_config's to tell.
+// Reads the plug-ins alone, because they must be loaded before the types of control objects and plants are known.
+// Throws InputError when the file is no JSON or names a plug-in that does not exist. read_robot_config reports all
+// other mistakes.
 std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot);
 
 // Sets the configured parameters in the tables of `catalog` and fills the objects' presets. The catalog's objects must

@@ -1,4 +1,4 @@
-// The parts of a robot's configuration that stand on control: objects, sets, poses.
+// The parts of a robot's configuration that are about control: objects, sets, poses, parameters and presets.
 
 #include <algorithm>
 #include <map>

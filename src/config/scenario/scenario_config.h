@@ -40,9 +40,9 @@ struct ScenarioConfig {
   std::string name;
   std::string doc;
   std::string robot;             // path of the robot's configuration, resolved
-  std::string plant = "bullet";  // a type of plant_type.h; in a file a model
+  std::string plant = "bullet";  // name of a plant type (plant_type.h); a file may name only a model
   TextPlace plant_place;         // in a file that names one
-  std::string peer;              // not in the file: where the drives of one that is no model are; "": the robot's own
+  std::string peer;  // not in the file: address of a plant that is no model; "": the one in the robot's configuration
   double duration_s = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> tags;
@@ -67,9 +67,10 @@ struct ScenarioConfig {
 // The folders in which the names of its behaviors are looked up.
 PlayFolders folders_of(const ScenarioConfig& scenario);
 
-// Throws InputError with everything that is wrong. The files that it names are there, but not yet read; whether the
-// signals exist is for whoever has the table: refuse_unknown(file, {check.signal, check.signal_place}, "signal", ...).
-// When its robot has plug-ins, whether one of them brings an unknown plant is for whoever loads them.
+// Throws InputError with all mistakes. The files that the scenario names exist, but they are not read yet. Signals are
+// not checked here: code that has the signal table does so with refuse_unknown(file, {check.signal,
+// check.signal_place}, "signal", ...). When the robot names plug-ins, an unknown plant is not refused here: the code
+// that loads the plug-ins checks it.
 ScenarioConfig read_scenario_config(const std::filesystem::path& file);
 ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file);
 

@@ -1,5 +1,5 @@
-// An event of a scenario: an order of the supervisor at a given time, so that the run can be repeated. A reload lets a
-// behavior continue with another file, as if somebody had saved it.
+// What happens in a scenario at given times, so that the run can be repeated: orders of the supervisor, faults and
+// pushes.
 #pragma once
 
 #include <limits>
@@ -12,6 +12,8 @@
 
 namespace kadans {
 
+// An order of the supervisor at a given time. A reload lets a behavior continue with another file, as if somebody had
+// saved it.
 struct ScenarioEvent {
   double at_s = 0;
   PlayOrder order;

@@ -14,8 +14,8 @@ namespace kadans {
 
 struct WorldConfig {
   WorldSettings settings;
-  TextPlace place;                       // in a file that has one
-  std::vector<TextPlace> payload_links;  // where each payload's link is named
+  TextPlace place;                       // of the list, in a file that has one
+  std::vector<TextPlace> payload_links;  // places in the file at which the payloads' links are named
 };
 
 // Reads the list under the key "world".

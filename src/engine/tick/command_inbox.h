@@ -2,12 +2,16 @@
 // effect, and takes at most a fixed number of commands per tick. A transaction with one bad command is refused as a
 // whole and counted; the snapshot says why (refusal.h).
 //
-// While the robot is held, or worse, its set-points, parameters and control set stay what they are: commands that would
-// change them are refused, unless the same transaction clears the faults first. A motion under way goes on to its end.
-// So it is for a joint that is held alone: refused are its set-points, set-points without a joint and parameters of the
-// objects that drive it, and a switch of control sets that concerns it. A joint that damps or is off refuses nothing,
-// so that the others can go on; when it comes back, it starts from where it is. Orders to drives pass while the robot
-// is held, since they are the way out; under the emergency stop none that lets a joint move.
+// While the safety layer holds the robot, or worse, the set-points, parameters and control sets stay as they are:
+// commands that would change them are refused, unless the same transaction clears the faults first. A motion under way
+// goes on to its end.
+//
+// When the safety layer holds a single joint, the following is refused: its set-points; set-points without a joint, and
+// parameters, of the objects that drive it; a switch of control sets that concerns it. A joint that damps or is off
+// causes no refusal, so that the others can go on; when it comes back, it starts from where it is.
+//
+// Orders to drives are carried out while the robot is held, because they can end the cause. Under the emergency stop,
+// orders that let a joint move are refused.
 #pragma once
 
 #include <cstdint>

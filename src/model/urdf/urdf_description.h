@@ -1,7 +1,6 @@
-// What a URDF says: its links and joints in the order of the file, those of fixed joints too, and the places (bytes of
-// the text) that the checks of the whole speak of. Three steps lead from a URDF to a RobotModel: read_description takes
-// the elements one by one, check_description looks at how they fit together, read_urdf (urdf_model.cpp) merges fixed
-// joints.
+// The contents of a URDF: its links and joints in the order of the file, fixed joints included, with their places
+// (bytes of the text) for messages. A RobotModel is made from a URDF in three steps: read_description reads the
+// elements one by one, check_description checks how they fit together, read_urdf (urdf_model.cpp) merges fixed joints.
 #pragma once
 
 #include <array>

@@ -23,11 +23,11 @@ class UrdfDocument {
   static const XmlTag& tag(const tinyxml2::XMLElement& element);
   std::string in_line(std::size_t at) const { return "line " + std::to_string(source_.place(at).line); }
 
-  // Notes at a byte of the text what keeps it from being a model. The last that fits into the list throws.
+  // Notes a mistake at a byte of the text. The mistake that fills the list throws.
   void refuse(std::size_t at, std::string message);
-  // The same, where it makes no sense to read on.
+  // Notes a mistake after which reading cannot go on, and throws.
   [[noreturn]] void stop(std::size_t at, std::string message);
-  // Notes what is odd, but leaves the model what the text says.
+  // Notes an oddity that does not change the model.
   void warn(std::size_t at, std::string message);
 
   void throw_if_refused();                     // InputError with all that is refused, sorted by place

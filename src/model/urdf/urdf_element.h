@@ -1,7 +1,8 @@
-// One element of a URDF while it is read: its attributes and its children are asked for once, by one list each, which
-// says what may be there. Whatever else is there, or is missing or wrong, is refused. Elements and attributes with a
-// name space (drake:..., xml:...) are left alone everywhere, elements of others (gazebo, transmission, ...) in <robot>
-// unless their name is nearly one of URDF's.
+// One element of a URDF while it is read. The reader asks once for its attributes and once for its children, each with
+// a list of those that may be there. Everything else, and whatever is missing or wrong, is refused.
+//
+// In <robot>, foreign elements (gazebo, transmission, ...) are ignored, unless their name is almost one of URDF's.
+// Elements and attributes with a name space (drake:..., xml:...) are ignored everywhere.
 #pragma once
 
 #include <cstdint>

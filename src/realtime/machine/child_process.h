@@ -2,9 +2,11 @@
 //
 // A program is spawned, not forked: a fork of a running real-time process would copy the page tables of all its locked
 // memory and then cost each of its threads a page fault for every page that it writes. A spawn lends the memory until
-// the new program runs, and copies nothing. The program starts as a usual process: with no signal handled or blocked,
-// of the usual scheduling class (priority and CPU it takes itself, once it is ready), and with no open file but those
-// that it is given. What is ignored when a terminal hangs up (nohup) stays ignored.
+// the new program runs, and copies nothing.
+//
+// The program starts as a normal process. It handles no signals, and blocks none unless that is asked for. It has the
+// normal scheduling class, and sets its priority and CPU itself, once it is ready. It has no open file but those that
+// it is given. When this process ignores the hang-up of its terminal (nohup), so does the program.
 //
 // Threads: one at a time for each object.
 #pragma once
@@ -28,22 +30,23 @@ inline constexpr int no_file = -1;
 
 struct ProgramStart {
   std::vector<std::string> words;     // its name and its arguments
-  std::string program;                // its path; "": as its name, which PATH is asked for
-  std::vector<int> files{0, 1, 2};    // of ours, that it finds as its own from 0 on; no_file: /dev/null
-  bool own_group = false;             // of processes: Ctrl-C does not reach it; kill() ends what it has started, too
-  bool blocks_group_signals = false;  // a terminal's Ctrl-C, a service manager's SIGTERM go to all of a group
+  std::string program;                // its path; "": its name, looked up in PATH
+  std::vector<int> files{0, 1, 2};    // our descriptors, which it gets as 0, 1, 2 ...; no_file: /dev/null
+  bool own_group = false;             // of processes: Ctrl-C does not reach it; kill() also ends what it has started
+  bool blocks_group_signals = false;  // Ctrl-C of a terminal and SIGTERM of a service manager go to a whole group
 };
 
 class ChildProcess {
  public:
   explicit ChildProcess(const ProgramStart& start);  // throws std::system_error
-  // A copy of this process, which has one thread: nothing in the copy. Throws std::system_error.
+  // Copies this process, which must have one thread. Returns nullopt in the copy. Throws std::system_error.
   static std::optional<ChildProcess> copy();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
   ~ChildProcess() { stop(); }
 
-  // Until one of these, which all run, has ended, or for so long; < 0: for ever. A signal ends it early.
+  // Waits until one of these processes has ended, at most `most_ms`; < 0: without a limit. All must still run. A signal
+  // ends the wait early.
   static void wait_for_one(std::span<const ChildProcess* const> running, int most_ms);
 
   pid_t pid() const noexcept { return pid_; }
@@ -51,11 +54,11 @@ class ChildProcess {
   void wait() noexcept;  // until it has ended
   void kill() const noexcept;
   void stop() noexcept;  // kills it and waits; not in a copy of the process that started it
-  // Waits a moment for a process that ends by itself, kills one that does not; never waits long. How it ended: "exit
-  // code 2", "signal 11 (Segmentation fault)".
+  // Waits a moment for the process to end by itself, and kills it if it does not. Never waits long. Returns how it
+  // ended: "exit code 2", "signal 11 (Segmentation fault)".
   std::string end() noexcept;
   int exit_code() const noexcept;  // -1: it runs, a signal ended it, or nobody can tell
-  int signal() const noexcept;     // that ended it, or 0
+  int signal() const noexcept;     // the signal that ended it, or 0
 
  private:
   ChildProcess(pid_t pid, bool own_group) noexcept;
@@ -65,7 +68,7 @@ class ChildProcess {
 
   pid_t pid_, owner_;
   bool own_group_, running_ = true;
-  int end_;  // can be read once the process has ended; -1: the system has no such thing
+  int end_;  // descriptor that can be read once the process has ended; -1: the system has none
   std::optional<int> status_;
 };
 
@@ -94,11 +97,11 @@ struct ProgramOutput {
 // Runs a program to its end, with this text to read. Throws std::system_error when it cannot be started.
 ProgramOutput run_program(std::vector<std::string> words, std::string_view input = {});
 
-// Where a program finds its ends of what it shares.
+// The descriptors at which a program finds its ends of what it shares.
 inline constexpr int child_doorbell_descriptor = 3, child_memory_descriptor = 4;
 
-// A program with which this process shares memory and a doorbell. It has standard input, output and errors as this
-// process, and blocks the signals of its group.
+// A program that this process runs beside itself, and with which it shares memory and a doorbell. It has the standard
+// input, output and error of this process, and blocks signals that are meant for its group.
 class PartnerProcess {
  public:
   // The program's path, its name and arguments. Throws std::system_error.

@@ -87,8 +87,8 @@ class BehaviorSide final : public BesideTick {
     std::uint32_t sequence = 0;  // of its transaction; 0: the order waits for the end of a tick
     ParameterChange change{};    // for set_parameter and undo
     bool lasting = false;
-    std::uint16_t lifts = 0;  // of clear_faults: SafetyStatus::lifts before
-    JointMask joints = 0;     // of orders to drives
+    std::uint16_t lifts = 0;  // for clear_faults: SafetyStatus::lifts before it
+    JointMask joints = 0;     // for orders to drives
   };
 
   void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);

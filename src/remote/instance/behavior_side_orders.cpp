@@ -1,4 +1,4 @@
-// Orders: what plays, control sets, parameters.
+// Orders: what plays, control sets, parameters, consoles.
 
 #include <algorithm>
 #include <array>
@@ -226,6 +226,7 @@ void BehaviorSide::begin_change(Pending& pending, const ParameterChange& change)
   throw InputError({.message = change.name + " is not there any more"});
 }
 
+// Consoles of clients have a smaller budget than that of a simulation, because the robot waits for them.
 Console& BehaviorSide::console_of(const Order& order) {
   if (p_.host == nullptr)
     throw InputError(

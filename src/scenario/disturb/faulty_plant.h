@@ -35,14 +35,14 @@ struct SensorFault {
 
 enum class ActuatorFaultKind : std::uint8_t {
   dead,    // no torque
-  weak,    // efforts times `size`; in position and velocity mode nothing changes
-  stuck,   // goes on with what was written last before
-  offset,  // `size` added to the effort, Nm
-  late,    // what was written `size` ticks before
-  // What the drive says of itself:
-  tripped,   // something is wrong, by the maker's code `size`; no torque; a reset makes it `disabled`
-  disabled,  // it is ready, and not enabled; no torque; whoever enables it ends the fault
-  hot,       // it is `size` C
+  weak,    // the effort is multiplied by `size`; no effect in position and velocity mode
+  stuck,   // repeats what was written last before the fault
+  offset,  // `size` is added to the effort, Nm
+  late,    // applies what was written `size` ticks before
+  // What the drive reports of itself:
+  tripped,   // it is in fault, with the maker's code `size`; no torque; a reset makes it `disabled`
+  disabled,  // it is ready but not enabled; no torque; an order to enable it ends the fault
+  hot,       // its temperature is `size` C
   old,       // its readings are `size` s old
 };
 
@@ -96,9 +96,9 @@ class FaultyPlant final : public OneRobotWorld {
   };
   struct PlannedActuator {
     ActuatorFault fault;
-    JointActuation held;          // what was written before it began
-    std::uint8_t order_seen = 0;  // by its drive
-    bool over = false;            // by an order
+    JointActuation held;          // what was written last before the fault began
+    std::uint8_t order_seen = 0;  // number of the drive's last order
+    bool over = false;            // an order to the drive ended the fault
 
     bool is_now(std::int64_t time_ns) const noexcept {
       return !over && time_ns >= fault.from_ns && time_ns < fault.until_ns;
@@ -116,7 +116,7 @@ class FaultyPlant final : public OneRobotWorld {
   std::vector<SupplyFault> supply_faults_;
   std::int64_t time_ns_ = 0;             // of the last read
   DriveRequests asked_{};                // in the last write
-  std::vector<ActuationFrame> written_;  // the last ones, a ring; empty when nothing is ever late
+  std::vector<ActuationFrame> written_;  // ring of the last frames; empty when no drive is late
   std::size_t newest_ = 0;
 };
 

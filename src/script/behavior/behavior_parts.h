@@ -1,4 +1,5 @@
-// The parts of a behavior. behavior.cpp makes and runs them.
+// The parts of a behavior, and the functions that load them and carry their state over to another version, Lua state or
+// process. behavior.cpp makes and runs them.
 #pragma once
 
 #include <cstdint>
@@ -120,7 +121,9 @@ void give_vars(lua_State* state, const Chart::Machine& machine, int version);
 bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
                   CommandSender& commands) noexcept;
 
-// Writes the vars of a behavior as bytes and reads them back, for another process that continues where this one ended.
+// put_value and push_value write the vars of a behavior as bytes and read them back, for another process that continues
+// where this one ended.
+//
 // [-0 +0] Appends the value at `index` (> 0): plain data and handles of motions. False: it contains something else, and
 // `why` says what; then the stack may hold more than before. Never raises.
 bool put_value(lua_State* state, int index, ByteWriter& bytes, std::string& why, int depth = 0);
@@ -128,10 +131,10 @@ bool put_value(lua_State* state, int index, ByteWriter& bytes, std::string& why,
 // [-0 +1] Pushes the next value of the bytes. Raises when there is none.
 void push_value(lua_State* state, ByteReader& bytes, const Catalog& catalog, int depth = 0);
 
-// Copies the vars of a behavior from one Lua state to another.
 // The greatest depth of nested tables in vars, in copies of them, and in what a reload or a file carries over.
 inline constexpr int vars_depth_max = 16;
 
+// Copies vars from one Lua state to another.
 // [-0 +1 on `to`, -0 +0 on `from`] Pushes a deep copy of the value at `index` of `from`: plain data and handles of
 // motions. Raises in `to` on anything else; then the stack of `from` may hold more than before. Never raises in `from`.
 void push_copy_across(lua_State* from, int index, lua_State* to, int depth = 0);

@@ -1,5 +1,8 @@
-// What a runner knows, as bytes and back: states, events and outcomes by their names, since the other process reads the
-// chart's file anew and finds another version of it perhaps. What is gone is left out; what contradicts itself, too.
+// How a runner continues where another one stood, of another process or of an older version of the chart.
+//
+// For another process, the state of a runner is written as bytes and read back. States, events and outcomes are written
+// by their names, because that process reads the chart's file anew and may find another version of it. What no longer
+// exists is left out, and so is what contradicts itself.
 
 #include <algorithm>
 

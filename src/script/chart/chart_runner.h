@@ -91,7 +91,7 @@ class ChartRunner {
   StateIndex innermost() const noexcept;  // active state, the first when there are several; 0 before the first tick
   double state_time_s(StateIndex state) const noexcept;
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }
-  // What runs now, for waiting: set by the bindings just before they yield.
+  // What the running coroutine waits for: set by the bindings just before they yield.
   void wait_for(Motion* motion) noexcept { wait_motion_ = motion; }
   void wait_until(std::int64_t time_ns) noexcept { wait_ns_ = time_ns; }
   std::int64_t now_ns() const noexcept { return now_ns_; }

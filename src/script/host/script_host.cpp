@@ -237,6 +237,8 @@ void ScriptHost::watch_folders() {
   }
 }
 
+// Writes what plays and its state as bytes. The host of another process continues from them: it loads the files when it
+// is made, and takes over each behavior's state in its first tick.
 std::string ScriptHost::keep(ByteWriter& bytes, std::int64_t time_ns) {
   bytes.put(kept_format);
   bytes.put(static_cast<std::uint32_t>(list_.entries().size()));

@@ -32,8 +32,8 @@ class LuaHeap {
 
   std::size_t used_bytes() const noexcept { return used_; }
   std::size_t limit_bytes() const noexcept { return limit_; }
-  std::uint64_t allocated_bytes() const noexcept { return allocated_; }  // ever
-  // Whether what is allocated from now on is for every tick. Such blocks stand side by side.
+  std::uint64_t allocated_bytes() const noexcept { return allocated_; }  // since the beginning
+  // Says whether blocks that are allocated from now on are used in every tick. Such blocks are placed together.
   void for_ticks(bool yes) noexcept { for_ticks_ = yes; }
 
   // The largest block so far: no table, function or stack of the state is larger.

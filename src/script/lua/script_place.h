@@ -1,4 +1,4 @@
-// A place in a script, for messages.
+// The messages of bindings: a place in a script, errors raised at it, and the check of a table's keys.
 #pragma once
 
 #include <lua.hpp>

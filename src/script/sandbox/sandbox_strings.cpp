@@ -1,4 +1,5 @@
-// The string library under a budget, but for patterns: what works long in C is charged before it begins.
+// The string library under a budget. What works long in C is charged before it begins. find, match, gmatch and gsub use
+// a matcher that counts its steps (pattern_matcher.h).
 
 #include <algorithm>
 #include <cmath>

@@ -267,6 +267,8 @@ void open_tables(lua_State* state) {
   set_function(state, tables, "sort", sandbox_sort);
 }
 
+// sort(table [, before]): as in Lua, by merging. So equal elements keep their order, and an order that contradicts
+// itself costs no more than another: n log n comparisons, each charged with what it compares.
 int sandbox_sort(lua_State* state) {
   check_writable(state);
   if (!lua_isnoneornil(state, 2)) luaL_checktype(state, 2, LUA_TFUNCTION);

@@ -17,7 +17,7 @@
 
 namespace kadans {
 
-// Thins one signal to so many columns between two times.
+// Reduces one signal to the given number of columns between two times.
 class PlotColumns {
  public:
   PlotColumns(double from_s, double to_s, std::size_t columns) noexcept;

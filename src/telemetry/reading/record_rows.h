@@ -58,9 +58,9 @@ class RecordRows {
   Precision precision_ = Precision::full;
 };
 
-// A transition or a line of the log; nothing when the message is neither, or damaged.
+// A transition or a log line; nullopt when the message is neither, or when it is damaged.
 std::optional<Event> event_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
-// What the safety layer found, as /faults tells it.
+// A fault that the safety layer found, as a message on /faults holds it; nullopt when the message is none.
 std::optional<ToldFault> fault_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns);
 
 // "squat: down -> up (arrived)"

@@ -49,7 +49,7 @@ class RecordWriter {
   [[nodiscard]] bool describe(const std::string& name, const TextMap& facts) { return file_.add_metadata(name, facts); }
   // After open(). Attaches the URDF and publishes it on /robot_description, where viewers look for it.
   [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns);
-  // After open(). Writes the text that remote/run_description.h makes on /description.
+  // After open(). Writes the text that remote/instance/run_description.h makes on /description.
   [[nodiscard]] bool describe_parts(const std::string& description, std::int64_t time_ns);
 
   // `row` holds all signals in the order of the table. Ticks and times must not run backwards.

@@ -42,7 +42,7 @@ class Drive {
 
   void ask(const JointActuation& actuation) noexcept { actuation_ = actuation; }
   void brake(bool braked) noexcept { braked_ = braked; }
-  // Returns the torque to put on the joint in this step, beside the rows it sets.
+  // Sets the rows for this step. Returns the torque to put on the joint beside them.
   double begin_step(double position_rad, double velocity_rad_s, double dt_s);
   void end_step(double position_rad, double velocity_rad_s, double dt_s);
 
