@@ -61,8 +61,9 @@ std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
       return of + "it cannot be moved with this duration and these limits";
     case RefusalReason::too_old:
       return "the commands were too old";
-    case RefusalReason::robot_held:
-      return of + "the robot is held";
+    case RefusalReason::robot_held:  // orders to drives are refused under the emergency stop alone
+      return of +
+             (refusal.kind == CommandKind::order_drive ? "the emergency stop holds the robot" : "the robot is held");
     case RefusalReason::joint_held:
       return of + "joint " +
              (refusal.joint < catalog.model->joints.size() ? catalog.model->joints[refusal.joint].name : "?") +

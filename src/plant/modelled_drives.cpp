@@ -10,28 +10,26 @@ ModelledDrives::ModelledDrives(const std::vector<DriveSettings>& settings, std::
     const DriveSettings& from = settings[i];
     drives_[i].enable_ns = std::llround(1e9 * from.enable_s);
     drives_[i].has_brake = from.brake_Nm > 0;
-    if (!from.enabled && from.torque_max_Nm > 0) drives_[i].become(DriveState::ready);
+    if (!from.enabled && from.torque_max_Nm > 0) drives_[i].state = DriveState::ready;
   }
-}
-
-// An enabled drive holds the joint itself.
-void ModelledDrives::Drive::become(DriveState next) noexcept {
-  state = next;
-  braked = has_brake && next != DriveState::enabled;
 }
 
 void ModelledDrives::Drive::carry_out(DriveOrder order) noexcept {
   switch (order) {
     case DriveOrder::enable:
+      brake = Brake::by_itself;
       if (state == DriveState::ready) waits_ns = std::max<std::int64_t>(enable_ns, 1);
       break;
     case DriveOrder::disable:
+      brake = Brake::by_itself;
       waits_ns = 0;
-      become(DriveState::ready);
+      state = DriveState::ready;
       break;
     case DriveOrder::brake:
+      brake = Brake::closed;
+      break;
     case DriveOrder::release:
-      braked = has_brake && order == DriveOrder::brake;
+      brake = Brake::open;
       break;
     case DriveOrder::none:
     case DriveOrder::reset:
@@ -44,6 +42,7 @@ void ModelledDrives::write(const ActuationFrame& actuation) noexcept {
   for (std::size_t i = 0; i < std::min<std::size_t>(drives_.size(), actuation.joint_count); ++i) {
     const DriveRequest& request = actuation.drives[i];
     if (request.is_new(drives_[i].order_seen)) drives_[i].carry_out(request.order);
+    drives_[i].lets_go = actuation.joints[i].mode == ActuationMode::off;
   }
 }
 
@@ -51,14 +50,14 @@ void ModelledDrives::step(std::int64_t dt_ns) noexcept {
   for (Drive& drive : drives_) {
     if (drive.waits_ns == 0) continue;
     drive.waits_ns = std::max<std::int64_t>(drive.waits_ns - dt_ns, 0);
-    if (drive.waits_ns == 0) drive.become(DriveState::enabled);
+    if (drive.waits_ns == 0) drive.state = DriveState::enabled;
   }
 }
 
 void ModelledDrives::fill(SensorFrame& frame) const noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     frame.joints[i].drive = drives_[i].state;
-    frame.joints[i].braked = drives_[i].braked;
+    frame.joints[i].braked = braked(i);
   }
 }
 
@@ -68,7 +67,7 @@ void ModelledDrives::hash(StateHash& hash) const noexcept {
     hash.add(i);
     hash.add(static_cast<std::uint64_t>(drives_[i].state));
     hash.add(static_cast<std::uint64_t>(drives_[i].waits_ns));
-    hash.add(std::uint64_t{drives_[i].braked});
+    hash.add(static_cast<std::uint64_t>(drives_[i].brake));
   }
 }
 

@@ -27,8 +27,10 @@ class DriveWatch {
     const JointSample& sample = in.sample;
     const bool idle = in.asked && sample.drive != DriveState::enabled && sample.drive != DriveState::fault;
     idle_s_ = idle ? idle_s_ + in.dt_s : 0;
+    const bool dropped_out = idle && was_enabled_;  // while it was asked: it may not come back by itself
+    was_enabled_ = sample.drive == DriveState::enabled;
     return bit_if(sample.drive == DriveState::fault, drive_fault) |
-           bit_if(idle_s_ > settings.enable_s, drive_not_enabled) |
+           bit_if(dropped_out || idle_s_ > settings.enable_s, drive_not_enabled) |
            bit_if(sample.temperature_C >= settings.hot_C, drive_hot) |
            bit_if(sample.time_ns != 0 && age_s(in) > settings.sample_age_max_s, sample_old);
   }
@@ -38,7 +40,8 @@ class DriveWatch {
  private:
   static double age_s(const Input& in) noexcept { return seconds_between(in.sample.time_ns, in.frame_ns); }
 
-  double idle_s_ = 0;  // asked for torque, and not enabled
+  double idle_s_ = 0;         // asked for torque, and not enabled
+  bool was_enabled_ = false;  // in the last tick
 };
 
 class SupplyWatch {

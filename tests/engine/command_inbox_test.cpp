@@ -127,3 +127,50 @@ TEST_CASE("A tick's share that the largest transaction could never pass is refus
   bench::Robot robot;
   CHECK_THROWS_AS(CommandInbox(robot.exchange->commands, robot.catalog, robot.sets, 10, 0), std::invalid_argument);
 }
+
+TEST_CASE("A second order to a drive waits for the next tick, so that each stands in a frame") {
+  Inbox bench;
+  const auto order = [](DriveOrder what) {
+    return Command{.kind = CommandKind::order_drive, .index = 1, .count = static_cast<std::uint32_t>(what)};
+  };
+  bench.send(0, order(DriveOrder::reset));
+  bench.send(0, order(DriveOrder::enable));
+  bench.inbox.apply(1, bench.at(0), bench.safety);
+  CHECK(bench.inbox.drive_requests()[1].order == DriveOrder::reset);
+  CHECK(bench.inbox.drive_requests()[1].number == 1);
+  bench.inbox.apply(2, bench.at(0), bench.safety);
+  CHECK(bench.inbox.drive_requests()[1].order == DriveOrder::enable);
+  CHECK(bench.inbox.drive_requests()[1].number == 2);
+}
+
+TEST_CASE("The emergency stop takes back orders to drives that are not carried out yet") {
+  Inbox bench;
+  const auto order = [](std::uint32_t joint, DriveOrder what) {
+    return Command{.kind = CommandKind::order_drive, .index = joint, .count = static_cast<std::uint32_t>(what)};
+  };
+  SensorFrame sensors;
+  sensors.joint_count = 2;
+  sensors.joints[0].drive = DriveState::ready;
+  bench.send(0, order(0, DriveOrder::enable), order(1, DriveOrder::enable));
+  bench.inbox.apply(1, bench.at(0), bench.safety);
+  bench.inbox.revoke_orders(sensors);
+  CHECK(bench.inbox.drive_requests()[0].order == DriveOrder::disable);  // it was under way
+  CHECK(bench.inbox.drive_requests()[0].number == 2);
+  CHECK(bench.inbox.drive_requests()[1].order == DriveOrder::none);  // it is enabled, and damps
+  CHECK(bench.inbox.drive_requests()[1].number == 1);
+  bench.send(0, order(0, DriveOrder::release), order(1, DriveOrder::brake));
+  bench.inbox.apply(2, bench.at(0), bench.safety);
+  bench.inbox.revoke_orders(sensors);
+  CHECK(bench.inbox.drive_requests()[0].order == DriveOrder::none);
+  CHECK(bench.inbox.drive_requests()[1].order == DriveOrder::brake);
+}
+
+TEST_CASE("An order to a drive that there is not, or that is none, is refused") {
+  Inbox bench;
+  bench.send(0, Command{.kind = CommandKind::order_drive, .index = 2, .count = 1});
+  bench.send(0, Command{.kind = CommandKind::order_drive, .index = 0, .count = 0});
+  bench.send(0, Command{.kind = CommandKind::order_drive, .index = 0, .count = 7});
+  bench.inbox.apply(1, bench.at(0), bench.safety);
+  CHECK(bench.inbox.state().applied == 0);
+  CHECK(bench.inbox.state().refused == 3);
+}

@@ -63,12 +63,23 @@ TEST_CASE("in that tick the joint alone is off, latched, and the fault has the m
   }
 }
 
-TEST_CASE("after drives.enable_s the joint alone is off, latched" *
-          description("a drive is asked for torque and is not enabled")) {
-  LightRobot robot(22);
+TEST_CASE("in that tick the joint alone is off, latched" *
+          description("a drive that is asked for torque is not enabled any more")) {
+  LightRobot robot(30);
   robot.run(100);
   const std::int64_t onset = robot.ticks();
   spoil(robot, ActuatorFaultKind::disabled);
+  robot.run(3);
+  CHECK(robot.in_time(FaultCode::drive_not_enabled, onset));
+  CHECK(fault_detail(told(first_fault(robot))) == "ready");
+  check_alone(robot, SafetyLevel::off);
+}
+
+TEST_CASE("after drives.enable_s the joint alone is off, latched" *
+          description("a drive is asked for torque and was never enabled")) {
+  LightRobot robot(22);
+  const std::int64_t onset = robot.ticks();
+  robot.faulty.add(ActuatorFault{.kind = ActuatorFaultKind::disabled, .joint = 0});
   robot.run(ticks(robot.limits().drives.enable_s) - 2);
   CHECK(robot.faults.empty());
   robot.run(5);

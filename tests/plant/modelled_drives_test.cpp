@@ -85,6 +85,27 @@ TEST_CASE("A brake holds no more than its torque, and lets go when somebody rele
   }
 }
 
+TEST_CASE(
+    "A brake holds a joint whose drive is enabled and asked for nothing, and follows no hand when it is enabled anew") {
+  const Robot robot = braked_pendulum(2);
+  BulletWorld plant(robot.model, robot.settings, 1);
+  Asked asked;
+  asked.frame.joint_count = 1;
+  plant.write(asked.to(DriveOrder::enable));
+  run(plant, 300);
+  CHECK(sample_of(plant).drive == DriveState::enabled);
+  CHECK(sample_of(plant).braked);
+  CHECK(plant.truth().position_rad[0] > 0.49);
+  plant.write(asked.to(DriveOrder::brake));
+  asked.frame.joints[0] = {.effort_Nm = 0, .mode = ActuationMode::effort};
+  plant.write(asked.frame);
+  CHECK(sample_of(plant).braked);
+  plant.write(asked.to(DriveOrder::enable));
+  CHECK_FALSE(sample_of(plant).braked);
+  run(plant, 200);
+  CHECK(plant.truth().position_rad[0] < 0.45);
+}
+
 TEST_CASE("An order that stands in every frame is carried out once") {
   ModelledDrives drives({{.torque_max_Nm = 1, .brake_Nm = 1}}, 1);
   Asked asked;

@@ -92,9 +92,10 @@ TEST_CASE("drives are disabled and enabled by ctl, which answers when they are, 
   CHECK(live.ask({{"verb", "enable_drives"}})["ok"] == true);
   (void)live.ask_until({{"verb", "drives"}}, [](const Json& a) { return a["drives"][0]["state"] == "enabled"; });
   CHECK(live.ask({{"verb", "reset_drives"}})["ok"] == true);
-  CHECK(live.ask({{"verb", "home_drives"}, {"joints", "knee"}})["ok"] == true);
+  CHECK(says(live.ask({{"verb", "home_drives"}, {"joints", "knee"}}), "tells when they are homed"));
   CHECK(says(live.ask({{"verb", "enable_drives"}, {"joints", "kne"}}), "did you mean 'knee'"));
   CHECK(error_of(live.ask({{"verb", "release_drives"}})) == "release_drives needs \"joints\"");
+  CHECK(error_of(live.ask({{"verb", "release_drives"}, {"joints", ""}})) == "release_drives needs \"joints\"");
   CHECK(item(live.ask({{"verb", "list"}, {"what", "joints"}}), "knee")["unit"] == "rad");
 }
 
@@ -110,8 +111,9 @@ TEST_CASE("under the emergency stop no drive is enabled and no brake released, a
   live.start();
   CHECK(live.ask({{"verb", "estop"}})["ok"] == true);
   (void)live.ask_until({{"verb", "status"}}, [](const Json& a) { return a["safety"]["stopped"] == true; });
-  CHECK(error_of(live.ask({{"verb", "enable_drives"}})) == "drive of hip: the robot is held");
-  CHECK(error_of(live.ask({{"verb", "release_drives"}, {"joints", "*"}})) == "drive of hip: the robot is held");
+  CHECK(error_of(live.ask({{"verb", "enable_drives"}})) == "drive of hip: the emergency stop holds the robot");
+  CHECK(error_of(live.ask({{"verb", "release_drives"}, {"joints", "*"}})) ==
+        "drive of hip: the emergency stop holds the robot");
   CHECK(live.ask({{"verb", "disable_drives"}})["ok"] == true);
 }
 

@@ -26,19 +26,25 @@ class ModelledDrives {
   void fill(SensorFrame& frame) const noexcept;
 
   bool enabled(std::size_t joint) const noexcept { return drives_[joint].state == DriveState::enabled; }
-  bool braked(std::size_t joint) const noexcept { return drives_[joint].braked; }
+  bool braked(std::size_t joint) const noexcept { return drives_[joint].braked(); }
   // Adds nothing while all are enabled and no brake holds.
   void hash(StateHash& hash) const noexcept;
 
  private:
+  enum class Brake : std::uint8_t { by_itself, closed, open };  // the last two by hand
   struct Drive {
     std::int64_t enable_ns = 0, waits_ns = 0;  // what enabling takes, and what is left of it; 0: nobody asked
     DriveState state = DriveState::enabled;
+    Brake brake = Brake::by_itself;
     std::uint8_t order_seen = 0;
-    bool has_brake = false, braked = false;
+    bool has_brake = false;
+    bool lets_go = true;  // its newest mode is off
 
     void carry_out(DriveOrder order) noexcept;
-    void become(DriveState next) noexcept;
+    bool braked() const noexcept {
+      const bool holds = state == DriveState::enabled && !lets_go;
+      return has_brake && (brake == Brake::closed || (brake == Brake::by_itself && !holds));
+    }
   };
   std::vector<Drive> drives_;
 };

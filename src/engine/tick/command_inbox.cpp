@@ -13,7 +13,7 @@ bool clears(const Command& command, const Safety& safety) noexcept {
   return command.kind == CommandKind::clear_faults && !safety.stopped();
 }
 
-// Orders after which a joint stays where it is, or lets go no more than it does.
+// Orders that set no joint in motion by a drive or by its load, but for `disable`, which takes damping away.
 bool keeps_still(const Command& command) noexcept {
   const auto order = static_cast<DriveOrder>(command.count);
   return order == DriveOrder::disable || order == DriveOrder::reset || order == DriveOrder::brake;
@@ -174,9 +174,31 @@ void CommandInbox::execute(const Command& command, const ControlInput& input, Sa
       motions_.begin(command);
       break;
     case CommandKind::order_drive:
-      drives_[command.index].order = static_cast<DriveOrder>(command.count);
-      ++drives_[command.index].number;
+      drive_requests_[command.index].order = static_cast<DriveOrder>(command.count);
+      ++drive_requests_[command.index].number;
+      ordered_ |= joint_bit(command.index);
       break;
+  }
+}
+
+// A frame holds one order to each drive: a second one waits for the next tick.
+bool CommandInbox::orders_again(std::uint32_t count) const noexcept {
+  for (std::uint32_t i = 1; i <= count; ++i) {
+    const Command& command = queue_.peek(i);
+    const bool known = command.index < catalog_.model->joints.size();
+    if (command.kind == CommandKind::order_drive && known && (ordered_ & joint_bit(command.index)) != 0) return true;
+  }
+  return false;
+}
+
+void CommandInbox::revoke_orders(const SensorFrame& sensors) noexcept {
+  for (std::size_t i = 0; i < sensors.joint_count; ++i) {
+    DriveRequest& request = drive_requests_[i];
+    const bool enables = request.order == DriveOrder::enable || request.order == DriveOrder::home;
+    if (!enables && request.order != DriveOrder::release) continue;
+    const bool under_way = enables && sensors.joints[i].drive != DriveState::enabled;
+    request.order = under_way ? DriveOrder::disable : DriveOrder::none;
+    if (under_way) ++request.number;
   }
 }
 
@@ -188,6 +210,7 @@ void CommandInbox::notify_owners() noexcept {
 
 void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept {
   std::uint32_t share = commands_per_tick_max_;
+  ordered_ = 0;
   std::size_t waiting = queue_.size();
   while (waiting > 0) {
     const Command header = queue_.peek();
@@ -199,7 +222,7 @@ void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& 
       safety.raise({.code = FaultCode::command_refused, .tick = tick, .value = static_cast<double>(waiting)});
       return;
     }
-    if (header.count > share) return;
+    if (header.count > share || orders_again(header.count)) return;
     const bool fresh = input.time_ns - header.time_ns <= age_max_ns_;
     const Refusal refusal = fresh ? judge_transaction(header.count, safety) : Refusal{.reason = RefusalReason::too_old};
     if (refusal.reason == RefusalReason::none) {

@@ -42,7 +42,10 @@ class CommandInbox {
   // Writes into the snapshot which transactions were applied and which refused.
   void fill(Snapshot& snapshot) const noexcept;
   SetpointMotions& motions() noexcept { return motions_; }
-  const DriveRequests& drives() const noexcept { return drives_; }
+  const DriveRequests& drive_requests() const noexcept { return drive_requests_; }
+  // Control thread, when the emergency stop comes: orders that let a joint move and are not carried out yet count no
+  // more.
+  void revoke_orders(const SensorFrame& sensors) noexcept;
 
  private:
   RefusalReason judge(const Command& command) const noexcept;
@@ -52,6 +55,7 @@ class CommandInbox {
   // The refusal of the first of the `count` commands that is refused; with the reason none: there is no such command.
   Refusal judge_transaction(std::uint32_t count, const Safety& safety) const noexcept;
   void refuse(const Command& header, Refusal refusal, std::uint64_t tick, Safety& safety) noexcept;
+  bool orders_again(std::uint32_t count) const noexcept;
   void execute(const Command& command, const ControlInput& input, Safety& safety) noexcept;
   void notify_owners() noexcept;
 
@@ -61,7 +65,8 @@ class CommandInbox {
   std::uint32_t commands_per_tick_max_;
   std::int64_t age_max_ns_;
   SetpointMotions motions_;
-  DriveRequests drives_{};
+  DriveRequests drive_requests_{};
+  JointMask ordered_ = 0;  // joints whose drives were ordered in this tick
   State state_;
   std::uint32_t transactions_refused_ = 0;
   std::array<Refusal, refusals_shown> refusals_{};

@@ -1,5 +1,7 @@
 #include "control_engine.h"
 
+#include <utility>
+
 #include "engine/tick/control_engine.h"
 #include "estimate/signals.h"
 #include "signal/status_fields.h"
@@ -36,16 +38,23 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
                 actuation_, snapshot_.status.safety);
   if (safety_.fall_phase() == FallWatch::Phase::falling && snapshot_.status.base.posture == Posture::upright)
     snapshot_.status.base.posture = Posture::falling;
+  heed_stop();
   plant_.write(drive(time_ns, dt_s));
   copy_used(actuation_, written_);
   const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
   if (safety_.came_back()) sets_.restart(input);
   inbox_.apply(tick_, input, safety_);
-  copy_first(inbox_.drives(), actuation_.joint_count, actuation_.drives);
+  copy_first(inbox_.drive_requests(), actuation_.joint_count, actuation_.drives);
   inbox_.motions().step(dt_s);
   sets_.step(tick_, input, actuation_);
   publish(time_ns);
   ++tick_;
+}
+
+void ControlEngine::heed_stop() noexcept {
+  if (std::exchange(stopped_, safety_.stopped()) || !stopped_) return;
+  inbox_.revoke_orders(sensors_);
+  copy_first(inbox_.drive_requests(), actuation_.joint_count, actuation_.drives);
 }
 
 // Objects at the drives turn what is wanted of the joints into what is asked of the motors.

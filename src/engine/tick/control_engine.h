@@ -88,6 +88,7 @@ class ControlEngine {
 
  private:
   const ActuationFrame& drive(std::int64_t time_ns, double dt_s) noexcept;
+  void heed_stop() noexcept;
   void tell_drives() noexcept;
   void publish(std::int64_t time_ns) noexcept;
   void declare_signals(Catalog& catalog);
@@ -103,6 +104,7 @@ class ControlEngine {
   RecordSink* sink_ = nullptr;
 
   std::uint64_t tick_ = 0;
+  bool stopped_ = false;  // by the emergency stop, in the last tick
   SensorFrame sensors_;
   Snapshot snapshot_;         // joints and status are estimated in place
   ActuationFrame actuation_;  // computed in the last tick, written in this one

@@ -40,7 +40,7 @@
 
 namespace kadans {
 
-inline constexpr std::uint16_t wire_version = 2;
+inline constexpr std::uint16_t wire_version = 3;
 inline constexpr std::size_t wire_head_bytes = 40, wire_robot_bytes = 32;
 // No datagram is longer than this.
 inline constexpr std::size_t wire_bytes_max =

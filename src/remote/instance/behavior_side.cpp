@@ -214,10 +214,14 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
   const bool taken = snapshot.transactions_applied >= pending.sequence;
   if (const DriveOrder asked = drive_order_of(order.kind); taken && asked != DriveOrder::none) {
     const std::string undone = undone_text(asked, pending.joints, snapshot.power, *p_.instance.catalog().model);
-    if (undone.empty()) finish(pending);
-    const bool given_up = time_ns - pending.asked_ns > drives_answer_in_ns;
+    if (!std::exchange(pending.logged, true))
+      say(time_ns_, order.who,
+          std::string("asks drives to ") + name(asked) + ": " + (order.text.empty() ? "all" : order.text));
+    answer.done = undone.empty();
+    const bool given_up = !answer.done && time_ns - pending.asked_ns > drives_answer_in_ns;
+    if (answer.done && asked == DriveOrder::home) answer.text = "asked; `kadans ctl drives` tells when they are homed";
     if (given_up) answer.text = undone + ", 5 s after it was asked to " + name(asked);
-    return undone.empty() || given_up;
+    return answer.done || given_up;
   }
   if (taken) {
     finish(pending);
@@ -233,10 +237,6 @@ void BehaviorSide::finish(Pending& pending) {
   Answer& answer = pending.order->answer;
   answer.done = true;
   const ParameterChange& change = pending.change;
-  if (const DriveOrder asked = drive_order_of(order.kind); asked != DriveOrder::none) {
-    const std::string joints = order.text.empty() ? "all" : order.text;
-    return say(time_ns_, order.who, std::string("asked drives to ") + name(asked) + ": " + joints);
-  }
   switch (order.kind) {
     case Order::Kind::switch_set:
       return say(time_ns_, order.who, "switched to control set " + order.text);

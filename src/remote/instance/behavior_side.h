@@ -89,6 +89,7 @@ class BehaviorSide final : public BesideTick {
     bool lasting = false;
     std::uint16_t lifts = 0;  // for clear_faults: SafetyStatus::lifts before it
     JointMask joints = 0;     // for orders to drives
+    bool logged = false;      // likewise: the log has it
   };
 
   void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);

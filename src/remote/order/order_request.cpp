@@ -61,6 +61,8 @@ void check_argument(const OrderInfo& order, const OrderArgument& argument, const
     return;
   }
   if (!fits(*given, argument.kind)) fail(quoted + " must be " + kind_text(argument.kind));
+  if (argument.kind == text && argument.required && given->get_ref<const std::string&>().empty())
+    fail(std::string(order.verb) + " needs " + quoted);
   if (argument.kind != number) return;
   const double value = given->get<double>();
   if (value >= argument.min && value <= argument.max) return;

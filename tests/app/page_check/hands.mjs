@@ -75,7 +75,7 @@ export async function check_keyboard(page) {
   const joint = (await disable.getAttribute('aria-label')).slice('Disable '.length);
   await disable.click();
   await page.click(`[aria-label="Enable ${joint}"]`);
-  await until('the run refuses to enable a drive while it is stopped', () => logged(`drive of ${joint}: the robot is held`));
+  await until('the run refuses to enable a drive while it is stopped', () => logged(`drive of ${joint}: the emergency stop holds the robot`));
   check(true, 'a drive is disabled by its button, and enabled by none under the emergency stop');
 }
 

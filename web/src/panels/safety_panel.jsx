@@ -34,7 +34,7 @@ function Joints({ session }) {
 }
 
 // What may be asked of a drive in each of its states.
-const orders = { off: ['enable_drives', 'Enable'], ready: ['enable_drives', 'Enable'], enabled: ['disable_drives', 'Disable'], fault: ['reset_drives', 'Reset'] };
+const orders = { off: ['enable_drives', 'Enable'], ready: ['enable_drives', 'Enable'], enabled: ['disable_drives', 'Disable'], homing: ['disable_drives', 'Disable'], fault: ['reset_drives', 'Reset'] };
 
 function Drive({ session, drive }) {
   const [verb, word] = orders[drive.state] ?? [];
