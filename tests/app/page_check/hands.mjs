@@ -75,7 +75,8 @@ export async function check_keyboard(page) {
   const joint = (await disable.getAttribute('aria-label')).slice('Disable '.length);
   await disable.click();
   await page.click(`[aria-label="Enable ${joint}"]`);
-  await until('the run refuses to enable a drive while it is stopped', () => logged(`drive of ${joint}: the emergency stop holds the robot`));
+  const refusal = `drive of ${joint}: the emergency stop holds the robot`;
+  await until('the run refuses to enable a drive while it is stopped', () => page.evaluate((text) => globalThis.kadans.error.includes(text), refusal));
   check(true, 'a drive is disabled by its button, and enabled by none under the emergency stop');
 }
 
