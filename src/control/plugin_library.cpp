@@ -1,10 +1,12 @@
 #include "plugin_library.h"
 
 #include <algorithm>
+#include <cfenv>
 #include <cstring>
 #include <fstream>
 #include <span>
 #include <stdexcept>
+#include <system_error>
 
 #include <dlfcn.h>
 #include <link.h>
@@ -50,7 +52,13 @@ void refuse_cut_off(const fs::path& file) {
 
 const PluginDescriptor& descriptor_in(const fs::path& file) {
   refuse_cut_off(file);
-  void* const library = dlopen(fs::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
+  std::fenv_t rounding;
+  (void)std::fegetenv(&rounding);  // a library built with -ffast-math sets the processor to flush small numbers to 0
+  // Links are resolved, so that what stands beside a link is not taken for what stands beside the library.
+  std::error_code error;
+  const fs::path whole = fs::canonical(file, error);
+  void* const library = dlopen((error ? file : whole).c_str(), RTLD_NOW | RTLD_LOCAL);
+  (void)std::fesetenv(&rounding);
   if (library == nullptr) refuse_plugin(file, std::string("cannot be loaded: ") + dlerror());
   const void* const symbol = dlsym(library, "kadans_plugin");
   if (symbol == nullptr) refuse_plugin(file, "exports no kadans_plugin, so it is no plug-in of Kadans");

@@ -196,6 +196,24 @@ TEST_CASE("A record beside a project of its own does not load that project's plu
   CHECK_MESSAGE(allowed.exit_code == 0, allowed.err);
 }
 
+TEST_CASE("A record that names a scenario outside of all projects does not load the plug-ins that lie there") {
+  const Sent sent("foreign_loose");
+  const fs::path loose = fresh_folder("foreign_loose_files");
+  fs::copy(plugin_source, loose / "evil.so");
+  write(loose / "robot.json", R"({"name": "x", "plugins": ["./evil.so"]})");
+  write(loose / "s.json", R"({"robot": "./robot.json", "duration_s": 1})");
+  RunInputs inputs = sent.inputs();
+  for (const std::string& scenario :
+       {(loose / "s.json").string(), fs::relative(loose / "s.json", sent.project).string()}) {
+    inputs.run["scenario"] = scenario;
+    const Outcome refused = run("replay '" + sent.forged(inputs).string() + "'", sent.project);
+    CHECK(refused.exit_code == 2);
+    CHECK_MESSAGE(has(refused.err, "--allow-plugins"), refused.err);
+    CHECK_FALSE(fs::exists(sent.loaded));
+    fs::remove(sent.elsewhere / "forged.mcap");
+  }
+}
+
 TEST_CASE("Files that are devices, pipes or folders are refused where a file is wanted, and nothing waits for them") {
   const fs::path folder = project_copy("no_files");
   REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);

@@ -116,3 +116,10 @@ TEST_CASE("a program that does not exist is told of, a doorbell without anybody 
   { const Doorbell gone(std::move(other)); }
   CHECK(one.wait(0) == Doorbell::Heard::end);
 }
+
+TEST_CASE("A child that a real-time signal ends is told of by the signal's number") {
+  ChildProcess process({.words = {"sh", "-c", "kill -34 $$"}});
+  const ChildProcess* const one[] = {&process};
+  while (!process.ended()) ChildProcess::wait_for_one(one, -1);
+  CHECK(process.end() == "signal 34");
+}

@@ -28,10 +28,10 @@ BehaviorLink::Setup setup_of(const RunOptions& options) {
   return setup;
 }
 
-// Sets memory limit, locked memory and priority as for an engine's thread, once everything is loaded.
+// Sets locked memory, memory limit and priority as for an engine's thread, once everything is loaded.
 void settle(const BehaviorLink::Setup& setup) noexcept {
-  if (setup.memory_bytes > 0) (void)limit_memory(setup.memory_bytes);
   if (setup.locks_memory != 0) (void)lock_memory(heap_reserve_bytes);
+  if (setup.memory_bytes > 0) (void)limit_memory(setup.memory_bytes);  // it counts what the lock looks for
   touch_stack();
   if (setup.priority > 0) (void)take_priority(setup.priority);
 }

@@ -31,7 +31,10 @@ void bind_all_functions(char** argv) {
   constexpr const char* variable = "LD_BIND_NOW";   // of ld.so; linking with -z now binds only what a file itself calls
   const char* const bound = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): before any thread is started
   if (bound != nullptr && *bound != '\0') return;
-  (void)setenv(variable, "1", 1);  // NOLINT(concurrency-mt-unsafe)
+  constexpr const char* once = "KADANS_STARTED_ANEW";  // a loader may take LD_BIND_NOW from a program with capabilities
+  if (std::getenv(once) != nullptr) return;            // NOLINT(concurrency-mt-unsafe)
+  (void)setenv(once, "1", 1);                          // NOLINT(concurrency-mt-unsafe)
+  (void)setenv(variable, "1", 1);                      // NOLINT(concurrency-mt-unsafe)
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (!error) execv(program.c_str(), argv);

@@ -197,7 +197,7 @@ fs::path find_scenario(const RunInputs& recorded, const fs::path& record) {
 }
 
 PluginGate plugins_beside(const fs::path& scenario, bool any_plugins) {
-  if (any_plugins || project_root(scenario) == project_here()) return {};
+  if (any_plugins || lies_in_project_here(scenario)) return {};
   return {.closed = true,
           .let_in = {},
           .remedy = "its project is not the one around the working directory; --allow-plugins loads what lies there"};

@@ -60,6 +60,14 @@ fs::path project_root(const fs::path& file) {
   return own;
 }
 
+bool lies_in_project_here(const fs::path& file) {
+  std::error_code error;
+  const fs::path whole = fs::canonical(file, error), working = fs::canonical(fs::current_path(error), error);
+  if (error) return false;
+  const auto own = root_above(whole.parent_path()), here = root_above(working);
+  return own && here && *own == *here;
+}
+
 fs::path resolve(std::string_view path, const fs::path& file) {
   const fs::path written(path);
   if (written.is_absolute()) return written.lexically_normal();

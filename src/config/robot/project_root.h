@@ -15,6 +15,9 @@ namespace kadans {
 // folder is the root.
 std::filesystem::path project_root(const std::filesystem::path& file);
 
+// Whether `file` lies in the project around the working directory, links resolved. A file outside any project does not.
+bool lies_in_project_here(const std::filesystem::path& file);
+
 // Resolves a path as it is written inside `file`: an absolute path stays, "./x" and "../x" start at the file's folder,
 // and all others start at its project root.
 std::filesystem::path resolve(std::string_view path, const std::filesystem::path& file);

@@ -43,6 +43,7 @@ void UrdfDocument::link_tags() {
     }
     element = next;
   }
+  if (element != nullptr) throw InputError({file_, element->GetLineNum(), 0, "not well-formed XML"});
 }
 
 const XmlTag& UrdfDocument::tag(const XMLElement& element) {

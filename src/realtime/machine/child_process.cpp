@@ -171,7 +171,10 @@ std::string ChildProcess::end() noexcept {
     kill();
     if (!ends_soon(tries_max)) return forget(), "it does not even die";  // the system holds it; it has no hold on us
   }
-  if (signal() != 0) return "signal " + std::to_string(signal()) + " (" + sigdescr_np(signal()) + ")";
+  if (signal() != 0) {
+    const char* const meaning = sigdescr_np(signal());  // none of real-time signals
+    return "signal " + std::to_string(signal()) + (meaning == nullptr ? "" : std::string(" (") + meaning + ")");
+  }
   return "exit code " + std::to_string(exit_code());
 }
 
