@@ -201,7 +201,7 @@ TEST_CASE("A record that names a scenario outside of all projects does not load 
   const fs::path loose = fresh_folder("foreign_loose_files");
   fs::copy(plugin_source, loose / "evil.so");
   write(loose / "robot.json", R"({"name": "x", "plugins": ["./evil.so"]})");
-  write(loose / "s.json", R"({"robot": "./robot.json", "duration_s": 1})");
+  write(loose / "s.json", R"({"name": "s", "robot": "./robot.json", "duration_s": 1})");
   RunInputs inputs = sent.inputs();
   for (const std::string& scenario :
        {(loose / "s.json").string(), fs::relative(loose / "s.json", sent.project).string()}) {

@@ -78,12 +78,13 @@ TEST_CASE("in that tick the joint alone is off, latched" *
 TEST_CASE("after drives.enable_s the joint alone is off, latched" *
           description("a drive is asked for torque and was never enabled")) {
   LightRobot robot(22);
-  const std::int64_t onset = robot.ticks();
+  constexpr std::int64_t asked =
+      2;  // the first tick after one that wrote something: what was computed in tick 0 is written in 1
   robot.faulty.add(ActuatorFault{.kind = ActuatorFaultKind::disabled, .joint = 0});
   robot.run(ticks(robot.limits().drives.enable_s) - 2);
   CHECK(robot.faults.empty());
   robot.run(5);
-  CHECK(robot.in_time(FaultCode::drive_not_enabled, onset));
+  CHECK(robot.in_time(FaultCode::drive_not_enabled, asked));
   CHECK(fault_detail(told(first_fault(robot))) == "ready");
   check_alone(robot, SafetyLevel::off);
 }
