@@ -170,7 +170,7 @@ class WallClockRun {
                            ended,
                            failed_};
     result.failed = result.failed || log_.has_errors() || !hanging.empty();
-    std::fputs((options_.json ? live_json(result) + "\n" : live_text(result)).c_str(), stdout);
+    std::fputs((options_.json ? run_report_json(result) + "\n" : run_report_text(result)).c_str(), stdout);
     if (!hanging.empty()) leave_behind(hanging);
     return result.failed ? exit_failed : exit_passed;
   }

@@ -80,7 +80,7 @@ std::uint64_t refused(const WallClockResult& result) {
 
 }  // namespace
 
-std::string live_text(const WallClockResult& result) {
+std::string run_report_text(const WallClockResult& result) {
   std::array<char, 400> text{};
   std::snprintf(text.data(), text.size(), "%s after %.3f s, %.1f MB resident, first tick %.0f ms after the start\n\n",
                 result.ended.c_str(), result.duration_s, resident_MB(), result.start_ms);
@@ -115,7 +115,7 @@ std::string live_text(const WallClockResult& result) {
   return all;
 }
 
-std::string live_json(const WallClockResult& result) {
+std::string run_report_json(const WallClockResult& result) {
   Json threads;
   for (const auto& thread : result.threads.all()) threads[thread->settings().name] = json_of(*thread);
   if (result.threads.keep_awake() != nullptr) {

@@ -1,4 +1,4 @@
-// The report of a live run: how punctual its threads were, and what was sent, refused, recorded and lost.
+// The report of a run on the wall clock: how punctual its threads were, and what was sent, refused, recorded and lost.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/run/run_threads.h"
@@ -33,8 +32,8 @@ struct WallClockResult {
   bool failed = false;
 };
 
-std::string live_text(const WallClockResult& result);
-std::string live_json(const WallClockResult& result);  // one line
+std::string run_report_text(const WallClockResult& result);
+std::string run_report_json(const WallClockResult& result);  // one line
 
 // The durations of ticks for reports: in microseconds, rounded to nanoseconds.
 struct TickQuantile {

@@ -22,14 +22,13 @@
 
 namespace kadans {
 
-// A rehearsal of the tick. Between two ticks the CPU works for others, and afterwards the tick's code and memory are no
-// longer in its caches: a tick of one microsecond takes five. Therefore, in the last part of its wait, the control
-// thread goes through the tick beforehand: it calls the same functions, on copies of what they would change.
+// What a rehearsal of the tick works on. Between two ticks the CPU works for others, and afterwards the tick's code and
+// memory are no longer in its caches: a tick of one microsecond takes five. Therefore, in the last part of its wait, the
+// control thread goes through the tick beforehand: it calls the same functions, on copies of what they would change.
 //
 // A rehearsal changes nothing that counts. It reads and writes no plant, takes no command and publishes nothing. So a
-// run with rehearsals computes the same as a run without (tests/engine/rehearsal_test.cpp). No allocation, no system
-// call.
-// What a rehearsal works on. Control thread.
+// run with rehearsals computes the same as a run without (tests/engine/rehearsal_test.cpp). It allocates nothing and
+// makes no system call. Control thread.
 struct Rehearsal {
   Rehearsal(double period_s, const Estimator& estimated, const Safety& guarded, const RobotModel& model)
       : dt_s(period_s), estimator(estimated), safety(guarded.settings(), model) {}

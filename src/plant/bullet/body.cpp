@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "convert.h"
-#include "principal_axes.h"
 
 namespace kadans::bullet {
 namespace {
@@ -53,6 +52,14 @@ void set_up_payload(btMultiBody& body, const RobotModel& model, const std::vecto
                   frames[carrier].link_in_com * to_bullet(payload.point_m), {0, 0, 0}, false);
 }
 
+// Bullet takes a link's inertia as three moments about axes that it expects to be the link's own. So each link gets a
+// frame at its centre of mass along its principal axes. Jacobi rotations: exact to rounding, and identity for an
+// inertia that is diagonal already.
+struct PrincipalAxes {
+  btMatrix3x3 rotation;  // columns: the axes, in the link's frame; right-handed
+  btVector3 moments_kg_m2;
+};
+
 // One Jacobi rotation: makes a[p][q] zero and turns the axes with it.
 void rotate_to_zero(btMatrix3x3& a, btMatrix3x3& axes, int p, int q) {
   if (a[p][q] == 0) return;
@@ -66,6 +73,50 @@ void rotate_to_zero(btMatrix3x3& a, btMatrix3x3& axes, int p, int q) {
   a = turn.transpose() * a * turn;
   a[p][q] = a[q][p] = 0;
   axes = axes * turn;
+}
+
+PrincipalAxes principal_axes(const Inertia& inertia) {
+  btMatrix3x3 a(inertia.xx, inertia.xy, inertia.xz,  //
+                inertia.xy, inertia.yy, inertia.yz,  //
+                inertia.xz, inertia.yz, inertia.zz);
+  btMatrix3x3 axes = btMatrix3x3::getIdentity();
+  constexpr int sweeps = 12;  // converges quadratically: 3 x 3 needs 4 or 5
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    rotate_to_zero(a, axes, 0, 1);
+    rotate_to_zero(a, axes, 0, 2);
+    rotate_to_zero(a, axes, 1, 2);
+  }
+  return {axes, btVector3(a[0][0], a[1][1], a[2][2])};
+}
+
+std::vector<LinkFrame> link_frames(const RobotModel& model) {
+  std::vector<LinkFrame> frames;
+  frames.reserve(model.links.size());
+  for (const Link& link : model.links) {
+    const PrincipalAxes axes = principal_axes(link.inertia);
+    const btTransform com_in_link(axes.rotation, to_bullet(link.inertia.com_m));
+    frames.push_back({com_in_link, com_in_link.inverse(), axes.moments_kg_m2});
+  }
+  return frames;
+}
+
+// A multibody with the model's links and joints, all joints at 0, its base at the world's origin. The payloads follow
+// as links on fixed joints, without mass as yet.
+std::unique_ptr<btMultiBody> make_multibody(const RobotModel& model, const std::vector<LinkFrame>& frames,
+                                            const PlantSettings& settings) {
+  const bool can_sleep = false;
+  const int joints = static_cast<int>(model.joints.size()), payloads = static_cast<int>(settings.world.payloads.size());
+  auto body = std::make_unique<btMultiBody>(joints + payloads, model.links[0].inertia.mass_kg, frames[0].moments_kg_m2,
+                                            settings.fixed_base, can_sleep);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) set_up_joint(*body, model, frames, i);
+  for (int i = 0; i < payloads; ++i) {
+    set_up_payload(*body, model, frames, settings.world.payloads[static_cast<std::size_t>(i)], joints + i);
+  }
+  body->finalizeMultiDof();
+  body->setLinearDamping(0);  // 0.04 by default: not physics
+  body->setAngularDamping(0);
+  body->setMaxCoordinateVelocity(1e6);  // 100 by default, a silent clamp
+  return body;
 }
 
 }  // namespace
@@ -181,48 +232,6 @@ PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings) 
   }
   for (const auto& [a, b] : touching) mask.forbid(model_link(a), model_link(b));
   return mask;
-}
-
-std::vector<LinkFrame> link_frames(const RobotModel& model) {
-  std::vector<LinkFrame> frames;
-  frames.reserve(model.links.size());
-  for (const Link& link : model.links) {
-    const PrincipalAxes axes = principal_axes(link.inertia);
-    const btTransform com_in_link(axes.rotation, to_bullet(link.inertia.com_m));
-    frames.push_back({com_in_link, com_in_link.inverse(), axes.moments_kg_m2});
-  }
-  return frames;
-}
-
-std::unique_ptr<btMultiBody> make_multibody(const RobotModel& model, const std::vector<LinkFrame>& frames,
-                                            const PlantSettings& settings) {
-  const bool can_sleep = false;
-  const int joints = static_cast<int>(model.joints.size()), payloads = static_cast<int>(settings.world.payloads.size());
-  auto body = std::make_unique<btMultiBody>(joints + payloads, model.links[0].inertia.mass_kg, frames[0].moments_kg_m2,
-                                            settings.fixed_base, can_sleep);
-  for (std::size_t i = 0; i < model.joints.size(); ++i) set_up_joint(*body, model, frames, i);
-  for (int i = 0; i < payloads; ++i) {
-    set_up_payload(*body, model, frames, settings.world.payloads[static_cast<std::size_t>(i)], joints + i);
-  }
-  body->finalizeMultiDof();
-  body->setLinearDamping(0);  // 0.04 by default: not physics
-  body->setAngularDamping(0);
-  body->setMaxCoordinateVelocity(1e6);  // 100 by default, a silent clamp
-  return body;
-}
-
-PrincipalAxes principal_axes(const Inertia& inertia) {
-  btMatrix3x3 a(inertia.xx, inertia.xy, inertia.xz,  //
-                inertia.xy, inertia.yy, inertia.yz,  //
-                inertia.xz, inertia.yz, inertia.zz);
-  btMatrix3x3 axes = btMatrix3x3::getIdentity();
-  constexpr int sweeps = 12;  // converges quadratically: 3 x 3 needs 4 or 5
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    rotate_to_zero(a, axes, 0, 1);
-    rotate_to_zero(a, axes, 0, 2);
-    rotate_to_zero(a, axes, 1, 2);
-  }
-  return {axes, btVector3(a[0][0], a[1][1], a[2][2])};
 }
 
 }  // namespace kadans::bullet

@@ -15,20 +15,13 @@
 
 namespace kadans::bullet {
 
-// Where Bullet's frames lie in ours. Bullet moves each link's centre of mass frame (principal axes, see
-// principal_axes.h), the model uses link frames at the joints. This is the one place that knows both.
+// Where Bullet's frames lie in ours. Bullet moves each link's frame at the centre of mass, along its principal axes;
+// the model uses link frames at the joints. This is the one place that knows both.
 struct LinkFrame {
   btTransform com_in_link;
   btTransform link_in_com;
   btVector3 moments_kg_m2;
 };
-
-std::vector<LinkFrame> link_frames(const RobotModel& model);
-
-// A multibody with the model's links and joints, all joints at 0, its base at the world's origin. The payloads follow
-// as links on fixed joints, without mass as yet.
-std::unique_ptr<btMultiBody> make_multibody(const RobotModel& model, const std::vector<LinkFrame>& frames,
-                                            const PlantSettings& settings);
 
 class Body {
  public:
