@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "app/run/real_time_start.h"
 #include "command_line.h"
 #include "kadans/plant/plant_type.h"
@@ -161,9 +164,18 @@ int run(int argc, char** argv) {
   return app.got_subcommand("sim") ? run_sim(line.sim) : run_check(line.check);
 }
 
+// Else the first files that are opened would get the numbers of those that are closed, and a record what is printed. What
+// is done with them still fails.
+void keep_standard_numbers() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(number, F_GETFD) < 0) (void)open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv) {
+  keep_standard_numbers();
   return ended_well([&] { return run(argc, argv); });
 }
 

@@ -1,4 +1,5 @@
 // What is recorded: the choice of signals, and the flight recorder.
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -133,4 +134,12 @@ TEST_CASE(
   const auto [fault_s, last_fault_s] = span_of(flights[0], "/faults");
   CHECK(span_of(flights[0], "/base").second >= fault_s + 1);
   CHECK(topics_of(project / "run.mcap").count("/base") == 0);
+}
+
+TEST_CASE("A record does not take what is printed when the standard output is closed; that fails") {
+  const fs::path project = project_copy("record_closed_output");
+  const std::string command = "cd '" + project.string() + "' && exec '" KADANS_BINARY_DIR "/kadans' " + squat +
+                              " --json <&- >&- 2>&-";
+  CHECK(WEXITSTATUS(std::system(command.c_str())) == 1);
+  CHECK(topics_of(project / "run.mcap")["/joint"] == 1200);
 }

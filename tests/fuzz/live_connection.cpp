@@ -24,6 +24,7 @@ struct Bench {
   fuzz::FuzzInstance instance;
   LiveHub hub{instance.hub_parts(nullptr)};
   fuzz::MemoryFile record{"a record"};
+  boost::asio::io_context context{1};  // of one connection after the other
 };
 
 class Served {
@@ -33,7 +34,7 @@ class Served {
     if (has_record) site_.record.file = bench.record.path();
     site_.record.take_frame = [this](const std::string&, const std::string&) { took_ = true; };
     require(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends_.data()) == 0, "there are sockets");
-    boost::asio::ip::tcp::socket socket(context_);
+    boost::asio::ip::tcp::socket socket(bench_.context);
     socket.assign(boost::asio::ip::tcp::v4(), ends_[0]);
     connection_ = make_live_connection(std::move(socket), site_, 1);
     connection_->start();
@@ -68,14 +69,13 @@ class Served {
         if (count <= 0) break;
         if (said_.size() < 16) said_.append(bytes.data(), static_cast<std::size_t>(count));
       }
-      context_.restart();
-      handled = context_.poll();
+      bench_.context.restart();
+      handled = bench_.context.poll();
     } while (handled > 0);
     require(said_.size() < 7 || said_.starts_with("HTTP/1."), "the first that goes out is HTTP");
   }
 
   Bench& bench_;
-  boost::asio::io_context context_{1};
   LiveCrowd crowd_;
   LiveSite site_{nullptr, {}, LiveAccess(token, {"robot"}), &crowd_};
   std::array<int, 2> ends_{};

@@ -83,6 +83,18 @@ TEST_CASE("what is stopped takes those of its group with it") {
   CHECK(gone);
 }
 
+TEST_CASE("what ends takes with it those of its group that it leaves behind") {
+  int ends[2];
+  REQUIRE(pipe2(ends, O_CLOEXEC) == 0);
+  ChildProcess process({.words = {"sh", "-c", "sleep 1000 & exit 4"}, .files = {no_file, ends[1], no_file}, .own_group = true});
+  close(ends[1]);
+  process.wait();
+  CHECK(process.exit_code() == 4);
+  char byte = 0;
+  CHECK(read(ends[0], &byte, 1) == 0);  // the last that could write is gone
+  close(ends[0]);
+}
+
 TEST_CASE("a copy of this process goes on by itself, and has no hold on those that were started before") {
   std::optional<ChildProcess> sleeper(ChildProcess({.words = {"sleep", "1000"}}));
   std::optional<ChildProcess> copied = ChildProcess::copy();

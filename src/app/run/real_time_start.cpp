@@ -45,7 +45,9 @@ void bind_all_functions(char** argv) {
 }
 
 void lock_program(bool with_model) noexcept {
-  (void)lock_memory(with_model ? heap_reserve_of_model_bytes : heap_reserve_bytes);
+  const int refused = lock_memory(with_model ? heap_reserve_of_model_bytes : heap_reserve_bytes);
+  if (refused != 0 && read_rights("/").memory())  // else the missing right was told
+    print_error(std::string("going on without locked memory, late when the system swaps: ") + std::strerror(refused));
 }
 
 }  // namespace kadans

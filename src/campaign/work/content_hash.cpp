@@ -40,9 +40,11 @@ void ContentHash::add_file(const fs::path& file) {
 void ContentHash::add_folder(const fs::path& folder, std::string_view ending) {
   std::vector<fs::path> files;
   std::error_code error;
+  if (!fs::exists(folder, error) && !error) return add("no such folder");
   for (fs::recursive_directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
-    if (i->is_regular_file() && i->path().filename().string().ends_with(ending)) files.push_back(i->path());
+    if (i->is_regular_file(error) && i->path().filename().string().ends_with(ending)) files.push_back(i->path());
   }
+  if (error) throw InputError({.file = folder.string(), .message = "cannot be read: " + error.message()});
   std::ranges::sort(files);
   for (const fs::path& file : files) {
     add(file.lexically_relative(folder).generic_string());

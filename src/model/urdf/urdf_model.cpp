@@ -12,7 +12,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t max_size = std::size_t{16} << 20U;
+constexpr std::size_t max_size = std::size_t{2} << 20U;
 
 // The description has been checked: a tree, mimics without rings.
 class Merger {
@@ -119,7 +119,7 @@ RobotModel read_urdf_text(const std::string& text, const std::string& file, cons
                           std::vector<InputProblem>* warnings) {
   const auto fail = [&](const std::string& what) { throw InputError(InputProblem{file, 0, 0, what}); };
   if (text.empty()) fail("the file is empty");
-  if (text.size() > max_size) fail("the file has " + std::to_string(text.size()) + " bytes, a URDF may have 16 MiB");
+  if (text.size() > max_size) fail("the file has " + std::to_string(text.size()) + " bytes, a URDF may have 2 MiB");
   UrdfDocument document(text, file);
   UrdfDescription robot = read_description(document);
   check_description(document, robot, options);

@@ -138,6 +138,11 @@ void ChildProcess::forget() noexcept {
 
 bool ChildProcess::reap(bool waits) noexcept {
   if (!running_) return true;
+  // Whoever it has started ends with it: its number is the group's until it is taken off the system's list.
+  siginfo_t end{};
+  if (own_group_ && waitid(P_PID, static_cast<id_t>(pid_), &end, WEXITED | WNOWAIT | (waits ? 0 : WNOHANG)) == 0 &&
+      end.si_pid == pid_)
+    kill();
   int status = 0;
   const pid_t got = waitpid(pid_, &status, waits ? 0 : WNOHANG);
   if (got == pid_) status_ = status;

@@ -72,11 +72,8 @@ void check_argument(const OrderInfo& order, const OrderArgument& argument, const
                 : "at least " + number_text(argument.min)));
 }
 
-void check_names(const OrderInfo& order, const Json& json) {
-  std::vector<std::string> known{"verb"};
-  for (const OrderArgument& argument : order.arguments) {
-    if (argument.kind != none) known.emplace_back(argument.name);
-  }
+// A field that is not known could be the name of joints, without which an order is about all of them.
+void check_names(const OrderInfo& order, const Json& json, const std::vector<std::string>& known) {
   for (const auto& [key, value] : json.items()) {
     if (std::ranges::find(known, key) == known.end())
       fail(unknown_name("field", key, known, std::string("of ") + order.verb));
@@ -104,10 +101,13 @@ OrderRequest read_request(std::string_view line, Role role) {
   if (!json || !json->is_object()) fail("this is no JSON object on one line");
   OrderRequest request{&order_named(verb_in(*json)), std::move(*json)};
   const OrderInfo& order = *request.info;
+  std::vector<std::string> known{"verb"};
   for (const OrderArgument& argument : order.arguments) {
-    if (argument.kind != none) check_argument(order, argument, argument.name, request.json);
+    if (argument.kind == none) continue;
+    check_argument(order, argument, argument.name, request.json);
+    known.emplace_back(argument.name);
   }
-  check_names(order, request.json);
+  check_names(order, request.json, known);
   if (order.faces == OrderInfo::Faces::paced) fail(std::string("'") + order.verb + "' is for the page and ROS 2");
   if (order.role > role)
     fail(std::string("'") + order.verb + "' needs the role " + name(order.role) + "; this socket gives " + name(role));
@@ -119,14 +119,18 @@ OrderRequest read_brief_request(const Json& json, bool paced) {
   const OrderInfo* const info = find_order(verb);
   if (info == nullptr || !info->is_brief() || (info->faces == OrderInfo::Faces::paced && !paced))
     fail(shown(verb) + " is no order; there are " + brief_verbs(paced));
+  check_names(*info, json, {"verb", "id", "text", "value"});
   OrderRequest request{info};
   for (const auto& [kind, field] : {std::pair{text, "text"}, {number, "value"}}) {
     const auto given = json.find(field);
     if (given != json.end() && !fits(*given, kind)) fail("\"" + std::string(field) + "\" must be " + kind_text(kind));
     const OrderArgument* const argument = info->argument(kind);
-    if (argument == nullptr) continue;
-    const bool said = given != json.end() && !(kind == text && given->get_ref<const std::string&>().empty());
-    if (said) request.json[argument->name] = *given;
+    const bool said = given != json.end() && *given != (kind == text ? Json("") : Json(0));
+    if (argument == nullptr) {
+      if (said) fail(std::string(verb) + " takes no \"" + field + "\"");
+      continue;
+    }
+    if (said || (given != json.end() && kind == number)) request.json[argument->name] = *given;
     check_argument(*info, *argument, field, request.json);
   }
   return request;
