@@ -30,7 +30,6 @@
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"
-#include "remote/instance/truth_task.h"
 #include "run_threads.h"
 #include "threaded_log.h"
 #include "version.h"

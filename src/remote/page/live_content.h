@@ -1,3 +1,23 @@
+// What a live server offers to its clients: channels of live data, and files.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "remote/instance/instance.h"
+#include "remote/instance/run_description.h"
+#include "telemetry/record/signal_topics.h"
+#include "telemetry/record/viewer_messages.h"
+
+namespace kadans {
+
 // The channels of a live server in the Foxglove WebSocket protocol: the topics of a record with the same names and the
 // same encoding (signal_topics.h), messages for general viewers (joint states, transform of the base, URDF), and
 // events.
@@ -5,24 +25,6 @@
 // There is no queue for a client. A channel of values keeps its newest message and counts all messages; a channel of
 // events keeps the newest `events_kept`. A client compares counts, so a slow client skips values, and when it is far
 // behind also the oldest events. Server's thread only.
-#pragma once
-
-#include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <map>
-#include <span>
-#include <string>
-#include <vector>
-
-#include "remote/instance/instance.h"
-#include "remote/instance/robot_texts.h"
-#include "telemetry/record/signal_topics.h"
-#include "telemetry/record/timing_json.h"
-#include "telemetry/record/viewer_messages.h"
-
-namespace kadans {
-
 struct LiveMessage {
   std::uint64_t time_ns = 0;
   std::vector<std::byte> payload;
@@ -73,6 +75,24 @@ class LiveChannels {
   ByteWriter message_;
   std::vector<std::byte> payload_;
   std::vector<double> values_;
+};
+
+// The files that clients may fetch: the robot's URDF and the meshes that it names, of at most 16 MB each.
+class LiveAssets {
+ public:
+  LiveAssets(const RobotTexts& texts, const std::string& urdf_file);
+
+  using Content = std::shared_ptr<const std::string>;
+  // `uri` is "package://tulip/tulip.urdf", "robot.urdf", or a mesh as the URDF names it, also without "package://".
+  // Reads the file; holders of the same content share one copy. Returns nullptr when there is no such asset or it
+  // cannot be read.
+  Content read(std::string_view uri);
+
+ private:
+  Content urdf_;
+  std::string urdf_uri_;
+  std::map<std::string, std::string, std::less<>> files_;         // files by their names in the URDF
+  std::map<std::string, std::weak_ptr<const std::string>> read_;  // contents in use, by file
 };
 
 }  // namespace kadans

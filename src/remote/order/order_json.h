@@ -1,5 +1,6 @@
-// A request of a client as JSON, checked against the table of orders, and the order that it becomes. All servers read
-// requests and finish the order `save` here.
+// The requests and answers of clients as JSON. A request is checked against the table of orders and becomes an order;
+// tables and answers become the JSON that clients of ctl read. All servers read requests and finish the order `save`
+// here.
 //
 // For threads that serve clients.
 #pragma once
@@ -8,12 +9,29 @@
 #include <string>
 #include <string_view>
 
+#include <nlohmann/json.hpp>
+
+#include "config/json/foreign_json.h"
 #include "order_table.h"
-#include "remote/ctl/ctl_json.h"
-#include "remote/instance/configuration_text.h"
+#include "remote/instance/instance.h"
+#include "remote/instance/parameter_history.h"
 
 namespace kadans {
 
+using Json = nlohmann::ordered_json;
+
+std::string refusal(const std::string& why);
+
+Json behaviors_json(const Answer& report);
+Json status_json(const Instance& instance, const InstanceStatus& status);
+// {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
+Json drives_json(const PowerStatus& power, const RobotModel& model);
+
+// Lists all items of a kind: "behaviors", "sets", "objects", "parameters", "signals". `report` is used for behaviors
+// and parameters, `status` for sets. Throws InputError on another kind.
+Json list_json(const std::string& what, const Instance& instance, const InstanceStatus& status, const Answer& report);
+
+// A request of a client, checked against the table of orders.
 struct OrderRequest {
   const OrderInfo* info = nullptr;
   Json json = Json::object();  // the arguments by their names
