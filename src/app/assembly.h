@@ -13,7 +13,7 @@
 #include "kadans/control/control_object_types.h"
 #include "kadans/plant/plant_type.h"
 #include "kadans/plant/world.h"
-#include "realtime/plant_link.h"
+#include "realtime/engine_tasks.h"
 #include "scenario/disturb/disturbances.h"
 #include "scenario/disturb/planned_faults.h"
 #include "scenario/disturb/quantities.h"

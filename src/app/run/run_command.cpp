@@ -25,7 +25,6 @@
 #include "real_time_start.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/placement.h"
-#include "realtime/machine/rights.h"
 #include "realtime/machine/service_notifier.h"
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/plan/sweep_plan.h"
+#include "config/plan/experiment_plans.h"
 #include "sampling.h"
 
 namespace kadans {

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "checks.h"
-#include "config/scenario/metric_config.h"
+#include "config/scenario/scenario_check.h"
 #include "scenario/run.h"
 #include "script/bindings/signal_expressions.h"
 
 namespace kadans {
 
-// Computes the metrics of a run (metric_config.h) while it goes.
+// Computes the metrics of a run (scenario_check.h) while it goes.
 struct MetricValue {
   std::string name;
   double value = 0;  // NaN: the metric has no value
