@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "config/robot/project_root.h"
-#include "estimate/signals.h"
+#include "estimate/estimator.h"
 #include "scenario/disturb/planned_faults.h"
 #include "signal/nearest_name.h"
 

@@ -20,11 +20,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "axes.h"
 #include "contact_detector.h"
 #include "kadans/estimate/velocity_filter.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/frames.h"
+#include "kadans/signal/signal.h"
 #include "kadans/signal/status.h"
 #include "leg_chain.h"
 #include "orientation_filter.h"
@@ -86,5 +86,13 @@ class Estimator {
   double heading_x_ = 1, heading_y_ = 0;  // the base's x axis on the ground, a unit vector; holds while x is upright
   SupportStatus support_;
 };
+
+// The signals of joint states and robot status, under the names by which recorder, checks, viewers and scripts know
+// them: the fields of signal/status_fields.h under joint.NAME, base, foot.LINK and support.
+//
+// Before the loop. The snapshot is what Estimator::update fills; it must outlive the table's use. Throws
+// std::invalid_argument on a name that is taken.
+void declare_signals(SignalTable& table, const RobotModel& model, const EstimateSettings& settings,
+                     const Snapshot& snapshot);
 
 }  // namespace kadans

@@ -1,9 +1,76 @@
+
 #include "kadans/model/kinematics.h"
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace kadans {
+namespace {
+
+Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+}  // namespace
+
+// v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector part: exact when q is the identity.
+Vec3 rotate(const Quat& q, const Vec3& v) noexcept {
+  const Vec3 u{q[1], q[2], q[3]};
+  const Vec3 first = cross(u, v);
+  const Vec3 second = cross(u, first);
+  return {v[0] + 2 * (q[0] * first[0] + second[0]), v[1] + 2 * (q[0] * first[1] + second[1]),
+          v[2] + 2 * (q[0] * first[2] + second[2])};
+}
+
+Vec3 rotate_inverse(const Quat& q, const Vec3& v) noexcept { return rotate(conjugate(q), v); }
+
+Quat multiply(const Quat& a, const Quat& b) noexcept {
+  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
+Quat conjugate(const Quat& q) noexcept { return {q[0], -q[1], -q[2], -q[3]}; }
+
+Quat normalized(const Quat& q) noexcept {
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(norm > 0)) return {1, 0, 0, 0};
+  return {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm};
+}
+
+Quat from_axis_angle(const Vec3& unit_axis, double angle_rad) noexcept {
+  const double s = std::sin(angle_rad / 2);
+  return {std::cos(angle_rad / 2), unit_axis[0] * s, unit_axis[1] * s, unit_axis[2] * s};
+}
+
+Quat from_roll_pitch_yaw(double roll_rad, double pitch_rad, double yaw_rad) noexcept {
+  const Quat roll = from_axis_angle({1, 0, 0}, roll_rad);
+  const Quat pitch = from_axis_angle({0, 1, 0}, pitch_rad);
+  const Quat yaw = from_axis_angle({0, 0, 1}, yaw_rad);
+  return multiply(yaw, multiply(pitch, roll));
+}
+
+// From the rotation matrix's entries. Looking straight up or down only yaw - roll (or yaw + roll) is defined: roll is
+// then 0.
+Vec3 roll_pitch_yaw(const Quat& q) noexcept {
+  const Vec3 x = rotate(q, {1, 0, 0});
+  const Vec3 y = rotate(q, {0, 1, 0});
+  const double level = std::hypot(x[0], x[1]);
+  const double pitch_rad = std::atan2(-x[2], level);
+  if (level < 1e-12) return {0, pitch_rad, std::atan2(-y[0], y[1])};
+  const Vec3 z = rotate(q, {0, 0, 1});
+  return {std::atan2(y[2], z[2]), pitch_rad, std::atan2(x[1], x[0])};
+}
+
+Pose compose(const Pose& a, const Pose& b) noexcept {
+  return {transform(a, b.position_m), multiply(a.orientation, b.orientation)};
+}
+
+Vec3 transform(const Pose& pose, const Vec3& point) noexcept {
+  const Vec3 turned = rotate(pose.orientation, point);
+  return {pose.position_m[0] + turned[0], pose.position_m[1] + turned[1], pose.position_m[2] + turned[2]};
+}
+
 namespace {
 
 Pose motion(const Joint& joint, double position) noexcept {

@@ -1,3 +1,27 @@
+// The beat of a periodic task, and how well the task keeps it.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/tick/tick_statistics.h"
+#include "kadans/exchange/one_writer.h"
+#include "wait.h"
+
+namespace kadans {
+
+// How well a periodic task keeps its time. Written by the task alone, without locks; any thread may read while it runs:
+// each number is whole, but not all are of the same beat.
+//
+//   lateness   wake-up after the time it was due
+//   jitter     |interval - period| against the wake-up before: the definition of the timing test of 2008
+//   execution  from the wake-up to the end of the work
+struct TaskStatistics {
+  TickStatistics lateness, jitter, execution;
+  Count overruns;    // the work was not done when the next beat was due
+  Count late_wakes;  // the system woke the task a whole period late, or later
+  Count missed;      // beats left out for either reason
+};
+
 // The beat of a periodic task: grid points first_ns + k * period_ns.
 //
 // A missed beat is never made up for. When the work of a beat is not done at the next grid point, or the system wakes
@@ -8,15 +32,6 @@
 //
 // When the clock does not advance over a wait, the beat `stands`: the task has nothing to do in it. One owner, the
 // task's thread; any thread may read the statistics.
-#pragma once
-
-#include <cstdint>
-
-#include "task_statistics.h"
-#include "wait.h"
-
-namespace kadans {
-
 struct Beat {
   std::uint64_t number = 0;  // of the grid point; those left out are counted
   std::int64_t due_ns = 0;   // the grid point

@@ -10,7 +10,7 @@
 #include <sched.h>
 #include <sys/resource.h>
 
-#include "realtime/machine/memory_lock.h"
+#include "realtime/machine/placement.h"
 #include "signals_blocked.h"
 
 namespace kadans {

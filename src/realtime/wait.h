@@ -20,4 +20,12 @@ class Wait : public Clock {
   virtual void until(std::int64_t time_ns) noexcept = 0;
 };
 
+// To be called between two looks in a loop that waits for time or for another thread: leaves the core to its other
+// hardware thread.
+inline void relax() noexcept {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
 }  // namespace kadans

@@ -13,8 +13,8 @@
 
 #include <cmath>
 
-#include "fault_mask.h"
 #include "kadans/signal/frames.h"
+#include "ladder.h"
 #include "settings.h"
 
 namespace kadans {

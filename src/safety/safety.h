@@ -2,10 +2,10 @@
 // the state and the actuation of the last tick, and reduces what the robot may do, rung by rung: normal, limited, hold,
 // damp, off.
 //
-// Watches find faults (joint_watch.h, drive_watch.h, body_watch.h, fall_watch.h, engine_watch.h); detection.h says how
-// soon. Reactions say which rung follows, ladders keep the rung until it may be left (ladder.h). An
-// emergency stop also brings the robot down (emergency_stop.h). What is asked of a joint that still works is cut to its
-// limits (joint_limiter.h). An actuation that is not finite is never written, whatever the configuration says.
+// Watches find faults (joint_watch.h, body_watch.h); detection.h says how soon. Reactions say which rung follows,
+// ladders keep the rung until it may be left (ladder.h). An emergency stop also brings the robot down
+// (emergency_stop.h). What is asked of a joint that still works is cut to its limits (joint_limiter.h). An actuation
+// that is not finite is never written, whatever the configuration says.
 //
 // A joint that comes back from damp or off, by itself or because faults were cleared, gets its torque back over
 // recover_s. came_back() says so in that tick: the control objects then start anew from the measured state, as at a
@@ -19,11 +19,8 @@
 #include <cstdint>
 
 #include "body_watch.h"
-#include "drive_watch.h"
 #include "emergency_stop.h"
-#include "engine_watch.h"
 #include "estimate/sensor_health.h"
-#include "fall_watch.h"
 #include "joint_limiter.h"
 #include "joint_watch.h"
 #include "kadans/exchange/ring.h"

@@ -1,13 +1,16 @@
-// Text from outside, such as names of files and what scripts say, need not be UTF-8. Text that is written for others
-// has to be.
+// Where the text of a file from outside goes: UTF-8, and the line and column of what stands in it.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace kadans {
+
+// Text from outside, such as names of files and what scripts say, need not be UTF-8. Text that is written for others
+// has to be.
 
 // Number of bytes of the character at `at`; 0 when it is not valid (RFC 3629: shortest forms, no surrogates).
 std::size_t utf8_length(std::string_view text, std::size_t at) noexcept;
@@ -22,5 +25,28 @@ void append_utf8(std::uint32_t code, std::string& text);
 std::string xml_characters(std::string_view text);
 // The same, escaped for use between tags and in attributes.
 std::string html_text(std::string_view text);
+
+// Where something stands in a text from outside.
+struct TextPlace {
+  int line = 0;    // 1-based; 0: no place in the text
+  int column = 0;  // 1-based, in characters
+  auto operator<=>(const TextPlace&) const = default;
+
+  // Where the text goes on behind this byte.
+  constexpr void pass(char c) noexcept {
+    if (c == '\n') {
+      ++line, column = 1;
+    } else if (!inside_character(c)) {
+      ++column;
+    }
+  }
+};
+
+// Of a byte of the text.
+constexpr TextPlace place_in(std::string_view text, std::size_t at) noexcept {
+  TextPlace place{1, 1};
+  for (const char c : text.substr(0, at)) place.pass(c);
+  return place;
+}
 
 }  // namespace kadans

@@ -51,10 +51,7 @@ Function* next_definition(std::atomic<Function*>& known, const char* name) noexc
 
 // From a static library a program gets only what it refers to: by these the guard refers to each group of calls.
 void link_heap_calls() noexcept;
-void link_exception_calls() noexcept;
-void link_file_calls() noexcept;
-void link_lock_calls() noexcept;
-void link_stream_calls() noexcept;
+void link_library_calls() noexcept;
 
 }  // namespace kadans::testing
 

@@ -8,7 +8,6 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "campaign/sweep/heat_map.h"
 #include "campaign/sweep/sweep_summary.h"
 
 using namespace kadans;

@@ -1,10 +1,9 @@
 // Which part of the work a process does, by option and by what Slurm says.
-#include "campaign/sweep/shard.h"
-
 #include <cstdlib>
 
 #include <doctest/doctest.h>
 
+#include "campaign/sweep/sweep_case.h"
 #include "kadans/signal/input_error.h"
 
 using namespace kadans;

@@ -8,7 +8,7 @@
 #include "engine/behavior_engine.h"
 #include "engine/lockstep.h"
 #include "engine/tick/control_engine.h"
-#include "estimate/signals.h"
+#include "estimate/estimator.h"
 #include "kadans/plant/ideal_world.h"
 
 namespace kadans::bench {

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "estimate/signals.h"
+#include "estimate/estimator.h"
 #include "estimate/tulip_fixture.h"
 
 using namespace kadans;

@@ -11,7 +11,7 @@
 
 #include "app/program.h"
 #include "live_program.h"
-#include "realtime/machine/rights.h"
+#include "realtime/machine/machine.h"
 #include "telemetry/mcap/mcap_reader.h"
 
 using namespace kadans;

@@ -5,7 +5,7 @@
 
 #include "app/program.h"
 #include "injection_run.h"
-#include "scenario/run_log.h"
+#include "scenario/run.h"
 #include "script/host/script_host.h"
 
 namespace kadans::failures {

@@ -11,7 +11,7 @@
 #include "engine/behavior_engine.h"
 #include "engine/tick/control_engine.h"
 #include "saboteur.h"
-#include "scenario/disturb/faulty_plant.h"
+#include "scenario/disturb/planned_faults.h"
 #include "written_watch.h"
 
 namespace kadans::failures {

@@ -9,7 +9,7 @@
 
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
-#include "remote/ctl/ctl_requests.h"
+#include "remote/ctl/ctl_session.h"
 
 namespace {
 

@@ -11,7 +11,6 @@
 
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
-#include "remote/page/live_crowd.h"
 
 namespace {
 

@@ -10,6 +10,7 @@
 namespace kadans::layout {
 
 inline constexpr std::size_t max_lines = 400;
+inline constexpr std::size_t max_source_lines = 700;  // of a .cpp in src/, which may hold a class whole
 
 using Findings = std::vector<std::string>;
 

@@ -95,7 +95,7 @@ TEST_CASE("no layer's CMakeLists.txt links a layer below it") {
   CHECK(checked >= 2);
 }
 
-TEST_CASE("no file is longer than 400 lines") {
+TEST_CASE("no file is longer than 400 lines, and no source of src than 700") {
   std::size_t checked = 0;
   for (const char* folder : {"src", "include", "tests", "behaviors", "scripts", "cmake"}) {
     for (const fs::path& file : files_below(root / folder)) {
@@ -240,6 +240,10 @@ TEST_CASE("the checker finds a link downwards, and only that") {
 TEST_CASE("the checker finds a file that is too long") {
   CHECK(check_length("a.h", std::string(400, '\n')).empty());
   CHECK(check_length("a.h", std::string(401, '\n')) == Findings{"a.h: has 401 lines; 400 is the most"});
+  CHECK(check_length("src/a.h", std::string(401, '\n')).size() == 1);
+  CHECK(check_length("tests/a.cpp", std::string(401, '\n')).size() == 1);
+  CHECK(check_length("src/a.cpp", std::string(700, '\n')).empty());
+  CHECK(check_length("src/a.cpp", std::string(701, '\n')) == Findings{"src/a.cpp: has 701 lines; 700 is the most"});
 }
 
 TEST_CASE("the checker finds names that say nothing") {

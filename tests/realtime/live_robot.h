@@ -7,7 +7,6 @@
 
 #include "engine/bench.h"
 #include "realtime/engine_tasks.h"
-#include "realtime/plant_link.h"
 #include "realtime/task_thread.h"
 #include "realtime/virtual_time.h"
 

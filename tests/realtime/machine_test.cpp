@@ -6,8 +6,6 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "realtime/machine/rights.h"
-
 using namespace kadans;
 namespace fs = std::filesystem;
 

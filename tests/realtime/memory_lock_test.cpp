@@ -1,5 +1,3 @@
-#include "realtime/machine/memory_lock.h"
-
 #include <array>
 #include <cstring>
 #include <thread>
@@ -11,6 +9,8 @@
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "realtime/machine/placement.h"
 
 using namespace kadans;
 

@@ -1,5 +1,3 @@
-#include "realtime/start_line.h"
-
 #include <atomic>
 
 #include <doctest/doctest.h>

@@ -1,8 +1,7 @@
-#include "remote/instance/configuration_text.h"
-
 #include <doctest/doctest.h>
 
 #include "kadans/signal/input_error.h"
+#include "remote/instance/parameter_history.h"
 #include "remote/live_instance.h"
 
 using namespace kadans;

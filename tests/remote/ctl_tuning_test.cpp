@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
-#include "remote/instance/configuration_text.h"
+#include "remote/instance/parameter_history.h"
 #include "remote/live_instance.h"
 #include "telemetry/mcap/mcap_reader.h"
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "realtime/live_robot.h"
-#include "remote/ctl/ctl_link.h"
+#include "remote/ctl/ctl_folder.h"
 #include "remote/ctl/ctl_server.h"
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"

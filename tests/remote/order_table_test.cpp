@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "kadans/signal/input_error.h"
-#include "remote/order/order_request.h"
+#include "remote/order/order_json.h"
 
 using namespace kadans;
 

@@ -1,11 +1,10 @@
 // Commands of behaviors that are lost, late or not finite for a while.
-#include "scenario/disturb/faulty_host.h"
-
 #include <cmath>
 
 #include <doctest/doctest.h>
 
 #include "engine/transaction.h"
+#include "scenario/disturb/planned_faults.h"
 
 using namespace kadans;
 

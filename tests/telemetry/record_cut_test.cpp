@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "kadans/signal/input_error.h"
-#include "telemetry/reading/record_diff.h"
+#include "telemetry/reading/record_comparison.h"
 #include "telemetry/reading/record_text.h"
 #include "written_record.h"
 

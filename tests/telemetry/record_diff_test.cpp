@@ -1,11 +1,10 @@
 // Two records beside each other: where they part, and what is no difference.
-#include "telemetry/reading/record_diff.h"
-
 #include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>
 
+#include "telemetry/reading/record_comparison.h"
 #include "written_record.h"
 
 using namespace kadans;

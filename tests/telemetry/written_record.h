@@ -8,7 +8,7 @@
 
 #include "scratch_file.h"
 #include "telemetry/mcap/mcap_writer.h"
-#include "telemetry/reading/record_outline.h"
+#include "telemetry/reading/record_rows.h"
 #include "telemetry/record/signal_topics.h"
 
 namespace kadans {

@@ -20,7 +20,7 @@ namespace kadans {
 template <typename Memory = MachineMemory>
 class Turn {
  public:
-  // The side that hands over. `Bell` is as Doorbell of realtime/doorbell.h.
+  // The side that hands over. `Bell` is as Doorbell of realtime/machine/shared_memory.h.
   template <typename Bell>
   void give(std::uint32_t number, Bell& bell) noexcept {
     Memory::at(number_).store(number, std::memory_order_release);

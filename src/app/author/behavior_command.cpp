@@ -13,7 +13,7 @@
 #include "config/robot/project_root.h"
 #include "file_checks.h"
 #include "realtime/machine/child_process.h"
-#include "scenario/run_log.h"
+#include "scenario/run.h"
 #include "script/behavior/behavior.h"
 #include "script/chart/chart_graph.h"
 

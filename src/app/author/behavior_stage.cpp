@@ -9,7 +9,7 @@
 #include "app/assembly.h"
 #include "app/snapshot_filter.h"
 #include "config/robot/project_root.h"
-#include "estimate/axes.h"
+#include "estimate/leg_chain.h"
 #include "signal/sine_cosine.h"
 #include "signal/status_fields.h"
 

@@ -10,7 +10,7 @@
 #include "app/terminal.h"
 #include "behavior_command.h"
 #include "behavior_stage.h"
-#include "campaign/suite/junit.h"
+#include "campaign/suite/suite_report.h"
 #include "campaign/work/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"

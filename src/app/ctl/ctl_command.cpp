@@ -12,7 +12,7 @@
 #include "ctl_console.h"
 #include "ctl_print.h"
 #include "kadans/signal/input_error.h"
-#include "remote/ctl/ctl_link.h"
+#include "remote/ctl/ctl_folder.h"
 #include "remote/order/order_table.h"
 #include "signal/number_text.h"
 

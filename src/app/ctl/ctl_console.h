@@ -1,7 +1,7 @@
 // `kadans ctl repl`: a console whose lines are evaluated in a running instance, between the ticks of its behaviors.
 #pragma once
 
-#include "remote/ctl/ctl_link.h"
+#include "remote/ctl/ctl_folder.h"
 
 namespace kadans {
 

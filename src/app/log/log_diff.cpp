@@ -7,7 +7,7 @@
 #include "config/json/foreign_json.h"
 #include "log_verbs.h"
 #include "signal/number_text.h"
-#include "telemetry/reading/record_diff.h"
+#include "telemetry/reading/record_comparison.h"
 
 namespace kadans {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "log_command.h"
-#include "telemetry/reading/record_outline.h"
+#include "telemetry/reading/record_rows.h"
 
 namespace kadans {
 

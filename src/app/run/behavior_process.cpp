@@ -5,9 +5,7 @@
 #include "app/assembly.h"
 #include "app/terminal.h"
 #include "realtime/machine/machine.h"
-#include "realtime/machine/memory_lock.h"
 #include "realtime/machine/placement.h"
-#include "realtime/machine/rights.h"
 #include "run_threads.h"
 #include "script/process/behavior_server.h"
 

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "config/scenario/play_order.h"
+#include "config/scenario/play_item.h"
 #include "engine/behavior_engine.h"
 #include "realtime/engine_tasks.h"
 #include "script/host/safe_posture.h"

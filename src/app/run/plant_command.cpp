@@ -18,7 +18,6 @@
 #include "real_time_start.h"
 #include "realtime/machine/keep_awake.h"
 #include "realtime/machine/machine.h"
-#include "realtime/machine/rights.h"
 #include "realtime/posix_wait.h"
 #include "realtime/task_thread.h"
 #include "run_threads.h"

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "app/terminal.h"
-#include "realtime/machine/memory_lock.h"
-#include "realtime/machine/rights.h"
+#include "realtime/machine/machine.h"
+#include "realtime/machine/placement.h"
 
 namespace kadans {
 namespace {

@@ -9,9 +9,7 @@
 
 #include "realtime/engine_tasks.h"
 #include "realtime/machine/keep_awake.h"
-#include "realtime/plant_link.h"
 #include "realtime/posix_wait.h"
-#include "realtime/start_line.h"
 #include "realtime/task_thread.h"
 #include "realtime/virtual_time.h"
 

@@ -9,7 +9,7 @@
 #include "app/live/live_service.h"
 #include "app/report/run_page.h"
 #include "app/terminal.h"
-#include "config/plan/experiment_config.h"
+#include "config/plan/experiment_plans.h"
 #include "input_files.h"
 #include "played_behaviors.h"
 #include "signal/shell_word.h"

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include "app/terminal.h"
-#include "campaign/sweep/heat_map.h"
 #include "campaign/sweep/sweep_summary.h"
 #include "campaign/work/durable_file.h"
 #include "config/json/problems.h"

@@ -9,7 +9,7 @@
 #include "app/author/file_checks.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "campaign/sweep/shard.h"
+#include "campaign/sweep/sweep_case.h"
 #include "campaign/sweep/sweep_results.h"
 #include "campaign/sweep/sweep_summary.h"
 #include "signal/shell_word.h"

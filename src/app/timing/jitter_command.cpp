@@ -15,8 +15,7 @@
 #include "realtime/machine/keep_awake.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/machine_load.h"
-#include "realtime/machine/memory_lock.h"
-#include "realtime/machine/rights.h"
+#include "realtime/machine/placement.h"
 #include "realtime/posix_wait.h"
 
 namespace kadans {

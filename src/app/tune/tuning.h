@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/sweep/tune_command.h"
-#include "campaign/sweep/shard.h"
+#include "campaign/sweep/sweep_case.h"
 #include "campaign/tuning/cma_es.h"
 
 namespace kadans {

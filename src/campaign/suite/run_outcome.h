@@ -7,7 +7,6 @@
 
 #include "campaign/work/job_pool.h"
 #include "scenario/disturb/quantities.h"
-#include "scenario/judge/evidence.h"
 #include "scenario/judge/metrics.h"
 
 namespace kadans {

@@ -2,6 +2,7 @@
 // integration.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -31,5 +32,17 @@ std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s);
 // All runs of a suite as an HTML page: the result of each run, how long it took, and a link to its own report.
 // A run gets a link when its report lies in `folder`. `wall_s` is the time of the whole suite.
 std::string suite_page(const std::vector<RunOutcome>& runs, double wall_s, const std::filesystem::path& folder);
+
+// Results as JUnit XML, which CI servers read.
+struct JunitCase {
+  enum class Verdict : std::uint8_t { passed, failed, error, skipped };
+  std::string file, name;
+  double wall_s = 0;
+  Verdict verdict = Verdict::passed;
+  std::string type, message, text;  // of a case that did not pass: its kind in a word, one line, the whole text
+};
+
+// A <testsuites> document; characters that XML cannot hold are left out.
+std::string junit_document(const std::vector<JunitCase>& cases, double wall_s);
 
 }  // namespace kadans

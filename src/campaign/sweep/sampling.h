@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "config/plan/sweep_plan.h"
+#include "config/plan/experiment_plans.h"
 #include "scenario/disturb/quantities.h"
 
 namespace kadans {

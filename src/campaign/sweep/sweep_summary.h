@@ -1,4 +1,4 @@
-// The summary of a sweep: as text for people, as one JSON object for machines.
+// The results of a sweep for those who read them: a summary as text and as one JSON object, and a picture.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 namespace kadans {
 
+// The summary of a sweep: as text for people, as one JSON object for machines.
 struct SweepCounts {
   std::size_t cases = 0;  // with a result
   std::size_t passed = 0;
@@ -24,5 +25,16 @@ std::string sweep_summary(const MergedSweep& sweep);
 
 // {sweep, cases, passed, first_try, median_s} on one line; null for a value that the plan does not measure.
 std::string sweep_json(const MergedSweep& sweep);
+
+// The results of a sweep over two quantities, as a picture.
+struct HeatMapOptions {
+  std::string x, y;    // quantities
+  std::string metric;  // "": the share that passed
+};
+
+// An SVG document. A quantity with few values has a column or row for each value; any other has ten of equal width.
+// Each field shows the mean or the share as a number and as a colour, and how many cases it covers. Throws InputError
+// for an unknown name.
+std::string heat_map_svg(const MergedSweep& sweep, const HeatMapOptions& options);
 
 }  // namespace kadans

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "config/plan/tune_plan.h"
+#include "config/plan/experiment_plans.h"
 #include "statistics.h"
 #include "sweep_case.h"
 #include "sweep_results.h"

@@ -1,17 +1,50 @@
-// Recursive descent over the text, at most json_depth_max deep. The tree of nlohmann-json knows no positions and its
-// messages name grammar tokens; the tests hold this parser against that one on thousands of mutated texts.
+// Reads a JSON text into the tree of json_value.h.
 #include <array>
 #include <charconv>
+#include <cstddef>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <unordered_map>
 #include <utility>
 
 #include "json_value.h"
+#include "problems.h"
 #include "signal/utf8.h"
-#include "text_cursor.h"
 
 namespace kadans {
+namespace {
+
+// Walks over a text and always knows its current line and column. Columns count characters, not bytes.
+class TextCursor {
+ public:
+  explicit TextCursor(std::string_view text) noexcept : text_(text) {}
+
+  bool at_end() const noexcept { return position_ >= text_.size(); }
+  // The character `ahead` places after the cursor; '\0' past the end of the text.
+  char peek(std::size_t ahead = 0) const noexcept {
+    return ahead < text_.size() - position_ ? text_[position_ + ahead] : '\0';
+  }
+  char next() noexcept {
+    const char c = text_[position_++];
+    place_.pass(c);
+    return c;
+  }
+  std::size_t position() const noexcept { return position_; }
+  std::string_view since(std::size_t start) const noexcept { return text_.substr(start, position_ - start); }
+  TextPlace place() const noexcept { return place_; }
+
+ private:
+  std::string_view text_;
+  std::size_t position_ = 0;
+  TextPlace place_{1, 1};
+};
+
+}  // namespace
+
+// Recursive descent over the text, at most json_depth_max deep. The tree of nlohmann-json knows no positions and its
+// messages name grammar tokens; the tests hold this parser against that one on thousands of mutated texts.
+
 namespace {
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kadans/signal/input_error.h"
-#include "signal/text_place.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 

@@ -5,8 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "config/plan/sweep_plan.h"
-#include "config/plan/tune_plan.h"
+#include "config/plan/experiment_plans.h"
 #include "config/robot/robot_config.h"
 #include "config/scenario/scenario_config.h"
 #include "foreign_json.h"

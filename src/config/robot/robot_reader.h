@@ -31,17 +31,13 @@ class RobotReader {
   void start(Fields& f);
   void estimate(Fields& f);
   void sensor(Fields& entry);
-
-  // robot_config.cpp
-  void joystick(Fields& f);
-
-  // robot_safety.cpp
   void safety(Fields& f);
   void reaction(Fields& entry);
   void limits(Fields& entry);
   bool within_urdf(const Fields& entry, const JointLimits& limits, const Joint& joint);
 
   // robot_config.cpp
+  void joystick(Fields& f);
   void behavior(Fields& entry);
 
   // robot_control.cpp

@@ -1,4 +1,4 @@
-// A check of a scenario: one signal must stay within bounds, or a Lua condition over several signals must hold.
+// What judges a run of a scenario: its checks, and metrics.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,8 @@
 #include "config/json/fields.h"
 
 namespace kadans {
+
+// A check of a scenario: one signal must stay within bounds, or a Lua condition over several signals must hold.
 
 // "It" is the demand of the check: the signal is within [min, max], or the condition `that` is true.
 enum class CheckKind : std::uint8_t {
@@ -38,5 +40,39 @@ struct ScenarioCheck {
 // before it.
 void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std::vector<ScenarioCheck>& others,
                   Problems& problems);
+
+// A metric: a number that judges a run, beyond passed and failed, such as the greatest value of a signal or the time at
+// which a condition became true.
+//
+//   "tilt_max_rad": { "kind": "max", "signal": "plant.base.tilt_rad", "from_s": 1 }
+//   "up_s":         { "kind": "since", "that": "plant.base.height_m > 0.75" }
+//   "tries":        { "kind": "end", "signal": "behavior.get_up.tries" }
+//   "first_try":    { "kind": "end", "that": "behavior.get_up.tries == 1" }
+enum class MetricKind : std::uint8_t {
+  max,
+  min,
+  mean,
+  rms,
+  end,         // of a signal the last value; of a condition 1 when it holds at the end, else 0
+  share,       // of the time in which the condition holds
+  first_time,  // time in seconds at which the condition first held; no value when it never did
+  since,       // time in seconds from which the condition held until the end; no value when it does not hold at the end
+};
+
+struct MetricConfig {
+  std::string name;
+  TextPlace place;
+  MetricKind kind = MetricKind::max;
+  std::string signal, that;  // exactly one of them is given
+  TextPlace signal_place, that_place;
+  double from_s = 0;
+  double until_s = std::numeric_limits<double>::infinity();
+};
+
+// The members of "metrics": the keys are the names.
+void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics, Problems& problems);
+
+// The whole definition in one line: two metrics with the same line are the same.
+std::string definition(const MetricConfig& metric);
 
 }  // namespace kadans

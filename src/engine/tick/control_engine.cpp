@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "engine/tick/control_engine.h"
-#include "estimate/signals.h"
+#include "estimate/estimator.h"
 #include "signal/status_fields.h"
 
 namespace kadans {

@@ -1,9 +1,141 @@
+
 #include "urdf_document.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <span>
 #include <tuple>
+#include <vector>
+
+#include "model/xml_scan.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
+namespace {
+
+constexpr double largest = 1e9;
+constexpr std::size_t longest_name = 128, longest_number = 64;
+using Defect = std::optional<std::string>;
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = std::min(text.find_first_not_of(xml_blanks), text.size());
+  return text.substr(first, text.find_last_not_of(xml_blanks) + 1 - first);
+}
+
+std::vector<std::string_view> pieces(std::string_view text) {
+  constexpr std::size_t enough = 16;  // nothing in URDF has more than four
+  std::vector<std::string_view> result;
+  for (text = trimmed(text); !text.empty() && result.size() < enough; text = trimmed(text)) {
+    const std::size_t end = std::min(text.find_first_of(xml_blanks), text.size());
+    result.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return result;
+}
+
+// std::from_chars: no locale, no hexadecimal; a leading '+' is what it leaves out.
+std::errc parse(std::string_view text, double& value) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  if (text.size() > longest_number) return std::errc::invalid_argument;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return end != text.data() + text.size() ? std::errc::invalid_argument : error;
+}
+
+Defect read_number(std::string_view text, double& value) {
+  const std::errc error = parse(text, value);
+  if (text.empty()) return "is empty, a number was expected";
+  if (error == std::errc::invalid_argument) {
+    std::string pointed(text.substr(0, longest_number));
+    std::replace(pointed.begin(), pointed.end(), ',', '.');
+    const bool comma = pointed != text && parse(pointed, value) == std::errc();
+    return comma ? "is not a number, did you mean '" + pointed + "'?" : "is not a number";
+  }
+  if (error == std::errc::result_out_of_range) return "is out of the range of numbers";
+  if (!std::isfinite(value)) return "is not finite";
+  if (!(std::abs(value) <= largest)) return "is beyond 1e9, too large for a robot";
+  return std::nullopt;
+}
+
+Defect read_numbers(std::string_view text, std::span<double> values);
+
+// ", did you mean '0 1 0'?" when commas or semicolons between the numbers were all that is wrong.
+std::string spaces_meant(std::string_view text, std::size_t count) {
+  if (text.size() > 4 * longest_number || text.find_first_of(",;") == std::string_view::npos) return {};
+  std::string spaced(text), better;
+  std::replace_if(
+      spaced.begin(), spaced.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+  for (const std::string_view piece : pieces(spaced)) better += (better.empty() ? "" : " ") + std::string(piece);
+  std::vector<double> values(count);
+  return read_numbers(better, values) ? "" : ", did you mean '" + better + "'?";
+}
+
+Defect read_numbers(std::string_view text, std::span<double> values) {
+  const std::vector<std::string_view> parts = pieces(text);
+  const auto or_spaces = [&](const std::string& defect) {
+    const std::string hint = spaces_meant(text, values.size());
+    return hint.empty() ? defect : "is not separated by spaces" + hint;
+  };
+  if (parts.size() != values.size()) {
+    return or_spaces("has " + std::to_string(parts.size()) + (parts.size() == 1 ? " number, " : " numbers, ") +
+                     std::to_string(values.size()) + " were expected");
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (const Defect defect = read_number(parts[i], values[i]))
+      return or_spaces("has a part '" + shown(parts[i]) + "' that " + *defect);
+  }
+  return std::nullopt;
+}
+
+Defect name_defect(std::string_view text) {
+  if (text.empty()) return "is empty";
+  if (text.size() > longest_name) return "is longer than 128 characters";
+  if (trimmed(text) != text) return "has blanks around it";
+  if (find_non_text(text) || text.find_first_of("\t\r\n") != std::string_view::npos)
+    return "has control characters in it";
+  return std::nullopt;
+}
+
+struct NumberRule {
+  std::size_t count;
+  bool (*fits)(double);
+  const char* otherwise;
+};
+
+constexpr bool is_any(double) { return true; }
+constexpr bool is_positive(double v) { return v > 0; }
+constexpr bool is_not_negative(double v) { return v >= 0; }
+constexpr bool is_not_zero(double v) { return v != 0; }
+constexpr bool is_fraction(double v) { return v >= 0 && v <= 1; }
+
+constexpr NumberRule rules[] = {
+    // in the order of UrdfValue, from `number`
+    {1, is_any, ""},
+    {1, is_positive, "must be > 0"},
+    {1, is_not_negative, "must be >= 0"},
+    {3, is_any, ""},
+    {3, is_positive, "must be > 0 in every direction"},
+    {3, is_not_zero, "must not be 0 in any direction"},
+    {4, is_fraction, "must be red, green, blue and opacity in 0..1"},
+};
+
+}  // namespace
+
+std::optional<std::string> read_value(UrdfValue kind, std::string_view text, double* numbers) {
+  if (kind == UrdfValue::text) return std::nullopt;
+  if (kind == UrdfValue::name) return name_defect(text);
+  const NumberRule& rule = rules[static_cast<std::size_t>(kind) - static_cast<std::size_t>(UrdfValue::number)];
+  std::array<double, 4> room{};
+  const std::span<double> values(room.data(), rule.count);
+  if (Defect defect = rule.count == 1 ? read_number(trimmed(text), values[0]) : read_numbers(text, values))
+    return defect;
+  if (!std::all_of(values.begin(), values.end(), rule.fits)) return rule.otherwise;
+  if (numbers != nullptr) std::copy(values.begin(), values.end(), numbers);
+  return std::nullopt;
+}
+
 namespace {
 
 using tinyxml2::XMLElement;
@@ -87,6 +219,108 @@ std::vector<InputProblem> UrdfDocument::warnings() const {
   sort_by_place(told);
   if (warnings_left_out_ > 0) told.push_back({file_, 0, 0, "and " + std::to_string(warnings_left_out_) + " more"});
   return told;
+}
+
+namespace {
+
+template <typename Known>
+const Known* find_known(const std::vector<Known>& all, std::string_view name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Known& known) { return known.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+// ", did you mean 'mass'?" or, with nothing near, what there is to choose from.
+std::string choice(const std::string& nearest, const std::vector<std::string>& known) {
+  if (!nearest.empty()) return ", did you mean '" + nearest + "'?";
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "; known are: " : ", ") + name;
+  return list.empty() ? "; it has none" : list;
+}
+
+bool of_others(std::string_view name) { return name == "xmlns" || name.find(':') != std::string_view::npos; }
+
+}  // namespace
+
+std::size_t UrdfElement::at_name(std::string_view attribute) const {
+  const XmlAttribute* found = find_known(UrdfDocument::tag(element_).attributes, attribute);
+  return found == nullptr ? at() : found->name_at;
+}
+
+std::size_t UrdfElement::at_value(std::string_view attribute) const {
+  const XmlAttribute* found = find_known(UrdfDocument::tag(element_).attributes, attribute);
+  return found == nullptr ? at() : found->value_at;
+}
+
+std::string UrdfElement::text(const char* attribute, const char* otherwise) const {
+  return shown(has(attribute) ? element_.Attribute(attribute) : otherwise);
+}
+
+bool UrdfElement::attributes(const std::vector<UrdfAttribute>& known) const {
+  bool right = true;
+  std::set<std::string, std::less<>> meant;  // by misspelt ones: these are not told to be missing, too
+  for (const auto* a = element_.FirstAttribute(); a != nullptr; a = a->Next()) {
+    const UrdfAttribute* wanted = find_known(known, a->Name());
+    if (wanted == nullptr && of_others(a->Name())) continue;
+    if (wanted == nullptr) {
+      const std::vector<std::string> names = names_of(known);
+      const std::string nearest = nearest_name(a->Name(), names);
+      meant.insert(nearest);
+      document_.refuse(at_name(a->Name()),
+                       "unknown attribute '" + shown(a->Name()) + "' of " + shown_name() + choice(nearest, names));
+      continue;
+    }
+    if (auto* const* const to = std::get_if<std::string*>(&wanted->to)) **to = a->Value();
+    double* const* const numbers = std::get_if<double*>(&wanted->to);
+    if (const auto defect = read_value(wanted->kind, a->Value(), numbers == nullptr ? nullptr : *numbers)) {
+      right = false;
+      document_.refuse(at_value(a->Name()),
+                       shown_name() + " " + wanted->name + " '" + shown(a->Value()) + "' " + *defect);
+    }
+  }
+  for (const UrdfAttribute& wanted : known) {
+    if (!wanted.required || has(wanted.name)) continue;
+    right = false;
+    if (!meant.contains(wanted.name)) document_.refuse(at(), shown_name() + " has no attribute '" + wanted.name + "'");
+  }
+  return right;
+}
+
+std::size_t UrdfElement::children(const std::vector<UrdfChild>& known) const {
+  const std::string_view own = element_.Name();
+  if (const std::size_t text_at = UrdfDocument::tag(element_).text_at; text_at != std::string_view::npos)
+    document_.refuse(text_at, "text in " + shown_name() + ", which has none");
+  const std::vector<std::string> names = names_of(known);
+  std::size_t all = 0, count = 0;
+  std::set<std::string, std::less<>> seen, meant;
+  for (const auto* e = element_.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    const UrdfElement child(document_, *e);
+    const UrdfChild* wanted = find_known(known, e->Name());
+    const std::string nearest = wanted == nullptr ? nearest_name(e->Name(), names) : e->Name();
+    const bool others = wanted == nullptr && (of_others(e->Name()) || (own == "robot" && nearest.empty()));
+    if (!others) ++count;
+    if (wanted == nullptr && !others) {
+      meant.insert(nearest);
+      const std::string what = own == "geometry" ? "unknown geometry " + child.shown_name()
+                                                 : "unknown element " + child.shown_name() + " in " + shown_name();
+      document_.refuse(child.at(), what + choice(nearest, names));
+    } else if (wanted != nullptr && (seen.insert(nearest).second || wanted->count == UrdfCount::any)) {
+      wanted->read(child);
+    } else if (wanted != nullptr) {
+      document_.refuse(child.at(), "a second " + child.shown_name() + " in " + shown_name());
+    }
+    if (++all == 2 && own == "geometry") document_.refuse(child.at(), "a second shape in one <geometry>");
+  }
+  for (const UrdfChild& wanted : known) {
+    if (wanted.count == UrdfCount::one && !seen.contains(wanted.name) && !meant.contains(wanted.name))
+      document_.refuse(at(), shown_name() + " has no <" + wanted.name + ">");
+  }
+  return count;
+}
+
+bool UrdfElement::leaf(const std::vector<UrdfAttribute>& known) const {
+  const bool right = attributes(known);
+  children({});
+  return right;
 }
 
 }  // namespace kadans

@@ -1,18 +1,40 @@
-// A URDF text as XML, with the place of every element and a list of the mistakes.
+// A URDF text as XML: its elements with their places, their attributes and values, and a list of the mistakes.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <tinyxml2.h>
 
 #include "kadans/signal/input_error.h"
-#include "model/source_text.h"
 #include "model/xml_scan.h"
 
 namespace kadans {
 
+// The values that URDF's attributes can have, read strictly: a number takes up the whole text, is finite, and has a
+// decimal point, not a comma.
+enum class UrdfValue : std::uint8_t {
+  text,             // anything
+  name,             // not empty, at most 128 characters, no blanks around it
+  number,           // finite, magnitude at most 1e9
+  positive,         // > 0
+  not_negative,     // >= 0
+  vector,           // three numbers
+  positive_vector,  // three numbers > 0
+  scale,            // three numbers, none 0
+  color,            // four numbers in 0..1
+};
+
+// What is wrong with the text as such a value ("is not a number, did you mean '2.5'?"). Nothing when it is right; then
+// its numbers are in `numbers`, which has room for them or is null.
+std::optional<std::string> read_value(UrdfValue kind, std::string_view text, double* numbers);
+
+// A URDF text as XML, with the place of every element and a list of the mistakes.
 class UrdfDocument {
  public:
   // Throws InputError when this is not text, not XML or unreasonably large. Keeps views of the text.
@@ -44,6 +66,51 @@ class UrdfDocument {
   tinyxml2::XMLDocument xml_;
   std::vector<InputProblem> refused_, warnings_;
   std::size_t warnings_left_out_ = 0;
+};
+
+// One element of a URDF while it is read. The reader asks once for its attributes and once for its children, each with
+// a list of those that may be there. Everything else, and whatever is missing or wrong, is refused.
+//
+// In <robot>, foreign elements (gazebo, transmission, ...) are ignored, unless their name is almost one of URDF's.
+// Elements and attributes with a name space (drake:..., xml:...) are ignored everywhere.
+class UrdfElement;
+
+struct UrdfAttribute {
+  const char* name;
+  UrdfValue kind;
+  std::variant<std::nullptr_t, std::string*, double*> to = nullptr;  // a text is put there also when it is wrong
+  bool required = false;
+};
+
+enum class UrdfCount : std::uint8_t { at_most_one, one, any };
+
+struct UrdfChild {
+  const char* name;
+  UrdfCount count;
+  std::function<void(const UrdfElement&)> read;  // a second one where one may be is refused, not read
+};
+
+class UrdfElement {
+ public:
+  UrdfElement(UrdfDocument& document, const tinyxml2::XMLElement& element) : document_(document), element_(element) {}
+
+  std::string shown_name() const { return "<" + shown(element_.Name()) + ">"; }
+  std::size_t at() const { return UrdfDocument::tag(element_).at; }
+  std::size_t at_name(std::string_view attribute) const;   // at() when there is no such attribute
+  std::size_t at_value(std::string_view attribute) const;  // the same
+  bool has(const char* attribute) const { return element_.Attribute(attribute) != nullptr; }
+  std::string text(const char* attribute, const char* otherwise) const;  // for messages
+
+  // True when all of these are right, and the required ones there.
+  bool attributes(const std::vector<UrdfAttribute>& known) const;
+  // How many there are, without those of others.
+  std::size_t children(const std::vector<UrdfChild>& known) const;
+  // An element without children.
+  bool leaf(const std::vector<UrdfAttribute>& known) const;
+
+ private:
+  UrdfDocument& document_;
+  const tinyxml2::XMLElement& element_;
 };
 
 }  // namespace kadans

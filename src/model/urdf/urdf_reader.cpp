@@ -12,7 +12,7 @@
 #include "kadans/signal/capacity.h"
 #include "signal/nearest_name.h"
 #include "urdf_description.h"
-#include "urdf_element.h"
+#include "urdf_document.h"
 
 namespace kadans {
 namespace {

@@ -21,7 +21,6 @@
 
 #include <sys/types.h>
 
-#include "realtime/doorbell.h"
 #include "shared_memory.h"
 
 namespace kadans {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "realtime/task_statistics.h"
+#include "realtime/periodic.h"
 
 namespace kadans {
 

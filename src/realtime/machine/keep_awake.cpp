@@ -7,8 +7,8 @@
 #include <sched.h>
 #include <unistd.h>
 
-#include "realtime/machine/relax.h"
 #include "realtime/signals_blocked.h"
+#include "realtime/wait.h"
 
 namespace kadans {
 

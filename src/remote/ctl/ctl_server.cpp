@@ -10,8 +10,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "ctl_json.h"
 #include "realtime/signals_blocked.h"
+#include "remote/order/order_json.h"
 
 namespace kadans {
 namespace {

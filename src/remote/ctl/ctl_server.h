@@ -21,7 +21,6 @@
 
 #include <pthread.h>
 
-#include "ctl_requests.h"
 #include "ctl_session.h"
 #include "engine/clock.h"
 #include "remote/instance/instance.h"

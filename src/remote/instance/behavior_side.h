@@ -102,7 +102,6 @@ class BehaviorSide final : public BesideTick {
   void finish(Pending& pending);
   void say(std::int64_t time_ns, const std::string& who, const std::string& what);
 
-  // behavior_side_orders.cpp
   OrderTaker& orders() const noexcept { return p_.host != nullptr ? static_cast<OrderTaker&>(*p_.host) : *p_.process; }
   void report_process(Answer& answer) const;
   void report(Answer& answer) const;

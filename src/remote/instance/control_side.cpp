@@ -1,3 +1,4 @@
+
 #include "control_side.h"
 
 namespace kadans {
@@ -8,6 +9,10 @@ void ControlSide::record(std::uint64_t tick, std::int64_t time_ns, std::span<con
   if (RecordSink* sink = sink_.load(std::memory_order_acquire); sink != nullptr) sink->record(tick, time_ns, row);
   for (const auto& port : instance_.ports()) port->row_.publish(tick, time_ns, row);
   instance_.console_row_.publish(tick, time_ns, row);
+}
+
+void TruthTask::beside_tick(std::int64_t time_ns) {
+  truth_.update(1e-9 * static_cast<double>(time_ns), control_.row());
 }
 
 }  // namespace kadans

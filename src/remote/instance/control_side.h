@@ -6,8 +6,11 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/tick/control_engine.h"
 #include "engine/tick/record_sink.h"
 #include "instance.h"
+#include "realtime/engine_tasks.h"
+#include "scenario/judge/truth_signals.h"
 
 namespace kadans {
 
@@ -26,6 +29,19 @@ class ControlSide final : public RecordSink {
  private:
   Instance& instance_;
   std::atomic<RecordSink*> sink_{nullptr};
+};
+
+// Updates the truth signals of a model for the record. It runs on the control thread after the tick, because its
+// signals are part of the control thread's row.
+class TruthTask final : public BesideTick {
+ public:
+  // Both references must outlive this object.
+  TruthTask(TruthSignals& truth, const ControlEngine& control) noexcept : truth_(truth), control_(control) {}
+  void beside_tick(std::int64_t time_ns) override;
+
+ private:
+  TruthSignals& truth_;
+  const ControlEngine& control_;
 };
 
 }  // namespace kadans

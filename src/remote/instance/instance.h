@@ -20,13 +20,13 @@
 #include <vector>
 
 #include "config/scenario/play_item.h"
-#include "configuration_text.h"
 #include "kadans/control/catalog.h"
 #include "kadans/exchange/latest.h"
 #include "kadans/exchange/ring.h"
 #include "kadans/signal/fault.h"
 #include "kadans/signal/status.h"
 #include "latest_row.h"
+#include "parameter_history.h"
 #include "remote/order/order.h"
 #include "safety/emergency_stop.h"
 #include "telemetry/record/event_log.h"

@@ -14,9 +14,9 @@
 #include "control_side.h"
 #include "instance.h"
 #include "realtime/task_thread.h"
-#include "robot_texts.h"
+#include "run_description.h"
 #include "telemetry/record/recorder.h"
-#include "telemetry/record/timing_json.h"
+#include "telemetry/record/viewer_messages.h"
 
 namespace kadans {
 

@@ -11,8 +11,16 @@
 #include "config/robot/robot_config.h"
 #include "kadans/control/catalog.h"
 #include "script/host/script_host.h"
+#include "telemetry/record/viewer_messages.h"
 
 namespace kadans {
+
+// The texts about a robot that viewers need before the first value.
+struct RobotTexts {
+  std::string name, urdf;
+  std::string description;
+  ViewerSubjects subjects;
+};
 
 // Call it before the loop or between two behavior ticks, because it reads the values of parameters and the charts.
 // Without a host (behaviors in a process of their own) the charts are left out.

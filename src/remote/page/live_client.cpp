@@ -9,7 +9,7 @@
 #include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
 #include "live_protocol.h"
-#include "remote/order/order_request.h"
+#include "remote/order/order_json.h"
 
 namespace kadans {
 namespace {

@@ -8,7 +8,7 @@
 #include "config/json/foreign_json.h"
 #include "live_client.h"
 #include "live_protocol.h"
-#include "remote/order/order_request.h"
+#include "remote/order/order_json.h"
 
 namespace kadans {
 namespace {

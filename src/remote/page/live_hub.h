@@ -12,8 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "live_assets.h"
-#include "live_channels.h"
+#include "live_content.h"
 #include "remote/instance/instance.h"
 
 namespace kadans {

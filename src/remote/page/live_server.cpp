@@ -19,7 +19,6 @@
 #include "config/json/problems.h"
 #include "kadans/signal/input_error.h"
 #include "live_connection.h"
-#include "live_crowd.h"
 #include "realtime/signals_blocked.h"
 
 namespace kadans {

@@ -15,7 +15,6 @@
 #include "realtime/machine/placement.h"
 #include "realtime/posix_wait.h"
 #include "realtime/task_thread.h"
-#include "robot_readings.h"
 #include "ros2_topics.h"
 #include "text_commands.h"
 

@@ -14,7 +14,7 @@
 #include <memory>
 
 #include "remote/instance/instance.h"
-#include "remote/instance/robot_texts.h"
+#include "remote/instance/run_description.h"
 #include "remote/page/live_hub.h"
 
 namespace kadans {

@@ -4,7 +4,7 @@
 
 #include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
-#include "remote/order/order_request.h"
+#include "remote/order/order_json.h"
 
 namespace kadans {
 namespace {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "config/scenario/scenario_config.h"
-#include "config/scenario/scenario_event.h"
 #include "engine/lockstep.h"
 #include "kadans/plant/world.h"
 

@@ -1,15 +1,17 @@
-// Computes the metrics of a run (metric_config.h) while it goes.
+// What is measured during a run: the metrics, and the evidence of failed checks.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "config/scenario/metric_config.h"
+#include "checks.h"
+#include "config/scenario/scenario_check.h"
 #include "scenario/run.h"
 #include "script/bindings/signal_expressions.h"
 
 namespace kadans {
 
+// Computes the metrics of a run (scenario_check.h) while it goes.
 struct MetricValue {
   std::string name;
   double value = 0;  // NaN: the metric has no value
@@ -36,6 +38,34 @@ class Metrics final : public RunObserver {
   SignalExpressions conditions_;
   std::vector<Gathered> metrics_;
   bool broken_ = false;  // a condition failed: then no metric with a condition has a value
+};
+
+// Evidence of failed checks: it keeps the signals of all checks during a run, and gives those of a failed check around
+// the moment of its failure.
+struct EvidenceTrace {
+  std::string check;
+  std::string signal, unit;
+  double from_s = 0, to_s = 0;
+  std::vector<double> values;  // evenly spaced over that time
+};
+
+class Evidence final : public RunObserver {
+ public:
+  Evidence(const Checks& checks, const SignalTable& signals);
+
+  void tick(double time_s, std::span<const double> row) override;
+  // For each failed check, at most three of its signals from one second before to one second after CheckResult::at_s.
+  std::vector<EvidenceTrace> around(const std::vector<CheckResult>& results) const;
+
+ private:
+  static constexpr double period_s = 0.01;
+  std::size_t column(SignalId signal) const;
+
+  const Checks& checks_;
+  const SignalTable& signals_;
+  std::vector<SignalId> kept_;
+  std::vector<float> values_;  // row by row
+  double next_s_ = 0;
 };
 
 }  // namespace kadans

@@ -1,14 +1,24 @@
-// The report of a run as one HTML page: what happened in words, plots and pictures, every check, transition, fault and
-// log line, and the command that repeats the run.
+// A self-contained HTML page for reports: it holds its styles and pictures, makes no requests, and follows the reader's
+// light or dark setting.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "report.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 
+std::string base64(std::string_view bytes);
+// A whole document. `style` is CSS that is added after the style of all pages.
+std::string html_page(const std::string& title, const std::string& body, const std::string& style = {});
+
+// The report of a run as one HTML page: what happened in words, plots and pictures, every check, transition, fault and
+// log line, and the command that repeats the run.
 struct ReportPicture {
   double time_s = 0;
   std::string png;

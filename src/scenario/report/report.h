@@ -6,7 +6,6 @@
 
 #include "kadans/model/robot_model.h"
 #include "scenario/disturb/quantities.h"
-#include "scenario/judge/evidence.h"
 #include "scenario/judge/metrics.h"
 #include "scenario/run.h"
 

@@ -26,8 +26,8 @@
 #include "kadans/control/set_partition.h"
 #include "script/chart/chart.h"
 #include "script/host/script_parameter.h"
+#include "script/lua/budget.h"
 #include "script/lua/script_error.h"
-#include "script/lua/script_limits.h"
 
 namespace kadans {
 

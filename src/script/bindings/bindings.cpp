@@ -1,6 +1,12 @@
+
 #include "bindings.h"
 
 #include <algorithm>
+
+#include "script/chart/chart_nodes.h"
+#include "script/check/hint.h"
+#include "script/lua/lua_state.h"
+#include "script/sandbox/sandbox.h"
 
 namespace kadans {
 
@@ -70,6 +76,98 @@ bool Bindings::commit() noexcept {
   }
   motion_count = 0;
   return taken;
+}
+
+// The table that require "kadans" returns.
+
+namespace {
+
+constexpr double joint_instructions = 20;
+
+// budget() -> { instructions =, memory_bytes = }: what is left.
+int budget(lua_State* state) {
+  const LuaCore& core = core_of(state);
+  lua_createtable(state, 0, 2);
+  lua_pushnumber(state, static_cast<lua_Number>(core.budget.left()));
+  lua_setfield(state, -2, "instructions");
+  const std::size_t used = core.heap.used_bytes(), limit = core.heap.limit_bytes();
+  lua_pushnumber(state, static_cast<lua_Number>(used < limit ? limit - used : 0));
+  lua_setfield(state, -2, "memory_bytes");
+  return 1;
+}
+
+// pose(name) -> { joint = position in rad }: a copy of a pose in the robot's configuration.
+int pose(lua_State* state) {
+  const char* name = luaL_checkstring(state, 1);
+  if (core_of(state).bindings == nullptr) return luaL_error(state, "no robot here has poses");
+  const Catalog& catalog = *bindings_of(state).catalog;
+  for (const PoseInfo& known : catalog.poses) {
+    if (known.name != name) continue;
+    core_of(state).budget.charge(state, joint_instructions * static_cast<double>(known.position_rad.size()));
+    lua_newtable(state);
+    for (const auto& [joint, position_rad] : known.position_rad) {
+      lua_pushnumber(state, position_rad);
+      lua_setfield(state, -2, catalog.model->joints[joint].name.c_str());
+    }
+    return 1;
+  }
+  const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(catalog.poses); });
+  return luaL_error(state, "unknown pose '%s'%s", name, hint.data());
+}
+
+}  // namespace
+
+void open_kadans_module(lua_State* state) {
+  lua_newtable(state);
+  open_parameters(state);
+  open_nodes(state);
+  lua_pushcfunction(state, budget);
+  lua_setfield(state, -2, "budget");
+  lua_pushcfunction(state, pose);
+  lua_setfield(state, -2, "pose");
+  open_log(state);
+  make_read_only(state, "kadans");
+}
+
+// k.log: lines for people, in the record and on the console, each with its severity.
+
+namespace {
+
+constexpr double charge_instructions = 1000;  // as for print
+
+// log.info(format [, ...]): the format of string.format when there is more than one argument. Upvalue: severity.
+int log_line(lua_State* state) {
+  if (lua_type(state, 1) != LUA_TSTRING)
+    return luaL_error(state, "log needs a text: log.info(\"height %%.2f m\", s.base.height_m)");
+  const int count = lua_gettop(state);
+  if (count > 1) {
+    push_environment(state);
+    lua_getfield(state, -1, "string");
+    lua_getfield(state, -1, "format");
+    lua_insert(state, 1);
+    lua_settop(state, count + 1);
+    lua_call(state, count, 1);
+  }
+  LuaCore& core = core_of(state);
+  core.budget.charge(state, charge_instructions);
+  const auto severity = static_cast<BehaviorLog::Severity>(lua_tointeger(state, lua_upvalueindex(1)));
+  ScriptVoice* voice = core.owner->settings().voice;
+  if (voice != nullptr) voice->say_with(severity, lua_tostring(state, 1));
+  return 0;
+}
+
+}  // namespace
+
+void open_log(lua_State* state) {
+  constexpr const char* names[] = {"info", "warning", "error"};  // as BehaviorLog::Severity
+  lua_createtable(state, 0, 3);
+  for (int i = 0; i < 3; ++i) {
+    lua_pushinteger(state, i);
+    lua_pushcclosure(state, log_line, 1);
+    lua_setfield(state, -2, names[i]);
+  }
+  make_read_only(state, "kadans.log");
+  lua_setfield(state, -2, "log");
 }
 
 }  // namespace kadans

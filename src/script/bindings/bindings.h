@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <lua.hpp>
@@ -64,5 +65,18 @@ void open_objects(lua_State* state);
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables);
 // Gives a machine that is being entered its vars and arguments.
 void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tables, std::uint16_t machine);
+
+// Helper functions for the methods of a control object: m.<object>:method(...).
+
+// The object on which the method was called; `number` is its index in the catalog. Raises.
+const ObjectInfo& check_object(lua_State* state, std::uint32_t& number);
+// The name without the prefix of the object's name.
+const char* short_name(const ObjectInfo& object, const std::string& name) noexcept;
+void check_range(lua_State* state, const char* name, const char* unit, double value, double min, double max);
+// Returns nil, "queue_full" to the script.
+int queue_full(lua_State* state);
+
+// [-0 +0] Adds move, move_through, set and follow to the methods in the table at the top of the stack.
+void open_motion_methods(lua_State* state);
 
 }  // namespace kadans

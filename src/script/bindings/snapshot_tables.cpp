@@ -9,7 +9,6 @@
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
-#include "script/sandbox/step_meter.h"
 
 namespace kadans {
 namespace {

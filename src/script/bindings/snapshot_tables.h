@@ -72,7 +72,7 @@ class TableSlots {
  public:
   // [-0 +0] Raises when out of memory.
   void find_place(lua_State* state);
-  // The steps (step_meter.h) to go through the table at `index` once.
+  // The steps (StepMeter) to go through the table at `index` once.
   std::size_t steps(lua_State* state, int index) const noexcept;
   bool known() const noexcept { return place_ >= 0; }
 

@@ -5,7 +5,7 @@
 #include <initializer_list>
 
 #include "script/lua/lua_core.h"
-#include "script/sandbox/library_function.h"
+#include "script/sandbox/sandbox.h"
 
 namespace kadans {
 namespace {

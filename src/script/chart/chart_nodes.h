@@ -6,7 +6,7 @@
 
 #include <lua.hpp>
 
-#include "script/lua/script_place.h"
+#include "script/lua/script_error.h"
 
 namespace kadans {
 

@@ -6,7 +6,6 @@
 
 #include "script/bindings/bindings.h"
 #include "script/lua/lua_core.h"
-#include "script/sandbox/step_meter.h"
 
 namespace kadans {
 namespace {

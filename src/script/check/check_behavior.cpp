@@ -13,7 +13,6 @@
 #include "script/host/silent_log.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/sandbox.h"
-#include "script/test/test_globals.h"
 #include "script/test/test_prelude.h"
 
 namespace kadans {

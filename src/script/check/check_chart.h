@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "check_modules.h"
+#include "check_source.h"
 #include "script/behavior/behavior_parts.h"
 #include "script/chart/chart.h"
 

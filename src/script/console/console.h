@@ -20,7 +20,7 @@
 #include "engine/transaction.h"
 #include "kadans/control/catalog.h"
 #include "script/host/script_host.h"
-#include "script/lua/script_limits.h"
+#include "script/lua/budget.h"
 
 namespace kadans {
 

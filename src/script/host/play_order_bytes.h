@@ -2,7 +2,7 @@
 // as zero or empty, and then the reader is not ok().
 #pragma once
 
-#include "config/scenario/play_order.h"
+#include "config/scenario/play_item.h"
 #include "signal/byte_order.h"
 
 namespace kadans {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scenario/play_order.h"
+#include "config/scenario/play_item.h"
 #include "engine/behavior_host.h"
 #include "file_watch.h"
 #include "pause.h"

@@ -2,7 +2,7 @@
 //
 // A hook runs every thousand instructions and raises when a limit is passed. A script may catch the error with pcall.
 // So the hook also sets itself to raise again at every following instruction, and a loop around a pcall ends, too.
-// Library functions that work long in C count their own steps and are charged for them (step_meter.h), so they are
+// Library functions that work long in C count their own steps and are charged for them (StepMeter), so they are
 // stopped in the middle.
 //
 // Some single instructions of the interpreter work long and cannot be counted: to compare or join strings of 64 kB, or
@@ -11,6 +11,7 @@
 // repeats bit for bit, only instructions and memory are limited.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "lua_heap.h"
@@ -68,6 +69,19 @@ class Budget {
   std::int64_t look_ns_ = 0;         // on the wall clock: when to look at the thread's clock
   std::int64_t thread_end_ns_ = 0;   // on the thread's clock; 0: not looked at yet
   std::int64_t interrupted_ns_ = 0;  // on the wall clock: when the interruption was first seen; 0: not yet
+};
+
+// What one playing behavior may use. Instructions are those of the Lua interpreter, counted in steps of a thousand; a
+// library call is charged in proportion to its work. Time is that of the wall clock, without the time in which the
+// machine ran other threads.
+struct ScriptLimits {
+  std::uint64_t tick_instructions = 200'000;
+  std::uint64_t load_instructions = 5'000'000;
+  std::uint64_t reload_instructions = 1'000'000;  // fewer, because all behaviors stand still meanwhile
+  std::int64_t tick_wall_ns = 0;                  // 0: no limit; so on a virtual clock, where a run repeats bit for bit
+  std::int64_t load_wall_ns = 0;                  // the same for loading or reloading a file
+  std::size_t memory_bytes = std::size_t{4} << 20;
+  std::size_t block_bytes = std::size_t{576} << 10;  // of one string or one table's array; the deepest stack fits
 };
 
 }  // namespace kadans

@@ -1,6 +1,7 @@
 // The data that every C function of the sandbox can reach from its lua_State: it is the user data of the allocator.
 #pragma once
 
+#include <cstddef>
 #include <deque>
 
 #include <lua.hpp>
@@ -46,5 +47,35 @@ std::int64_t thread_now_ns() noexcept;
 // Notes the innermost script line in `error`. When there is none (a tail call leaves no trace), it notes the line where
 // the function that was called last begins. Never allocates.
 void note_place(lua_State* state, ScriptError& error) noexcept;
+
+// Counts the steps of work in C and charges the budget for them, one slice at a time. When the budget is used up, the
+// work is stopped in the middle. A step is about six machine instructions; tests/script/charge_count.cpp checks that.
+class StepMeter {
+ public:
+  explicit StepMeter(lua_State* state) noexcept : state_(state) {}
+
+  // Raises when the budget is used up.
+  void spend(std::size_t steps = 1) {
+    left_ -= static_cast<std::ptrdiff_t>(steps);
+    if (left_ < 0) [[unlikely]]
+      settle();
+  }
+  // Charges the steps since the last charge; to be called at the end of the work. Raises when the budget is used up.
+  void settle() {
+    const std::ptrdiff_t spent = slice - left_;
+    left_ = slice;
+    core_of(state_).budget.charge(state_, static_cast<double>(spent / steps_per_instruction));
+  }
+
+  // The steps for bytes that are copied or compared in one go.
+  static constexpr std::size_t of_bytes(std::size_t bytes) noexcept { return bytes / bytes_per_step + 1; }
+
+ private:
+  static constexpr std::ptrdiff_t steps_per_instruction = 8;
+  static constexpr std::ptrdiff_t slice = 4096;  // about 10 us
+  static constexpr std::size_t bytes_per_step = 2;
+  lua_State* state_;
+  std::ptrdiff_t left_ = slice;
+};
 
 }  // namespace kadans

@@ -7,7 +7,6 @@
 
 #include "kadans/signal/input_error.h"
 #include "lua_core.h"
-#include "script/sandbox/library_function.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/input_file.h"
 

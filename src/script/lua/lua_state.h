@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
+#include "budget.h"
 #include "engine/behavior_host.h"
 #include "script_error.h"
-#include "script_limits.h"
 
 struct lua_State;
 

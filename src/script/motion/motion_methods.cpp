@@ -7,9 +7,8 @@
 #include "motion_options.h"
 #include "motion_targets.h"
 #include "script/bindings/bindings.h"
-#include "script/bindings/object_binding.h"
-#include "script/lua/script_place.h"
-#include "script/sandbox/library_function.h"
+#include "script/lua/script_error.h"
+#include "script/sandbox/sandbox.h"
 
 namespace kadans {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "script/check/hint.h"
-#include "script/lua/script_place.h"
+#include "script/lua/script_error.h"
 
 namespace kadans {
 namespace {

@@ -5,9 +5,8 @@
 #include <cstring>
 
 #include "script/bindings/bindings.h"
-#include "script/bindings/object_binding.h"
 #include "script/check/hint.h"
-#include "script/lua/script_place.h"
+#include "script/lua/script_error.h"
 
 namespace kadans {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "behavior_link.h"
 #include "engine/transaction.h"
-#include "realtime/doorbell.h"
+#include "realtime/machine/shared_memory.h"
 #include "script/host/script_host.h"
 #include "signal/byte_order.h"
 

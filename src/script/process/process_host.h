@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "child_answer.h"
-#include "config/scenario/play_order.h"
+#include "config/scenario/play_item.h"
 #include "engine/behavior_host.h"
 #include "engine/clock.h"
 #include "engine/tick/tick_statistics.h"

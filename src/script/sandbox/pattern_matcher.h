@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "step_meter.h"
+#include "script/lua/lua_core.h"
 
 namespace kadans {
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "library_function.h"
 #include "sandbox.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"

@@ -1,13 +1,11 @@
 // The string library under a budget. What works long in C is charged before it begins. find, match, gmatch and gsub use
 // a matcher that counts its steps (pattern_matcher.h).
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
 
-#include "library_function.h"
 #include "pattern_matcher.h"
 #include "sandbox.h"
 #include "script/lua/lua_core.h"

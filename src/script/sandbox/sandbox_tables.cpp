@@ -1,16 +1,13 @@
 // The table library under a budget, and `pairs` in an order that is the same in every run: numbers, then strings, each
 // sorted. (LuaJIT's own order of string keys differs from process to process.)
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <utility>
 
-#include "library_function.h"
 #include "sandbox.h"
 #include "script/lua/lua_core.h"
-#include "step_meter.h"
 
 namespace kadans {
 namespace {

@@ -10,7 +10,6 @@
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
-#include "test_globals.h"
 #include "test_prelude.h"
 
 namespace kadans {

@@ -1,7 +1,15 @@
-// The part of the test kit that is written in Lua.
+// The additional names that tests of behaviors see.
 #pragma once
 
+#include <lua.hpp>
+
 namespace kadans {
+
+// [-5 +0] Makes the five values at the top of the stack the names describe, it, before_each, expect and k.play, in this
+// order.
+void open_test_names(lua_State* state);
+
+// The part of the test kit that is written in Lua.
 
 // The matchers after `expect(x).` and `expect(x).never.`
 inline constexpr const char* test_matchers[] = {"to_equal",   "to_be_near",  "to_be_above", "to_be_below", "to_contain",

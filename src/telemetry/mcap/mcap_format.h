@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "signal/byte_order.h"
+
 namespace kadans {
 
 inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n", 8};
@@ -28,5 +30,40 @@ enum class McapOpcode : std::uint8_t {
   summary_offset = 0x0e,
   data_end = 0x0f,
 };
+
+// A record of an MCAP file under construction: the constructor writes its opcode, the destructor its length.
+class McapRecord {
+ public:
+  McapRecord(ByteWriter& to, McapOpcode opcode) : to_(to), start_(to.size()) {
+    to_.put(static_cast<std::uint8_t>(opcode));
+    to_.put(std::uint64_t{0});
+  }
+  ~McapRecord() { to_.set(start_ + 1, static_cast<std::uint64_t>(to_.size() - start_ - mcap_record_head)); }
+  McapRecord(const McapRecord&) = delete;
+  McapRecord& operator=(const McapRecord&) = delete;
+
+ private:
+  ByteWriter& to_;
+  std::size_t start_;
+};
+
+inline void put_schema(ByteWriter& to, std::uint16_t id, std::string_view name, std::string_view encoding,
+                       std::string_view text) {
+  const McapRecord record(to, McapOpcode::schema);
+  to.put(id);
+  to.put_string(name);
+  to.put_string(encoding);
+  to.put_string(text);
+}
+
+inline void put_channel(ByteWriter& to, std::uint16_t id, std::uint16_t schema, std::string_view topic,
+                        std::string_view encoding, const TextMap& metadata) {
+  const McapRecord record(to, McapOpcode::channel);
+  to.put(id);
+  to.put(schema);
+  to.put_string(topic);
+  to.put_string(encoding);
+  to.put_map(metadata);
+}
 
 }  // namespace kadans

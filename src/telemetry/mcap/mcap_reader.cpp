@@ -7,7 +7,7 @@
 #include <zstd.h>
 
 #include "kadans/signal/input_error.h"
-#include "mcap_record.h"
+#include "mcap_format.h"
 #include "mcap_writer.h"
 #include "signal/crc32.h"
 #include "signal/input_file.h"

@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <zstd.h>
 
-#include "mcap_record.h"
+#include "mcap_format.h"
 
 namespace kadans {
 namespace {

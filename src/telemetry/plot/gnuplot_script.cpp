@@ -4,11 +4,11 @@
 #include <system_error>
 
 #include "kadans/signal/input_error.h"
-#include "plot_ink.h"
 #include "realtime/machine/child_process.h"
 #include "signal/number_text.h"
 #include "signal/utf8.h"
 #include "signal_plot.h"
+#include "telemetry/plot.h"
 
 namespace kadans {
 namespace {

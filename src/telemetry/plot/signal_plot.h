@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "telemetry/plot.h"
-#include "telemetry/reading/record_outline.h"
+#include "telemetry/reading/record_rows.h"
 
 namespace kadans {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "record_outline.h"
+#include "record_rows.h"
 
 namespace kadans {
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/json/foreign_json.h"
-#include "timing_json.h"
+#include "viewer_messages.h"
 
 namespace kadans {
 namespace {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/tick/tick_statistics.h"
 #include "kadans/signal/signal.h"
 #include "signal/byte_order.h"
 
@@ -66,5 +67,17 @@ class ViewerMessages {
 // The URDF for viewers, which is one message at the start.
 ViewerChannel robot_description_channel();
 void write_robot_description(const std::string& urdf, ByteWriter& to);
+
+// Histograms of the durations of ticks and tasks, which viewers read on /timing.
+struct TimingSource {
+  std::string name;
+  const TickStatistics* statistics;
+};
+
+// {"control tick": {"unit", "low", "high", "counts", "median", "p99", "max", "count", "limits", "within"}}, in
+// microseconds. `within` counts the durations up to each of `limits`, which never change. So the difference between two
+// messages is the histogram of the time between them. Any thread.
+std::string timing_json(const std::vector<TimingSource>& sources);
+inline constexpr const char* timing_schema = R"({"title": "kadans.Timing", "type": "object"})";
 
 }  // namespace kadans

@@ -1,0 +1,196 @@
+
+#include "experiment_plans.h"
+
+#include <array>
+#include <limits>
+
+#include "config/robot/project_root.h"
+#include "config/scenario/based_on.h"
+
+namespace kadans {
+
+void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& problems) {
+  std::string schema, base;
+  f.string("$schema", schema, "the schema of this file, for editors");
+  f.string("based_on", base, "another plan; this file says only what is different");
+  f.string("name", experiment.name, "the plan's name", Need::required);
+  f.string("doc", experiment.doc, "what it shows, one or two sentences");
+  std::vector<PlacedName> scenarios;
+  f.strings("scenarios", scenarios, {1, 1000}, "files, from the project root; cases go round them", Need::required);
+  for (const PlacedName& scenario : scenarios) {
+    experiment.scenarios.push_back(
+        {scenario.name, resolve_file(scenario.name, scenario.place, "scenarios", problems).string(), scenario.place});
+  }
+  f.integer("seed", experiment.seed, {0, std::numeric_limits<std::uint64_t>::max()},
+            "where the sample and the seeds of all runs come from");
+  f.boolean("sample_randomise", experiment.sample_randomise,
+            "what the scenarios randomise is part of the sample too, else each run's seed draws it");
+  f.map("vary", "quantities that differ from case to case, by a pattern over their names", [&](Fields& e) {
+    ExperimentAxis axis{.variation = {.pattern = {e.key(), e.key_place()}, .distribution = {}}};
+    distribution_fields(e, axis.variation.distribution, problems);
+    e.integer("steps", axis.steps, {1, 10'000}, "points in a grid, both ends among them; values are points themselves");
+    if (e.reading()) experiment.vary.push_back(std::move(axis));
+  });
+  metrics_fields(f, experiment.metrics, problems);
+}
+
+void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, Problems& problems) {
+  if (name.name.empty()) return;
+  std::vector<std::string> names;
+  for (const MetricConfig& metric : experiment.metrics) {
+    if (metric.name == name.name) return;
+    names.push_back(metric.name);
+  }
+  problems.add_unknown(name.place, "metric", name.name, names);
+}
+
+std::vector<MetricConfig> read_metrics(const std::string& file) {
+  std::vector<MetricConfig> metrics;
+  Problems problems(file);
+  const JsonValue json = parse_based_json(read_input_file(file), file).value;
+  const JsonMember* const member = json.find("metrics");
+  if (member == nullptr) problems.add(json.place, "there are no metrics in this file");
+  JsonValue only{.kind = JsonValue::Kind::object, .place = json.place};
+  if (member != nullptr) only.members.push_back(*member);
+  read_fields(only, problems, [&](Fields& f) { metrics_fields(f, metrics, problems); });
+  problems.throw_if_any();
+  return metrics;
+}
+
+namespace {
+
+const std::array<std::string, 3> sampling_names{"grid", "random", "latin_hypercube"};
+
+void placed_string(Fields& f, const char* key, PlacedName& name, const char* doc) {
+  f.string(key, name.name, doc);
+  name.place = f.place(key);
+}
+
+void verify(const Fields& f, const SweepPlan& plan, Problems& problems) {
+  if (plan.sampling != Sampling::grid && plan.cases == 0)
+    problems.add(f.place("cases"),
+                 "cases is missing: how many runs a " + std::string(name(plan.sampling)) + " sample has");
+  if (plan.sampling == Sampling::grid && plan.vary.empty())
+    problems.add(f.place("vary"), "vary is missing: a grid needs something to vary");
+  if (plan.sampling == Sampling::grid && plan.sample_randomise)
+    problems.add(f.place("sample_randomise"), "sample_randomise: a grid varies only what vary names");
+  verify_metric(plan.first_try, plan, problems);
+  verify_metric(plan.time, plan, problems);
+  verify_metric(plan.worst, plan, problems);
+  verify_metric(plan.heat_map.metric, plan, problems);
+}
+
+void plan_fields(Fields& f, SweepPlan& plan, Problems& problems) {
+  experiment_fields(f, plan, problems);
+  f.choice("sampling", plan.sampling, sampling_names, "how the points are chosen");
+  f.integer("cases", plan.cases, {0, sweep_cases_max},
+            "runs of all scenarios together; a grid without it runs each point once, with it goes round the points");
+  f.boolean("same_seeds", plan.same_seeds,
+            "all points of a round of a grid, or all scenarios of one sample, have the same seed");
+  f.number("passed_min", plan.passed_min, {0, 1}, "share of the cases that must pass for the sweep to pass");
+  placed_string(f, "first_try", plan.first_try, "metric that is not 0 when a run that passed did so at its first try");
+  placed_string(f, "time", plan.time, "metric in seconds whose median over the passed runs is reported");
+  placed_string(f, "worst", plan.worst, "metric whose greatest values are shown as the worst cases");
+  f.object("heat_map", "two quantities over which the results are drawn", [&](Fields& e) {
+    placed_string(e, "x", plan.heat_map.x, "quantity to the right");
+    placed_string(e, "y", plan.heat_map.y, "quantity upwards");
+    placed_string(e, "metric", plan.heat_map.metric, "metric whose mean is drawn, else the share that passed");
+  });
+  if (f.reading()) verify(f, plan, problems);
+}
+
+}  // namespace
+
+const char* name(Sampling sampling) noexcept { return sampling_names[static_cast<std::size_t>(sampling)].c_str(); }
+
+SweepPlan read_sweep_plan_text(const std::string& text, const std::string& file) {
+  SweepPlan plan;
+  plan.file = file;
+  const BasedJson json = parse_based_json(text, file);
+  if (!json.bases.empty()) (void)read_sweep_plan(json.bases.front());
+  Problems problems(file);
+  read_fields(json.value, problems, [&](Fields& f) { plan_fields(f, plan, problems); });
+  problems.throw_if_any();
+  return plan;
+}
+
+SweepPlan read_sweep_plan(const std::filesystem::path& file) {
+  return read_sweep_plan_text(read_input_file(file), file.string());
+}
+
+FieldInfo describe_sweep_plan() {
+  SweepPlan plan;
+  Problems problems("");
+  return describe_fields([&](Fields& f) { plan_fields(f, plan, problems); });
+}
+
+namespace {
+
+void parameter_fields(Fields& e, TunedParameter& parameter, Problems& problems) {
+  double min = 0, max = 0, start = 0;
+  bool log = false;
+  e.number("min", min, {}, "least value, in the parameter's unit", Need::required);
+  e.number("max", max, {}, "greatest value", Need::required);
+  e.boolean("log", log, "factors matter, not differences: for what ranges over decades");
+  if (e.number("start", start, {}, "where the search begins, else what the robot's configuration says"))
+    parameter.start = start;
+  if (!e.reading()) return;
+  parameter.range = {.kind = log ? Distribution::Kind::log_uniform : Distribution::Kind::uniform, .of = {min, max}};
+  if (!(min < max)) problems.add(e.place("max"), e.path("max") + " must be above min, " + number_text(min));
+  if (log && !(min > 0)) problems.add(e.place("min"), e.path("min") + " must be above 0 for log");
+  if (parameter.start && !(start >= min && start <= max))
+    problems.add(e.place("start"), e.path("start") + " must be between min and max");
+  const std::string& name = parameter.pattern.name;
+  if (!name.starts_with("control.") || name.ends_with("_scale") || name.find('.', 8) == std::string::npos ||
+      name.substr(8, name.find('.', 8) - 8).find('*') != std::string::npos) {
+    problems.add(parameter.pattern.place,
+                 in_quotes(name) +
+                     " cannot be written to a robot's configuration: it must be control.OBJECT.PARAMETER, "
+                     "such as control.posture.*_knee.kp_Nm_per_rad");
+  }
+}
+
+void plan_fields(Fields& f, TunePlan& plan, Problems& problems) {
+  experiment_fields(f, plan, problems);
+  f.map("tune", "parameters that are sought, by a pattern over their names", [&](Fields& e) {
+    TunedParameter parameter{.pattern = {e.key(), e.key_place()}, .range = {}, .start = {}};
+    parameter_fields(e, parameter, problems);
+    if (e.reading()) plan.tune.push_back(std::move(parameter));
+  });
+  f.integer("runs", plan.runs, {1, 10'000}, "runs of each candidate, with the same seeds and points for all");
+  f.integer("check_runs", plan.check_runs, {2, 100'000}, "runs before and after, with seeds that the search never saw");
+  f.integer("population", plan.population, {5, 1000}, "candidates of a generation");
+  f.integer("generations", plan.generations, {1, 10'000}, "how often");
+  f.number("step", plan.step, {1e-3, 1}, "first spread of the candidates, as a share of the ranges");
+  f.string("score", plan.score.name, "metric whose mean over the runs is to become small", Need::required);
+  plan.score.place = f.place("score");
+  f.boolean("greatest", plan.greatest, "the score is to become great instead");
+  f.number("failed_score", plan.failed_score, {}, "what a run counts that did not pass or has no value",
+           Need::required);
+  if (!f.reading()) return;
+  if (plan.tune.empty()) problems.add(f.place("tune"), "tune is missing: the parameters that are sought");
+  verify_metric(plan.score, plan, problems);
+}
+
+}  // namespace
+
+TunePlan read_tune_plan_text(const std::string& text, const std::string& file) {
+  TunePlan plan;
+  plan.file = file;
+  Problems problems(file);
+  read_fields(parse_based_json(text, file).value, problems, [&](Fields& f) { plan_fields(f, plan, problems); });
+  problems.throw_if_any();
+  return plan;
+}
+
+TunePlan read_tune_plan(const std::filesystem::path& file) {
+  return read_tune_plan_text(read_input_file(file), file.string());
+}
+
+FieldInfo describe_tune_plan() {
+  TunePlan plan;
+  Problems problems("");
+  return describe_fields([&](Fields& f) { plan_fields(f, plan, problems); });
+}
+
+}  // namespace kadans

@@ -1,0 +1,62 @@
+// The requests and answers of clients as JSON. A request is checked against the table of orders and becomes an order;
+// tables and answers become the JSON that clients of ctl read. All servers read requests and finish the order `save`
+// here.
+//
+// For threads that serve clients.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "config/json/foreign_json.h"
+#include "order_table.h"
+#include "remote/instance/instance.h"
+#include "remote/instance/parameter_history.h"
+
+namespace kadans {
+
+using Json = nlohmann::ordered_json;
+
+std::string refusal(const std::string& why);
+
+Json behaviors_json(const Answer& report);
+Json status_json(const Instance& instance, const InstanceStatus& status);
+// {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
+Json drives_json(const PowerStatus& power, const RobotModel& model);
+
+// Lists all items of a kind: "behaviors", "sets", "objects", "parameters", "signals". `report` is used for behaviors
+// and parameters, `status` for sets. Throws InputError on another kind.
+Json list_json(const std::string& what, const Instance& instance, const InstanceStatus& status, const Answer& report);
+
+// A request of a client, checked against the table of orders.
+struct OrderRequest {
+  const OrderInfo* info = nullptr;
+  Json json = Json::object();  // the arguments by their names
+
+  bool is(std::string_view verb) const noexcept { return verb == info->verb; }
+  std::string text(const char* argument) const { return json.value(argument, std::string()); }
+  double number(const char* argument, double without) const { return json.value(argument, without); }
+
+  // Makes the order; only for requests whose info->kind is set.
+  Order order(const std::string& who, std::uint64_t client = 0) const;
+};
+
+// {"verb": "set", "name": "l_knee.kp", "value": 50}. Throws InputError when the line is no JSON, when the verb or an
+// argument is unknown, when an argument is missing, of the wrong type or out of range, or when the role may not give
+// the order.
+OrderRequest read_request(std::string_view line, Role role);
+
+// {"verb": "set", "text": "l_knee.kp", "value": 50}: `text` is the order's text argument and `value` its number,
+// whatever their names in the table are. Other fields are left to the caller. `paced`: the run's time can be held.
+// Throws as read_request.
+OrderRequest read_brief_request(const Json& json, bool paced);
+
+// Finishes a `save` after the behavior thread has answered with the changes: writes the file and informs that thread.
+// Throws what ConfigurationText::save throws.
+std::vector<PresetOverride> save_changes(Instance& instance, InstancePort& port, const Answer& answer,
+                                         const std::string& who, const std::string& preset = {});
+
+}  // namespace kadans

@@ -1,0 +1,143 @@
+// The tables of parameters, set-points and signals.
+#include <array>
+#include <cassert>
+#include <charconv>
+#include <stdexcept>
+#include <utility>
+
+#include "kadans/signal/parameter.h"
+#include "kadans/signal/setpoint.h"
+#include "kadans/signal/signal.h"
+
+namespace kadans {
+namespace {
+
+// As few digits as name the number exactly: 1e-09, not 0.000000.
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+}  // namespace
+
+ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_t owner) {
+  if (!(parameter.min <= parameter.max)) throw std::invalid_argument("parameter " + parameter.name + ": empty range");
+  if (!(std::isfinite(parameter.initial) && parameter.initial >= parameter.min && parameter.initial <= parameter.max)) {
+    throw std::invalid_argument("parameter " + parameter.name + ": initial value " + shortest(parameter.initial) +
+                                " is outside " + shortest(parameter.min) + ".." + shortest(parameter.max));
+  }
+  const auto id = static_cast<ParameterId>(entries_.size());
+  if (!ids_.emplace(parameter.name, id).second) {
+    throw std::invalid_argument("parameter " + parameter.name + " is declared twice");
+  }
+  *value = parameter.initial;
+  const OneWriter<double> newest(parameter.initial);
+  entries_.push_back({std::move(parameter), value, owner, newest});
+  return id;
+}
+
+bool ParameterTable::set(ParameterId id, double value) noexcept {
+  if (!accepts(id, value)) return false;
+  *entries_[id].value = value;
+  entries_[id].newest.set(value);
+  return true;
+}
+
+std::optional<ParameterId> ParameterTable::find(std::string_view name) const {
+  const auto found = ids_.find(std::string(name));
+  if (found == ids_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::vector<std::string> ParameterTable::names() const {
+  std::vector<std::string> all;
+  all.reserve(entries_.size());
+  for (const Entry& entry : entries_) all.push_back(entry.info.name);
+  return all;
+}
+
+SetpointId SetpointTable::add(Setpoint setpoint) {
+  if (!(setpoint.min <= setpoint.max)) throw std::invalid_argument("set-point " + setpoint.name + ": empty range");
+  const auto id = static_cast<SetpointId>(entries_.size());
+  if (!ids_.emplace(setpoint.name, id).second) {
+    throw std::invalid_argument("set-point " + setpoint.name + " is declared twice");
+  }
+  entries_.push_back(std::move(setpoint));
+  return id;
+}
+
+std::optional<SetpointId> SetpointTable::find(std::string_view name) const {
+  const auto found = ids_.find(std::string(name));
+  if (found == ids_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::vector<std::string> SetpointTable::names() const {
+  std::vector<std::string> all;
+  all.reserve(entries_.size());
+  for (const Setpoint& setpoint : entries_) all.push_back(setpoint.name);
+  return all;
+}
+
+SignalId SignalTable::add_info(Signal signal) {
+  const auto id = static_cast<SignalId>(infos_.size());
+  if (!ids_.emplace(signal.name, id).second) {
+    throw std::invalid_argument("signal " + signal.name + " is declared twice");
+  }
+  infos_.push_back(std::move(signal));
+  return id;
+}
+
+SignalId SignalTable::add(Signal signal, const double* source) {
+  const SignalId id = add_info(std::move(signal));
+  doubles_.push_back({id, source});
+  return id;
+}
+
+SignalId SignalTable::add(Signal signal, const bool* source) {
+  const SignalId id = add_info(std::move(signal));
+  bools_.push_back({id, source});
+  return id;
+}
+
+SignalId SignalTable::add(Signal signal, const std::uint8_t* source) {
+  const SignalId id = add_info(std::move(signal));
+  choices_.push_back({id, source});
+  return id;
+}
+
+SignalId SignalTable::add(Signal signal, const std::uint32_t* source) {
+  const SignalId id = add_info(std::move(signal));
+  counts_.push_back({id, source});
+  return id;
+}
+
+SignalId SignalTable::add(Signal signal, const std::atomic<std::uint32_t>* source) {
+  const SignalId id = add_info(std::move(signal));
+  shared_.push_back({id, source});
+  return id;
+}
+
+void SignalTable::gather(std::span<double> row) const noexcept {
+  assert(row.size() == infos_.size());
+  for (const auto& [id, value] : doubles_) row[id] = *value;
+  for (const auto& [id, value] : bools_) row[id] = *value ? 1.0 : 0.0;
+  for (const auto& [id, value] : choices_) row[id] = static_cast<double>(*value);
+  for (const auto& [id, value] : counts_) row[id] = static_cast<double>(*value);
+  for (const auto& [id, value] : shared_) row[id] = static_cast<double>(value->load(std::memory_order_relaxed));
+}
+
+std::optional<SignalId> SignalTable::find(std::string_view name) const {
+  const auto found = ids_.find(std::string(name));
+  if (found == ids_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::vector<std::string> SignalTable::names() const {
+  std::vector<std::string> all;
+  all.reserve(infos_.size());
+  for (const Signal& signal : infos_) all.push_back(signal.name);
+  return all;
+}
+
+}  // namespace kadans

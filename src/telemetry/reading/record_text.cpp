@@ -1,0 +1,217 @@
+
+#include "record_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "config/json/foreign_json.h"
+#include "config/json/name_pattern.h"
+
+namespace kadans {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string quoted(const std::string& text) { return json_text(text); }
+
+void append_json_number(std::string& text, double value) {
+  if (std::isfinite(value))
+    append_number(text, value);
+  else
+    text += "null";
+}
+
+// The fields of a message in JSON behind those of the line.
+void append_fields(std::string& line, std::string_view text) {
+  std::optional<Json> json = read_foreign_json(text);
+  if (!json || !json->is_object()) {
+    line += ",\"message\":" + quoted(std::string(text));
+    return;
+  }
+  json->erase("timestamp");
+  const std::string fields = json_text(*json);
+  if (fields.size() > 2) line += "," + fields.substr(1, fields.size() - 2);
+}
+
+// std_msgs/String in CDR: head, length, bytes, zero.
+std::optional<std::string> string_in(const RecordRows& rows) {
+  if (rows.topic().schema != "std_msgs/msg/String") return std::nullopt;
+  ByteReader body(rows.payload());
+  body.take<std::uint32_t>();
+  std::string text = body.take_string();
+  if (!body.ok()) return std::nullopt;
+  if (!text.empty() && text.back() == '\0') text.pop_back();
+  return text;
+}
+
+std::string slashed(const std::string& topic) {
+  return topic.starts_with('/') || topic.starts_with('*') ? topic : "/" + topic;
+}
+
+}  // namespace
+
+void append_number(std::string& text, double value) {
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+  text.append(digits, end);
+}
+
+void append_seconds(std::string& text, std::int64_t time_ns) {
+  constexpr std::uint64_t ns_per_s = 1'000'000'000;
+  const bool negative = time_ns < 0;
+  const std::uint64_t ns = negative ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);
+  if (negative) text += '-';
+  text += std::to_string(ns / ns_per_s);
+  std::string rest = std::to_string(ns_per_s + ns % ns_per_s);
+  rest[0] = '.';
+  text += rest.substr(0, rest.find_last_not_of("0.") + 1);
+}
+
+JsonLines::JsonLines(const std::string& path, std::vector<std::string> topics, TimeSpan span)
+    : rows_(path), topics_(std::move(topics)), met_(topics_.size()), span_(span) {}
+
+bool JsonLines::wanted() {
+  if (topics_.empty()) return true;
+  bool wanted = false;
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
+    if (!matches(slashed(topics_[i]), rows_.topic().name)) continue;
+    met_[i] = wanted = true;
+  }
+  return wanted;
+}
+
+bool JsonLines::next(std::string& line) {
+  while (rows_.next()) {
+    if (!wanted() || !span_.holds(rows_.time_ns())) continue;
+    ++lines_;
+    line.clear();
+    write(line);
+    return true;
+  }
+  return false;
+}
+
+const std::vector<std::string>& JsonLines::keys() {
+  const auto [known, added] = keys_.try_emplace(rows_.channel());
+  if (!added) return known->second;
+  for (const Signal& signal : rows_.topic().signals) known->second.push_back("," + quoted(signal.name) + ":");
+  return known->second;
+}
+
+void JsonLines::write(std::string& line) {
+  const RecordTopic& topic = rows_.topic();
+  line += "{\"time_s\":";
+  append_seconds(line, rows_.time_ns());
+  line += ",\"topic\":" + quoted(topic.name);
+  if (!rows_.values().empty()) {
+    line += ",\"tick\":" + std::to_string(rows_.tick());
+    const std::vector<std::string>& names = keys();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      line += names[i];
+      append_json_number(line, rows_.values()[i]);
+    }
+  } else if (topic.is_json()) {
+    append_fields(line, rows_.text());
+  } else if (const std::optional<std::string> text = string_in(rows_)) {
+    line += ",\"data\":" + quoted(*text);
+  } else {
+    line += ",\"bytes\":" + std::to_string(rows_.payload().size());
+  }
+  line += '}';
+}
+
+std::vector<std::string> JsonLines::unknown_topics() const {
+  std::vector<std::string> unknown;
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
+    bool known = met_[i];  // perhaps a channel without a message
+    for (const auto& [id, channel] : reader().channels()) known = known || matches(slashed(topics_[i]), channel.topic);
+    if (!known) unknown.push_back(topics_[i]);
+  }
+  return unknown;
+}
+
+namespace {
+
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
+CsvLines::CsvLines(const std::string& path, std::vector<ChosenSignal> signals, TimeSpan span,
+                   std::optional<std::int64_t> every_ns)
+    : rows_(path), signals_(std::move(signals)), span_(span), every_ns_(every_ns), cells_(signals_.size()) {
+  for (std::size_t i = 0; i < signals_.size(); ++i) columns_[signals_[i].channel].push_back(i);
+}
+
+// To the next row with any of the signals, unless one is held.
+bool CsvLines::next_row() {
+  if (held_) return true;
+  while (rows_.next()) {
+    if (rows_.values().empty() || !columns_.contains(rows_.channel())) continue;
+    if (rows_.time_ns() > span_.to_ns) continue;
+    if (rows_.time_ns() >= span_.from_ns) return held_ = true;
+    take_row();  // what holds when the table begins
+  }
+  return false;
+}
+
+void CsvLines::take_row() {
+  for (const std::size_t column : columns_.at(rows_.channel())) {
+    const std::size_t place = signals_[column].place;
+    if (place < rows_.values().size()) cells_[column] = rows_.values()[place];
+  }
+  last_ns_ = std::max(last_ns_, rows_.time_ns());
+  held_ = false;
+}
+
+bool CsvLines::next(std::string& line) {
+  line.clear();
+  if (!head_written_) {
+    head_written_ = true;
+    write_head(line);
+    return true;
+  }
+  while (next_row()) {
+    if (!started_) {  // evenly spaced lines begin where they were asked to, when there are values already
+      const bool known = std::ranges::any_of(cells_, [](const auto& value) { return value.has_value(); });
+      time_ns_ = known && every_ns_ ? span_.from_ns : rows_.time_ns();
+      started_ = true;
+    }
+    if (rows_.time_ns() > time_ns_) {  // the line is whole
+      write(time_ns_, line);
+      time_ns_ = every_ns_ ? time_ns_ + *every_ns_ : rows_.time_ns();
+      return true;
+    }
+    take_row();
+  }
+  if (!started_ || ended_ || time_ns_ > last_ns_) return false;
+  write(time_ns_, line);
+  ended_ = !every_ns_;
+  if (every_ns_) time_ns_ += *every_ns_;
+  return true;
+}
+
+void CsvLines::write_head(std::string& line) const {
+  line = "time_s";
+  for (const ChosenSignal& signal : signals_)
+    line += "," + cell(signal.info.name + (signal.info.unit.empty() ? "" : " [" + signal.info.unit + "]"));
+}
+
+// A row that comes late, with an earlier time, repeats what holds.
+void CsvLines::write(std::int64_t time_ns, std::string& line) {
+  append_seconds(line, time_ns);
+  for (const std::optional<double>& value : cells_) {
+    line += ',';
+    if (value) append_number(line, *value);
+  }
+  ++lines_;
+}
+
+}  // namespace kadans
