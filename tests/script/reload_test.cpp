@@ -150,6 +150,20 @@ TEST_CASE("a motion kept in vars can still be asked after a reload, a function c
   other.tick(2);
   CHECK(reload(other, chart("k.state 'a' {}")) == Behavior::Reload::refused);
   CHECK(other.said().find("vars hold a function") != std::string::npos);
+  CHECK(reload(other, chart("version = 1, k.state 'a' {}")) == Behavior::Reload::taken);  // needs no vars of version 0
+}
+
+TEST_CASE("a state that became one of another kind is gone: it is left and the new one is entered") {
+  const auto with = [](const std::string& b) {
+    return chart("initial = 'a', k.state 'a' { enter = function() print 'in a' end, { after = 0, to = 'b' } },\n" + b);
+  };
+  Stage stage(with("k.state 'b' { exit = function() print 'out b' end, k.state 'x' {} }"));
+  stage.tick(3);
+  REQUIRE(stage.behavior->state() == "b.x");
+  CHECK(reload(stage, with("k.parallel 'b' { k.region 'x' { k.state 'c' {} } }")) == Behavior::Reload::taken);
+  stage.tick(1);
+  CHECK(stage.said() == "in a\nout b\nreloaded behaviors/test.lua\nin a\n");
+  CHECK(stage.behavior->state() == "a");
 }
 
 TEST_CASE("a parameter that somebody changed keeps its value while it is declared and in range") {

@@ -208,6 +208,14 @@ void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept 
   }
 }
 
+std::string Behavior::keep(ByteWriter& bytes) { return keep_behavior(*parts_, bytes); }
+
+bool Behavior::go_on(ByteReader& bytes, const Snapshot& snapshot, CommandSender& commands) noexcept {
+  const bool goes_on = go_on_with(*parts_, bytes, snapshot, commands, parts_->settings.limits.load_instructions, false);
+  publish_status();
+  return goes_on;
+}
+
 void Behavior::hold_clock(std::int64_t held_ns) noexcept {
   parts_->bindings.held_ns = held_ns;
   if (past_->parts != nullptr) past_->parts->bindings.held_ns = held_ns;

@@ -5,13 +5,15 @@
 // script the states are left with their `exit`, as always. After a breach of the budget nothing of the script runs
 // again.
 //
-// A reload replaces the Lua state by a new one between two ticks; the control engine does not notice. These are carried
-// over: the active states with their time, waiting events, histories, `vars` (plain data and motions; another `version`
-// goes through `migrate`, or starts with the declared ones), changed parameters that are still in range, and random
-// numbers. Motions under way go on. A coroutine cannot be carried into another Lua state, so the `run` of a state that
-// stays begins anew, unless it was over. When the text of all files is the same, nothing changes at all. Any failure
-// leaves the old version as it was; the new version's guards are tried against the present snapshot, too. An error in
-// the first second of the new version brings back the old version with the vars that it had at the swap.
+// A reload replaces the Lua state by a new one between two ticks; the control engine does not notice. The old version
+// writes what it is doing as bytes, and the new one goes on from them; a process that replaces another does the same.
+// These are carried over: the active states with their time, waiting events, histories, `vars` (plain data and motions,
+// 256 kB in all; another `version` goes through `migrate`, or starts with the declared ones), changed parameters that
+// are still in range, and random numbers. Motions under way go on. A coroutine cannot be carried into another Lua
+// state, so the `run` of a state that stays begins anew, unless it was over. When the text of all files is the same,
+// nothing changes at all. Any failure leaves the old version as it was; the new version's guards are tried against the
+// present snapshot, too. An error in the first second of the new version brings back the old version with the vars that
+// it had at the swap.
 #pragma once
 
 #include <cstdint>

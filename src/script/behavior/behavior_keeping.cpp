@@ -1,5 +1,5 @@
-// A behavior as bytes and back: what a reload carries from one Lua state to the next (behavior_reload.cpp), from one
-// process to the next.
+// A behavior as bytes and back: what is carried from one Lua state to the next when a file is reloaded or a process is
+// replaced.
 
 #include <cstring>
 #include <exception>
@@ -48,70 +48,21 @@ void take_bindings(Bindings& bindings, ByteReader& bytes) {
   bindings.refusals_seen = bytes.take<std::uint32_t>();
 }
 
-// Of each machine that is active: where its root is, its version, its vars.
-std::string put_machines(Behavior::Parts& parts, ByteWriter& bytes) {
-  lua_State* state = parts.lua->get();
-  std::string why;
-  for (std::size_t i = 0; i < parts.chart.machines.size() && why.empty(); ++i) {
-    const Chart::Machine& machine = parts.chart.machines[i];
-    if (!parts.runner->active(machine.root)) continue;
-    bytes.put<std::uint8_t>(1);
-    bytes.put_string(parts.chart.states[machine.root].path);
-    bytes.put(std::int32_t{machine.version});
-    const int top = lua_gettop(state);
-    if (lua_checkstack(state, 8) == 0) return "out of memory";
-    push_vars(state, parts.tables.machines[i]);
-    (void)put_value(state, top + 1, bytes, why);
-    lua_settop(state, top);
-  }
-  bytes.put<std::uint8_t>(0);
-  return why;
-}
-
-struct GoingOn {
-  Behavior::Parts& parts;
-  ByteReader& bytes;
-};
-
-std::size_t machine_at(const Chart& chart, std::string_view path) {
-  std::size_t at = 0;
-  while (at < chart.machines.size() && chart.states[chart.machines[at].root].path != path) ++at;
-  return at;
-}
-
-void renew_active_machines(lua_State* state, Behavior::Parts& parts) {
-  for (std::size_t i = 0; i < parts.chart.machines.size(); ++i) {
-    if (!parts.runner->active(parts.chart.machines[i].root)) continue;
-    renew_machine(state, parts.chart, parts.tables, static_cast<std::uint16_t>(i));
-  }
-}
-
-int take_machines(lua_State* state) {
-  const GoingOn& going_on = *static_cast<const GoingOn*>(lua_touserdata(state, 1));
-  Behavior::Parts& parts = going_on.parts;
-  ByteReader& bytes = going_on.bytes;
-  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
-  renew_active_machines(state, parts);
-  while (bytes.take<std::uint8_t>() != 0) {
-    const auto path = bytes.take_bytes(bytes.take<std::uint32_t>());
-    const std::size_t number = machine_at(parts.chart, {reinterpret_cast<const char*>(path.data()), path.size()});
-    const auto version = bytes.take<std::int32_t>();
-    const bool known = number < parts.chart.machines.size() && parts.runner->active(parts.chart.machines[number].root);
-    luaL_checkstack(state, 16, "vars");
-    if (known) push_vars(state, parts.tables.machines[number]);
-    push_value(state, bytes, parts.catalog);
-    if (!lua_istable(state, -1)) luaL_error(state, "vars that are no table were kept");
-    if (known && takes_vars(parts.chart.machines[number], version))
-      give_vars(state, parts.chart.machines[number], version);
-    lua_settop(state, 1);
-  }
-  parts.runner->be_at(parts.bindings.now_ns);
-  parts.runner->start_runs(state);
-  return 0;
+// [-0 +1] Pushes the `vars` of a machine.
+void push_vars(lua_State* state, const RunnerTables::Machine& machine) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.content);
+  lua_pushliteral(state, "vars");
+  lua_rawget(state, -2);
+  lua_remove(state, -2);
 }
 
 constexpr std::size_t kept_bytes_max = std::size_t{256} << 10U;
+constexpr std::uint32_t unkept = UINT32_MAX;  // in place of the size of vars: the reason follows
 enum Tag : std::uint8_t { tag_nil, tag_false, tag_true, tag_number, tag_string, tag_table, tag_end, tag_motion };
+
+// [-0 +0] Appends the value at `index` (> 0): plain data and handles of motions. False: it contains something else, and
+// `why` says what; then the stack may hold more than before. Never raises.
+bool put_value(lua_State* state, int index, ByteWriter& bytes, std::string& why, int depth = 0);
 
 bool put_table(lua_State* state, int index, ByteWriter& bytes, std::string& why, int depth) {
   if (depth > vars_depth_max || lua_checkstack(state, 8) == 0) return why = "vars are nested too deeply", false;
@@ -134,6 +85,64 @@ bool put_motion(lua_State* state, int index, ByteWriter& bytes, std::string& why
   bytes.put(std::as_bytes(std::span(motion->setpoints(), motion->count)));
   return true;
 }
+
+bool put_value(lua_State* state, int index, ByteWriter& bytes, std::string& why, int depth) {
+  switch (lua_type(state, index)) {
+    case LUA_TNIL:
+      return bytes.put<std::uint8_t>(tag_nil), true;
+    case LUA_TBOOLEAN:
+      return bytes.put<std::uint8_t>(lua_toboolean(state, index) != 0 ? tag_true : tag_false), true;
+    case LUA_TNUMBER:
+      bytes.put<std::uint8_t>(tag_number);
+      return bytes.put(lua_tonumber(state, index)), true;
+    case LUA_TSTRING: {
+      std::size_t length = 0;
+      const char* text = lua_tolstring(state, index, &length);
+      bytes.put<std::uint8_t>(tag_string);
+      return bytes.put_string({text, length}), true;
+    }
+    case LUA_TTABLE:
+      return put_table(state, index, bytes, why, depth);
+    case LUA_TUSERDATA:
+      return put_motion(state, index, bytes, why);
+    default:
+      return why = std::string("vars hold a ") + lua_typename(state, lua_type(state, index)), false;
+  }
+}
+
+// Of each machine that is active: where its root is, its version, its vars, or why they cannot be kept. Whether that
+// matters is up to the version that goes on with them.
+std::string put_machines(Behavior::Parts& parts, ByteWriter& bytes) {
+  lua_State* state = parts.lua->get();
+  std::string first;
+  for (std::size_t i = 0; i < parts.chart.machines.size(); ++i) {
+    const Chart::Machine& machine = parts.chart.machines[i];
+    if (!parts.runner->active(machine.root)) continue;
+    bytes.put<std::uint8_t>(1);
+    bytes.put_string(parts.chart.states[machine.root].path);
+    bytes.put(std::int32_t{machine.version});
+    std::string why;
+    const std::size_t at = bytes.size();
+    bytes.put(std::uint32_t{0});
+    const int top = lua_gettop(state);
+    if (lua_checkstack(state, 8) == 0) why = "vars cannot be read";
+    if (why.empty()) push_vars(state, parts.tables.machines[i]);
+    if (why.empty()) (void)put_value(state, top + 1, bytes, why);
+    lua_settop(state, top);
+    bytes.set(at, static_cast<std::uint32_t>(bytes.size() - at - sizeof(std::uint32_t)));
+    if (!why.empty()) {
+      bytes.shrink(at);
+      bytes.put(unkept);
+      bytes.put_string(why);
+    }
+    if (first.empty()) first = why;
+  }
+  bytes.put<std::uint8_t>(0);
+  return first;
+}
+
+// [-0 +1] Pushes the next value of the bytes. Raises when there is none.
+void push_value(lua_State* state, ByteReader& bytes, const Catalog& catalog, int depth = 0);
 
 void push_motion_of(lua_State* state, ByteReader& bytes, const Catalog& catalog) {
   Motion kept;
@@ -166,69 +175,6 @@ void push_table(lua_State* state, ByteReader& bytes, const Catalog& catalog, int
   }
 }
 
-}  // namespace
-
-std::string Behavior::keep(ByteWriter& bytes) {
-  Parts& parts = *parts_;
-  bytes.put<std::uint8_t>(parts.failed);
-  bytes.put(parts.transactions_refused);
-  put_parameters(parts.lua->core(), bytes);
-  bytes.put(std::as_bytes(std::span(&parts.lua->core().random, 1)));
-  put_bindings(parts.bindings, bytes);
-  parts.runner->keep(bytes);
-  return put_machines(parts, bytes);
-}
-
-bool Behavior::go_on(ByteReader& bytes, const Snapshot& snapshot, CommandSender& commands) noexcept {
-  Parts& parts = *parts_;
-  LuaCore& core = parts.lua->core();
-  parts.failed = bytes.take<std::uint8_t>() != 0;
-  parts.transactions_refused = bytes.take<std::uint64_t>();
-  take_parameters(core, bytes);
-  RandomStream random = core.random;
-  const auto kept = bytes.take_bytes(sizeof random);
-  if (!kept.empty()) std::memcpy(static_cast<void*>(&random), kept.data(), sizeof random);
-  take_bindings(parts.bindings, bytes);
-  if (!parts.runner->restore(bytes)) {
-    parts.error.set_message("what was kept does not fit the chart");
-    return false;
-  }
-  GoingOn going_on{parts, bytes};
-  parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const ScriptLimits& limits = parts.settings.limits;
-  const bool taken = parts.lua->call(take_machines, &going_on, limits.load_instructions, limits.load_wall_ns);
-  commands.discard();
-  core.random = random;
-  if (taken && parts.runner->started()) parts.want_sets(snapshot);
-  publish_status();
-  if (!taken) parts.error = parts.lua->error();
-  return taken && bytes.ok();
-}
-
-bool put_value(lua_State* state, int index, ByteWriter& bytes, std::string& why, int depth) {
-  switch (lua_type(state, index)) {
-    case LUA_TNIL:
-      return bytes.put<std::uint8_t>(tag_nil), true;
-    case LUA_TBOOLEAN:
-      return bytes.put<std::uint8_t>(lua_toboolean(state, index) != 0 ? tag_true : tag_false), true;
-    case LUA_TNUMBER:
-      bytes.put<std::uint8_t>(tag_number);
-      return bytes.put(lua_tonumber(state, index)), true;
-    case LUA_TSTRING: {
-      std::size_t length = 0;
-      const char* text = lua_tolstring(state, index, &length);
-      bytes.put<std::uint8_t>(tag_string);
-      return bytes.put_string({text, length}), true;
-    }
-    case LUA_TTABLE:
-      return put_table(state, index, bytes, why, depth);
-    case LUA_TUSERDATA:
-      return put_motion(state, index, bytes, why);
-    default:
-      return why = std::string("vars hold a ") + lua_typename(state, lua_type(state, index)), false;
-  }
-}
-
 void push_value(lua_State* state, ByteReader& bytes, const Catalog& catalog, int depth) {
   const auto tag = bytes.take<std::uint8_t>();
   if (!bytes.ok()) luaL_error(state, "what was kept ends too early");
@@ -251,6 +197,131 @@ void push_value(lua_State* state, ByteReader& bytes, const Catalog& catalog, int
     default:
       luaL_error(state, "what was kept is no value");
   }
+}
+
+std::string_view text_of(ByteReader& bytes) noexcept {
+  const auto text = bytes.take_bytes(bytes.take<std::uint32_t>());
+  return {reinterpret_cast<const char*>(text.data()), text.size()};
+}
+
+// True when a machine can take over vars of this version of it.
+bool takes_vars(const Chart::Machine& machine, int version) noexcept {
+  return machine.version == version || machine.migrate != Chart::no_function;
+}
+
+// [-1 +0] The top of the stack holds the vars that the machine had in `version`, below them are its own vars. Copies
+// the old values into the own vars. Raises what `migrate` raises.
+void give_vars(lua_State* state, const Chart::Machine& machine, int version) {
+  if (machine.version != version) {
+    core_of(state).called = machine.migrate;
+    lua_rawgeti(state, LUA_REGISTRYINDEX, machine.migrate);
+    lua_insert(state, -2);
+    lua_pushinteger(state, version);
+    lua_call(state, 2, 1);
+    if (!lua_istable(state, -1)) luaL_error(state, "migrate must return the new vars, a table");
+  }
+  const int old = lua_gettop(state), vars = old - 1;
+  for (lua_pushnil(state); lua_next(state, old) != 0;) {
+    lua_pushvalue(state, -2);
+    lua_insert(state, -2);
+    lua_rawset(state, vars);
+  }
+  lua_settop(state, vars);
+}
+
+std::size_t machine_at(const Chart& chart, std::string_view path) {
+  std::size_t at = 0;
+  while (at < chart.machines.size() && chart.states[chart.machines[at].root].path != path) ++at;
+  return at;
+}
+
+// The machine's part of the bytes: nothing of it counts when the machine is gone or takes no vars of that version.
+void take_machine(lua_State* state, Behavior::Parts& parts, ByteReader& bytes) {
+  const std::size_t number = machine_at(parts.chart, text_of(bytes));
+  const auto version = bytes.take<std::int32_t>();
+  const auto size = bytes.take<std::uint32_t>();
+  const std::string_view why = size == unkept ? text_of(bytes) : "";
+  ByteReader vars(bytes.take_bytes(size == unkept ? 0 : size));
+  if (!bytes.ok()) luaL_error(state, "what was kept ends too early");
+  if (number == parts.chart.machines.size()) return;
+  const Chart::Machine& machine = parts.chart.machines[number];
+  if (!parts.runner->active(machine.root) || !takes_vars(machine, version)) return;
+  luaL_checkstack(state, 16, "vars");
+  if (!why.empty()) {
+    lua_pushlstring(state, why.data(), why.size());
+    luaL_error(state, "%s: only plain data and motions are carried over", lua_tostring(state, -1));
+  }
+  push_vars(state, parts.tables.machines[number]);
+  push_value(state, vars, parts.catalog);
+  if (!lua_istable(state, -1)) luaL_error(state, "vars that are no table were kept");
+  give_vars(state, machine, version);
+  lua_settop(state, 1);
+}
+
+void renew_machines(lua_State* state, Behavior::Parts& parts, ByteReader& bytes) {
+  for (std::size_t i = 0; i < parts.chart.machines.size(); ++i) {
+    if (!parts.runner->active(parts.chart.machines[i].root)) continue;
+    renew_machine(state, parts.chart, parts.tables, static_cast<std::uint16_t>(i));
+  }
+  while (bytes.take<std::uint8_t>() != 0) take_machine(state, parts, bytes);
+}
+
+struct GoingOn {
+  Behavior::Parts& parts;
+  ByteReader& bytes;
+  RandomStream random;
+  bool guards_tried;
+};
+
+// With guards that are tried it takes the machines twice: guards may write vars, which they should not.
+int take_machines(lua_State* state) {
+  const GoingOn& going_on = *static_cast<const GoingOn*>(lua_touserdata(state, 1));
+  Behavior::Parts& parts = going_on.parts;
+  ByteReader again = going_on.bytes;
+  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  renew_machines(state, parts, going_on.bytes);
+  parts.runner->be_at(parts.bindings.now_ns);
+  parts.runner->start_runs(state);
+  if (!going_on.guards_tried) return 0;
+  parts.lua->core().random = going_on.random;
+  parts.runner->try_guards(state);
+  renew_machines(state, parts, again);
+  return 0;
+}
+
+}  // namespace
+
+std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
+  bytes.put<std::uint8_t>(parts.failed);
+  bytes.put(parts.transactions_refused);
+  put_parameters(parts.lua->core(), bytes);
+  bytes.put(std::as_bytes(std::span(&parts.lua->core().random, 1)));
+  put_bindings(parts.bindings, bytes);
+  parts.runner->keep(bytes);
+  return put_machines(parts, bytes);
+}
+
+bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snapshot, CommandSender& commands,
+                std::uint64_t instructions, bool guards_tried) noexcept {
+  LuaCore& core = parts.lua->core();
+  parts.failed = bytes.take<std::uint8_t>() != 0;
+  parts.transactions_refused = bytes.take<std::uint64_t>();
+  take_parameters(core, bytes);
+  GoingOn going_on{parts, bytes, core.random, guards_tried};
+  const auto kept = bytes.take_bytes(sizeof going_on.random);
+  if (!kept.empty()) std::memcpy(static_cast<void*>(&going_on.random), kept.data(), sizeof going_on.random);
+  take_bindings(parts.bindings, bytes);
+  if (!parts.runner->restore(bytes)) {
+    parts.error.set_message("what was kept does not fit the chart");
+    return false;
+  }
+  parts.bindings.begin(commands, snapshot, snapshot.time_ns);
+  const bool taken = parts.lua->call(take_machines, &going_on, instructions, parts.settings.limits.load_wall_ns);
+  commands.discard();  // a guard that commands
+  core.random = going_on.random;
+  if (taken && parts.runner->started()) parts.want_sets(snapshot);
+  if (!taken) parts.error = parts.lua->error();
+  return taken && bytes.ok();
 }
 
 }  // namespace kadans

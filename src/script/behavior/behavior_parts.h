@@ -106,37 +106,15 @@ void give_robot_values(Behavior::Parts& parts);
 // behavior_arguments.cpp. Gives the behavior the values of Settings::arguments. Throws InputError.
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
 
-// behavior_reload.cpp. Copies the state of `old` into the newly loaded `fresh`: active states, vars, parameters,
-// random numbers. `old` is not changed. False: fresh.lua->error() says why.
-bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,
-                    const Snapshot& snapshot, CommandSender& commands) noexcept;
-// [-0 +1] Pushes the `vars` of a machine.
-void push_vars(lua_State* state, const RunnerTables::Machine& machine);
-// True when a machine can take over vars of this version of it.
-bool takes_vars(const Chart::Machine& machine, int version) noexcept;
-// [-1 +0] The top of the stack holds the vars that the machine had in `version`, below them are its own vars. Copies
-// the old values into the own vars. Raises what `migrate` raises.
-void give_vars(lua_State* state, const Chart::Machine& machine, int version);
-// Leaves the marked states in a transaction of its own. False: an `exit` raised.
-bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
-                  CommandSender& commands) noexcept;
+// behavior_keeping.cpp. Writes what is carried over to another version, Lua state or process. Returns "", or what
+// cannot be kept: vars hold something that is no plain data and no motion, or hold more than 256 kB.
+std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes);
+// Lets the newly loaded `parts` continue from bytes of keep_behavior(). Optionally tries the guards of all active
+// states, which then leave no trace. False: parts.error says why.
+[[nodiscard]] bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snapshot,
+                              CommandSender& commands, std::uint64_t instructions, bool guards_tried) noexcept;
 
-// put_value and push_value write the vars of a behavior as bytes and read them back, for another process that continues
-// where this one ended.
-//
-// [-0 +0] Appends the value at `index` (> 0): plain data and handles of motions. False: it contains something else, and
-// `why` says what; then the stack may hold more than before. Never raises.
-bool put_value(lua_State* state, int index, ByteWriter& bytes, std::string& why, int depth = 0);
-
-// [-0 +1] Pushes the next value of the bytes. Raises when there is none.
-void push_value(lua_State* state, ByteReader& bytes, const Catalog& catalog, int depth = 0);
-
-// The greatest depth of nested tables in vars, in copies of them, and in what a reload or a file carries over.
+// The greatest depth of nested tables in vars and in copies of them.
 inline constexpr int vars_depth_max = 16;
-
-// Copies vars from one Lua state to another.
-// [-0 +1 on `to`, -0 +0 on `from`] Pushes a deep copy of the value at `index` of `from`: plain data and handles of
-// motions. Raises in `to` on anything else; then the stack of `from` may hold more than before. Never raises in `from`.
-void push_copy_across(lua_State* from, int index, lua_State* to, int depth = 0);
 
 }  // namespace kadans

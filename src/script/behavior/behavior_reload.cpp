@@ -1,12 +1,8 @@
-#include <cstring>
 #include <exception>
 
 #include "behavior_parts.h"
 #include "kadans/signal/input_error.h"
 #include "script/bindings/machine_sets.h"
-#include "script/chart/chart_map.h"
-#include "script/lua/lua_core.h"
-#include "script/motion/motion.h"
 #include "signal/input_file.h"
 
 namespace kadans {
@@ -26,81 +22,6 @@ bool holds(const std::filesystem::path& first, const std::vector<LuaState::Sourc
   return !sources.empty() && first.parent_path() == sources.front().path.parent_path();
 }
 
-std::vector<bool> marks(const ChartRunner& runner, const std::vector<StateIndex>& map) {
-  std::vector<bool> gone(map.size(), false);
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    gone[i] = map[i] == no_state && runner.active(static_cast<StateIndex>(i));
-  }
-  return gone;
-}
-
-struct Adoption {
-  Behavior::Parts& fresh;
-  Behavior::Parts& old;
-  const std::vector<StateIndex>& map;
-};
-
-// Only what somebody changed while it ran, if the new version still takes it.
-void carry_parameters(Behavior::Parts& fresh, Behavior::Parts& old) noexcept {
-  for (const ScriptParameter& was : old.lua->core().parameters) {
-    if (was.value == was.initial) continue;
-    for (ScriptParameter& is : fresh.lua->core().parameters) {
-      if (is.name == was.name && was.value >= is.min && was.value <= is.max) is.value = was.value;
-    }
-  }
-}
-
-// The machine's fresh vars are at the top of `state`, those it had behind them: [-1].
-void overlay(lua_State* state) {
-  const int old = lua_gettop(state), vars = old - 1;
-  for (lua_pushnil(state); lua_next(state, old) != 0;) {
-    lua_pushvalue(state, -2);
-    lua_insert(state, -2);
-    lua_rawset(state, vars);
-  }
-  lua_settop(state, vars);
-}
-
-void carry_vars(lua_State* state, const Adoption& adoption, std::size_t from, std::uint16_t to) {
-  Behavior::Parts& fresh = adoption.fresh;
-  const Chart::Machine& was = adoption.old.chart.machines[from];
-  if (!takes_vars(fresh.chart.machines[to], was.version)) return;
-  lua_State* old_state = adoption.old.lua->get();
-  luaL_checkstack(state, 16, "vars");
-  push_vars(state, fresh.tables.machines[to]);
-  push_vars(old_state, adoption.old.tables.machines[from]);
-  push_copy_across(old_state, lua_gettop(old_state), state);
-  give_vars(state, fresh.chart.machines[to], was.version);
-  lua_settop(state, 1);
-}
-
-void renew_machines(lua_State* state, const Adoption& adoption) {
-  Behavior::Parts& fresh = adoption.fresh;
-  const Chart& chart = adoption.old.chart;
-  for (std::size_t i = 0; i < chart.machines.size(); ++i) {
-    const StateIndex root = chart.machines[i].root, to = adoption.map[root];
-    if (to == no_state || !adoption.old.runner->active(root)) continue;
-    const std::uint16_t machine = fresh.chart.states[to].machine;
-    renew_machine(state, fresh.chart, fresh.tables, machine);
-    carry_vars(state, adoption, i, machine);
-  }
-}
-
-// Twice: the guards are tried on vars that are thrown away, since they may write, which they should not.
-int adopt(lua_State* state) {
-  const Adoption& adoption = *static_cast<const Adoption*>(lua_touserdata(state, 1));
-  Behavior::Parts& fresh = adoption.fresh;
-  const RandomStream random = adoption.old.lua->core().random;
-  fresh.snapshot_tables.refill(state, *fresh.bindings.snapshot, fresh.bindings.now_ns);
-  renew_machines(state, adoption);
-  fresh.runner->take_over(state, *adoption.old.runner, adoption.map);
-  fresh.lua->core().random = random;
-  fresh.runner->try_guards(state);
-  renew_machines(state, adoption);
-  fresh.lua->core().random = random;
-  return 0;
-}
-
 struct Leaving {
   Behavior::Parts& parts;
   const std::vector<bool>& marks;
@@ -114,27 +35,18 @@ int leave(lua_State* state) {
   return 0;
 }
 
-void push_motion_across(lua_State* from, int index, lua_State* to) {
-  Motion* motion = to_motion(from, index);
-  if (motion == nullptr) {
-    luaL_error(to, "vars hold a userdata: a reload carries plain data and motions");
-    return;  // it has raised
+// Leaves the marked states in a transaction of its own. False: an `exit` raised.
+bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
+                  CommandSender& commands) noexcept {
+  Leaving leaving{parts, marks};
+  parts.bindings.begin(commands, snapshot, snapshot.time_ns);
+  const Behavior::Settings& settings = parts.settings;
+  if (parts.lua->call(leave, &leaving, settings.limits.tick_instructions, settings.limits.tick_wall_ns)) {
+    (void)parts.bindings.commit();
+    return true;
   }
-  Motion* copy = push_motion(to, motion->count);
-  std::memcpy(static_cast<void*>(copy), motion, sizeof(Motion) + motion->count * sizeof(SetpointId));
-}
-
-void push_table_across(lua_State* from, int index, lua_State* to, int depth) {
-  if (depth > vars_depth_max) luaL_error(to, "vars are nested too deeply to be carried through a reload");
-  if (lua_checkstack(from, 8) == 0) luaL_error(to, "vars cannot be read");
-  luaL_checkstack(to, 8, "vars are nested too deeply");
-  lua_newtable(to);
-  for (lua_pushnil(from); lua_next(from, index) != 0; lua_pop(from, 1)) {
-    const int value = lua_gettop(from);
-    push_copy_across(from, value - 1, to, depth + 1);
-    push_copy_across(from, value, to, depth + 1);
-    lua_rawset(to, -3);
-  }
+  commands.discard();
+  return false;
 }
 
 }  // namespace
@@ -173,9 +85,11 @@ Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& comma
   if (const std::string clash = clash_text(fresh->catalog, fresh->bindings.all_sets(), elsewhere); !clash.empty()) {
     return refuse(snapshot.time_ns, clash + ", and the other set's behavior plays at the same time");
   }
-  if (!adopt_behavior(*fresh, *parts_, map_states(parts_->chart, fresh->chart), snapshot, commands)) {
-    return refuse(snapshot.time_ns, fresh->lua->error().text());
-  }
+  ByteWriter kept;
+  (void)keep_behavior(*parts_, kept);  // what could not be kept is told when the new version needs it
+  ByteReader bytes(kept.bytes());
+  if (!go_on_with(*fresh, bytes, snapshot, commands, settings.limits.reload_instructions, true))
+    return refuse(snapshot.time_ns, fresh->error.text());
   swap(std::move(fresh), snapshot, commands);
   return Reload::taken;
 }
@@ -184,9 +98,8 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
   Parts& old = *parts_;
   past_->complaint.clear();
   if (old.runner->started()) {
-    const std::vector<StateIndex> map = map_states(old.chart, fresh->chart);
-    fresh->runner->report_gone(*old.runner, map);
-    past_->left = marks(*old.runner, map);
+    past_->left = old.runner->gone_from(*fresh->runner);
+    fresh->runner->report_gone(*old.runner, past_->left);
     if (!leave_states(old, past_->left, snapshot, commands)) {
       old.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "a state that is gone could not be left: " + old.lua->error().text());
@@ -207,9 +120,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
   const ScriptError error = failing.lua->error();
   past_->taken_back = failing.lua->sources();
   if (error.breach == ScriptBreach::none) {  // what the new version entered itself
-    std::vector<StateIndex> map = map_states(failing.chart, old.chart);
-    for (StateIndex& index : map) index = index != no_state && old.runner->active(index) ? index : no_state;
-    (void)leave_states(failing, marks(*failing.runner, map), snapshot, commands);
+    (void)leave_states(failing, failing.runner->gone_from(*old.runner), snapshot, commands);
   }
   old.runner->enter_again(past_->left);
   old.want_sets(snapshot);
@@ -221,84 +132,6 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
 
 void Behavior::forget_past(std::int64_t now_ns) noexcept {
   if (past_->parts != nullptr && now_ns - past_->swapped_ns >= probation_ns) past_->parts.reset();
-}
-
-void push_vars(lua_State* state, const RunnerTables::Machine& machine) {
-  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.content);
-  lua_pushliteral(state, "vars");
-  lua_rawget(state, -2);
-  lua_remove(state, -2);
-}
-
-bool takes_vars(const Chart::Machine& machine, int version) noexcept {
-  return machine.version == version || machine.migrate != Chart::no_function;
-}
-
-void give_vars(lua_State* state, const Chart::Machine& machine, int version) {
-  if (machine.version != version) {
-    core_of(state).called = machine.migrate;
-    lua_rawgeti(state, LUA_REGISTRYINDEX, machine.migrate);
-    lua_insert(state, -2);
-    lua_pushinteger(state, version);
-    lua_call(state, 2, 1);
-    if (!lua_istable(state, -1)) luaL_error(state, "migrate must return the new vars, a table");
-  }
-  overlay(state);
-}
-
-bool adopt_behavior(Behavior::Parts& fresh, Behavior::Parts& old, const std::vector<StateIndex>& map,
-                    const Snapshot& snapshot, CommandSender& commands) noexcept {
-  carry_parameters(fresh, old);
-  fresh.transactions_refused = old.transactions_refused;
-  fresh.bindings.wanted = old.bindings.wanted & fresh.bindings.all_sets();
-  fresh.bindings.sent = old.bindings.sent;
-  fresh.bindings.sent_count = old.bindings.sent_count;
-  fresh.bindings.refusals_seen = old.bindings.refusals_seen;
-  if (!old.runner->started()) return true;
-  Adoption adoption{fresh, old, map};
-  fresh.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const int top = lua_gettop(old.lua->get());
-  const ScriptLimits& limits = fresh.settings.limits;
-  const bool adopted = fresh.lua->call(adopt, &adoption, limits.reload_instructions, limits.load_wall_ns);
-  lua_settop(old.lua->get(), top);
-  commands.discard();  // a guard that commands
-  if (adopted) fresh.want_sets(snapshot);
-  return adopted;
-}
-
-bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
-                  CommandSender& commands) noexcept {
-  Leaving leaving{parts, marks};
-  parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const Behavior::Settings& settings = parts.settings;
-  if (parts.lua->call(leave, &leaving, settings.limits.tick_instructions, settings.limits.tick_wall_ns)) {
-    (void)parts.bindings.commit();
-    return true;
-  }
-  commands.discard();
-  return false;
-}
-
-void push_copy_across(lua_State* from, int index, lua_State* to, int depth) {
-  switch (lua_type(from, index)) {
-    case LUA_TNIL:
-      return lua_pushnil(to);
-    case LUA_TBOOLEAN:
-      return lua_pushboolean(to, lua_toboolean(from, index));
-    case LUA_TNUMBER:
-      return lua_pushnumber(to, lua_tonumber(from, index));
-    case LUA_TSTRING: {
-      std::size_t length = 0;
-      const char* text = lua_tolstring(from, index, &length);
-      return lua_pushlstring(to, text, length);
-    }
-    case LUA_TTABLE:
-      return push_table_across(from, index, to, depth);
-    case LUA_TUSERDATA:
-      return push_motion_across(from, index, to);
-    default:
-      luaL_error(to, "vars hold a %s: a reload carries plain data and motions", luaL_typename(from, index));
-  }
 }
 
 }  // namespace kadans

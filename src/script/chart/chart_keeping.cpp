@@ -1,8 +1,9 @@
-// How a runner continues where another one stood, of another process or of an older version of the chart.
+// How a runner continues where another one stood, of an older version of the chart or of another process.
 //
-// For another process, the state of a runner is written as bytes and read back. States, events and outcomes are written
-// by their names, because that process reads the chart's file anew and may find another version of it. What no longer
-// exists is left out, and so is what contradicts itself.
+// The state of a runner is written as bytes and read back. States, events and outcomes are written by their names,
+// because the other runner has read the chart's file anew and may have found another version of it. What no longer
+// exists is left out, and so is what contradicts itself. A state is the same when its path and its kind are, and both
+// are a machine's root or both not.
 
 #include <algorithm>
 
@@ -16,14 +17,33 @@ namespace {
 
 enum Bit : std::uint8_t { bit_active = 1, bit_entering = 2, bit_run_done = 4 };
 
-StateIndex find_state(const Chart& chart, std::string_view path) {
-  const auto found = std::ranges::find(chart.states, path, &Chart::State::path);
-  return found == chart.states.end() ? no_state : static_cast<StateIndex>(found - chart.states.begin());
+bool same_kind(const Chart::State& one, const Chart::State& other) noexcept {
+  return one.kind == other.kind && one.machine_root == other.machine_root;
+}
+
+StateIndex find_state(const Chart& chart, const Chart::State& wanted) {
+  const auto found = std::ranges::find(chart.states, wanted.path, &Chart::State::path);
+  const bool same = found != chart.states.end() && same_kind(*found, wanted);
+  return same ? static_cast<StateIndex>(found - chart.states.begin()) : no_state;
 }
 
 std::string_view text_of(ByteReader& bytes) noexcept {
   const auto text = bytes.take_bytes(bytes.take<std::uint32_t>());
   return {reinterpret_cast<const char*>(text.data()), text.size()};
+}
+
+void put_state(const Chart::State& state, ByteWriter& bytes) {
+  bytes.put_string(state.path);
+  bytes.put(static_cast<std::uint8_t>(state.kind));
+  bytes.put<std::uint8_t>(state.machine_root);
+}
+
+StateIndex take_state(const Chart& chart, ByteReader& bytes) {
+  Chart::State wanted;
+  wanted.path = bytes.take_string();
+  wanted.kind = static_cast<Chart::Kind>(bytes.take<std::uint8_t>());
+  wanted.machine_root = bytes.take<std::uint8_t>() != 0;
+  return find_state(chart, wanted);
 }
 
 }  // namespace
@@ -41,7 +61,7 @@ void ChartRunner::keep(ByteWriter& bytes) const {
   for (StateIndex i = 0; i < chart_.size(); ++i) {
     const StateRun& run = run_[i];
     if (!told(run)) continue;
-    bytes.put_string(chart_.states[i].path);
+    put_state(chart_.states[i], bytes);
     bytes.put(static_cast<std::uint8_t>((run.active ? bit_active : 0) | (run.entering ? bit_entering : 0) |
                                         (run.run_done ? bit_run_done : 0)));
     bytes.put(run.entered_ns);
@@ -56,10 +76,10 @@ void ChartRunner::keep_histories(ByteWriter& bytes) const {
   bytes.put(static_cast<std::uint32_t>(std::ranges::count(remembered_, true)));
   for (StateIndex history = 0; history < chart_.size(); ++history) {
     if (!remembered_[history]) continue;
-    bytes.put_string(chart_.states[history].path);
+    put_state(chart_.states[history], bytes);
     bytes.put(static_cast<std::uint32_t>(std::ranges::count(histories_[history], true)));
     for (StateIndex i = 0; i < chart_.size(); ++i) {
-      if (histories_[history][i]) bytes.put_string(chart_.states[i].path);
+      if (histories_[history][i]) put_state(chart_.states[i], bytes);
     }
   }
 }
@@ -82,7 +102,7 @@ bool ChartRunner::restore(ByteReader& bytes) {
 
 // In the chart's order: what is around a state came before it.
 void ChartRunner::restore_state(ByteReader& bytes) {
-  const StateIndex index = find_state(chart_, text_of(bytes));
+  const StateIndex index = take_state(chart_, bytes);
   const auto bits = bytes.take<std::uint8_t>();
   const auto entered_ns = bytes.take<std::int64_t>();
   const EventId outcome = chart_.find_event(text_of(bytes));
@@ -107,57 +127,14 @@ void ChartRunner::restore_state(ByteReader& bytes) {
 }
 
 void ChartRunner::restore_history(ByteReader& bytes) {
-  const StateIndex history = find_state(chart_, text_of(bytes));
+  const StateIndex history = take_state(chart_, bytes);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
-    const StateIndex state = find_state(chart_, text_of(bytes));
+    const StateIndex state = take_state(chart_, bytes);
     if (history == no_state || state == no_state || histories_[history].empty()) continue;
-    if (!chart_.inside(state, chart_.states[history].parent)) continue;
+    const StateIndex around = chart_.states[history].parent, its = chart_.states[state].parent;
+    if (state == around || !chart_.inside(state, around) || (its != around && !histories_[history][its])) continue;
     histories_[history][state] = remembered_[history] = true;
   }
-}
-
-EventId ChartRunner::known_event(const ChartRunner& old, EventId event) const noexcept {
-  return event == no_event ? no_event : chart_.find_event(old.chart_.events[static_cast<std::size_t>(event)]);
-}
-
-void ChartRunner::take_over_state(const ChartRunner& old, StateIndex from, StateIndex to) noexcept {
-  const StateRun& was = old.run_[from];
-  StateRun& run = run_[to];
-  run.active = was.active;
-  run.run_done = was.run_done;
-  run.entered_ns = was.entered_ns;
-  run.outcome = known_event(old, was.outcome);
-}
-
-void ChartRunner::take_over_history(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept {
-  for (StateIndex history = 0; history < old.chart_.size(); ++history) {
-    if (!old.remembered_[history] || map[history] == no_state) continue;
-    const StateIndex to = map[history];
-    for (StateIndex i = 0; i < old.chart_.size(); ++i) {
-      if (!old.histories_[history][i] || map[i] == no_state) continue;
-      histories_[to][map[i]] = true;
-      remembered_[to] = true;
-    }
-  }
-}
-
-void ChartRunner::take_over(lua_State* state, const ChartRunner& old, const std::vector<StateIndex>& map) {
-  now_ns_ = old.now_ns_;
-  started_ = old.started_;
-  filling_ = old.filling_;
-  unhandled_ = old.unhandled_;
-  for (StateIndex i = 0; i < old.chart_.size(); ++i) {
-    if (map[i] != no_state) take_over_state(old, i, map[i]);
-    if (map[i] != no_state && old.run_[i].entering) entering_ = run_[map[i]].entering = true;
-  }
-  take_over_history(old, map);
-  for (std::uint32_t i = 0; i < old.event_count_; ++i) {
-    const EventId event = known_event(old, old.events_[(old.event_first_ + i) % old.events_.size()]);
-    if (event == no_event || !post(event)) ++unhandled_;
-  }
-  list_active();
-  fill_gaps();
-  start_runs(state);
 }
 
 void ChartRunner::start_runs(lua_State* state) {
@@ -187,18 +164,24 @@ void ChartRunner::fill(StateIndex around, StateIndex entered) noexcept {
   mark_entry(entered);
 }
 
-void ChartRunner::report_gone(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept {
-  for (StateIndex i = 0; i < old.chart_.size(); ++i) {
-    if (!old.run_[i].active || map[i] != no_state) continue;
-    bool innermost = true;
-    for (StateIndex j = static_cast<StateIndex>(i + 1); j < old.chart_.states[i].end; ++j) {
-      innermost = innermost && !old.run_[j].active;
-    }
-    if (!innermost) continue;
-    StateIndex around = i;
-    while (map[around] == no_state) around = old.chart_.states[around].parent;
-    const StateIndex stays = map[around], initial = chart_.states[stays].initial;
-    sink_.transitioned(old.chart_.states[i].path, chart_.states[initial != no_state ? initial : stays].path, "reload");
+std::vector<bool> ChartRunner::gone_from(const ChartRunner& other) const {
+  std::vector<bool> gone(chart_.states.size(), false);
+  for (StateIndex index = 0; index < chart_.size(); ++index) {
+    if (!run_[index].active) continue;
+    const StateIndex there = find_state(other.chart_, chart_.states[index]);
+    gone[index] = there == no_state || !other.run_[there].active;
+  }
+  return gone;
+}
+
+void ChartRunner::report_gone(const ChartRunner& old, const std::vector<bool>& gone) noexcept {
+  for (std::size_t i = 0; i < old.active_.size(); ++i) {
+    if (!gone[old.active_[i]] || !old.is_leaf(i)) continue;
+    StateIndex around = old.active_[i];
+    while (gone[around]) around = old.chart_.states[around].parent;
+    const StateIndex stays = find_state(chart_, old.chart_.states[around]), initial = chart_.states[stays].initial;
+    sink_.transitioned(old.chart_.states[old.active_[i]].path,
+                       chart_.states[initial != no_state ? initial : stays].path, "reload");
   }
 }
 

@@ -63,14 +63,11 @@ class ChartRunner {
   // False when the queue is full; this is counted.
   bool post(EventId event) noexcept;
 
-  // For a reload, before the first tick. `map` gives for each state of the old chart the state of this chart, or
-  // no_state. Active states, their time, histories and waiting events are taken over. A coroutine cannot be taken over:
-  // `run` begins anew, unless it was over. When an active state no longer exists, the next tick enters the initial
-  // state of the state around it.
-  void take_over(lua_State* state, const ChartRunner& old, const std::vector<StateIndex>& map);
-  // The same from another process: that process calls keep() before it ends; this one calls restore() before the first
-  // tick, and start_runs() once the machines have their vars. False: the bytes do not come from keep(); then the runner
-  // cannot be used.
+  // For a reload and for another process: the runner before writes itself with keep(); this one calls restore() before
+  // the first tick, and start_runs() once the machines have their vars. Active states, their time, histories and
+  // waiting events are carried over. A coroutine cannot be carried over: `run` begins anew, unless it was over. When an
+  // active state no longer exists, the next tick enters the initial state of the state around it. False: the bytes do
+  // not come from keep(); then the runner cannot be used.
   void keep(ByteWriter& bytes) const;
   [[nodiscard]] bool restore(ByteReader& bytes);
   void start_runs(lua_State* state);
@@ -79,8 +76,10 @@ class ChartRunner {
   void try_guards(lua_State* state);
   // Leaves these states, `exit` innermost first.
   void leave_marked(lua_State* state, const std::vector<bool>& marks, std::int64_t now_ns);
-  // Tells the sink which states no longer exist.
-  void report_gone(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept;
+  // Which of its active states the other one has not active: a mark for each state.
+  std::vector<bool> gone_from(const ChartRunner& other) const;
+  // Tells the sink which active states of the old runner are gone.
+  void report_gone(const ChartRunner& old, const std::vector<bool>& gone) noexcept;
   // The next tick enters the states again that leave_marked() left.
   void enter_again(const std::vector<bool>& marks) noexcept;
 
@@ -134,13 +133,8 @@ class ChartRunner {
   void report(std::uint16_t transition) noexcept;
 
   // chart_keeping.cpp
-  void take_over_state(const ChartRunner& old, StateIndex from, StateIndex to) noexcept;
-  void take_over_history(const ChartRunner& old, const std::vector<StateIndex>& map) noexcept;
   void fill_gaps() noexcept;
   void fill(StateIndex around, StateIndex entered) noexcept;
-  EventId known_event(const ChartRunner& old, EventId event) const noexcept;
-
-  // chart_keeping.cpp
   void keep_histories(ByteWriter& bytes) const;
   void restore_state(ByteReader& bytes);
   void restore_history(ByteReader& bytes);
