@@ -8,7 +8,7 @@
 
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/plant.h"
-#include "kadans/plant/world_settings.h"
+#include "kadans/plant/settings.h"
 #include "kadans/signal/state_hash.h"
 
 namespace kadans {
@@ -67,6 +67,13 @@ class WorldRobot : public Plant, public TruthSource {
   // A force in world axes at a point of a link, for the next step only. Throws std::invalid_argument when there is no
   // such link, or a number is not finite.
   virtual void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) = 0;
+};
+
+// A robot that a world is made for. `seed` feeds every noise of it.
+struct WorldSite {
+  const RobotModel& model;
+  const PlantSettings& settings;
+  std::uint64_t seed = 1;
 };
 
 // The thread that owns a world calls all its functions, except read() and write() of its robots, outside of ticks: they
