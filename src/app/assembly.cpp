@@ -197,11 +197,11 @@ World* Assembly::world() noexcept { return faulty_ ? faulty_.get() : sound_.get(
 
 Plant& Assembly::plant() noexcept {
   if (elsewhere_) return *elsewhere_;
-  return linked_ ? static_cast<Plant&>(*linked_) : world()->robot();
+  return linked_ ? static_cast<Plant&>(*linked_) : world()->robot(0);
 }
 
 const TruthSource* Assembly::truth_source() noexcept {
-  return linked_ ? static_cast<const TruthSource*>(linked_.get()) : world();
+  return linked_ ? static_cast<const TruthSource*>(linked_.get()) : world() == nullptr ? nullptr : &world()->robot(0);
 }
 
 void Assembly::make_joystick_player() {

@@ -6,14 +6,19 @@
 namespace kadans {
 
 Lockstep::Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors)
-    : world_(world),
-      control_(control),
-      behaviors_(behaviors),
-      control_period_ns_(settings.control_period_ns()),
-      behavior_period_ns_(settings.behavior_divisor() * settings.control_period_ns()) {
-  if (behavior_period_ns_ == 0) {
+    : world_(world), control_period_ns_(settings.control_period_ns()) {
+  add(settings, control, behaviors);
+}
+
+void Lockstep::add(const EngineSettings& settings, ControlEngine& control, BehaviorEngine& behaviors) {
+  if (settings.control_period_ns() != control_period_ns_) {
+    throw std::invalid_argument("the control period must be the same for all robots of a world");
+  }
+  const std::int64_t behavior_period_ns = settings.behavior_divisor() * control_period_ns_;
+  if (behavior_period_ns == 0) {
     throw std::invalid_argument("the behavior period must be a whole multiple of the control period");
   }
+  robots_.push_back({&control, &behaviors, behavior_period_ns});
 }
 
 void Lockstep::pass_period() {
@@ -25,12 +30,15 @@ void Lockstep::step() {
   const std::uint32_t missed = std::exchange(missed_, 0);
   for (std::uint32_t i = 0; i < missed; ++i) pass_period();
   const std::int64_t now_ns = clock_.now_ns();
-  const std::int64_t began_ns = wall_.now_ns();
-  control_.tick(now_ns, 1e-9 * static_cast<double>((1 + missed) * control_period_ns_), missed);
-  control_tick_cost_.add(wall_.now_ns() - began_ns);
-  if (now_ns >= behaviors_due_ns_) {
-    if (!behaviors_silent_) behaviors_.tick(now_ns);
-    behaviors_due_ns_ = (now_ns / behavior_period_ns_ + 1) * behavior_period_ns_;
+  for (const Engines& robot : robots_) {
+    const std::int64_t began_ns = wall_.now_ns();
+    robot.control->tick(now_ns, 1e-9 * static_cast<double>((1 + missed) * control_period_ns_), missed);
+    control_tick_cost_.add(wall_.now_ns() - began_ns);
+  }
+  for (Engines& robot : robots_) {
+    if (now_ns < robot.behaviors_due_ns) continue;
+    if (!behaviors_silent_ || &robot != &robots_.front()) robot.behaviors->tick(now_ns);
+    robot.behaviors_due_ns = (now_ns / robot.behavior_period_ns + 1) * robot.behavior_period_ns;
   }
   pass_period();
 }

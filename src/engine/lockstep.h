@@ -1,9 +1,10 @@
 // Virtual time on one thread: the world's time leads, everything else follows in a fixed order, so that the same seed
-// gives the same run bit for bit. One step is one control period: the control tick, the behavior tick when it is due,
-// then the world.
+// gives the same run bit for bit. One step is one control period: the control ticks of all robots, their behavior ticks
+// when they are due, then the world.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "behavior_engine.h"
 #include "clock.h"
@@ -15,15 +16,19 @@ namespace kadans {
 
 class Lockstep {
  public:
-  // Keeps references. Throws std::invalid_argument unless the behavior period is a whole multiple of the control
-  // period.
+  // The engines of the first robot. Keeps references. Throws std::invalid_argument unless the behavior period is a
+  // whole multiple of the control period.
   Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors);
+
+  // Before the first step: the engines of another robot. They tick after those of the robots before. Keeps references.
+  // Throws std::invalid_argument also when its control period is not that of the first.
+  void add(const EngineSettings& settings, ControlEngine& control, BehaviorEngine& behaviors);
 
   // Throws what the world's step throws.
   void step();
 
-  // Faults for tests and scenarios. miss: skips this number of control ticks before the next one. silence_behaviors: no
-  // behavior tick comes until it is called with false.
+  // Faults for tests and scenarios. miss: skips this number of control ticks of all robots before the next one.
+  // silence_behaviors: no behavior tick of the first robot comes until it is called with false.
   void miss(std::uint32_t control_ticks) noexcept { missed_ = control_ticks; }
   void silence_behaviors(bool silent) noexcept { behaviors_silent_ = silent; }
 
@@ -33,17 +38,21 @@ class Lockstep {
   const TickStatistics& control_tick_cost() const noexcept { return control_tick_cost_; }  // in wall time
 
  private:
+  struct Engines {
+    ControlEngine* control;
+    BehaviorEngine* behaviors;
+    std::int64_t behavior_period_ns;
+    std::int64_t behaviors_due_ns = 0;
+  };
+
   void pass_period();
 
   World& world_;
-  ControlEngine& control_;
-  BehaviorEngine& behaviors_;
+  std::vector<Engines> robots_;
   VirtualClock clock_;
   WallClock wall_;
   TickStatistics control_tick_cost_;
   std::int64_t control_period_ns_;
-  std::int64_t behavior_period_ns_;
-  std::int64_t behaviors_due_ns_ = 0;
   std::uint32_t missed_ = 0;
   bool behaviors_silent_ = false;
 };

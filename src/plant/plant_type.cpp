@@ -16,6 +16,9 @@ RegisteredPlantType* newest_registered = nullptr;  // constant-initialised: ther
 }  // namespace
 
 std::unique_ptr<World> PlantType::make_world(const WorldSite&) const { fail(*this, " is no model"); }
+std::unique_ptr<World> PlantType::make_shared_world(std::span<const WorldSite>) const {
+  fail(*this, " has a world of one robot");
+}
 std::unique_ptr<Plant> PlantType::make_plant(const PlantSite&) const { fail(*this, " is part of a world"); }
 std::unique_ptr<PlantEmulator> PlantType::make_emulator(const PlantSite&, const std::string&) const {
   fail(*this, " speaks no protocol");

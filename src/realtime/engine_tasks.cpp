@@ -24,9 +24,9 @@ bool BehaviorTask::beat(const Beat& beat) {
 
 LinkedPlant::LinkedPlant(PlantExchange& exchange, World& world) : exchange_(exchange) {
   SensorFrame sensors;
-  world.robot().read(sensors);
+  world.robot(0).read(sensors);
   exchange_.sensors.publish(sensors);
-  exchange_.truth.publish(world.truth());
+  exchange_.truth.publish(world.robot(0).truth());
 }
 
 // A signal asks for itself: what is large is copied when there is another one, not each time.
@@ -38,14 +38,14 @@ const PlantTruth& LinkedPlant::truth() const noexcept {
 
 bool PlantTask::beat(const Beat& beat) {
   const auto actuation = exchange_.actuation.read();
-  world_.robot().write(*actuation);
+  world_.robot(0).write(*actuation);
   const std::uint32_t steps = std::min(1 + beat.missed, catch_up_max);
   lost_periods_.add(1 + std::uint64_t{beat.missed} - steps);
   for (std::uint32_t i = 0; i < steps; ++i) {  // a control tick may come between any two
     world_.step(period_ns_);
-    world_.robot().read(sensors_);
+    world_.robot(0).read(sensors_);
     exchange_.sensors.publish(sensors_);
-    exchange_.truth.publish(world_.truth());
+    exchange_.truth.publish(world_.robot(0).truth());
   }
   return true;
 }

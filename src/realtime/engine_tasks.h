@@ -69,7 +69,7 @@ struct PlantExchange {
 // The control thread's end.
 class LinkedPlant final : public Plant, public TruthSource {
  public:
-  // The world as it is before the threads start.
+  // The first robot of the world, as it is before the threads start.
   LinkedPlant(PlantExchange& exchange, World& world);
 
   void read(SensorFrame& sensors) noexcept override {

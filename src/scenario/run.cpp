@@ -72,7 +72,7 @@ class Run {
 
   void step() {
     parts_.truth.update(1e-9 * static_cast<double>(parts_.lockstep.time_ns()), parts_.control.row());
-    if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.world);
+    if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.world.robot(0));
     if (parts_.joystick != nullptr)
       parts_.control.exchange().joystick.publish(parts_.joystick->at(parts_.lockstep.time_ns()));
     parts_.lockstep.step();

@@ -1,5 +1,8 @@
 #include "engine/lockstep.h"
 
+#include <algorithm>
+#include <array>
+
 #include <doctest/doctest.h>
 
 #include "bench.h"
@@ -79,4 +82,54 @@ TEST_CASE("A behavior period that is no whole multiple of the control period is 
   bench::Robot robot;
   const EngineSettings odd{.control_period_s = 0.003, .behavior_period_s = 0.01};
   CHECK_THROWS_AS(Lockstep(odd, robot.plant, robot.control, robot.behaviors), std::invalid_argument);
+}
+
+namespace {
+
+// Both robots' plants, in one time.
+class TwoRobots final : public World {
+ public:
+  TwoRobots(bench::Robot& first, bench::Robot& second) : plants_{&first.plant, &second.plant} {}
+  std::size_t robot_count() const noexcept override { return 2; }
+  WorldRobot& robot(std::size_t number) noexcept override { return *plants_[number]; }
+  void step(std::int64_t dt_ns) override {
+    for (IdealWorld* plant : plants_) plant->step(dt_ns);
+  }
+  void hash(StateHash& hash) const noexcept override {
+    for (const IdealWorld* plant : plants_) plant->hash(hash);
+  }
+
+ private:
+  std::array<IdealWorld*, 2> plants_;
+};
+
+}  // namespace
+
+TEST_CASE("Two robots run in one time, each with its own behaviors and behavior period, and as each would alone") {
+  bench::Robot alone, first, second;
+  MoveOnce alone_host(alone.catalog), second_host(second.catalog);
+  BehaviorEngine alone_behaviors(alone.sets, *alone.exchange, &alone_host);
+  BehaviorEngine behaviors(second.sets, *second.exchange, &second_host);
+  const EngineSettings seldom{.behavior_period_s = 0.02};
+  TwoRobots world(first, second);
+  Lockstep lockstep(first.settings, world, first.control, first.behaviors);
+  lockstep.add(seldom, second.control, behaviors);
+  Lockstep only(seldom, alone.plant, alone.control, alone_behaviors);
+  for (int i = 0; i < 300; ++i) {
+    lockstep.step();
+    only.step();
+    REQUIRE(std::ranges::equal(second.control.row(), alone.control.row()));
+  }
+  CHECK(second_host.times_ns.size() == 15);
+  CHECK(second.position_rad(0) > 0.1);
+  CHECK(first.position_rad(0) == bench::Robot().position_rad(0));
+  CHECK(first.control.ticks() == 300);
+}
+
+TEST_CASE("Robots of one world must have one control period") {
+  bench::Robot first, second;
+  TwoRobots world(first, second);
+  Lockstep lockstep(first.settings, world, first.control, first.behaviors);
+  CHECK_THROWS_WITH_AS(lockstep.add({.control_period_s = 0.002}, second.control, second.behaviors),
+                       "the control period must be the same for all robots of a world", std::invalid_argument);
 }

@@ -21,7 +21,7 @@ inline constexpr std::int64_t period_ns = 1'000'000;
 // Keeps what it is told and what its motors say; everything else is another plant's.
 class ListeningPlant final : public OneRobotWorld {
  public:
-  explicit ListeningPlant(World& world) : world_(world), plant_(world.robot()) {}
+  explicit ListeningPlant(World& world) : world_(world), plant_(world.robot(0)) {}
   void read(SensorFrame& sensors) noexcept override {
     plant_.read(sensors);
     for (std::size_t i = 0; i < sensors.joint_count; ++i) motor_Nm_[i] = sensors.joints[i].motor_effort_Nm;
@@ -31,9 +31,9 @@ class ListeningPlant final : public OneRobotWorld {
     plant_.write(actuation);
   }
   void step(std::int64_t dt_ns) override { world_.step(dt_ns); }
-  const PlantTruth& truth() const noexcept override { return world_.truth(); }
+  const PlantTruth& truth() const noexcept override { return plant_.truth(); }
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
-    world_.push(link, force_N, point_in_link_m);
+    plant_.push(link, force_N, point_in_link_m);
   }
   void hash(StateHash& hash) const noexcept override { world_.hash(hash); }
   const ActuationFrame& written() const noexcept { return written_; }
@@ -41,7 +41,7 @@ class ListeningPlant final : public OneRobotWorld {
 
  private:
   World& world_;
-  Plant& plant_;
+  WorldRobot& plant_;
   ActuationFrame written_;
   std::array<double, max_joints> motor_Nm_{};
 };

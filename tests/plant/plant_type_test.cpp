@@ -54,7 +54,7 @@ TEST_CASE("A model makes a world, whatever is no model a plant, and each says so
     CAPTURE(name);
     const std::unique_ptr<World> world = plant_type(types, name).make_world({robot.model, robot.settings});
     SensorFrame sensors;
-    world->robot().read(sensors);
+    world->robot(0).read(sensors);
     CHECK(sensors.joint_count == robot.model.joints.size());
     CHECK_THROWS_AS((void)plant_type(types, name).make_plant({}), std::logic_error);
   }

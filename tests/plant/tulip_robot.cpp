@@ -55,7 +55,7 @@ Robot tulip(Drives kind) {
   return robot;
 }
 
-void JointHold::tick(BulletWorld& plant) {
+void JointHold::act(Plant& plant) {
   plant.read(sensors_);
   actuation_.joint_count = sensors_.joint_count;
   plant.write(actuation_);
@@ -67,7 +67,6 @@ void JointHold::tick(BulletWorld& plant) {
                             .mode = ActuationMode::effort};
   }
   started_ = true;
-  plant.step(ms);
 }
 
 }  // namespace kadans::test

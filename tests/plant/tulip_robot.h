@@ -17,7 +17,11 @@ class JointHold {
  public:
   explicit JointHold(const Robot& robot) : target_rad_(robot.settings.position_rad) {}
 
-  void tick(BulletWorld& plant);
+  void act(Plant& plant);
+  void tick(BulletWorld& plant) {
+    act(plant);
+    plant.step(ms);
+  }
   void aim(std::size_t joint, double position_rad) { target_rad_[joint] = position_rad; }
   const SensorFrame& sensors() const { return sensors_; }
 

@@ -55,13 +55,6 @@ struct PlantSite {
   double damping_Nms_per_rad = 2;  // of joints that nobody drives
 };
 
-// The robot that a world is made for. `seed` feeds every noise.
-struct WorldSite {
-  const RobotModel& model;
-  const PlantSettings& settings;
-  std::uint64_t seed = 1;
-};
-
 // The other side of a type's wire: programs that speak its protocol drive a modelled robot, one after the other.
 //
 // Threads: await() before a session, beat() in it, the rest after it.
@@ -104,10 +97,13 @@ class PlantType {
   virtual bool has_fields() const noexcept { return false; }
   virtual void fields(PlantFields& fields) { (void)fields; }
 
-  // A model: make_world makes its world. Throws std::invalid_argument that names the setting that does not fit.
+  // A model: make_world makes a world of one robot. Throws std::invalid_argument that names the setting that does not
+  // fit.
   virtual bool is_model() const noexcept { return false; }
-  virtual bool has_objects() const noexcept { return false; }  // a scenario's "world" can stand in it
+  virtual bool has_objects() const noexcept { return false; }  // a scenario's "world" and "robots" can stand in it
   virtual std::unique_ptr<World> make_world(const WorldSite& site) const;
+  // One that has objects: a world of several robots; the first one's settings are those of the world.
+  virtual std::unique_ptr<World> make_shared_world(std::span<const WorldSite> sites) const;
 
   // Not a model: make_plant makes the plant that reaches the drives. It is not open yet. Throws InputError.
   virtual std::unique_ptr<Plant> make_plant(const PlantSite& site) const;

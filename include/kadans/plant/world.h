@@ -1,5 +1,5 @@
-// A simulated world. It steps, offers a plant for its robot, knows the true state and can push the robot. Hardware is a
-// plant without a world.
+// A simulated world. It steps. For each of its robots it offers a plant, the true state, and a way to push the robot.
+// Hardware is a plant without a world.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/plant.h"
-#include "kadans/plant/world_settings.h"
+#include "kadans/plant/settings.h"
 #include "kadans/signal/state_hash.h"
 
 namespace kadans {
@@ -19,11 +19,12 @@ using LinkSet = std::bitset<max_joints + 1>;  // by number, 0 is the base
 struct ObjectTruth {
   Pose pose;
   Vec3 velocity_m_s{}, angular_velocity_rad_s{};  // world axes; of a conveyor those of its surface
-  Vec3 force_N{};                                 // from the robot, world axes
+  Vec3 force_N{};                                 // from this robot, world axes
   LinkSet links;                                  // that press on it
 };
 
-// The true state, for checks and pictures: a model knows it, hardware does not.
+// The true state of one robot, and of the world as this robot touches it, for checks and pictures: a model knows it,
+// hardware does not.
 struct PlantTruth {
   Pose base;
   Vec3 base_velocity_m_s{};            // of the base frame's origin, world axes
@@ -44,7 +45,9 @@ struct PlantTruth {
   std::uint32_t object_count = 0;
   std::array<ObjectTruth, max_world_objects> objects{};
   LinkSet ground_links;             // that press on the ground
-  LinkSet touching_links;           // that press on the ground or an object
+  LinkSet robot_links;              // that press on another robot
+  Vec3 robots_force_N{};            // from other robots, world axes
+  LinkSet touching_links;           // that press on the ground, an object or another robot
   std::uint32_t contact_count = 0;  // points of the robot that press on something
   double self_penetration_m = 0;    // largest overlap of two links that may collide
 };
@@ -58,23 +61,43 @@ class TruthSource {
   virtual const PlantTruth& truth() const noexcept = 0;  // as of the last step
 };
 
-// The thread that owns a world calls all its functions, except read() and write() of the robot, outside of ticks: they
-// may allocate.
-class World : public TruthSource {
+// One robot of a world.
+class WorldRobot : public Plant, public TruthSource {
  public:
-  virtual Plant& robot() noexcept = 0;
+  // A force in world axes at a point of a link, for the next step only. Throws std::invalid_argument when there is no
+  // such link, or a number is not finite.
+  virtual void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) = 0;
+};
+
+// A robot that a world is made for. `seed` feeds every noise of it.
+struct WorldSite {
+  const RobotModel& model;
+  const PlantSettings& settings;
+  std::uint64_t seed = 1;
+};
+
+// The thread that owns a world calls all its functions, except read() and write() of its robots, outside of ticks: they
+// may allocate.
+class World {
+ public:
+  virtual ~World() = default;
+  World() = default;
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  virtual std::size_t robot_count() const noexcept = 0;  // at least 1
+  virtual WorldRobot& robot(std::size_t number) noexcept = 0;
   // Lets time pass. Throws std::runtime_error when the model fails (a state that is not finite).
   virtual void step(std::int64_t dt_ns) = 0;
-  // A force in world axes at a point of a link, for the next step only.
-  virtual void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) = 0;
   // Adds everything that decides how the world goes on to the hash.
   virtual void hash(StateHash& hash) const noexcept = 0;
 };
 
 // A world of one robot, which is its plant too.
-class OneRobotWorld : public World, public Plant {
+class OneRobotWorld : public World, public WorldRobot {
  public:
-  Plant& robot() noexcept final { return *this; }
+  std::size_t robot_count() const noexcept final { return 1; }
+  WorldRobot& robot(std::size_t) noexcept final { return *this; }
 };
 
 }  // namespace kadans

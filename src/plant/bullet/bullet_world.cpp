@@ -1,14 +1,11 @@
 #include "kadans/plant/bullet/bullet_world.h"
 
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "convert.h"
-#include "kadans/plant/modelled_drives.h"
-#include "plant/bullet/joint/joint_rows.h"
+#include "bullet_robot.h"
+#include "plant/bullet/contact/robot_contacts.h"
 #include "plant_settings_check.h"
-#include "sensors.h"
 
 namespace kadans {
 
@@ -16,189 +13,80 @@ using namespace bullet;
 
 namespace {
 
-PlantSettings checked(const RobotModel& model, const PlantSettings& settings) {
-  check_settings(model, settings);
-  return settings;
+// Each robot's own settings in the world of the first.
+std::vector<PlantSettings> settings_of(std::span<const WorldSite> robots) {
+  if (robots.empty()) throw std::invalid_argument("a world without a robot");
+  const PlantSettings& first = robots.front().settings;
+  if (robots.size() > 1 && first.solver != ContactSolver::tree)
+    throw std::invalid_argument("several robots in one world need the tree solver");
+  std::vector<PlantSettings> all;
+  for (const WorldSite& robot : robots) {
+    PlantSettings& own = all.emplace_back(robot.settings);
+    own.gravity_m_s2 = first.gravity_m_s2;
+    own.ground_friction = first.ground_friction;
+    own.solver = first.solver;
+    own.solver_iterations = first.solver_iterations;
+    own.world = first.world;
+    own.world.payloads = robot.settings.world.payloads;
+    check_settings(robot.model, own);
+  }
+  return all;
 }
-
-ContactWorld::Options world_options(const PlantSettings& settings, FrictionLaw friction) {
-  return {to_bullet(settings.gravity_m_s2),
-          settings.solver_iterations,
-          settings.ground_friction,
-          to_bullet(ground_pose(settings.world)),
-          settings.solver,
-          friction};
-}
-
-bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
 }  // namespace
 
 class BulletWorld::Inside {
  public:
-  Inside(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed, FrictionLaw friction)
-      : settings_(checked(model, settings)),
-        joint_names_(model.joint_names()),
-        mask_(make_pair_mask(model, settings)),
-        body_(model, settings),
-        electronics_(settings.drives, model.joints.size()),
-        sensors_(model, settings, seed),
-        truth_(body_, model.joints.size()),
-        objects_(settings.world),
-        world_(world_options(settings, friction), mask_) {
-    body_.place(settings_);
-    body_.add_to(world_);
-    objects_.add_to(world_);
-    add_drives(model);
-    for (const FootSettings& foot : settings_.feet) {
-      feet_.emplace_back();
-      feet_.back().link = *model.find_link(foot.link);
+  Inside(std::span<const WorldSite> sites, FrictionLaw friction) : settings_(settings_of(sites)) {
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      robots_.push_back(std::make_unique<BulletRobot>(sites[i], settings_[i], friction, objects_, i == 0));
+      worlds_.push_back(&robots_.back()->world());
     }
-    sample(0);
-  }
-
-  void write(const ActuationFrame& actuation) noexcept {
-    electronics_.write(actuation);
-    for (std::size_t i = 0; i < drives_.size(); ++i) {
-      const bool usable = i < actuation.joint_count && is_finite(actuation.joints[i]);
-      drives_[i].ask(usable ? actuation.joints[i] : JointActuation{});
-    }
+    if (robots_.size() > 1) contacts_ = std::make_unique<RobotContacts>(worlds_);
   }
 
   void step(std::int64_t dt_ns) {
     if (dt_ns <= 0) return;
     const double dt_s = static_cast<double>(dt_ns) * 1e-9;
-    btMultiBody& multibody = body_.multibody();
-    electronics_.step(dt_ns);
-    for (std::size_t i = 0; i < drives_.size(); ++i) {
-      const int joint = static_cast<int>(i);
-      if (!electronics_.enabled(i)) drives_[i].ask({});
-      drives_[i].brake(electronics_.braked(i));
-      multibody.addJointTorque(joint,
-                               drives_[i].begin_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s));
+    for (const auto& robot : robots_) robot->begin_step(dt_ns);
+    objects_.begin_step(worlds_, time_s());
+    if (contacts_ == nullptr) {
+      worlds_.front()->step(dt_s);
+    } else {
+      contacts_->step(dt_s);
     }
-    body_.load(settings_.world.payloads, time_s());
-    objects_.begin_step(world_, time_s());
-    world_.step(dt_s);
-    check_finite();
-    for (std::size_t i = 0; i < drives_.size(); ++i) {
-      const int joint = static_cast<int>(i);
-      drives_[i].end_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s);
-    }
+    for (const auto& robot : robots_) robot->end_step(dt_s);
+    check_objects();
     time_ns_ += dt_ns;
-    objects_.end_step(world_, time_s());
-    read_feet(world_, body_, settings_.feet, dt_s, feet_);
-    sample(dt_s);
-  }
-
-  void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
-    if (link >= body_.link_count()) throw std::invalid_argument("push: no link number " + std::to_string(link));
-    if (!finite(to_bullet(force_N)) || !finite(to_bullet(point_in_link_m))) {
-      throw std::invalid_argument("push: force and point must be finite");
-    }
-    body_.push(link, to_bullet(force_N), to_bullet(point_in_link_m));
+    objects_.end_step(*worlds_.front(), time_s());
+    for (const auto& robot : robots_) robot->sample(dt_ns);
   }
 
   void hash(StateHash& hash) const noexcept {
-    const btMultiBody& multibody = body_.multibody();
-    const btTransform base = body_.com_frame(0);
-    for (int i = 0; i < 3; ++i) hash.add(base.getOrigin()[i]);
-    for (int i = 0; i < 4; ++i) hash.add(multibody.getWorldToBaseRot()[i]);
-    for (int i = 0; i < 6 + multibody.getNumDofs(); ++i) hash.add(multibody.getVelocityVector()[i]);
-    for (std::size_t i = 0; i < drives_.size(); ++i) hash.add(multibody.getJointPos(static_cast<int>(i)));
-    for (const Drive& drive : drives_) drive.hash(hash);
-    electronics_.hash(hash);
+    for (const auto& robot : robots_) robot->hash_body(hash);
     objects_.hash(hash);
-    hash_contacts(hash);
-    hash_sensors(hash);
+    for (const auto& robot : robots_) robot->hash_contacts(hash);
+    for (const auto& robot : robots_) robot->hash_sensors(hash);
   }
 
-  void read(SensorFrame& sensors) const noexcept {
-    copy_used(sensors_.frame(), sensors);
-    electronics_.fill(sensors);
-  }
-  const PlantTruth& truth() const noexcept { return truth_.truth(); }
+  std::size_t size() const noexcept { return robots_.size(); }
+  BulletRobot& robot(std::size_t number) const noexcept { return *robots_[number]; }
 
  private:
-  void add_drives(const RobotModel& model) {
-    drives_.reserve(model.joints.size());
-    for (std::size_t i = 0; i < model.joints.size(); ++i) {
-      const Joint& joint = model.joints[i];
-      const bool limited = joint.type != JointType::continuous;
-      const double infinite = std::numeric_limits<double>::infinity();
-      rows_.push_back(std::make_unique<JointRows>(body_.multibody(), static_cast<int>(i),
-                                                  limited ? joint.lower_rad : -infinite,
-                                                  limited ? joint.upper_rad : infinite));
-      world_.add(*rows_.back());
-      drives_.emplace_back(settings_.drives[i], joint, *rows_.back(), settings_.position_rad[i]);
-    }
-  }
-
   double time_s() const { return static_cast<double>(time_ns_) * 1e-9; }
 
-  void sample(double dt_s) {
-    truth_.read(drives_, feet_);
-    truth_.read_world(world_, objects_, dt_s);
-    const Sensors::ImuInput imu{body_.multibody().getBaseOmega(),
-                                truth_.base_point_velocity_m_s(to_bullet(settings_.imu.pose.position_m)),
-                                body_.link_frame(0).getBasis()};
-    sensors_.sample(time_ns_, dt_s, drives_, body_.multibody(), imu, feet_);
-  }
-
-  void check_finite() const {
-    const btMultiBody& multibody = body_.multibody();
-    if (!finite(multibody.getBasePos()) || !finite(multibody.getBaseVel()) || !finite(multibody.getBaseOmega())) {
-      throw std::runtime_error("the model's state is not finite: base");
-    }
-    for (std::size_t i = 0; i < joint_names_.size(); ++i) {
-      const int joint = static_cast<int>(i);
-      if (std::isfinite(multibody.getJointPos(joint)) && std::isfinite(multibody.getJointVel(joint))) continue;
-      throw std::runtime_error("the model's state is not finite: joint '" + joint_names_[i] + "'");
-    }
+  void check_objects() const {
     for (std::size_t i = 0; i < objects_.size(); ++i) {
       if (objects_.finite(i)) continue;
-      throw std::runtime_error("the model's state is not finite: '" + settings_.world.objects[i].name + "'");
+      throw std::runtime_error("the model's state is not finite: '" + settings_.front().world.objects[i].name + "'");
     }
   }
 
-  void hash_contacts(StateHash& hash) const noexcept {
-    for (int i = 0; i < world_.manifold_count(); ++i) {
-      const btPersistentManifold& manifold = world_.manifold(i);
-      for (int j = 0; j < manifold.getNumContacts(); ++j) {
-        const btManifoldPoint& point = manifold.getContactPoint(j);
-        for (int k = 0; k < 3; ++k) hash.add(point.m_localPointA[k]);
-        hash.add(point.m_distance1);
-        hash.add(point.m_appliedImpulse);  // the solver starts from these
-        hash.add(point.m_appliedImpulseLateral1);
-        hash.add(point.m_appliedImpulseLateral2);
-        hash.add(point.m_prevRHS);
-      }
-    }
-  }
-
-  void hash_sensors(StateHash& hash) const noexcept {  // carries the random streams' effect
-    const SensorFrame& frame = sensors_.frame();
-    for (std::size_t i = 0; i < frame.joint_count; ++i) {
-      hash.add(frame.joints[i].position_rad);
-      hash.add(frame.joints[i].motor_position_rad);
-    }
-    hash.add(frame.imu.angular_velocity_rad_s);
-    hash.add(frame.imu.acceleration_m_s2);
-    for (std::size_t i = 0; i < frame.foot_count; ++i) hash.add(frame.feet[i].force_N);
-  }
-
-  PlantSettings settings_;
-  std::vector<std::string> joint_names_;
-  PairMask mask_;
-  Body body_;
-  std::vector<std::unique_ptr<JointRows>> rows_;
-  std::vector<Drive> drives_;
-  ModelledDrives electronics_;
-  std::vector<FootLoad> feet_;
-  Sensors sensors_;
-  TruthReader truth_;
-  WorldObjects objects_;
-  ContactWorld world_;  // last: it lets go of the parts above before they end
+  std::vector<PlantSettings> settings_;  // of each robot
+  WorldObjects objects_{settings_.front().world};
+  std::vector<std::unique_ptr<BulletRobot>> robots_;  // they let go of the objects before these end
+  std::vector<ContactWorld*> worlds_;
+  std::unique_ptr<RobotContacts> contacts_;  // of several robots
   std::int64_t time_ns_ = 0;
 };
 
@@ -206,23 +94,32 @@ BulletWorld::BulletWorld(const RobotModel& model, const PlantSettings& settings,
     : BulletWorld(model, settings, seed, FrictionLaw::cone) {}
 
 BulletWorld::BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed,
-                         FrictionLaw friction)
-    : inside_(std::make_unique<Inside>(model, settings, seed, friction)) {}
+                         FrictionLaw friction) {
+  const WorldSite site{model, settings, seed};
+  inside_ = std::make_unique<Inside>(std::span(&site, 1), friction);
+}
+
+BulletWorld::BulletWorld(std::span<const WorldSite> robots)
+    : inside_(std::make_unique<Inside>(robots, FrictionLaw::cone)) {}
 
 BulletWorld::~BulletWorld() = default;
 
-void BulletWorld::read(SensorFrame& sensors) noexcept { inside_->read(sensors); }
+std::size_t BulletWorld::robot_count() const noexcept { return inside_->size(); }
 
-void BulletWorld::write(const ActuationFrame& actuation) noexcept { inside_->write(actuation); }
+WorldRobot& BulletWorld::robot(std::size_t number) noexcept { return inside_->robot(number); }
 
 void BulletWorld::step(std::int64_t dt_ns) { inside_->step(dt_ns); }
 
-const PlantTruth& BulletWorld::truth() const noexcept { return inside_->truth(); }
+void BulletWorld::hash(StateHash& hash) const noexcept { inside_->hash(hash); }
+
+void BulletWorld::read(SensorFrame& sensors) noexcept { inside_->robot(0).read(sensors); }
+
+void BulletWorld::write(const ActuationFrame& actuation) noexcept { inside_->robot(0).write(actuation); }
+
+const PlantTruth& BulletWorld::truth() const noexcept { return inside_->robot(0).truth(); }
 
 void BulletWorld::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
-  inside_->push(link, force_N, point_in_link_m);
+  inside_->robot(0).push(link, force_N, point_in_link_m);
 }
-
-void BulletWorld::hash(StateHash& hash) const noexcept { inside_->hash(hash); }
 
 }  // namespace kadans

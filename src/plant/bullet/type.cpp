@@ -13,6 +13,9 @@ class BulletType final : public PlantType {
   std::unique_ptr<World> make_world(const WorldSite& site) const override {
     return std::make_unique<BulletWorld>(site.model, site.settings, site.seed);
   }
+  std::unique_ptr<World> make_shared_world(std::span<const WorldSite> sites) const override {
+    return std::make_unique<BulletWorld>(sites);
+  }
 };
 
 }  // namespace

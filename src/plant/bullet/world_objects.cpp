@@ -141,13 +141,16 @@ void WorldObjects::add_to(ContactWorld& world) {
   }
 }
 
-void WorldObjects::begin_step(ContactWorld& world, double time_s) {
-  if (settings_.ground_motion.moves()) world.drive_ground(to_bullet(velocity_at(settings_.ground_motion, time_s)));
+void WorldObjects::begin_step(std::span<ContactWorld* const> worlds, double time_s) {
+  if (settings_.ground_motion.moves()) {
+    const btVector3 velocity_m_s = to_bullet(velocity_at(settings_.ground_motion, time_s));
+    for (ContactWorld* world : worlds) world->drive_ground(velocity_m_s);
+  }
   for (Object& object : objects_) {
     if (object.multibody != nullptr || !object.settings.motion.moves()) continue;
     object.velocity_m_s = to_bullet(velocity_at(object.settings.motion, time_s));
     for (Part& part : object.parts) {
-      world.drive(*btRigidBody::upcast(part.collider.get()), object.velocity_m_s, object.settings.motion.conveyor);
+      worlds[0]->drive(*btRigidBody::upcast(part.collider.get()), object.velocity_m_s, object.settings.motion.conveyor);
     }
   }
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
@@ -21,8 +22,8 @@ class WorldObjects {
   explicit WorldObjects(const WorldSettings& settings);
 
   void add_to(ContactWorld& world);
-  // Velocities of all that is driven, for the step from time_s on.
-  void begin_step(ContactWorld& world, double time_s);
+  // Velocities of all that is driven, for the step from time_s on: the first world's objects, each world's ground.
+  void begin_step(std::span<ContactWorld* const> worlds, double time_s);
   void end_step(const ContactWorld& world, double time_s);
 
   std::size_t size() const { return objects_.size(); }

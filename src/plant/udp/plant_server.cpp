@@ -102,6 +102,7 @@ const ActuationFrame& PlantServer::damping(const PlantTruth& truth) noexcept {
 }
 
 bool PlantServer::beat(World& world, std::uint32_t periods) {
+  WorldRobot& robot = world.robot(0);
   answered_stranger_ = false;
   take_all();
   if (session_.left) return false;
@@ -110,12 +111,12 @@ bool PlantServer::beat(World& world, std::uint32_t periods) {
   if (released && !released_) ++session_.releases;
   released_ = released;
   for (std::uint32_t i = 0; driven_ && i < periods; ++i) {
-    world.robot().write(released ? damping(world.truth()) : actuation_);
+    robot.write(released ? damping(robot.truth()) : actuation_);
     world.step(period_ns_);
   }
   silent_ns_ += static_cast<std::int64_t>(periods) * period_ns_;
   if (static_cast<double>(silent_ns_) > 1e9 * settings_.peer_timeout_s) return false;
-  world.robot().read(sensors_);
+  robot.read(sensors_);
   const WireHead head{
       .kind = WireKind::sensors, .session = session_number_, .sequence = ++sent_, .time_ns = sensors_.time_ns};
   const SensorsOnWire more{.answered = newest_actuation_, .released = released_};

@@ -24,7 +24,7 @@ Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& mod
   happened_.resize(faults_.size());
 }
 
-void Disturbances::apply(Lockstep& lockstep, World& world) {
+void Disturbances::apply(Lockstep& lockstep, WorldRobot& robot) {
   const double time_s = 1e-9 * static_cast<double>(lockstep.time_ns());
   bool silent = false;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -38,7 +38,7 @@ void Disturbances::apply(Lockstep& lockstep, World& world) {
     happened_[i] = true;
   }
   lockstep.silence_behaviors(silent);
-  pushes_.apply(world, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
+  pushes_.apply(robot, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
 }
 
 Pushes::Pushes(const std::vector<ScenarioPush>& pushes, const RobotModel& model, const std::string& file) {
@@ -53,13 +53,13 @@ Pushes::Pushes(const std::vector<ScenarioPush>& pushes, const RobotModel& model,
   problems.throw_if_any();
 }
 
-void Pushes::apply(World& world, double time_s, double dt_s) const {
+void Pushes::apply(WorldRobot& robot, double time_s, double dt_s) const {
   for (const auto& [push, link] : pushes_) {
     const double share = given_share(push, time_s + dt_s) - given_share(push, time_s);
     if (share <= 0) continue;
     Vec3 force_N{};
     for (std::size_t i = 0; i < 3; ++i) force_N[i] = push.impulse_Ns[i] * share / dt_s;
-    world.push(link, force_N, push.point_m);
+    robot.push(link, force_N, push.point_m);
   }
 }
 

@@ -20,7 +20,7 @@ class Pushes {
 
   // To be called before the step of the plant that begins at time_s and lasts dt_s. Each step gets the mean force over
   // its time, so the total impulse is right even when a push begins or ends within a step.
-  void apply(World& world, double time_s, double dt_s) const;
+  void apply(WorldRobot& robot, double time_s, double dt_s) const;
 
  private:
   struct Push {
@@ -36,7 +36,7 @@ class Disturbances {
   Disturbances(const ScenarioConfig& scenario, const RobotModel& model);
 
   // To be called before each step.
-  void apply(Lockstep& lockstep, World& world);
+  void apply(Lockstep& lockstep, WorldRobot& robot);
 
  private:
   Pushes pushes_;

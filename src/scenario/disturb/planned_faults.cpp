@@ -64,7 +64,7 @@ void tell(const ActuatorFault& fault, std::int64_t time_ns, JointSample& sample)
 
 void FaultyPlant::read(SensorFrame& sensors) noexcept {
   const SensorFrame before = sensors;  // a silent sensor repeats what it said last, sequence number included
-  plant_.read(sensors);
+  robot_.read(sensors);
   time_ns_ = sensors.time_ns;
   for (Planned& planned : faults_) {
     const SensorFault& fault = planned.fault;
@@ -167,7 +167,7 @@ void FaultyPlant::write(const ActuationFrame& actuation) noexcept {
     spoil(planned, spoiled.joints[planned.fault.joint]);
   }
   asked_ = actuation.drives;
-  plant_.write(spoiled);
+  robot_.write(spoiled);
 }
 
 void FaultyPlant::hash(StateHash& hash) const noexcept {

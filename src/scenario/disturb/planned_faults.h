@@ -17,8 +17,8 @@
 
 namespace kadans {
 
-// Injects faults into sensors, drives and supply at planned times. It is a world around another world: it changes what
-// is read from the robot and what is written to it. Everything else passes through.
+// Injects faults into sensors, drives and supply at planned times. It is a world around a robot of another world: it
+// changes what is read from the robot and what is written to it. Everything else passes through.
 //
 // Call add() and clear() on the thread that owns the model. read() and write() neither allocate nor throw.
 enum class SensorFaultKind : std::uint8_t {
@@ -71,9 +71,9 @@ struct SupplyFault {
 
 class FaultyPlant final : public OneRobotWorld {
  public:
-  // Keeps a reference to `world`. `seed` is the seed of the run.
-  FaultyPlant(World& world, std::uint64_t seed) noexcept
-      : world_(world), plant_(world.robot()), random_(seed, "sensor faults") {}
+  // Keeps a reference to `world`. `seed` is the seed of the run. `robot` is the number of the robot that has the faults.
+  FaultyPlant(World& world, std::uint64_t seed, std::size_t robot = 0) noexcept
+      : world_(world), robot_(world.robot(robot)), random_(seed, "sensor faults") {}
 
   static constexpr std::size_t late_ticks_max = 255;
 
@@ -90,9 +90,9 @@ class FaultyPlant final : public OneRobotWorld {
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
   void step(std::int64_t dt_ns) override { world_.step(dt_ns); }
-  const PlantTruth& truth() const noexcept override { return world_.truth(); }
+  const PlantTruth& truth() const noexcept override { return robot_.truth(); }
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
-    world_.push(link, force_N, point_in_link_m);
+    robot_.push(link, force_N, point_in_link_m);
   }
   void hash(StateHash& hash) const noexcept override;
 
@@ -117,7 +117,7 @@ class FaultyPlant final : public OneRobotWorld {
   void spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept;
 
   World& world_;
-  Plant& plant_;
+  WorldRobot& robot_;
   RandomStream random_;
   std::vector<Planned> faults_;
   std::vector<PlannedActuator> actuator_faults_;

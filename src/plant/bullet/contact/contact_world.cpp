@@ -10,20 +10,22 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
 
   void internalSingleStepSimulation(btScalar dt_s) override {
-    for (const Driven& driven : driven_) driven.body->setLinearVelocity(driven.velocity_m_s);
-    // Rigid bodies alone: the multibody world's own versions would move the robot too, a second time.
-    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
-    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
-    getDispatchInfo().m_timeStep = dt_s;
-    performDiscreteCollisionDetection();
-    getSolverInfo().m_timeStep = dt_s;
-    if (!own_solver()) accelerate(dt_s);
-    getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
+    begin(dt_s);
     solve();
-    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
-    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
-    move(dt_s);
-    move_driven(dt_s);
+    end(dt_s);
+  }
+
+  // What stepSimulation does before a step, and the step's part before the solver.
+  void begin_alone(btScalar dt_s) {
+    saveKinematicState(dt_s);
+    applyGravity();
+    begin(dt_s);
+  }
+
+  void end_alone(btScalar dt_s) {
+    end(dt_s);
+    synchronizeMotionStates();
+    clearForces();
   }
 
   void drive(btRigidBody& body, const btVector3& velocity_m_s, bool stays) {
@@ -44,6 +46,25 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   }
 
  private:
+  void begin(btScalar dt_s) {
+    for (const Driven& driven : driven_) driven.body->setLinearVelocity(driven.velocity_m_s);
+    // Rigid bodies alone: the multibody world's own versions would move the robot too, a second time.
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
+    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
+    getDispatchInfo().m_timeStep = dt_s;
+    performDiscreteCollisionDetection();
+    getSolverInfo().m_timeStep = dt_s;
+    if (!own_solver()) accelerate(dt_s);
+    getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
+  }
+
+  void end(btScalar dt_s) {
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
+    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
+    move(dt_s);
+    move_driven(dt_s);
+  }
+
   // Which takes the free motion along with the contacts.
   bool own_solver() const { return tree_solver_ != nullptr && tree_solver_->covers(); }
 
@@ -202,6 +223,42 @@ void ContactWorld::drive_ground(const btVector3& velocity_m_s) {
 
 void ContactWorld::step(double dt_s) { world_->stepSimulation(dt_s, 0); }
 
+void ContactWorld::begin_step(double dt_s) {
+  crossing_.clear();
+  solved_crossing_.clear();
+  world_->begin_alone(dt_s);
+}
+
+TreeSolver::Group ContactWorld::group() {
+  return {
+      .solver = &tree_solver_,
+      .manifolds = {dispatcher_.getInternalManifoldPointer(), static_cast<std::size_t>(dispatcher_.getNumManifolds())},
+      .crossing = solved_crossing_,
+      .info = &world_->getSolverInfo()};
+}
+
+void ContactWorld::end_step(double dt_s) { world_->end_alone(dt_s); }
+
+void ContactWorld::cross(btPersistentManifold& manifold, bool solved_here) {
+  crossing_.push_back(&manifold);
+  if (solved_here) solved_crossing_.push_back(&manifold);
+}
+
+void ContactWorld::reserve_crossing(std::size_t manifolds) {
+  crossing_.reserve(manifolds);
+  solved_crossing_.reserve(manifolds);
+  tree_solver_.reserve_contacts(manifolds);
+}
+
+std::vector<const btCollisionObject*> ContactWorld::colliders() const {
+  const auto& all = world_->getCollisionObjectArray();
+  std::vector<const btCollisionObject*> colliders;
+  for (int i = 0; i < all.size(); ++i) {
+    if (all[i] != &ground_) colliders.push_back(all[i]);
+  }
+  return colliders;
+}
+
 void ContactWorld::detect_collisions() {
   world_->update_frames();
   world_->performDiscreteCollisionDetection();
@@ -217,9 +274,11 @@ double ContactWorld::normal_impulse(const btCollisionObject& collider) const {
   return sum;
 }
 
-int ContactWorld::manifold_count() const { return dispatcher_.getNumManifolds(); }
+int ContactWorld::manifold_count() const { return dispatcher_.getNumManifolds() + static_cast<int>(crossing_.size()); }
 
 const btPersistentManifold& ContactWorld::manifold(int index) const {
+  const int own = dispatcher_.getNumManifolds();
+  if (index >= own) return *crossing_[static_cast<std::size_t>(index - own)];
   return *const_cast<btCollisionDispatcher&>(dispatcher_).getManifoldByIndexInternal(index);
 }
 

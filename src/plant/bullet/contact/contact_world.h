@@ -10,7 +10,7 @@
 //   ground and an ankle's limit is where the iteration converges slowest.
 // A step follows btDiscreteDynamicsWorld's own order, without what only islands and continuous collision need:
 // collide, accelerate (articulated body algorithm), solve contacts and rows, move, update the frames once.
-// Not thread-safe; one world a plant.
+// Not thread-safe; one world a robot (robot_contacts.h).
 #pragma once
 
 #include <array>
@@ -63,11 +63,20 @@ class ContactWorld {
   void drive_ground(const btVector3& velocity_m_s);
 
   void step(double dt_s);
+  // The same in parts, around the solver's work for group(), which needs the tree solver.
+  void begin_step(double dt_s);
+  TreeSolver::Group group();
+  void end_step(double dt_s);
   void detect_collisions();  // without a step
 
+  // A contact with what stands in another world, for the step that has begun. One of the two worlds solves it.
+  void cross(btPersistentManifold& manifold, bool solved_here);
+  void reserve_crossing(std::size_t manifolds);
+
   const btCollisionObject& ground() const { return ground_; }
+  std::vector<const btCollisionObject*> colliders() const;         // without the ground
   double normal_impulse(const btCollisionObject& collider) const;  // of all its contacts in the last step
-  int manifold_count() const;
+  int manifold_count() const;                                      // with those of the last step that cross
   const btPersistentManifold& manifold(int index) const;
 
  private:
@@ -81,6 +90,7 @@ class ContactWorld {
   std::unique_ptr<SteppedWorld> world_;
   btStaticPlaneShape ground_shape_{btVector3(0, 0, 1), 0};
   btRigidBody ground_{0, nullptr, &ground_shape_};
+  std::vector<btPersistentManifold*> crossing_, solved_crossing_;
 };
 
 }  // namespace kadans::bullet

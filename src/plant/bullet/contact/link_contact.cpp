@@ -23,6 +23,8 @@ double overlap_m(const btPersistentManifold& manifold) {
 
 void forget(PlantTruth& truth) {
   truth.ground_links.reset();
+  truth.robot_links.reset();
+  truth.robots_force_N = {};
   truth.touching_links.reset();
   truth.contact_count = 0;
   truth.self_penetration_m = 0;
@@ -32,10 +34,18 @@ void forget(PlantTruth& truth) {
   }
 }
 
+// `force_N`: from the link.
 void add_contact(const LinkContact& contact, const ContactWorld& world, const btVector3& force_N, PlantTruth& truth) {
   truth.touching_links.set(contact.link);
-  if (contact.other == &world.ground()) truth.ground_links.set(contact.link);
-  if (!in_world(*contact.other)) return;
+  if (contact.other == &world.ground()) {
+    truth.ground_links.set(contact.link);
+    return;
+  }
+  if (!in_world(*contact.other)) {
+    truth.robot_links.set(contact.link);
+    truth.robots_force_N = from_bullet(to_bullet(truth.robots_force_N) - force_N);
+    return;
+  }
   ObjectTruth& object = truth.objects[static_cast<std::size_t>(contact.other->getUserIndex())];
   object.links.set(contact.link);
   object.force_N = from_bullet(to_bullet(object.force_N) + force_N);

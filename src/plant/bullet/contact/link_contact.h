@@ -1,4 +1,4 @@
-// A contact between a link of the robot and something that is not the robot.
+// A contact between a link of a robot and something that is not the robot.
 #pragma once
 
 #include "kadans/plant/world.h"
@@ -8,7 +8,7 @@ namespace kadans::bullet {
 
 struct LinkContact {
   std::size_t link = 0;
-  const btCollisionObject* other = nullptr;  // ground or object; null: no such contact
+  const btCollisionObject* other = nullptr;  // ground, object or another robot's link; null: no such contact
   bool link_is_first = false;                // the contact's normals point to the first body
 };
 LinkContact link_contact(const Body& body, const btPersistentManifold& manifold);

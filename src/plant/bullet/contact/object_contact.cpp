@@ -64,7 +64,7 @@ class ObjectContact final : public btCollisionAlgorithm {
   // `b` has one part.
   ObjectContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject& a,
                 const btCollisionObject& b)
-      : btCollisionAlgorithm(info), a_(&a), b_(&b), surface_(a, b) {
+      : btCollisionAlgorithm(info) {
     const int parts = static_cast<const btCompoundShape&>(*a.getCollisionShape()).getNumChildShapes();
     manifolds_.reserve(parts);
     for (int i = 0; i < parts; ++i) manifolds_.push_back(info.m_dispatcher1->getNewManifold(&a, &b));
@@ -75,14 +75,7 @@ class ObjectContact final : public btCollisionAlgorithm {
 
   void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
                         btManifoldResult*) override {
-    const btTransform pose_b = part_pose(*b_, 0);
-    for (int i = 0; i < manifolds_.size(); ++i) {
-      LastPoints last(*manifolds_[i]);
-      manifolds_[i]->clearManifold();
-      for (const TouchPoint& point : touch_points(part(*a_, i), part_pose(*a_, i), part(*b_, 0), pose_b)) {
-        if (surface_.counts(point.distance_m)) add(*manifolds_[i], point, last);
-      }
-    }
+    for (int i = 0; i < manifolds_.size(); ++i) renew_contact(*manifolds_[i], i, 0);
   }
 
   btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
@@ -95,12 +88,25 @@ class ObjectContact final : public btCollisionAlgorithm {
   }
 
  private:
-  void add(btPersistentManifold& manifold, const TouchPoint& point, LastPoints& last) const {
-    const btVector3 on_a = a_->getWorldTransform().invXform(point.on_a);
-    btManifoldPoint contact(on_a, b_->getWorldTransform().invXform(point.on_b), point.normal, point.distance_m);
+  btManifoldArray manifolds_;  // one a part of a
+};
+static_assert(sizeof(ObjectContact) <= sizeof(btConvexConvexAlgorithm), "fits the dispatcher's pool");
+
+}  // namespace
+
+void renew_contact(btPersistentManifold& manifold, int part_a, int part_b) {
+  const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
+  const ContactSurface surface(a, b);
+  LastPoints last(manifold);
+  manifold.clearManifold();
+  for (const TouchPoint& point :
+       touch_points(part(a, part_a), part_pose(a, part_a), part(b, part_b), part_pose(b, part_b))) {
+    if (!surface.counts(point.distance_m)) continue;
+    const btVector3 on_a = a.getWorldTransform().invXform(point.on_a);
+    btManifoldPoint contact(on_a, b.getWorldTransform().invXform(point.on_b), point.normal, point.distance_m);
     contact.m_positionWorldOnA = point.on_a;
     contact.m_positionWorldOnB = point.on_b;
-    surface_.give(contact);
+    surface.give(contact);
     const Remembered before = last.take(on_a);
     contact.m_appliedImpulse = before.impulse;
     contact.m_appliedImpulseLateral1 = before.lateral1;
@@ -108,15 +114,7 @@ class ObjectContact final : public btCollisionAlgorithm {
     contact.m_prevRHS = before.rhs;
     manifold.addManifoldPoint(contact);
   }
-
-  const btCollisionObject* a_;
-  const btCollisionObject* b_;
-  ContactSurface surface_;
-  btManifoldArray manifolds_;  // one a part of a
-};
-static_assert(sizeof(ObjectContact) <= sizeof(btConvexConvexAlgorithm), "fits the dispatcher's pool");
-
-}  // namespace
+}
 
 void ObjectContactMaker::register_with(btCollisionDispatcher& dispatcher) {
   dispatcher.registerCollisionCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE, this);

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t contacts_per_link = 6;  // room from the start, so that hardly any step allocates
 
+Tree* tree_of(const btMultiBody* body) { return static_cast<Tree*>(body->getUserPointer()); }
+
 bool at_limit(const JointLaw& law, btScalar impulse) { return impulse <= law.lower || impulse >= law.upper; }
 
 }  // namespace
@@ -24,6 +26,7 @@ void TreeSolver::add(btMultiBody& body) {
     return;
   }
   trees_.push_back(std::make_unique<Tree>(body));
+  body.setUserPointer(trees_.back().get());
   contacts_.reserve(contacts_.capacity() + contacts_per_link * static_cast<std::size_t>(body.getNumLinks() + 1));
 }
 
@@ -52,13 +55,6 @@ void TreeSolver::add(RollingRows& rows) {
   joint_rows_.reserve(3 * joints_.size() + 3 * rollings_.size());
 }
 
-Tree* TreeSolver::tree_of(const btMultiBody* body) {
-  for (const auto& tree : trees_) {
-    if (&tree->body() == body) return tree.get();
-  }
-  return nullptr;
-}
-
 void TreeSolver::solveMultiBodyGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
                                      int manifold_count, btTypedConstraint** constraints, int constraint_count,
                                      btMultiBodyConstraint** rows, int row_count, const btContactSolverInfo& info,
@@ -68,19 +64,38 @@ void TreeSolver::solveMultiBodyGroup(btCollisionObject** bodies, int body_count,
                                                      constraint_count, rows, row_count, info, draw, dispatcher);
     return;
   }
-  solve(manifolds, manifold_count, info, false);
-  if (servo_beyond_limit()) solve(manifolds, manifold_count, info, true);
-  finish();
+  const Group all{this, {manifolds, static_cast<std::size_t>(manifold_count)}, {}, &info};
+  solve_together({&all, 1});
 }
 
-void TreeSolver::solve(btPersistentManifold** manifolds, int manifold_count, const btContactSolverInfo& info,
-                       bool servo_rows) {
-  begin(info.m_timeStep, servo_rows);
-  for (Joint& joint : joints_) add_joint_rows(joint);
-  add_rolling_rows();
-  add_contacts(manifolds, manifold_count, info);
-  iterate(info.m_numIterations);
-  for (const auto& tree : trees_) tree->accelerate();
+void TreeSolver::solve_together(std::span<const Group> groups) {
+  solve(groups, false);
+  const auto beyond_limit = [](const Group& group) { return group.solver->servo_beyond_limit(); };
+  if (std::ranges::any_of(groups, beyond_limit)) solve(groups, true);
+  for (const Group& group : groups) group.solver->finish();
+}
+
+void TreeSolver::solve(std::span<const Group> groups, bool servo_rows) {
+  int iterations_max = 0;
+  for (const Group& group : groups) {
+    group.solver->begin(group.info->m_timeStep, servo_rows);
+    iterations_max = std::max(iterations_max, group.info->m_numIterations);
+  }
+  for (const Group& group : groups) {
+    TreeSolver& solver = *group.solver;
+    for (Joint& joint : solver.joints_) solver.add_joint_rows(joint);
+    solver.add_rolling_rows();
+    solver.add_contacts(group.manifolds, *group.info);
+    solver.add_contacts(group.crossing, *group.info);
+  }
+  for (int i = 0; i < iterations_max; ++i) {
+    btScalar largest = 0;
+    for (const Group& group : groups) largest = std::max(largest, group.solver->iterate());
+    if (largest <= groups[0].solver->options_.tolerance) break;
+  }
+  for (const Group& group : groups) {
+    for (const auto& tree : group.solver->trees_) tree->accelerate();
+  }
 }
 
 void TreeSolver::begin(btScalar dt_s, bool servo_rows) {
@@ -133,25 +148,22 @@ ContactBody TreeSolver::contact_body(const btCollisionObject& collider) {
   return {.velocity_m_s = driven == nullptr ? btVector3(0, 0, 0) : driven->getLinearVelocity()};
 }
 
-void TreeSolver::add_contacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) {
+void TreeSolver::add_contacts(std::span<btPersistentManifold* const> manifolds, const btContactSolverInfo& info) {
   const ContactTiming timing{info.m_timeStep, info.m_erp2, info.m_restitutionVelocityThreshold};
-  for (int i = 0; i < count; ++i) {
-    btPersistentManifold& manifold = *manifolds[i];
-    if (manifold.getNumContacts() == 0) continue;
-    const ContactBody first = contact_body(*manifold.getBody0()), second = contact_body(*manifold.getBody1());
-    for (int j = 0; j < manifold.getNumContacts(); ++j) {
-      contacts_.emplace_back(manifold.getContactPoint(j), first, second, timing, memory_);
+  for (btPersistentManifold* const manifold : manifolds) {
+    if (manifold->getNumContacts() == 0) continue;
+    const ContactBody first = contact_body(*manifold->getBody0()), second = contact_body(*manifold->getBody1());
+    for (int j = 0; j < manifold->getNumContacts(); ++j) {
+      contacts_.emplace_back(manifold->getContactPoint(j), first, second, timing, memory_);
     }
   }
 }
 
-void TreeSolver::iterate(int iterations_max) {
-  for (int i = 0; i < iterations_max; ++i) {
-    btScalar largest = 0;
-    for (JointRow& row : joint_rows_) largest = std::max(largest, row.iterate());
-    for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction));
-    if (largest <= options_.tolerance) return;
-  }
+btScalar TreeSolver::iterate() {
+  btScalar largest = 0;
+  for (JointRow& row : joint_rows_) largest = std::max(largest, row.iterate());
+  for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction));
+  return largest;
 }
 
 bool TreeSolver::servo_beyond_limit() const {

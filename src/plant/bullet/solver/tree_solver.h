@@ -19,6 +19,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -75,6 +76,16 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   void add(RollingRows& rows);
   void add(const btMultiBodyConstraint&) { covers_ = false; }
   bool covers() const { return covers_; }
+  void reserve_contacts(std::size_t manifolds) { contacts_.reserve(contacts_.capacity() + 4 * manifolds); }
+
+  // The contacts of one solver's bodies: with each other and what stands still, and with bodies of other solvers.
+  struct Group {
+    TreeSolver* solver;
+    std::span<btPersistentManifold*const> manifolds, crossing;
+    const btContactSolverInfo* info;
+  };
+  // The groups must contain all bodies that their contacts name.
+  static void solve_together(std::span<const Group> groups);
 
   // Contacts, joint laws and free motion at once; the new velocities are in the bodies afterwards.
   void solveMultiBodyGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
@@ -95,15 +106,14 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
     Tree* tree;
   };
 
-  Tree* tree_of(const btMultiBody* body);
   ContactBody contact_body(const btCollisionObject& collider);
-  void solve(btPersistentManifold** manifolds, int manifold_count, const btContactSolverInfo& info, bool servo_rows);
+  static void solve(std::span<const Group> groups, bool servo_rows);
   void begin(btScalar dt_s, bool servo_rows);
   void add_linear_laws(Joint& joint, bool servo_rows);
   void add_joint_rows(Joint& joint);
   void add_rolling_rows();
-  void add_contacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info);
-  void iterate(int iterations_max);
+  void add_contacts(std::span<btPersistentManifold* const> manifolds, const btContactSolverInfo& info);
+  btScalar iterate();  // returns the largest change of a velocity
   bool servo_beyond_limit() const;
   void finish();
   void finish_joint(Joint& joint);

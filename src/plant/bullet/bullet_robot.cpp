@@ -1,0 +1,170 @@
+#include "bullet_robot.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "convert.h"
+
+namespace kadans::bullet {
+namespace {
+
+ContactWorld::Options world_options(const PlantSettings& settings, FrictionLaw friction) {
+  return {to_bullet(settings.gravity_m_s2),
+          settings.solver_iterations,
+          settings.ground_friction,
+          to_bullet(ground_pose(settings.world)),
+          settings.solver,
+          friction};
+}
+
+bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
+
+}  // namespace
+
+BulletRobot::BulletRobot(const WorldSite& site, const PlantSettings& settings, FrictionLaw friction,
+                         WorldObjects& objects, bool first)
+    : settings_(settings),
+      joint_names_(site.model.joint_names()),
+      objects_(objects),
+      mask_(make_pair_mask(site.model, settings)),
+      body_(site.model, settings),
+      electronics_(settings.drives, site.model.joints.size()),
+      sensors_(site.model, settings, site.seed),
+      truth_(body_, site.model.joints.size()),
+      world_(world_options(settings, friction), mask_) {
+  body_.place(settings_);
+  body_.add_to(world_);
+  if (first) objects.add_to(world_);
+  add_drives(site.model);
+  for (const FootSettings& foot : settings_.feet) {
+    feet_.emplace_back();
+    feet_.back().link = *site.model.find_link(foot.link);
+  }
+  read_state(0);
+}
+
+void BulletRobot::add_drives(const RobotModel& model) {
+  drives_.reserve(model.joints.size());
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    const bool limited = joint.type != JointType::continuous;
+    const double infinite = std::numeric_limits<double>::infinity();
+    rows_.push_back(std::make_unique<JointRows>(body_.multibody(), static_cast<int>(i),
+                                                limited ? joint.lower_rad : -infinite,
+                                                limited ? joint.upper_rad : infinite));
+    world_.add(*rows_.back());
+    drives_.emplace_back(settings_.drives[i], joint, *rows_.back(), settings_.position_rad[i]);
+  }
+}
+
+void BulletRobot::read(SensorFrame& sensors) noexcept {
+  copy_used(sensors_.frame(), sensors);
+  electronics_.fill(sensors);
+}
+
+void BulletRobot::write(const ActuationFrame& actuation) noexcept {
+  electronics_.write(actuation);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const bool usable = i < actuation.joint_count && is_finite(actuation.joints[i]);
+    drives_[i].ask(usable ? actuation.joints[i] : JointActuation{});
+  }
+}
+
+void BulletRobot::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
+  if (link >= body_.link_count()) throw std::invalid_argument("push: no link number " + std::to_string(link));
+  if (!finite(to_bullet(force_N)) || !finite(to_bullet(point_in_link_m))) {
+    throw std::invalid_argument("push: force and point must be finite");
+  }
+  body_.push(link, to_bullet(force_N), to_bullet(point_in_link_m));
+}
+
+void BulletRobot::begin_step(std::int64_t dt_ns) {
+  const double dt_s = static_cast<double>(dt_ns) * 1e-9;
+  btMultiBody& multibody = body_.multibody();
+  electronics_.step(dt_ns);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const int joint = static_cast<int>(i);
+    if (!electronics_.enabled(i)) drives_[i].ask({});
+    drives_[i].brake(electronics_.braked(i));
+    multibody.addJointTorque(joint,
+                             drives_[i].begin_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s));
+  }
+  body_.load(settings_.world.payloads, static_cast<double>(time_ns_) * 1e-9);
+}
+
+void BulletRobot::end_step(double dt_s) {
+  check_finite();
+  const btMultiBody& multibody = body_.multibody();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const int joint = static_cast<int>(i);
+    drives_[i].end_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s);
+  }
+}
+
+void BulletRobot::sample(std::int64_t dt_ns) {
+  const double dt_s = static_cast<double>(dt_ns) * 1e-9;
+  time_ns_ += dt_ns;
+  read_feet(world_, body_, settings_.feet, dt_s, feet_);
+  read_state(dt_s);
+}
+
+void BulletRobot::read_state(double dt_s) {
+  truth_.read(drives_, feet_);
+  truth_.read_world(world_, objects_, dt_s);
+  const Sensors::ImuInput imu{body_.multibody().getBaseOmega(),
+                              truth_.base_point_velocity_m_s(to_bullet(settings_.imu.pose.position_m)),
+                              body_.link_frame(0).getBasis()};
+  sensors_.sample(time_ns_, dt_s, drives_, body_.multibody(), imu, feet_);
+}
+
+void BulletRobot::check_finite() const {
+  const btMultiBody& multibody = body_.multibody();
+  if (!finite(multibody.getBasePos()) || !finite(multibody.getBaseVel()) || !finite(multibody.getBaseOmega())) {
+    throw std::runtime_error("the model's state is not finite: base");
+  }
+  for (std::size_t i = 0; i < joint_names_.size(); ++i) {
+    const int joint = static_cast<int>(i);
+    if (std::isfinite(multibody.getJointPos(joint)) && std::isfinite(multibody.getJointVel(joint))) continue;
+    throw std::runtime_error("the model's state is not finite: joint '" + joint_names_[i] + "'");
+  }
+}
+
+void BulletRobot::hash_body(StateHash& hash) const noexcept {
+  const btMultiBody& multibody = body_.multibody();
+  const btTransform base = body_.com_frame(0);
+  for (int i = 0; i < 3; ++i) hash.add(base.getOrigin()[i]);
+  for (int i = 0; i < 4; ++i) hash.add(multibody.getWorldToBaseRot()[i]);
+  for (int i = 0; i < 6 + multibody.getNumDofs(); ++i) hash.add(multibody.getVelocityVector()[i]);
+  for (std::size_t i = 0; i < drives_.size(); ++i) hash.add(multibody.getJointPos(static_cast<int>(i)));
+  for (const Drive& drive : drives_) drive.hash(hash);
+  electronics_.hash(hash);
+}
+
+void BulletRobot::hash_contacts(StateHash& hash) const noexcept {
+  for (int i = 0; i < world_.manifold_count(); ++i) {
+    const btPersistentManifold& manifold = world_.manifold(i);
+    for (int j = 0; j < manifold.getNumContacts(); ++j) {
+      const btManifoldPoint& point = manifold.getContactPoint(j);
+      for (int k = 0; k < 3; ++k) hash.add(point.m_localPointA[k]);
+      hash.add(point.m_distance1);
+      hash.add(point.m_appliedImpulse);  // the solver starts from these
+      hash.add(point.m_appliedImpulseLateral1);
+      hash.add(point.m_appliedImpulseLateral2);
+      hash.add(point.m_prevRHS);
+    }
+  }
+}
+
+void BulletRobot::hash_sensors(StateHash& hash) const noexcept {
+  const SensorFrame& frame = sensors_.frame();
+  for (std::size_t i = 0; i < frame.joint_count; ++i) {
+    hash.add(frame.joints[i].position_rad);
+    hash.add(frame.joints[i].motor_position_rad);
+  }
+  hash.add(frame.imu.angular_velocity_rad_s);
+  hash.add(frame.imu.acceleration_m_s2);
+  for (std::size_t i = 0; i < frame.foot_count; ++i) hash.add(frame.feet[i].force_N);
+}
+
+}  // namespace kadans::bullet

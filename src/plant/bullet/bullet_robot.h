@@ -1,0 +1,55 @@
+// One robot of a Bullet world: body, drives, electronics and sensors, in a contact world of its own.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "body.h"
+#include "kadans/plant/modelled_drives.h"
+#include "sensors.h"
+
+namespace kadans::bullet {
+
+class BulletRobot final : public WorldRobot {
+ public:
+  // Keeps references to settings and objects. The first robot's contact world has the objects, too.
+  BulletRobot(const WorldSite& site, const PlantSettings& settings, FrictionLaw friction, WorldObjects& objects,
+              bool first);
+
+  void read(SensorFrame& sensors) noexcept override;
+  void write(const ActuationFrame& actuation) noexcept override;
+  const PlantTruth& truth() const noexcept override { return truth_.truth(); }
+  void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override;
+
+  // A step: begin, then that of the contact world, end, and sample once the objects have moved, too.
+  void begin_step(std::int64_t dt_ns);
+  void end_step(double dt_s);  // throws std::runtime_error for a state that is not finite
+  void sample(std::int64_t dt_ns);
+  ContactWorld& world() noexcept { return world_; }
+
+  void hash_body(StateHash& hash) const noexcept;
+  void hash_contacts(StateHash& hash) const noexcept;
+  void hash_sensors(StateHash& hash) const noexcept;  // carries the random streams' effect
+
+ private:
+  void add_drives(const RobotModel& model);
+  void read_state(double dt_s);
+  void check_finite() const;
+
+  const PlantSettings& settings_;
+  std::vector<std::string> joint_names_;
+  const WorldObjects& objects_;
+  PairMask mask_;
+  Body body_;
+  std::vector<std::unique_ptr<JointRows>> rows_;
+  std::vector<Drive> drives_;
+  ModelledDrives electronics_;
+  std::vector<FootLoad> feet_;
+  Sensors sensors_;
+  TruthReader truth_;
+  ContactWorld world_;  // last: it lets go of the parts above before they end
+  std::int64_t time_ns_ = 0;
+};
+
+}  // namespace kadans::bullet
