@@ -4,13 +4,26 @@ set(KADANS_STANDARD_HEADERS <algorithm> <array> <charconv> <cmath> <cstdint> <cs
     <limits> <map> <memory> <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <system_error> <unordered_map>
     <utility> <variant> <vector>)
 
-# kadans_layer(NAME SOURCES file... [LINKS target...] [PRIVATE_LINKS target...] [PRECOMPILE header...])
+# kadans_layer(NAME [SOURCES file...] [LINKS target...] [PRIVATE_LINKS target...] [PRECOMPILE header...])
 # A static library kadans_NAME, known as kadans::NAME; "/" in a name becomes "_" (plant/bullet -> kadans_plant_bullet).
+# SOURCES are, unless given, all files of its folder and of those below that have no CMakeLists.txt, but no main.cpp and
+# none that another layer of the folder has. So a new file needs no entry anywhere.
 # PRECOMPILE names headers that nearly all of its files include, beside the standard ones.
 function(kadans_layer name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
   string(REPLACE "/" "_" target "kadans_${name}")
   string(REPLACE "/" "_" export "${name}")
+  if(NOT arg_SOURCES)
+    file(GLOB arg_SOURCES CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" *.cpp */*.cpp)
+    file(GLOB others RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" */CMakeLists.txt)
+    foreach(other IN LISTS others)
+      cmake_path(GET other PARENT_PATH folder)
+      list(FILTER arg_SOURCES EXCLUDE REGEX "^${folder}/")
+    endforeach()
+    get_property(taken DIRECTORY PROPERTY KADANS_TAKEN)
+    list(REMOVE_ITEM arg_SOURCES main.cpp ${taken})
+  endif()
+  set_property(DIRECTORY APPEND PROPERTY KADANS_TAKEN ${arg_SOURCES})
   add_library(${target} STATIC ${arg_SOURCES})
   add_library(kadans::${export} ALIAS ${target})
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>

@@ -176,7 +176,8 @@ PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
                             .sensors = {},
                             .period_ns = robot.engine.control_period_ns()},
                  .peer = peer,
-                 .damping_Nms_per_rad = robot.safety.damping_Nms_per_rad};
+                 .damping_Nms_per_rad = robot.safety.damping_Nms_per_rad,
+                 .transmissions = robot.model.transmissions};
   for (const FootSettings& foot : robot.plant.feet) site.layout.feet.push_back(foot.link);
   for (const SensorChannel& sensor : robot.plant.channels) site.layout.sensors.push_back(sensor.name);
   return site;

@@ -92,6 +92,32 @@ TEST_CASE("A pattern speaks for all joints that it fits, and later entries overr
   CHECK(config.estimate.sample_divisor[joint(config, "l_knee")] == 1);
 }
 
+TEST_CASE("Coupled drives have names for their settings, and by default give both joints all that the URDF allows") {
+  const std::string coupled =
+      "\"name\": \"tulip\", \"transmissions\": [{ \"type\": \"differential\", \"joints\": [\"l_hip_yaw\", "
+      "\"l_hip_roll\"],"
+      "\"drives\": [\"fore\", \"aft\"], \"actuator_reduction\": [2, 1] }]";
+  const std::string text = replaced(right_robot, "\"name\": \"tulip\"", coupled.c_str());
+  const RobotConfig config = read(text);
+  const std::size_t yaw = joint(config, "l_hip_yaw"), roll = joint(config, "l_hip_roll");
+  REQUIRE(config.model.transmissions.size() == 1);
+  CHECK(config.model.transmissions[0].joints() == std::vector<std::size_t>{yaw, roll});
+  CHECK(config.model.drive_names()[roll] == "aft");
+  CHECK(config.plant.drives[yaw].torque_max_Nm == (12 + 25) / 4.0);
+  CHECK(config.plant.drives[roll].torque_max_Nm == (12 + 25) / 2.0);
+  CHECK(config.plant.drives[yaw].velocity_max_rad_s == 2 * (6 + 6));
+  CHECK(config.plant.drives[roll].rotor_inertia_kg_m2 == 0.02);  // "*" is all drives
+  const RobotConfig named =
+      read(replaced(text, "\"*_ankle_roll\": {", "\"aft\": { \"torque_max_Nm\": 5 }, \"*_ankle_roll\": {"));
+  CHECK(named.plant.drives[roll].torque_max_Nm == 5);
+  const auto refused = [&](const char* drive) {
+    return refusal_of(replaced(text, "\"*_ankle_roll\": {", (std::string(drive) + ", \"*_ankle_roll\": {").c_str()));
+  };
+  CHECK(refused("\"l_hip_roll\": { \"torque_max_Nm\": 5 }").find("unknown joint 'l_hip_roll'") != std::string::npos);
+  CHECK(refused("\"fore\": { \"spring_Nm_per_rad\": 100 }")
+            .find("drive 'fore' is part of a coupling, which has no springs") != std::string::npos);
+}
+
 TEST_CASE("Limits may be narrowed for the safety layer, joint by joint") {
   const RobotConfig config = read(right_robot);
   CHECK(config.safety.joints[joint(config, "l_knee")].upper_rad == 2.0);

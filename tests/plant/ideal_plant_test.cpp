@@ -50,6 +50,30 @@ TEST_CASE("The ideal plant's joint swings on the spring that impedance mode asks
   CHECK(plant.truth().position_rad[0] == doctest::Approx(0.4).epsilon(1e-3));
 }
 
+TEST_CASE("The ideal plant's coupled joints follow their drives, whose rotors are all that moves") {
+  Robot robot = neck();
+  robot.drive(0).rotor_inertia_kg_m2 = 0.5;
+  robot.drive(1).rotor_inertia_kg_m2 = 0.25;
+  IdealWorld plant(robot.model, robot.settings);
+  const JointActuation tilt{.effort_Nm = 3, .mode = ActuationMode::effort}, pan{.mode = ActuationMode::effort};
+  plant.write(both(tilt, pan));  // 1.5 Nm of each drive
+  run(plant, 100);
+  const double left_rad_s = 0.1 * 1.5 / 0.5, right_rad_s = 0.1 * 1.5 / 0.25;
+  CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx((left_rad_s + right_rad_s) / 2));
+  CHECK(plant.truth().velocity_rad_s[1] == doctest::Approx((left_rad_s - right_rad_s) / 2));
+  CHECK(plant.truth().drive_torque_Nm[0] == doctest::Approx(3));
+  CHECK(plant.truth().motor_torque_Nm[1] == doctest::Approx(1.5));
+  SensorFrame sensors;
+  plant.read(sensors);
+  CHECK(sensors.joints[0].motor_effort_Nm == doctest::Approx(3));
+  CHECK(sensors.joints[1].motor_effort_Nm == doctest::Approx(0));
+  plant.write(both({.position_rad = 0.4, .mode = ActuationMode::position},
+                   {.position_rad = -0.7, .mode = ActuationMode::position}));
+  plant.step(ms);
+  CHECK(plant.truth().position_rad[0] == doctest::Approx(0.4));
+  CHECK(plant.truth().position_rad[1] == doctest::Approx(-0.7));
+}
+
 TEST_CASE("The ideal plant's sensors count up, show its state and stand upright") {
   Robot robot = pendulum(1, 0.1, 0.02);
   robot.settings.position_rad = {0.3};

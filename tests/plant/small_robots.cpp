@@ -68,6 +68,25 @@ Robot pendulum(double mass_kg, double com_m, double inertia_kg_m2) {
   return robot;
 }
 
+Robot neck() {
+  Robot robot = pendulum(1, 0, 0.05);
+  Link head;
+  head.name = "head";
+  head.inertia = {.mass_kg = 1, .xx = 0.01, .yy = 0.03, .zz = 0.02};
+  robot.model.links.push_back(head);
+  robot.model.joints[0].name = "tilt";
+  Joint pan;
+  pan.name = "pan";
+  pan.type = JointType::continuous;
+  pan.parent = 1;
+  pan.axis = {0, 0, 1};
+  robot.model.joints.push_back(pan);
+  robot.model.transmissions.emplace_back(
+      Transmission::Settings{.kind = Transmission::Kind::differential, .joints = {0, 1}, .drives = {"left", "right"}});
+  complete(robot);
+  return robot;
+}
+
 Robot tumbling_chain() {
   Robot robot;
   robot.model.links = {chain_link("root", {0.02, -0.01, 0.03}), chain_link("middle", {0.05, 0.03, -0.1}),
@@ -101,6 +120,14 @@ ActuationFrame impedance(double position_rad, double stiffness_Nm_per_rad, doubl
                     .stiffness_Nm_per_rad = stiffness_Nm_per_rad,
                     .damping_Nms_per_rad = damping_Nms_per_rad,
                     .mode = ActuationMode::impedance});
+}
+
+ActuationFrame both(const JointActuation& first, const JointActuation& second) {
+  ActuationFrame frame;
+  frame.joint_count = 2;
+  frame.joints[0] = first;
+  frame.joints[1] = second;
+  return frame;
 }
 
 void run(World& plant, int steps, std::int64_t dt_ns) {

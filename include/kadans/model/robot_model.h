@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "kadans/model/transmission.h"
 #include "kadans/signal/fault.h"
 #include "kadans/signal/frames.h"
 
@@ -84,13 +85,17 @@ struct Joint {
 
 struct RobotModel {
   std::string name;
-  std::string file;           // the file that it was read from
-  std::vector<Link> links;    // links[0] is the floating base; parents come before children
-  std::vector<Joint> joints;  // size() == links.size() - 1, at most max_joints
+  std::string file;                         // the file that it was read from
+  std::vector<Link> links;                  // links[0] is the floating base; parents come before children
+  std::vector<Joint> joints;                // size() == links.size() - 1, at most max_joints
+  std::vector<Transmission> transmissions;  // not in the URDF; joints in none have a drive in their own coordinate
 
   std::optional<std::size_t> find_joint(std::string_view name) const;
   std::optional<std::size_t> find_link(std::string_view name) const;  // merged names too
   std::vector<std::string> joint_names() const;
+  std::vector<std::string> drive_names() const;  // by joint; a drive that no transmission names has its joint's name
+  // Whether one of the two joints carries the other, as couplings need.
+  bool on_one_path(std::size_t joint, std::size_t other) const;
   std::vector<std::string> link_names() const;  // merged names too
   double mass_kg() const;
 };

@@ -1,5 +1,6 @@
 // A plant without physics, for tests. Each joint is a double integrator with its own inertia. Commands in position and
-// velocity mode are reached at once. The base stands still and upright.
+// velocity mode are reached at once. The base stands still and upright. Drives that couple two joints are such
+// integrators themselves, and the joints follow them.
 #pragma once
 
 #include "kadans/plant/modelled_channels.h"
@@ -22,6 +23,10 @@ class IdealWorld final : public OneRobotWorld {
   void hash(StateHash& hash) const noexcept override;
 
  private:
+  void move_drive(std::size_t drive, double dt_s) noexcept;
+  void map_coupled(bool to_drives) noexcept;
+
+  std::vector<Transmission> couplings_;
   std::array<double, max_joints> inertia_kg_m2_{};
   std::array<double, max_joints> lower_rad_{}, upper_rad_{};
   ActuationFrame actuation_;

@@ -53,6 +53,7 @@ struct PlantSite {
   PlantLayout layout;
   std::string peer;                // where the drives are, from the command line; "": where the configuration says
   double damping_Nms_per_rad = 2;  // of joints that nobody drives
+  std::vector<Transmission> transmissions{};  // frames speak of joints; what the drives speak of lies behind these
 };
 
 // The other side of a type's wire: programs that speak its protocol drive a modelled robot, one after the other.

@@ -12,7 +12,8 @@
 
 namespace kadans {
 
-// A motor with its gear, seen from the joint. With a spring it is a series elastic actuator: the rotor is a state of
+// A motor with its gear, seen from the joint; one that couples two joints (model/transmission.h) is seen from its own
+// side of the coupling, and has no springs. With a spring it is a series elastic actuator: the rotor is a state of
 // its own and only the spring's torque reaches the joint. Without one the rotor's inertia moves with the joint.
 struct DriveSettings {
   double torque_max_Nm = 0;        // 0: passive, no motor
@@ -62,7 +63,7 @@ struct SurfaceSettings {
 enum class ContactSolver : std::uint8_t { tree, stock };
 
 struct PlantSettings {
-  std::vector<DriveSettings> drives;      // one per joint
+  std::vector<DriveSettings> drives;      // one per joint, of coupled joints the drives in their order
   std::vector<EncoderSettings> encoders;  // one per joint
   ImuSettings imu;
   std::vector<FootSettings> feet;

@@ -37,7 +37,7 @@ struct PlantTruth {
   std::array<double, max_joints> drive_torque_Nm{};  // what each drive put on its joint in the last step
   // Torque of the motor alone, reflected to the joint, and the most that it can give at its speed, in that direction.
   // The torque on the joint is larger where the joint is hit or brakes: then the transmission also carries the rotor's
-  // inertia.
+  // inertia. Of drives that couple two joints, these two are in the drive's own coordinate (transmission.h).
   std::array<double, max_joints> motor_torque_Nm{}, motor_torque_max_Nm{};
   std::uint32_t foot_count = 0;
   std::array<Pose, max_feet> feet{};

@@ -31,7 +31,8 @@ enum class DriveState : std::uint8_t { off, ready, enabled, homing, fault };
 const char* name(DriveState state) noexcept;
 
 // What one joint's sensors and its drive report. `sequence` grows by one with each new reading, so that silence can be
-// told from standstill.
+// told from standstill. Positions and effort of coupled joints (model/transmission.h) are the joints', mapped from what
+// their drives measure; state, code, temperature and brake are those of the drive in the joint's place.
 struct alignas(8) JointSample {
   double position_rad = 0;        // at the joint, behind the gear and the spring
   double motor_position_rad = 0;  // before the spring, reflected to the joint

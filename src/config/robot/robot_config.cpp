@@ -65,6 +65,8 @@ void RobotReader::read(Fields& f) {
   f.strings("plugins", config_.plugins, {1, plugins_max},
             "shared libraries that bring types of control objects and of plants, from the project root");
   load_model(f);
+  f.list("transmissions", {0, max_joints}, "what stands between drives and joints, as in ros2_control",
+         [&](Fields& e) { transmission(e); });
   f.object("engine", "periods and bounds of the engines",
            [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
   f.map("poses", "positions in radians by joint pattern, for behaviors and the start", [&](Fields& e) { pose(e); });
@@ -96,7 +98,7 @@ void RobotReader::load_model(Fields& f) {
     return;
   }
   have_model_ = true;
-  joint_names_ = config_.model.joint_names();
+  joint_names_ = drive_names_ = config_.model.joint_names();
   const std::size_t count = config_.model.joints.size();
   config_.plant.drives.resize(count);
   config_.plant.encoders.resize(count);
@@ -112,10 +114,11 @@ void RobotReader::load_model(Fields& f) {
   }
 }
 
-std::vector<std::size_t> RobotReader::joints(std::string_view pattern, TextPlace place) {
-  std::vector<std::size_t> chosen = matching(pattern, joint_names_);
-  if (chosen.empty()) problems_.add_unknown(place, "joint", pattern, joint_names_);
-  return chosen;
+std::vector<std::size_t> RobotReader::chosen(std::string_view pattern, TextPlace place, const char* what,
+                                             const std::vector<std::string>& names) {
+  std::vector<std::size_t> found = matching(pattern, names);
+  if (found.empty()) problems_.add_unknown(place, what, pattern, names);
+  return found;
 }
 
 RobotConfig read_robot_config_text(const std::string& text, const std::string& file,

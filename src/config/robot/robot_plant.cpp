@@ -63,20 +63,96 @@ class TypeFields final : public PlantFields {
 
 }  // namespace
 
+void RobotReader::transmission(Fields& f) {
+  static const std::vector<std::string> kinds{"simple", "differential", "four_bar_linkage"};
+  constexpr NumberRange ratio{-1e6, 1e6};
+  Transmission::Settings settings;
+  std::vector<PlacedName> joints, drives;
+  const bool known = f.choice("type", settings.kind, kinds,
+                              "simple: one joint; the others couple two joints and two drives", Need::required);
+  f.strings("joints", joints, {1, 2}, "the joints, in the order of the type's equations", Need::required);
+  f.strings("drives", drives, {1, 2}, "names of the drives, for plant.drives and messages; else the joints'");
+  f.number_list("actuator_reduction", settings.actuator_reduction, {1, 2}, ratio, "of each drive; negative: reversed");
+  f.number_list("joint_reduction", settings.joint_reduction, {1, 2}, ratio, "of each joint; negative: reversed");
+  f.number_list("joint_offset_rad", settings.joint_offset_rad, {1, 2}, {-100, 100, "rad"},
+                "of each joint: its position when its drives are at 0");
+  if (!have_model_ || !known) return;
+  RobotModel& model = config_.model;
+  for (const PlacedName& joint : joints) {
+    const std::optional<std::size_t> found = model.find_joint(joint.name);
+    if (!found) return problems_.add_unknown(joint.place, "joint", joint.name, joint_names_);
+    if (model.joints[*found].passive())
+      return problems_.add(joint.place,
+                           "joint '" + joint.name + "' is passive (effort 0 in the URDF): no drive moves it");
+    for (const Transmission& other : model.transmissions) {
+      if (std::ranges::find(other.joints(), *found) != other.joints().end())
+        return problems_.add(joint.place, "joint '" + joint.name + "' is in two transmissions");
+    }
+    settings.joints.push_back(*found);
+  }
+  for (const PlacedName& drive : drives) {
+    if (std::ranges::find(drive_names_, drive.name) != drive_names_.end() || !is_word(drive.name) || drive.name.empty())
+      return problems_.add(drive.place, "'" + drive.name +
+                                            "' is no name for a drive: letters, digits and '_', and no joint or other "
+                                            "drive may have it");
+    settings.drives.push_back(drive.name);
+  }
+  try {
+    const Transmission made(settings);
+    if (made.coupled() && !model.on_one_path(made.joints()[0], made.joints()[1]))
+      return problems_.add(f.place("joints"), f.path("joints") + ": one of two coupled joints must carry the other");
+    model.transmissions.push_back(made);
+  } catch (const std::invalid_argument& error) {
+    return problems_.add(f.place(), f.path() + ": " + error.what());
+  }
+  drive_names_ = model.drive_names();
+  default_drives(model.transmissions.back());
+}
+
+// Drives of a coupling that can give both joints all that the URDF allows them at once.
+void RobotReader::default_drives(const Transmission& transmission) {
+  if (!transmission.coupled()) return;
+  const std::vector<std::size_t>& joints = transmission.joints();
+  for (std::size_t i = 0; i < 2; ++i) {
+    DriveSettings& drive = config_.plant.drives[joints[i]];
+    drive.torque_max_Nm = drive.velocity_max_rad_s = 0;
+    for (std::size_t j = 0; j < 2; ++j) {
+      const Joint& joint = config_.model.joints[joints[j]];
+      drive.torque_max_Nm += std::abs(transmission.joint_per_drive(j, i)) * joint.effort_max_Nm;
+      drive.velocity_max_rad_s += std::abs(transmission.drive_per_joint(i, j)) * joint.velocity_max_rad_s;
+    }
+  }
+}
+
+void RobotReader::check_coupled_drives(const Fields& f) {
+  for (const Transmission& transmission : config_.model.transmissions) {
+    for (const std::size_t i : transmission.joints()) {
+      const DriveSettings& drive = config_.plant.drives[i];
+      if (!transmission.coupled() || (drive.spring_Nm_per_rad == 0 && drive.parallel_spring_Nm_per_rad == 0 &&
+                                      drive.parallel_damping_Nms_per_rad == 0))
+        continue;
+      problems_.add(f.place("drives"), f.path("drives") + ": drive '" + drive_names_[i] +
+                                           "' is part of a coupling, which has no springs: spring_Nm_per_rad, "
+                                           "parallel_spring_Nm_per_rad and parallel_damping_Nms_per_rad must be 0");
+    }
+  }
+}
+
 void RobotReader::drive(Fields& entry) {
-  each_joint(entry, config_.plant.drives, [&](DriveSettings& d) { drive_fields(entry, d); });
-  if (!have_model_) return;
-  for (const std::size_t i : matching(entry.key(), joint_names_)) {
+  const std::vector<std::size_t> meant =
+      have_model_ ? chosen(entry.key(), entry.key_place(), "joint", drive_names_) : std::vector<std::size_t>();
+  each(meant, config_.plant.drives, [&](DriveSettings& d) { drive_fields(entry, d); });
+  for (const std::size_t i : meant) {
     const DriveSettings& d = config_.plant.drives[i];
     if (config_.model.joints[i].passive() && d.torque_max_Nm > 0 && entry.has("torque_max_Nm")) {
       return problems_.add(entry.place("torque_max_Nm"), entry.path("torque_max_Nm") + " gives a motor to joint '" +
-                                                             joint_names_[i] +
+                                                             drive_names_[i] +
                                                              "', which is passive (effort 0 in the URDF)");
     }
     if (!(d.knee_velocity_rad_s <= d.velocity_max_rad_s)) {
       return problems_.add(entry.place("knee_velocity_rad_s"), entry.path("knee_velocity_rad_s") + " is " +
                                                                    number_text(d.knee_velocity_rad_s) + ", joint '" +
-                                                                   joint_names_[i] + "' has velocity_max_rad_s " +
+                                                                   drive_names_[i] + "' has velocity_max_rad_s " +
                                                                    number_text(d.velocity_max_rad_s));
     }
   }
@@ -153,6 +229,7 @@ void RobotReader::plant(Fields& f) {
     });
   }
   if (object_types_.empty() && !config_.plugins.empty()) f.leave_others();  // a plug-in's type would ask for them
+  check_coupled_drives(f);
   for (std::size_t i = 0; i < plant.drives.size(); ++i) {
     config_.estimate.spring_Nm_per_rad[i] = config_.safety.joints[i].spring_Nm_per_rad =
         plant.drives[i].spring_Nm_per_rad;

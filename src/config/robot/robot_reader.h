@@ -24,7 +24,10 @@ class RobotReader {
 
   // robot_plant.cpp
   void plant(Fields& f);
+  void transmission(Fields& f);
   void drive(Fields& entry);
+  void default_drives(const Transmission& transmission);
+  void check_coupled_drives(const Fields& f);
   void surface(Fields& entry);
   void imu(Fields& f);
   void foot(Fields& f);
@@ -54,13 +57,19 @@ class RobotReader {
   void pose_value(const Fields& entry, const NumberEntry& value, PoseInfo& pose);
 
   // The joints that a pattern chooses. Adds a problem at `place` when it chooses none.
-  std::vector<std::size_t> joints(std::string_view pattern, TextPlace place);
+  std::vector<std::size_t> joints(std::string_view pattern, TextPlace place) {
+    return chosen(pattern, place, "joint", joint_names_);
+  }
+  std::vector<std::size_t> chosen(std::string_view pattern, TextPlace place, const char* what,
+                                  const std::vector<std::string>& names);
   // Runs `read` on the settings of each joint that the entry's key chooses. Without a model, it runs on a scratch copy.
   template <typename Settings, typename Read>
   void each_joint(Fields& entry, std::vector<Settings>& settings, Read&& read) {
+    each(have_model_ ? joints(entry.key(), entry.key_place()) : std::vector<std::size_t>(), settings, read);
+  }
+  template <typename Settings, typename Read>
+  static void each(const std::vector<std::size_t>& chosen, std::vector<Settings>& settings, Read&& read) {
     Settings scratch{};
-    if (!have_model_) return read(scratch);
-    const std::vector<std::size_t> chosen = joints(entry.key(), entry.key_place());
     if (chosen.empty()) read(scratch);
     for (const std::size_t i : chosen) read(settings[i]);
   }
@@ -69,7 +78,7 @@ class RobotReader {
   Problems& problems_;
   std::span<const std::string> object_types_;
   bool have_model_ = false;
-  std::vector<std::string> joint_names_;
+  std::vector<std::string> joint_names_, drive_names_;
 };
 
 }  // namespace kadans

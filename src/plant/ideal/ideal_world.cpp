@@ -29,6 +29,9 @@ double torque_Nm(const JointActuation& asked, double position_rad, double veloci
 IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
     : drives_(settings.drives, model.joints.size()), channels_(settings.channels, seed) {
   const std::size_t joints = model.joints.size();
+  for (const Transmission& transmission : model.transmissions) {
+    if (transmission.coupled()) couplings_.push_back(transmission);
+  }
   require(joints <= max_joints, "at most " + std::to_string(max_joints) + " joints");
   require(settings.position_rad.size() == joints, "position_rad must have one entry a joint");
   require(settings.drives.empty() || settings.drives.size() == joints, "drives must have one entry a joint, or none");
@@ -63,35 +66,59 @@ void IdealWorld::read(SensorFrame& sensors) noexcept {
 }
 
 void IdealWorld::write(const ActuationFrame& actuation) noexcept {
-  drives_.write(actuation);
   actuation_ = actuation;
   actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
     if (i >= actuation_.joint_count || !is_finite(actuation_.joints[i])) actuation_.joints[i] = {};
+  }
+  for (const Transmission& coupling : couplings_) coupling.to_drives(actuation_);
+  drives_.write(actuation_);
+}
+
+void IdealWorld::move_drive(std::size_t i, double dt_s) noexcept {
+  const JointActuation asked = drives_.enabled(i) ? actuation_.joints[i] : JointActuation{};
+  double& position = truth_.position_rad[i];
+  double& velocity = truth_.velocity_rad_s[i];
+  truth_.motor_torque_Nm[i] = torque_Nm(asked, position, velocity, inertia_kg_m2_[i], dt_s);
+  const double before = position;
+  velocity += dt_s * truth_.motor_torque_Nm[i] / inertia_kg_m2_[i];
+  if (asked.mode == ActuationMode::velocity) velocity = asked.velocity_rad_s;
+  position = asked.mode == ActuationMode::position ? asked.position_rad : position + dt_s * velocity;
+  if (asked.mode == ActuationMode::position) velocity = (position - before) / dt_s;
+  if (drives_.braked(i)) {
+    position = before;
+    velocity = 0;
+  }
+}
+
+// Between the joints' coordinates and those of their drives, there and back.
+void IdealWorld::map_coupled(bool to_drives) noexcept {
+  for (const Transmission& coupling : couplings_) {
+    const auto map = [&](auto& values, auto how) {
+      double &first = values[coupling.joints()[0]], &second = values[coupling.joints()[1]];
+      const Transmission::Pair mapped = (coupling.*how)({first, second});
+      first = mapped[0];
+      second = mapped[1];
+    };
+    using T = Transmission;
+    map(truth_.position_rad, to_drives ? &T::drive_position_rad : &T::joint_position_rad);
+    map(truth_.velocity_rad_s, to_drives ? &T::drive_velocity_rad_s : &T::joint_velocity_rad_s);
+    if (!to_drives) map(truth_.drive_torque_Nm, &T::joint_effort_Nm);
   }
 }
 
 void IdealWorld::step(std::int64_t dt_ns) {
   if (dt_ns <= 0) return;
   const double dt_s = static_cast<double>(dt_ns) * 1e-9;
+  map_coupled(true);
+  for (std::size_t i = 0; i < truth_.joint_count; ++i) move_drive(i, dt_s);
+  truth_.drive_torque_Nm = truth_.motor_torque_Nm;
+  map_coupled(false);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
-    const JointActuation asked = drives_.enabled(i) ? actuation_.joints[i] : JointActuation{};
-    double& position = truth_.position_rad[i];
-    double& velocity = truth_.velocity_rad_s[i];
-    const double before = position;
-    truth_.drive_torque_Nm[i] = torque_Nm(asked, position, velocity, inertia_kg_m2_[i], dt_s);
-    truth_.motor_torque_Nm[i] = truth_.drive_torque_Nm[i];
-    velocity += dt_s * truth_.drive_torque_Nm[i] / inertia_kg_m2_[i];
-    if (asked.mode == ActuationMode::velocity) velocity = asked.velocity_rad_s;
-    position = asked.mode == ActuationMode::position ? asked.position_rad : position + dt_s * velocity;
-    if (drives_.braked(i)) {
-      position = before;
-      velocity = 0;
-    }
-    const double free = position;
-    position = std::clamp(position, lower_rad_[i], upper_rad_[i]);
-    if (asked.mode == ActuationMode::position) velocity = (position - before) / dt_s;
-    if (position != free) velocity = 0;
+    const double inside = std::clamp(truth_.position_rad[i], lower_rad_[i], upper_rad_[i]);
+    if (inside == truth_.position_rad[i]) continue;
+    truth_.position_rad[i] = inside;
+    truth_.velocity_rad_s[i] = 0;
   }
   drives_.step(dt_ns);
   time_ns_ += dt_ns;

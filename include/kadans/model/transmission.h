@@ -1,0 +1,78 @@
+// What stands between drives and joints where it is not one drive in the joint's own coordinate: a gear, or a coupling
+// of two joints by two drives.
+//
+// Kinds, names of the settings and signs are those of ros2_control's transmission_interface (SimpleTransmission,
+// DifferentialTransmission, FourBarLinkageTransmission). With the reductions n of the actuators (drives) a and of the
+// joints j, and the joints' positions x counted from their offsets, the drives stand at
+//
+//   simple            a1 = na1 nj1 x1
+//   differential      a1 = na1 (nj1 x1 + nj2 x2)    a2 = na2 (nj1 x1 - nj2 x2)
+//   four_bar_linkage  a1 = na1 nj1 x1               a2 = na2 (x1 + nj2 x2)
+//
+// So a = C x. Velocities follow the same C, and efforts its transpose, t_joint = C^T t_drive, which keeps the power.
+//
+// In frames, which number by joint, drive i of a transmission stands where its joint i does.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kadans/signal/frames.h"
+
+namespace kadans {
+
+class Transmission {
+ public:
+  enum class Kind : std::uint8_t { simple, differential, four_bar_linkage };
+  struct Settings {
+    Kind kind = Kind::simple;
+    std::vector<std::size_t> joints;                              // simple: one; the others: two
+    std::vector<std::string> drives;                              // names, one a joint; none: the joints'
+    std::vector<double> actuator_reduction{}, joint_reduction{};  // one a joint; none: 1; negative: the other way round
+    std::vector<double> joint_offset_rad{};                       // where the drives count from; one a joint, none: 0
+  };
+  using Pair = std::array<double, 2>;  // of a simple one only the first counts
+
+  // Throws std::invalid_argument with a sentence: wrong counts, a joint or drive named twice, a reduction that is 0 or
+  // not within 1e-6..1e6 either way, an offset that is not finite.
+  explicit Transmission(const Settings& settings);
+
+  bool coupled() const noexcept { return joints_.size() == 2; }
+  const std::vector<std::size_t>& joints() const noexcept { return joints_; }
+  const std::vector<std::string>& drives() const noexcept { return drives_; }
+  // How fast a drive turns while a joint turns by 1 rad/s and the other stands; and the other way round.
+  double drive_per_joint(std::size_t drive, std::size_t joint) const noexcept { return ratio_[drive][joint]; }
+  double joint_per_drive(std::size_t joint, std::size_t drive) const noexcept { return inverse_[joint][drive]; }
+
+  Pair drive_position_rad(const Pair& joint_rad) const noexcept;
+  Pair joint_position_rad(const Pair& drive_rad) const noexcept;
+  Pair drive_velocity_rad_s(const Pair& joint_rad_s) const noexcept { return times(ratio_, joint_rad_s); }
+  Pair joint_velocity_rad_s(const Pair& drive_rad_s) const noexcept { return times(inverse_, drive_rad_s); }
+  Pair drive_effort_Nm(const Pair& joint_Nm) const noexcept { return transposed_times(inverse_, joint_Nm); }
+  Pair joint_effort_Nm(const Pair& drive_Nm) const noexcept { return transposed_times(ratio_, drive_Nm); }
+
+  // What is asked of the joints, as what is asked of their drives; the rest of the frame stays. Coupled drives run in
+  // one mode: when their joints ask for two, or one for nothing (off), in effort mode with the joints' effort alone. A
+  // drive knows only its own position, so in impedance mode it gets its diagonal entry of C^-T K C^-1. That is exact
+  // for a differential between joints of the same stiffness; joints of different stiffness get the mean of both.
+  void to_drives(ActuationFrame& frame) const noexcept;
+
+ private:
+  using Matrix = std::array<Pair, 2>;
+  static Pair times(const Matrix& m, const Pair& x) noexcept {
+    return {m[0][0] * x[0] + m[0][1] * x[1], m[1][0] * x[0] + m[1][1] * x[1]};
+  }
+  static Pair transposed_times(const Matrix& m, const Pair& x) noexcept {
+    return {m[0][0] * x[0] + m[1][0] * x[1], m[0][1] * x[0] + m[1][1] * x[1]};
+  }
+
+  std::vector<std::size_t> joints_;
+  std::vector<std::string> drives_;
+  Matrix ratio_{{{1, 0}, {0, 1}}}, inverse_{{{1, 0}, {0, 1}}};  // C and its inverse
+  Pair offset_rad_{};
+};
+
+}  // namespace kadans
