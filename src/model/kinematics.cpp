@@ -1,4 +1,3 @@
-
 #include "kadans/model/kinematics.h"
 
 #include <algorithm>
@@ -6,13 +5,6 @@
 #include <cmath>
 
 namespace kadans {
-namespace {
-
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-}  // namespace
 
 // v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector part: exact when q is the identity.
 Vec3 rotate(const Quat& q, const Vec3& v) noexcept {

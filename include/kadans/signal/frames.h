@@ -20,6 +20,12 @@ namespace kadans {
 using Vec3 = std::array<double, 3>;  // x, y, z
 using Quat = std::array<double, 4>;  // w, x, y, z; rotates body coordinates into world coordinates
 
+inline constexpr std::int64_t ns_per_s = 1'000'000'000;
+
+inline Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 // Between two times from outside, which may have any value: the difference wraps around and does not overflow.
 inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   return 1e-9 * static_cast<double>(

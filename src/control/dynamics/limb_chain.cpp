@@ -7,10 +7,6 @@
 namespace kadans {
 namespace {
 
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 Pose motion(const LimbChain::Segment& segment, double position) noexcept {
   const Vec3& axis = segment.axis;
   if (!segment.prismatic) return {{}, from_axis_angle(axis, position)};

@@ -24,7 +24,7 @@ constexpr std::int64_t missed_ns = 100'000'000;  // ... for so long
 constexpr double same_target_m = 0.05;
 constexpr double back_per_s = 6;  // how fast the joints go back to the middle
 constexpr double back_rad = 0.1;  // where they are near enough to it
-constexpr const char* direction_names[] = {"x", "y", "z"};
+constexpr const char* axis_names[] = {"x", "y", "z"};
 
 std::size_t link_of(const ObjectSetup& setup, const std::string& option, const char* meaning) {
   const std::string* const name = setup.options.find(option);
@@ -75,7 +75,7 @@ void Gaze::declare(Declaration& declaration) {
 
 void Gaze::declare_target(Declaration& declaration) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::string name = direction_names[i];
+    const std::string name = axis_names[i];
     declaration.setpoint({.name = name + "_m",
                           .unit = "m",
                           .min = -far_m,
@@ -89,7 +89,7 @@ void Gaze::declare_target(Declaration& declaration) {
                        &aimed_.target.velocity_m_s[i]);
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    declaration.setpoint({.name = std::string(direction_names[i]) + "_m_s",
+    declaration.setpoint({.name = std::string(axis_names[i]) + "_m_s",
                           .unit = "m/s",
                           .min = -velocity_max_m_s,
                           .max = velocity_max_m_s,

@@ -18,9 +18,6 @@ constexpr double approach_per_s = 20;        // of a position limit, at the end
 constexpr double braking = 0.7;              // share of acceleration_max that stops a joint before it
 constexpr double eyes_singular = 0.5;  // volume of what the eyes can do, below which the damping rises; ahead it is 1.4
 
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 bool moves(const RobotModel& model, std::size_t joint, std::size_t link) {

@@ -50,7 +50,6 @@ void RobotReadings::take(const LatestRow::View& row) noexcept {
 
 namespace {
 
-constexpr std::int64_t ns_per_s = 1'000'000'000;
 constexpr DdsQuality kept_for_all{.depth = 1, .for_late_readers = true};
 constexpr std::int32_t frames_depth = 100, commands_depth = 16;  // tf2's own; orders that may wait
 

@@ -53,7 +53,7 @@ int raise(lua_State* state, const Testing& testing) {
   return lua_error(state);
 }
 
-Played* find(lua_State* state) {
+Played* played_in(lua_State* state) {
   Testing& testing = testing_of(state);
   const auto number = static_cast<std::size_t>(lua_tointeger(state, 1));
   return number < testing.played.size() ? &testing.played[number] : nullptr;
@@ -100,7 +100,7 @@ bool go_on(Testing& testing, Played& played, double seconds) noexcept {
 
 // advance(number, seconds).
 int advance(lua_State* state) {
-  Played* played = find(state);
+  Played* played = played_in(state);
   if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
   const double seconds = lua_tonumber(state, 2);
   core_of(state).budget.charge(state, advance_instructions + second_instructions * seconds);
@@ -122,7 +122,7 @@ bool read_text(Testing& testing, const TestStage& stage, const char* key) noexce
 
 // read(number, key): what the behavior is in, or a field of the snapshot.
 int read(lua_State* state) {
-  Played* played = find(state);
+  Played* played = played_in(state);
   const char* key = luaL_checkstring(state, 2);
   if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
   Testing& testing = testing_of(state);
@@ -145,7 +145,7 @@ bool change_stage(TestStage& stage, const char* what, const char* name, double v
 
 // change(number, what, name, value) -> whether it was known.
 int change(lua_State* state) {
-  Played* played = find(state);
+  Played* played = played_in(state);
   if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
   const char* what = luaL_checkstring(state, 2);
   const char* name = luaL_checkstring(state, 3);

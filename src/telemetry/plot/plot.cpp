@@ -10,9 +10,9 @@
 namespace kadans {
 namespace {
 
-class Picture {
+class SvgPicture {
  public:
-  Picture(const Plot& plot, const PlotArea& size)
+  SvgPicture(const Plot& plot, const PlotArea& size)
       : plot_(plot), size_(size), right_(size.left + size.width), bottom_(size.top + size.height), y_(plot.y.range) {
     if (!(y_.low < y_.high)) y_ = widened(range_of(plot.lines), 0, 1e-9);
   }
@@ -143,7 +143,7 @@ PlotRange widened(PlotRange range, double margin, double alike) {
   return {range.low - wider, range.high + wider};
 }
 
-std::string plot_svg(const Plot& plot, const PlotArea& size) { return Picture(plot, size).write(); }
+std::string plot_svg(const Plot& plot, const PlotArea& size) { return SvgPicture(plot, size).write(); }
 
 namespace {
 

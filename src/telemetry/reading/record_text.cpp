@@ -60,12 +60,12 @@ void append_number(std::string& text, double value) {
 }
 
 void append_seconds(std::string& text, std::int64_t time_ns) {
-  constexpr std::uint64_t ns_per_s = 1'000'000'000;
+  constexpr std::uint64_t second_ns = 1'000'000'000;
   const bool negative = time_ns < 0;
   const std::uint64_t ns = negative ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);
   if (negative) text += '-';
-  text += std::to_string(ns / ns_per_s);
-  std::string rest = std::to_string(ns_per_s + ns % ns_per_s);
+  text += std::to_string(ns / second_ns);
+  std::string rest = std::to_string(second_ns + ns % ns_per_s);
   rest[0] = '.';
   text += rest.substr(0, rest.find_last_not_of("0.") + 1);
 }

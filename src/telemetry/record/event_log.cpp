@@ -9,8 +9,6 @@
 namespace kadans {
 namespace {
 
-constexpr std::int64_t ns_per_s = 1'000'000'000;
-
 int foxglove_level(BehaviorLog::Severity severity) noexcept {
   switch (severity) {
     case BehaviorLog::Severity::info:

@@ -13,7 +13,6 @@
 namespace kadans {
 namespace {
 
-constexpr std::int64_t ns_per_s = 1'000'000'000;
 constexpr std::uint64_t parameters_every_ticks = 10;
 
 constexpr const char* parameters_schema = R"({

@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view prefix = "inputs/", suffix = ".zst";
 constexpr std::size_t texts_max_bytes = std::size_t{64} << 20U;  // of all together, unpacked
 constexpr std::size_t inputs_max = 10'000;
-constexpr int compression_level = 19;  // small texts, once a run
+constexpr int text_compression_level = 19;  // small texts, once a run
 
 [[noreturn]] void refuse(const std::string& record, const std::string& why) {
   throw InputError({.file = record, .message = why});
@@ -25,7 +25,7 @@ constexpr int compression_level = 19;  // small texts, once a run
 
 std::vector<std::byte> packed(const std::string& text) {
   std::vector<std::byte> bytes(ZSTD_compressBound(text.size()));
-  const std::size_t size = ZSTD_compress(bytes.data(), bytes.size(), text.data(), text.size(), compression_level);
+  const std::size_t size = ZSTD_compress(bytes.data(), bytes.size(), text.data(), text.size(), text_compression_level);
   bytes.resize(ZSTD_isError(size) != 0 ? 0 : size);
   return bytes;
 }

@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::int64_t ns_per_s = 1'000'000'000;
 constexpr std::uint32_t cdr_head = 0x0100;  // little-endian
 
 // With the messages that they are made of, as tools of ROS 2 write them.
