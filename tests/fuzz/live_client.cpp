@@ -10,7 +10,7 @@
 #include "config/json/foreign_json.h"
 #include "fuzz_input.h"
 #include "fuzz_instance.h"
-#include "remote/order/order_table.h"
+#include "remote/order/order.h"
 #include "remote/page/live_protocol.h"
 
 namespace {

@@ -35,7 +35,7 @@ std::string brief_refusal(const Json& json, bool paced = false) {
 
 TEST_CASE("Each order has a verb and words of its own, and a sentence") {
   std::set<std::string> verbs, words;
-  for (const OrderInfo& order : order_table()) {
+  for (const OrderInfo& order : order_table::orders) {
     CAPTURE(order.verb);
     CHECK(verbs.insert(order.verb).second);
     CHECK((order.words[0] == '\0' || words.insert(order.words).second));
@@ -56,7 +56,7 @@ TEST_CASE("docs/ctl.md has every order of the command line, and every verb of th
   std::ifstream file(KADANS_SOURCE_DIR "/docs/ctl.md");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   REQUIRE(text.size() > 1000);
-  for (const OrderInfo& order : order_table()) {
+  for (const OrderInfo& order : order_table::orders) {
     CAPTURE(order.verb);
     CHECK(text.find("`" + std::string(order.words)) != std::string::npos);
     if (order.faces != OrderInfo::Faces::paced && std::string(order.verb) != "replace")

@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "ctl_command.h"
-#include "remote/order/order_table.h"
+#include "remote/order/order.h"
 
 namespace kadans {
 namespace {
@@ -40,7 +40,7 @@ void add_cases(const CLI::App& app, const std::string& path, bool options, std::
 // `path` is reserved for PATH.
 std::string names_function() {
   std::string text = "\n_kadans_names() {\n  local at=$1\n  shift\n  case $at in\n";
-  for (const OrderInfo& order : order_table()) {
+  for (const OrderInfo& order : order_table::orders) {
     std::istringstream lists(order.arguments[0].lists);
     std::string lines;
     for (std::string what; lists >> what;) lines += " kadans ctl \"$@\" list " + what + " --names;";

@@ -13,7 +13,7 @@
 #include "ctl_print.h"
 #include "kadans/signal/input_error.h"
 #include "remote/ctl/ctl_folder.h"
-#include "remote/order/order_table.h"
+#include "remote/order/order.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -120,7 +120,7 @@ void add_argument(CLI::App& to, const OrderInfo& order, const OrderArgument& arg
 // "Records: start, stop, dump".
 CLI::App* add_group(CLI::App& ctl, const std::string& group) {
   std::string doc;
-  for (const OrderInfo& order : order_table()) {
+  for (const OrderInfo& order : order_table::orders) {
     const std::string_view words = order.words;
     if (words.starts_with(group + " ")) doc += (doc.empty() ? "" : ", ") + std::string(words.substr(group.size() + 1));
   }
@@ -158,7 +158,7 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
   ctl->add_option("--socket", options.socket, "Its folder of sockets, or one socket (default: where they usually are)")
       ->type_name("PATH");
   ctl->add_flag("--json", options.json, "Print the answer as JSON, samples as one object a line");
-  for (const OrderInfo& order : order_table()) {
+  for (const OrderInfo& order : order_table::orders) {
     if (order.words[0] != '\0') add(*ctl, order, options);
   }
   ctl->add_subcommand(console, console_doc)->fallthrough();
@@ -175,7 +175,7 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
 int run_ctl(const CLI::App& app, const CtlOptions& options) {
   const CLI::App* ctl = app.get_subcommand("ctl");
   if (ctl->got_subcommand(console)) return talk_to_console(options);
-  for (const OrderInfo& order : order_table()) {
+  for (const OrderInfo& order : order_table::orders) {
     const auto [group, word] = group_of(order);
     const bool grouped = !group.empty() && ctl->got_subcommand(group);
     if (word.empty() || (!group.empty() && !grouped)) continue;

@@ -212,7 +212,7 @@ const char* kind_text(OrderArgument::Kind kind) {
 const OrderInfo& order_named(const std::string& verb) {
   if (const OrderInfo* found = find_order(verb)) return *found;
   std::vector<std::string> verbs;
-  for (const OrderInfo& order : order_table()) verbs.emplace_back(order.verb);
+  for (const OrderInfo& order : order_table::orders) verbs.emplace_back(order.verb);
   fail(unknown_name("verb", verb, verbs));
 }
 

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/json/foreign_json.h"
-#include "order_table.h"
+#include "order.h"
 #include "remote/instance/instance.h"
 #include "remote/instance/parameter_history.h"
 
