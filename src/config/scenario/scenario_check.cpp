@@ -2,12 +2,10 @@
 #include "scenario_check.h"
 
 #include <algorithm>
-#include <array>
 
 namespace kadans {
 namespace {
 
-const std::array<std::string, 6> check_kinds{"always", "never", "eventually", "at_end", "within", "settles"};
 constexpr NumberRange time_range{0, 1e6, "s"};
 
 void list_fields(Fields& f, ScenarioCheck& check) {

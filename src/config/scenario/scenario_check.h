@@ -1,6 +1,7 @@
 // What judges a run of a scenario: its checks, and metrics.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -10,9 +11,8 @@
 
 namespace kadans {
 
-// A check of a scenario: one signal must stay within bounds, or a Lua condition over several signals must hold.
-
-// "It" is the demand of the check: the signal is within [min, max], or the condition `that` is true.
+// A check of a scenario: one signal must stay within bounds, or a Lua condition over several signals must hold. "It" is
+// the demand of the check: the signal is within [min, max], or the condition `that` is true.
 enum class CheckKind : std::uint8_t {
   always,      // it holds in every tick
   never,       // it holds in no tick
@@ -21,6 +21,7 @@ enum class CheckKind : std::uint8_t {
   within,      // each time that `when` becomes true, it holds at most within_s later
   settles,     // at most within_s after `when` (or from_s) it begins to hold, and holds until the end
 };
+inline const std::array<std::string, 6> check_kinds{"always", "never", "eventually", "at_end", "within", "settles"};
 
 struct ScenarioCheck {
   std::string name;
