@@ -10,7 +10,6 @@
 
 #include "api_options.h"
 #include "script/check/known_names.h"
-#include "script/host/silent_log.h"
 #include "signal/status_fields.h"
 
 namespace kadans {
@@ -261,7 +260,7 @@ std::string api_reference() {
 
 std::vector<std::string> bound_names(const std::filesystem::path& root, const std::filesystem::path& behavior,
                                      const Catalog& catalog) {
-  SilentLog silence;
+  BehaviorLog silence;
   Behavior::Parts parts({.root = root, .file = behavior}, catalog, silence);
   load_behavior(parts, parts.settings.limits.load_instructions);
   KnownNames known = read_known_names(parts);

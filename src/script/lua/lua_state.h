@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
 #include "script_error.h"
 #include "script_limits.h"
 
