@@ -86,6 +86,7 @@ struct RunOptions {
   double spin_us = 0;  // 0: the default
   int cpu = -1;        // of the control thread; -1: an isolated one, else the last
   bool verbose = false;
+  std::string log_file;  // "": none
   bool json = false;
   std::string behaviors = "thread";    // where behaviors play: "thread" or "process"
   double behaviors_patience_s = 0;     // time for the process to answer; 0: the default

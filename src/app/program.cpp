@@ -82,6 +82,8 @@ void add_run(CLI::App& app, RunOptions& options) {
   add_ros2_service(*run, options.ros2);
   run->add_flag("--json", options.json, "Print one JSON object instead of text");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
+  run->add_option("--log-file", options.log_file, "Append all log lines to this file, transitions too (default: none)")
+      ->type_name("FILE");
 }
 
 // A hidden command that `run` starts.

@@ -10,6 +10,7 @@
 
 #include <unistd.h>
 
+#include "engine/behavior_log.h"
 #include "script/lua/budget.h"
 
 namespace kadans {
@@ -44,8 +45,11 @@ bool stdout_takes_color() { return color_wanted() && isatty(STDOUT_FILENO) == 1;
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
 
 void print_error(const std::string& message) {
-  const bool color = color_wanted() && stderr_is_terminal();
-  std::fprintf(stderr, "%serror:%s %s\n", color ? "\033[31;1m" : "", color ? "\033[0m" : "", message.c_str());
+  program_log().message(Line::no_time, BehaviorLog::Severity::error, "", message);
+}
+
+void print_line(const std::string& text) {
+  program_log().message(Line::no_time, BehaviorLog::Severity::info, "", text);
 }
 
 void print_problems(const InputError& error) {

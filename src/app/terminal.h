@@ -16,6 +16,7 @@ bool stderr_is_terminal();
 // Prints one line for each problem on stderr: "error: file:line:column: what is wrong".
 void print_problems(const InputError& error);
 void print_error(const std::string& message);
+void print_line(const std::string& text);  // on stderr
 
 // Calls `run` and returns the exit code of the program: the code that `run` returns, or the code for its exception,
 // which is printed on stderr. The code is never 0 when output to stdout was lost, for example on a full disk. Throws

@@ -17,15 +17,10 @@ void keep(std::vector<T>& all, std::size_t kept_max, T one) {
 
 }  // namespace
 
-void RunLog::transition(const Transition& transition) {
-  keep(transitions_, kept_max_, transition);
-  if (next_ != nullptr) next_->transition(transition);
-}
-
-void RunLog::message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) {
-  errors_ = errors_ || severity == Severity::error;
-  keep(lines_, kept_max_, {time_ns, severity, behavior, text});
-  if (next_ != nullptr) next_->message(time_ns, severity, behavior, text);
+void RunLog::tell(const Line& line) {
+  if (line.transition != nullptr) return keep(transitions_, kept_max_, *line.transition);
+  errors_ = errors_ || line.severity == Severity::error;
+  keep(lines_, kept_max_, {line.time_ns, line.severity, std::string(line.behavior), std::string(line.text)});
 }
 
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
 #include "engine/lockstep.h"
 #include "kadans/plant/world.h"
 #include "plant/joystick/stick.h"
@@ -16,8 +16,8 @@
 
 namespace kadans {
 
-// Keeps the transitions and log lines of a run's behaviors for its report, and passes them on to a recorder when there
-// is one. The number that is kept is bounded, for runs without an end.
+// The log of a run. It keeps transitions and messages for the run's report. The number that is kept is
+// bounded, for runs without an end.
 struct LogLine {
   std::int64_t time_ns = 0;
   BehaviorLog::Severity severity = BehaviorLog::Severity::info;
@@ -25,21 +25,21 @@ struct LogLine {
   std::string text;
 };
 
-class RunLog final : public BehaviorLog {
+class RunLog final : public BehaviorLog, private LineSink {
  public:
-  // Keeps the newest `kept_max` transitions and as many lines, at most twice as many.
-  explicit RunLog(BehaviorLog* next = nullptr, std::size_t kept_max = SIZE_MAX / 2)
-      : next_(next), kept_max_(kept_max) {}
-
-  void transition(const Transition& transition) override;
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
+  // Keeps the newest `kept_max` transitions and as many lines, at most twice as many. `sinks` hear all lines too.
+  explicit RunLog(std::initializer_list<LineSink*> sinks = {}, std::size_t kept_max = SIZE_MAX / 2)
+      : BehaviorLog(sinks), kept_max_(kept_max) {
+    add(*this);
+  }
 
   const std::vector<Transition>& transitions() const noexcept { return transitions_; }
   const std::vector<LogLine>& lines() const noexcept { return lines_; }
   bool has_errors() const noexcept { return errors_; }  // also when their lines are no longer kept
 
  private:
-  BehaviorLog* next_;
+  void tell(const Line& line) override;
+
   std::size_t kept_max_;
   bool errors_ = false;
   std::vector<Transition> transitions_;

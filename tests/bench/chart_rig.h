@@ -12,12 +12,11 @@
 
 namespace kadans::bench {
 
-class Silence final : public BehaviorLog {
+class Count final : public LineSink {
  public:
-  void transition(const Transition& /*transition*/) override { ++transitions; }
-  void message(std::int64_t /*time_ns*/, Severity /*severity*/, const std::string& /*behavior*/,
-               const std::string& text) override {
-    last = text;
+  void tell(const Line& line) override {
+    transitions += line.transition != nullptr ? 1 : 0;
+    if (line.transition == nullptr) last = line.text;
   }
   std::uint64_t transitions = 0;
   std::string last;
@@ -62,7 +61,8 @@ struct Played {
   std::filesystem::path folder;
   RobotModel model;
   Catalog catalog;
-  Silence log;
+  Count count;
+  BehaviorLog log{&count};
   CommandQueue queue;
   CommandSender sender{queue};
   Snapshot snapshot;

@@ -22,12 +22,13 @@ using doctest::description;
 
 namespace {
 
-class Words final : public BehaviorLog {
+class Words final : public BehaviorLog, private LineSink {
  public:
-  void transition(const Transition&) override {}
-  void message(std::int64_t, Severity severity, const std::string&, const std::string& text) override {
-    all += text + "\n";
-    errors += severity == Severity::error ? 1 : 0;
+  Words() { add(*this); }
+  void tell(const Line& line) override {
+    if (line.transition != nullptr) return;
+    all.append(line.text).append("\n");
+    errors += line.severity == Severity::error ? 1 : 0;
   }
   bool have(const std::string& text) const { return all.find(text) != std::string::npos; }
   std::string all;

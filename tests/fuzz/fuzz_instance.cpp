@@ -72,8 +72,9 @@ void FuzzProject::keep(std::string_view input, int number) {
 }
 
 FuzzInstance::FuzzInstance()
-    : host({.root = root_, .limits = limits}, with_parameters_by_object(robot.catalog), echo),
+    : host({.root = root_, .limits = limits}, with_parameters_by_object(robot.catalog), log),
       instance(facts_of(root_), robot.catalog, robot.safety.emergency_stop()) {
+  log.add(record_side);
   robot.control.record_to(&control_side);
   record_side.record_as({.settings = {.file = {.chunk_bytes = 1U << 14U}}});  // a record is short here
 }

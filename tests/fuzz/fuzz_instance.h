@@ -41,13 +41,13 @@ class FuzzInstance {
 
  public:
   bench::Robot robot;
-  RecordLog record_log;
-  EchoLog echo{&record_log};
+  LineEcho echo;
+  BehaviorLog log{&echo};
   ScriptHost host;
   Instance instance;
   ControlSide control_side{instance};
-  RecordSide record_side{instance, control_side, record_log, {}};
-  BehaviorSide behavior_side{{instance, &host, nullptr, robot.behaviors, *robot.exchange, echo, echo}};
+  RecordSide record_side{instance, control_side, {}};
+  BehaviorSide behavior_side{{instance, &host, nullptr, robot.behaviors, *robot.exchange, echo, log}};
   Lockstep lockstep{fast_, robot.plant, robot.control, robot.behaviors};
 
   FuzzInstance();

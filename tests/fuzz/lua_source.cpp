@@ -18,18 +18,11 @@ constexpr ScriptLimits limits{.tick_instructions = 50'000,
                               .load_wall_ns = 4'000'000,
                               .memory_bytes = std::size_t{1} << 20};
 
-class Silence final : public BehaviorLog {
- public:
-  void transition(const Transition& /*made*/) override {}
-  void message(std::int64_t /*time_ns*/, Severity /*severity*/, const std::string& /*behavior*/,
-               const std::string& /*text*/) override {}
-};
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const script_test::Scripts scripts;
-  static Silence silence;
+  static BehaviorLog silence;
   const auto file = scripts.write("behaviors/test.lua", {reinterpret_cast<const char*>(data), size});
   script_test::Engine engine;
   try {

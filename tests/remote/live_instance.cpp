@@ -93,9 +93,10 @@ bool Supervisor::beat(const Beat&) {
 }
 
 LiveInstance::LiveInstance(const CtlServer::Settings& settings)
-    : host({.root = project.root}, with_parameters_by_object(robot.catalog), echo),
+    : host({.root = project.root}, with_parameters_by_object(robot.catalog), log),
       instance(facts_of(project), robot.catalog, robot.safety.emergency_stop()),
       server(std::make_unique<CtlServer>(instance, sockets, settings)) {
+  log.add(record_side);
   robot.control.record_to(&control_side);
   robot.script.at = [this](std::int64_t time_ns) {
     behavior_side.beside_tick(time_ns);

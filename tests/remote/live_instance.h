@@ -45,13 +45,13 @@ struct Supervisor final : Task {
 struct LiveInstance {
   Project project;
   LiveRobot robot;
-  RecordLog record_log;
-  EchoLog echo{&record_log};
+  LineEcho echo;
+  BehaviorLog log{&echo};
   ScriptHost host;
   Instance instance;
   ControlSide control_side{instance};
-  RecordSide record_side{instance, control_side, record_log, {}};
-  BehaviorSide behavior_side{{instance, &host, nullptr, robot.behaviors, *robot.exchange, echo, echo}};
+  RecordSide record_side{instance, control_side, {}};
+  BehaviorSide behavior_side{{instance, &host, nullptr, robot.behaviors, *robot.exchange, echo, log}};
   CtlSockets sockets{{.folder = project.root / "ctl"}};
   std::unique_ptr<CtlServer> server;
   Supervisor supervisor{instance, *robot.exchange, robot.safety, record_side};

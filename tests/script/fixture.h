@@ -92,15 +92,16 @@ class Robot {
   std::size_t used_ = 0;
 };
 
-class Log final : public BehaviorLog {
+class Log final : public BehaviorLog, private LineSink {
  public:
-  void transition(const Transition& made) override {
-    transitions.push_back(made.from + ">" + made.to + ":" + made.why);
-  }
-  void message(std::int64_t /*time_ns*/, Severity severity, const std::string& behavior,
-               const std::string& text) override {
-    messages.push_back(behavior + ": " + text);
-    if (severity == Severity::error) ++errors;
+  Log() { add(*this); }
+  void tell(const Line& line) override {
+    if (const Transition* made = line.transition; made != nullptr) {
+      transitions.push_back(made->from + ">" + made->to + ":" + made->why);
+    } else {
+      messages.push_back(std::string(line.behavior) + ": " + std::string(line.text));
+      errors += line.severity == Severity::error ? 1 : 0;
+    }
   }
   std::string joined() const {
     std::string all;

@@ -130,8 +130,9 @@ TEST_CASE("FlightMemory packs what moves slowly, and what stands still into next
 TEST_CASE("A fault that latches is due a second later, the dump holds what was kept before, and that second") {
   const ScratchFile file;
   Robot robot;
-  robot.recorder.events().message(1000 * ms, BehaviorLog::Severity::info, "squat", "long forgotten");
-  robot.recorder.events().message(7900 * ms, BehaviorLog::Severity::error, "squat", "slips");
+  BehaviorLog log{&robot.recorder.events()};
+  log.message(1000 * ms, BehaviorLog::Severity::info, "squat", "long forgotten");
+  log.message(7900 * ms, BehaviorLog::Severity::error, "squat", "slips");
   robot.run(8000, {8000});
   CHECK_FALSE(robot.flight().due());
   robot.recorder.fault({.code = FaultCode::fall, .tick = 8000});

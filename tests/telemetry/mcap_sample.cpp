@@ -37,18 +37,18 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", recorder.error().c_str());
     return 1;
   }
+  kadans::BehaviorLog log{&recorder.events()};
   std::vector<double> row(table.size());
   for (std::uint64_t tick = 0; tick < 5000; ++tick) {
     const std::int64_t time_ns = static_cast<std::int64_t>(tick) * 1'000'000;
     for (std::size_t i = 0; i < row.size(); ++i) row[i] = 1000.0 * static_cast<double>(i) + static_cast<double>(tick);
     recorder.record(tick, time_ns, row);
     if (tick % 1000 == 0) {
-      recorder.events().transition(
-          {.time_ns = time_ns, .behavior = "sample", .from = "up", .to = "down", .why = "second"});
+      log.transition({.time_ns = time_ns, .behavior = "sample", .from = "up", .to = "down", .why = "second"});
     }
     if (tick % 500 == 0) {
       recorder.fault({.code = kadans::FaultCode::velocity_limit, .joint = 1, .tick = tick, .value = 9, .limit = 8});
-      recorder.events().message(time_ns, kadans::BehaviorLog::Severity::warning, "sample", "half a second");
+      log.message(time_ns, kadans::BehaviorLog::Severity::warning, "sample", "half a second");
     }
     if (tick % 10 == 9 && !recorder.drain()) break;
   }

@@ -136,8 +136,9 @@ TEST_CASE("Recorder writes transitions and messages as JSON between the rows, in
   Recorder recorder(table, {.every_ticks = {0, 1, 0}});
   REQUIRE(recorder.open(file.path()));
   recorder.record(1, 1 * ms, std::array{0.0, 0.0, 0.0});
-  recorder.events().transition({.time_ns = 2 * ms, .behavior = "squat", .from = "", .to = "down", .why = "start"});
-  recorder.events().message(1'500'000'002, BehaviorLog::Severity::error, "squat", "line \xff\n\"end\"");
+  BehaviorLog log{&recorder.events()};
+  log.transition({.time_ns = 2 * ms, .behavior = "squat", .from = "", .to = "down", .why = "start"});
+  log.message(1'500'000'002, BehaviorLog::Severity::error, "squat", "line \xff\n\"end\"");
   recorder.record(3, 3 * ms, std::array{0.0, 1.0, 0.0});
   REQUIRE(recorder.close());
   const auto entries = entries_of(file.path());
@@ -200,7 +201,8 @@ TEST_CASE("Recorder: events that do not fit are dropped and counted, those that 
   Recorder recorder(table);
   REQUIRE(recorder.open(file.path()));
   const std::string text(1000, 'x');
-  for (int i = 0; i < 300; ++i) recorder.events().message(i, BehaviorLog::Severity::info, "flood", text);
+  BehaviorLog log{&recorder.events()};
+  for (int i = 0; i < 300; ++i) log.message(i, BehaviorLog::Severity::info, "flood", text);
   CHECK(recorder.dropped_events() > 30);
   CHECK(recorder.dropped_events() < 60);
   REQUIRE(recorder.close());

@@ -38,13 +38,14 @@ ScenarioConfig read_scenario(const ReplOptions& options) {
 }
 
 // Keeps the messages of behaviors and the supervisor until the console shows them.
-class Chatter final : public BehaviorLog {
+class Chatter final : public LineSink {
  public:
-  void transition(const Transition&) override {}
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
+  void tell(const Line& line) override {
+    if (line.transition != nullptr) return;
     char time[32];
-    std::snprintf(time, sizeof time, "%8.2f s  ", 1e-9 * static_cast<double>(time_ns));
-    said_ += time + behavior + (severity == Severity::error ? ": error: " : ": ") + text + "\n";
+    std::snprintf(time, sizeof time, "%8.2f s  ", 1e-9 * static_cast<double>(line.time_ns));
+    said_.append(time).append(line.behavior);
+    said_.append(line.severity == BehaviorLog::Severity::error ? ": error: " : ": ").append(line.text).append("\n");
   }
   std::string take() {
     std::string said;
@@ -151,7 +152,7 @@ class Repl {
 
   ScenarioConfig scenario_;
   Chatter chatter_;
-  RunLog log_{&chatter_};
+  RunLog log_{{&chatter_}};
   Assembly assembly_;
   RunParts parts_;
   Console console_;

@@ -23,37 +23,15 @@ Instance::Facts facts_of(const ScenarioConfig& scenario, const RobotConfig& robo
 
 }  // namespace
 
-void InstanceLog::transition(const Transition& transition) {
-  if (instance_ != nullptr) {
-    event_.kind = Event::Kind::transition;
-    event_.transition = transition;
-    instance_->tell(event_);
-  }
-  next_->transition(transition);
-}
-
-void InstanceLog::message(std::int64_t time_ns, Severity severity, const std::string& behavior,
-                          const std::string& text) {
-  if (instance_ != nullptr) {
-    event_ = {.kind = Event::Kind::message, .severity = severity, .text = text};
-    event_.transition.time_ns = time_ns;
-    event_.transition.behavior = behavior;
-    instance_->tell(event_);
-  }
-  next_->message(time_ns, severity, behavior, text);
-}
-
 SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan,
-                     const Logs& logs)
+                     BehaviorLog& log, LineEcho& echo)
     : parts_(assembly.parts()),
       model_(assembly.robot().model),
-      log_(logs.all),
-      told_(logs.told),
+      log_(log),
       instance_(facts_of(scenario, assembly.robot()), assembly.catalog(), parts_.control.safety().emergency_stop()),
       control_side_(instance_),
-      record_side_(instance_, control_side_, logs.record, {{"robot", scenario.robot}, {"kadans", version}}),
-      behavior_side_(
-          {instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), logs.echo, logs.all}),
+      record_side_(instance_, control_side_, {{"robot", scenario.robot}, {"kadans", version}}),
+      behavior_side_({instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), echo, log}),
       service_(places.ctl, instance_),
       live_(places.live, instance_, assembly, &pace_),
       ros2_(places.ros2, instance_, assembly, &pace_, -1) {
@@ -67,15 +45,18 @@ SimRemote::~SimRemote() {
   ros2_.stop();
   live_.stop();
   service_.stop();
-  told_.tell(nullptr);
   (void)record_side_.stop();  // when the run threw
 }
 
 std::string SimRemote::end_record() { return record_side_.stop() ? "" : record_side_.error(); }
 
 void SimRemote::begin(RecordSink* own, const std::string& own_file) {
-  told_.tell(&instance_);
-  if (own != nullptr) record_side_.leave_to(*own, own_file);
+  log_.add(instance_);
+  if (own != nullptr) {
+    record_side_.leave_to(*own, own_file);
+  } else {
+    log_.add(record_side_);
+  }
   service_.start();
   live_.start({{"Control tick: takes", &parts_.lockstep.control_tick_cost()}});
   ros2_.start();

@@ -16,37 +16,18 @@
 
 namespace kadans {
 
-// Passes events and messages to the instance, once there is one, and to `next`.
-class InstanceLog final : public BehaviorLog {
- public:
-  explicit InstanceLog(BehaviorLog* next) noexcept : next_(next) {}
-  void tell(Instance* instance) noexcept { instance_ = instance; }
-  void transition(const Transition& transition) override;
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
-
- private:
-  BehaviorLog* next_;
-  Instance* instance_ = nullptr;
-  Event event_;
-};
-
 class SimRemote final : public RunObserver {
  public:
-  struct Logs {
-    InstanceLog& told;
-    EchoLog& echo;
-    RecordLog& record;
-    BehaviorLog& all;
-  };
   struct Places {
     CtlServiceOptions ctl;
     LiveServiceOptions live;
     Ros2Options ros2;
   };
-  // All references must outlive this object. It replaces the assembly's record sink. `plan` is for records that clients
+  // All references must outlive this object; after it nothing is said. `echo` is a sink of `log`, the log of the
+  // behaviors. This object replaces the assembly's record sink. `plan` is for records that clients
   // order.
-  SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan,
-            const Logs& logs);
+  SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan, BehaviorLog& log,
+            LineEcho& echo);
   ~SimRemote() override;
   SimRemote(const SimRemote&) = delete;
   SimRemote& operator=(const SimRemote&) = delete;
@@ -68,7 +49,6 @@ class SimRemote final : public RunObserver {
   RunParts parts_;
   const RobotModel& model_;
   BehaviorLog& log_;
-  InstanceLog& told_;
   Instance instance_;
   ControlSide control_side_;
   RecordSide record_side_;

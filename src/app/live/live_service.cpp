@@ -1,10 +1,9 @@
 #include "live_service.h"
 
-#include <cstdio>
-
 #include <CLI/CLI.hpp>
 
 #include "app/option_checks.h"
+#include "app/terminal.h"
 #include "config/json/json_value.h"
 #include "remote/instance/run_description.h"
 #include "remote/page/page_files.h"
@@ -64,8 +63,8 @@ void LiveService::start(const std::vector<TimingSource>& timing) {
   if (!server_) return;
   hub_->watch_timing(timing);
   server_->start();
-  std::fprintf(stderr, "live on %s\n", server_->url().c_str());
-  if (page_files().empty()) std::fprintf(stderr, "%s", std::string(page_is_missing).c_str());
+  print_line("live on " + server_->url());
+  if (page_files().empty()) print_line(std::string(page_is_missing));
 }
 
 void LiveService::stop() noexcept {

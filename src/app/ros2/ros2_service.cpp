@@ -1,12 +1,12 @@
 #include "ros2_service.h"
 
-#include <cstdio>
 #include <cstdlib>
 
 #include <CLI/CLI.hpp>
 
 #include "app/live/live_service.h"
 #include "app/option_checks.h"
+#include "app/terminal.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -54,7 +54,7 @@ Ros2Service::Ros2Service(const Ros2Options& place, Instance& instance, const Ass
 void Ros2Service::start() {
   if (!bridge_) return;
   bridge_->start();
-  std::fprintf(stderr, "ros2 in domain %u\n", domain_);
+  print_line("ros2 in domain " + std::to_string(domain_));
 }
 
 void Ros2Service::stop() noexcept {

@@ -81,10 +81,11 @@ int run_behavior_process(const RunOptions& options) {
   const std::unique_ptr<ControlSystem> system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));  // declares parameters too
   SpokenLines lines(link);
+  BehaviorLog log{&lines};
   const std::unique_ptr<ScriptHost> host =
-      make_script_host(scenario, robot.config, system->catalog, scenario.seed, lines, bytes);
+      make_script_host(scenario, robot.config, system->catalog, scenario.seed, log, bytes);
   settle(link.setup);
-  return BehaviorServer(link, bell, *host, lines, system->catalog).serve();
+  return BehaviorServer(link, bell, *host, log, system->catalog).serve();
 }
 
 }  // namespace kadans

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 
+#include "engine/behavior_log.h"
 #include "engine/tick/control_engine.h"
 #include "plant/joystick/joystick_device.h"
 #include "realtime/task_thread.h"
-#include "telemetry/record/event_log.h"
 
 namespace kadans {
 
@@ -24,16 +23,12 @@ class JoystickTask final : public Task {
     return true;
   }
 
-  // Supervisor: an event when the joystick was plugged in or unplugged since the last call.
-  std::optional<Event> news(const Snapshot& snapshot) {
-    if (snapshot.tick == 0 || snapshot.joystick.connected == connected_) return std::nullopt;
+  // Supervisor: says that the joystick was plugged in or unplugged since the last call.
+  void tell_news(const Snapshot& snapshot, BehaviorLog& log) {
+    if (snapshot.tick == 0 || snapshot.joystick.connected == connected_) return;
     connected_ = snapshot.joystick.connected;
-    Event event;
-    event.transition.time_ns = snapshot.time_ns;
-    event.transition.behavior = "joystick";
-    event.severity = connected_ ? BehaviorLog::Severity::info : BehaviorLog::Severity::error;
-    event.text = connected_ ? "is there" : "is gone; it reads as centred until it is plugged in again";
-    return event;
+    log.message(snapshot.time_ns, connected_ ? BehaviorLog::Severity::info : BehaviorLog::Severity::error, "joystick",
+                connected_ ? "is there" : "is gone; it reads as centred until it is plugged in again");
   }
 
  private:

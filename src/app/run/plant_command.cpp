@@ -51,7 +51,7 @@ class PlantService {
 
   int run() {
     lock_program(true);
-    std::fprintf(stderr, "serves '%s' on %s\n", robot_.config.name.c_str(), options_.listen.c_str());
+    print_line("serves '" + robot_.config.name + "' on " + options_.listen);
     bool failed = false;
     while (!interrupted()) {
       const std::unique_ptr<World> world = make();
@@ -76,7 +76,7 @@ class PlantService {
 
   // Serves one session on a thread of its own. False when the model failed.
   bool serve(World& world) {
-    std::fprintf(stderr, "driven by %s\n", emulator_->peer_name().c_str());
+    print_line("driven by " + emulator_->peer_name());
     const std::int64_t period_ns = robot_.config.engine.control_period_ns();
     const bool one_cpu = sysconf(_SC_NPROCESSORS_ONLN) < 2;
     PosixWait wait(one_cpu ? 0 : default_spin_ns, WallClock().now_ns());

@@ -30,7 +30,6 @@
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"
 #include "run_threads.h"
-#include "threaded_log.h"
 #include "version.h"
 
 namespace kadans {
@@ -116,7 +115,15 @@ class WallClockRun {
                                                  assembly_.robot().engine.control_period_ns())),
         joystick_(make_joystick()),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
-                 assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {}
+                 assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {
+    log_.add(record_side_);
+    const Shown unasked = stderr_is_journal() ? Shown::messages : Shown::errors;  // readers of a journal choose
+    said_.add(stderr_sink(options.verbose ? Shown::all : unasked));
+    if (options.log_file.empty()) return;
+    const TextSink file = file_sink(options.log_file);
+    said_.add(file);
+    program_log().add(file);
+  }
 
   int run() {
     if (options_.virtual_time && assembly_.world() == nullptr) {
@@ -282,31 +289,21 @@ class WallClockRun {
     }
   }
 
-  void tell(const Event& event) {
-    instance_.tell(event);
-    const bool message = event.kind == Event::Kind::message;
-    if (!options_.verbose && (!message || event.severity != BehaviorLog::Severity::error)) return;
-    const Transition& t = event.transition;
-    const std::string text = message ? event.text : t.from + " -> " + t.to + " (" + t.why + ")";
-    std::fprintf(stderr, "%9.2f s  %s: %s\n", 1e-9 * static_cast<double>(t.time_ns), t.behavior.c_str(), text.c_str());
-  }
-
   // Reports the messages of behaviors, and faults except late ticks, which the final report counts.
   void tell(std::int64_t time_ns) {
     Event event;
-    while (live_log_.told().pop(time_ns, event)) tell(event);
+    while (told_.pop(time_ns, event)) said_.say(event.line());
     if (joystick_ != nullptr) {
       const auto snapshot = parts_.control.exchange().snapshot.read(1);
-      const std::optional<Event> news = joystick_->news(*snapshot);
-      if (news) tell(*news);
+      joystick_->tell_news(*snapshot, said_);
     }
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) {
       instance_.tell(fault);
       record_side_.tell(fault);
       if (fault.code == FaultCode::tick_overrun) continue;
-      std::fprintf(stderr, "%9.2f s  fault %s\n", 1e-9 * static_cast<double>(time_ns),
-                   fault_text(told(fault, assembly_.robot().model)).c_str());
+      program_log().message(time_ns, BehaviorLog::Severity::error, "",
+                            "fault " + fault_text(told(fault, assembly_.robot().model)));
     }
     const RecordStatus record = record_side_.status();
     tell_flights(record);
@@ -317,16 +314,15 @@ class WallClockRun {
   void tell_flights(const RecordStatus& status) {
     if (status.flights == told_flights_) return;
     told_flights_ = status.flights;
-    std::fprintf(stderr, "flight record: %s\n", status.flight.data());
+    print_line(std::string("flight record: ") + status.flight.data());
   }
 
   const RunOptions& options_;
   ScenarioConfig scenario_;
   ServiceNotifier notifier_{environment("NOTIFY_SOCKET")};
-  RecordLog record_log_;
-  ThreadedLog live_log_{record_log_};
-  EchoLog echo_{&live_log_};
-  RunLog log_{&echo_, kept_lines};
+  EventLog told_;  // from the behavior thread to the supervisor
+  LineEcho echo_;
+  RunLog log_{{&told_, &echo_}, kept_lines};  // behavior thread
   std::unique_ptr<PlantExchange> link_;
   std::unique_ptr<ProcessHost> process_;  // of the behaviors, or nullptr
   Assembly assembly_;
@@ -343,8 +339,8 @@ class WallClockRun {
   ControlSide control_side_{instance_};
   RecordSide record_side_{instance_,
                           control_side_,
-                          record_log_,
                           {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}}};
+  BehaviorLog said_{&instance_};  // supervisor
   BehaviorSide behavior_side_{{instance_, process_ ? nullptr : &assembly_.host(), process_.get(), parts_.behaviors,
                                parts_.control.exchange(), echo_, log_},
                               &leaving_};

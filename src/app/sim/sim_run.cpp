@@ -48,17 +48,6 @@ std::vector<CheckpointOrder> checkpoints_of(const SimOptions& options) {
 
 }  // namespace
 
-void LateLog::transition(const Transition& transition) {
-  if (log_ != nullptr) log_->transition(transition);
-}
-
-void LateLog::message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) {
-  if (log_ != nullptr) log_->message(time_ns, severity, behavior, text);
-  if (!shown_) return;
-  const double time_s = 1e-9 * static_cast<double>(time_ns);
-  std::fprintf(stderr, "\r\033[K%8.2f s  %s: %s\n", time_s, behavior.c_str(), text.c_str());
-}
-
 SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::optional<SimContinuation> continuation)
     : options_(options),
       request_(request),
@@ -93,8 +82,8 @@ void SimRun::make_reachable() {
   places.ctl.wanted = places.ctl.wanted && (paced || !options_.ctl.folder.empty());
   if (!places.ctl.wanted && !places.live.wanted() && !places.ros2.wanted()) return;
   inputs_.run["ctl"] = "yes";
-  remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_, RecordPlan{record_plan_.settings, {}, {}},
-                                        SimRemote::Logs{told_, echo_, record_log_, log_});
+  remote_ =
+      std::make_unique<SimRemote>(places, scenario_, assembly_, RecordPlan{record_plan_.settings, {}, {}}, log_, echo_);
   remote_->pace().speed = options_.speed;
 }
 
@@ -115,11 +104,10 @@ int SimRun::run() {
   if (remote_) {
     remote_->begin(recorder_.get(), record_.empty() ? "the flight recorder's" : record_);
     observers.push_back(remote_.get());
-    if (!recorder_) late_log_.set(&record_log_);
   }
   if (options_.watch) {
     assembly_.watch_behaviors();
-    late_log_.show();
+    log_.add(stderr_sink(Shown::messages));
   }
   RunResult result = run_scenario(assembly_.parts(), duration_s_, checks_, observers);
   if (split_) return processes_.finish();
@@ -241,7 +229,7 @@ void SimRun::start_record() {
   } else if (!flies) {
     return recorder_.reset();
   }
-  late_log_.set(&recorder_->events());
+  log_.add(recorder_->events());
   if (!remote_) assembly_.record_to(recorder_.get());
 }
 
@@ -260,7 +248,7 @@ void SimRun::finish_record(const RunResult& result) {
     if (flight->due(true)) fly();
     flight->finish();
     if (!flight->error().empty()) tell_lost("the flight record is not complete: " + flight->error());
-    if (flight->dumps() > 0) std::fprintf(stderr, "flight record: %s\n", flight->file().c_str());
+    if (flight->dumps() > 0) print_line("flight record: " + flight->file());
   }
   if (recorder_->is_open()) {
     const auto failed = std::ranges::count(result.checks, false, &CheckResult::passed);

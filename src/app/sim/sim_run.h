@@ -19,20 +19,6 @@
 
 namespace kadans {
 
-// A log whose target is set later. The log must be made first, but the recorder that takes its events can be made only
-// when the signals are known.
-class LateLog final : public BehaviorLog {
- public:
-  void set(BehaviorLog* log) noexcept { log_ = log; }
-  void show() noexcept { shown_ = true; }  // prints messages at once on stderr, for a person who edits while it runs
-  void transition(const Transition& transition) override;
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
-
- private:
-  BehaviorLog* log_ = nullptr;
-  bool shown_ = false;
-};
-
 // The checkpoint from which a run continues, and its branches.
 struct SimContinuation {
   Checkpoint from;
@@ -79,10 +65,8 @@ class SimRun final : public RunObserver {
   ScenarioConfig scenario_;
   std::uint64_t seed_;
   double duration_s_;
-  LateLog late_log_;
-  InstanceLog told_{&late_log_};
-  EchoLog echo_{&told_};
-  RunLog log_{&echo_};
+  LineEcho echo_;
+  RunLog log_{{&echo_}};
   Assembly assembly_;
   Checks checks_;
   Metrics metrics_;
@@ -104,7 +88,6 @@ class SimRun final : public RunObserver {
   bool reached_ = false, parted_ = false;
   bool split_ = false;  // this process has split into the branches and is done
   ProcessSplit processes_;
-  RecordLog record_log_;
   std::unique_ptr<SimRemote> remote_;
   HashTrail way_{checkpoint_trail_s};
 };

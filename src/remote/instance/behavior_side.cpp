@@ -371,7 +371,7 @@ void BehaviorSide::give(const Order& order) {
 std::string BehaviorSide::told(const Order& order, bool& done) {
   const bool reload = order.kind == Order::Kind::reload;
   std::string text;
-  for (const EchoLog::Line& line : lines_) {
+  for (const LineEcho::Heard& line : lines_) {
     const bool supervisor = line.behavior == "supervisor";
     if (reload ? supervisor || (!order.text.empty() && line.behavior != order.text) : !supervisor) continue;
     if (line.severity != BehaviorLog::Severity::info) done = false;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/behavior_engine.h"
-#include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
 #include "instance.h"
 #include "parameter_history.h"
 #include "realtime/engine_tasks.h"
@@ -22,23 +22,17 @@
 
 namespace kadans {
 
-// Collects the log messages while an order is carried out, so that the answer can repeat them. It passes everything on.
-// Behavior thread.
-class EchoLog final : public BehaviorLog {
+// Collects the log messages while an order is carried out, so that the answer can repeat them. Behavior thread.
+class LineEcho final : public LineSink {
  public:
-  struct Line {
-    Severity severity = Severity::info;
+  struct Heard {
+    BehaviorLog::Severity severity;
     std::string behavior, text;
   };
 
-  explicit EchoLog(BehaviorLog* next = nullptr) noexcept : next_(next) {}
-
-  void transition(const Transition& transition) override {
-    if (next_ != nullptr) next_->transition(transition);
-  }
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
-    if (listens_ && lines_.size() < lines_max) lines_.push_back({severity, behavior, text});
-    if (next_ != nullptr) next_->message(time_ns, severity, behavior, text);
+  void tell(const Line& line) override {
+    if (!listens_ || line.transition != nullptr || lines_.size() == lines_max) return;
+    lines_.push_back({line.severity, std::string(line.behavior), std::string(line.text)});
   }
 
   void listen() {
@@ -46,16 +40,15 @@ class EchoLog final : public BehaviorLog {
     listens_ = true;
   }
   // Returns the messages since listen(), and stops listening.
-  std::vector<Line> take() {
+  std::vector<Heard> take() {
     listens_ = false;
     return std::move(lines_);
   }
 
  private:
   static constexpr std::size_t lines_max = 64;
-  BehaviorLog* next_;
   bool listens_ = false;
-  std::vector<Line> lines_;
+  std::vector<Heard> lines_;
 };
 
 class BehaviorSide final : public BesideTick {
@@ -66,8 +59,8 @@ class BehaviorSide final : public BesideTick {
     ProcessHost* process;  // ... or in this process; the other pointer is nullptr
     BehaviorEngine& engine;
     EngineExchange& exchange;
-    EchoLog& echo;     // stands between the behaviors and the readers of `log`
-    BehaviorLog& log;  // changes are logged here; its messages pass through the echo
+    LineEcho& echo;    // a sink of the behaviors' log, which is `log`
+    BehaviorLog& log;  // changes are logged here
   };
   static constexpr std::size_t consoles_max = 4;
   static constexpr std::int64_t led_again_ns = 1'000'000'000;  // moving set-points are logged once in this time
@@ -125,7 +118,7 @@ class BehaviorSide final : public BesideTick {
   ParameterHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client
   std::vector<double> parameters_;
-  std::vector<EchoLog::Line> lines_;                   // messages of the last tick, when it carried out an order
+  std::vector<LineEcho::Heard> lines_;                 // messages of the last tick, when it carried out an order
   std::int64_t time_ns_ = 0, led_ns_ = -led_again_ns;  // led_ns_: when a set-point was last logged
 };
 

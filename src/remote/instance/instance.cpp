@@ -53,15 +53,8 @@ void Instance::publish(const InstanceStatus& status) noexcept {
   for (const auto& port : ports_) port->status_.publish(status);
 }
 
-void Instance::tell(const Event& event) {
-  const Transition& t = event.transition;
-  for (const auto& port : ports_) {
-    if (event.kind == Event::Kind::transition) {
-      port->events_.transition(t);
-    } else {
-      port->events_.message(t.time_ns, event.severity, t.behavior, event.text);
-    }
-  }
+void Instance::tell(const Line& line) {
+  for (const auto& port : ports_) port->events_.tell(line);
 }
 
 void Instance::tell(const Fault& fault) noexcept {

@@ -92,7 +92,7 @@ class InstancePort {
   std::uint64_t sent_ = 0;
 };
 
-class Instance {
+class Instance final : public LineSink {
  public:
   static constexpr std::size_t ports_max = 4;
 
@@ -138,7 +138,7 @@ class Instance {
 
   // Supervisor.
   void publish(const InstanceStatus& status) noexcept;
-  void tell(const Event& event);
+  void tell(const Line& line) override;
   void tell(const Fault& fault) noexcept;
 
  private:

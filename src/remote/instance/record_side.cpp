@@ -33,7 +33,7 @@ void RecordSide::make_recorder() {
 void RecordSide::begin() {
   if (!(plan_.flight.kept_s > 0) || others_) return;
   make_recorder();
-  log_.to(&recorder_->events());
+  events_.store(&recorder_->events(), std::memory_order_release);
   control_.record_to(recorder_.get());
 }
 
@@ -50,7 +50,7 @@ void RecordSide::start(const std::string& file) {
   if (!recorder_->open(file)) throw InputError({.message = recorder_->error()});
   describe(*recorder_, time_ns_);
   file_ = file;
-  log_.to(&recorder_->events());
+  events_.store(&recorder_->events(), std::memory_order_release);
   control_.record_to(recorder_.get());
   publish();
 }
@@ -65,7 +65,7 @@ bool RecordSide::stop() {
   if (file_.empty() || others_) return true;
   if (recorder_->flight() == nullptr) {
     control_.record_to(nullptr);
-    log_.to(nullptr);
+    events_.store(nullptr, std::memory_order_release);
   }
   const bool whole = recorder_->close();
   publish();

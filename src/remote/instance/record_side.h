@@ -20,33 +20,17 @@
 
 namespace kadans {
 
-// Passes the behaviors' events to the record while there is one. Behavior thread, except for to().
-class RecordLog final : public BehaviorLog {
- public:
-  void to(BehaviorLog* log) noexcept { log_.store(log, std::memory_order_release); }
-  void transition(const Transition& transition) override {
-    if (BehaviorLog* log = log_.load(std::memory_order_acquire); log != nullptr) log->transition(transition);
-  }
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
-    if (BehaviorLog* log = log_.load(std::memory_order_acquire); log != nullptr)
-      log->message(time_ns, severity, behavior, text);
-  }
-
- private:
-  std::atomic<BehaviorLog*> log_{nullptr};
-};
-
 struct RecordPlan {
   RecorderSettings settings = {};
   FlightSettings flight = {};
   std::vector<TimingSource> timing = {};  // must outlive the record
 };
 
-class RecordSide final : public Task {
+class RecordSide final : public Task, public LineSink {
  public:
   // The references must outlive this object. `facts` are written into every record under "run".
-  RecordSide(Instance& instance, ControlSide& control, RecordLog& log, TextMap facts)
-      : instance_(instance), control_(control), log_(log), facts_(std::move(facts)) {}
+  RecordSide(Instance& instance, ControlSide& control, TextMap facts)
+      : instance_(instance), control_(control), facts_(std::move(facts)) {}
 
   // Before the loop.
   void describe_with(RobotTexts texts) { texts_ = std::move(texts); }
@@ -64,6 +48,11 @@ class RecordSide final : public Task {
   // Before the loop: another part of the program writes a record, `own`, that goes on to the end of the run.
   void leave_to(RecordSink& own, const std::string& file);
   bool beat(const Beat&) override;
+
+  // Behavior thread: a line for the record, if there is one.
+  void tell(const Line& line) override {
+    if (LineSink* events = events_.load(std::memory_order_acquire); events != nullptr) events->tell(line);
+  }
 
   // Supervisor.
   void tell(const Fault& fault) noexcept {
@@ -86,16 +75,16 @@ class RecordSide final : public Task {
 
   Instance& instance_;
   ControlSide& control_;
-  RecordLog& log_;
   TextMap facts_;
   RobotTexts texts_;
   RecordPlan plan_;
   std::int64_t time_ns_ = 0, timing_told_ns_ = 0;
   std::atomic<bool> ending_{false};
   std::unique_ptr<Recorder> recorder_;
-  std::atomic<Recorder*> told_{nullptr};  // the same recorder, for the supervisor
-  std::string file_;                      // "": none is open
-  bool others_ = false;                   // the open file is that of leave_to()
+  std::atomic<Recorder*> told_{nullptr};    // the same recorder, for the supervisor
+  std::atomic<LineSink*> events_{nullptr};  // its events, for the behavior thread; nullptr: nothing is recorded
+  std::string file_;                        // "": none is open
+  bool others_ = false;                     // the open file is that of leave_to()
   Latest<RecordStatus> status_;
 };
 

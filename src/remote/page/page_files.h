@@ -17,6 +17,6 @@ const std::vector<PageFile>& page_files() noexcept;
 // The text that a browser gets instead of the missing page.
 inline constexpr std::string_view page_is_missing =
     "This program was built without its page. To get it: install nodejs and npm, run scripts/page, and build kadans "
-    "again.\n";
+    "again.";
 
 }  // namespace kadans

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <future>
 #include <string_view>
@@ -11,6 +10,7 @@
 
 #include <dlfcn.h>
 
+#include "engine/behavior_log.h"
 #include "kadans/signal/input_error.h"
 #include "realtime/signals_blocked.h"
 
@@ -44,6 +44,10 @@ constexpr const char* loopback =
     "<Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>"
     "</Domain></CycloneDDS>";
 
+void say(BehaviorLog::Severity severity, std::string_view text) {
+  program_log().message(Line::no_time, severity, "ros2", text);
+}
+
 // What the library has to say, as far as somebody may want to read it: rubbish from the network makes it say much.
 void tell(void*, const dds_log_data_t* data) {
   static std::atomic<int> told{0};
@@ -53,8 +57,8 @@ void tell(void*, const dds_log_data_t* data) {
     return;
   }
   const std::string_view text = std::string_view(data->message, data->size).substr(0, line_max_bytes);
-  const std::string said(text.substr(0, text.find('\n')));
-  std::fprintf(stderr, "ros2: %s%s\n", said.c_str(), line + 1 == lines_max ? "\nros2: no more of this" : "");
+  say(BehaviorLog::Severity::warning, text.substr(0, text.find('\n')));
+  if (line + 1 == lines_max) say(BehaviorLog::Severity::warning, "no more of this");
 }
 
 template <typename Function>
@@ -123,7 +127,7 @@ DdsDomain::~DdsDomain() {
     return;  // no thread to be had
   }
   if (over.wait_for(leave_max) == std::future_status::timeout)
-    std::fputs("ros2: the DDS library does not leave its domain; the run ends without that\n", stderr);
+    say(BehaviorLog::Severity::warning, "the DDS library does not leave its domain; the run ends without that");
 }
 
 dds_entity_t DdsDomain::checked(dds_entity_t entity, const std::string& what) const {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <future>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "engine/behavior_log.h"
 #include "engine/clock.h"
 #include "realtime/machine/placement.h"
 #include "realtime/posix_wait.h"
@@ -113,7 +113,8 @@ void Ros2Bridge::stop() noexcept {
   inside_->thread.join();
   if (!inside_->topics) return;  // it has left already
   inside_->topics.reset();
-  if (const char* why = inside_->thread.failure(); *why != '\0') std::fprintf(stderr, "ros2: ended: %s\n", why);
+  if (const std::string why = inside_->thread.failure(); !why.empty())
+    program_log().message(Line::no_time, BehaviorLog::Severity::error, "ros2", "ended: " + why);
 }
 
 }  // namespace kadans

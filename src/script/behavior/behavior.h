@@ -24,8 +24,10 @@
 
 #include "behavior_status.h"
 #include "config/scenario/play_item.h"
-#include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
+#include "engine/transaction.h"
 #include "kadans/control/set_partition.h"
+#include "kadans/signal/status.h"
 #include "script/chart/chart.h"
 #include "script/host/script_parameter.h"
 #include "script/lua/budget.h"

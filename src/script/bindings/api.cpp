@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "script/check/known_names.h"
-#include "script/host/silent_log.h"
 #include "script/motion/motion_options.h"
 #include "signal/status_fields.h"
 
@@ -359,7 +358,7 @@ std::string api_reference() {
 
 std::vector<std::string> bound_names(const std::filesystem::path& root, const std::filesystem::path& behavior,
                                      const Catalog& catalog) {
-  SilentLog silence;
+  BehaviorLog silence;
   Behavior::Parts parts({.root = root, .file = behavior}, catalog, silence);
   load_behavior(parts, parts.settings.limits.load_instructions);
   KnownNames known = read_known_names(parts);

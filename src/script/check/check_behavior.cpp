@@ -10,7 +10,6 @@
 #include "known_names.h"
 #include "script/behavior/behavior_parts.h"
 #include "script/chart/chart_nodes.h"
-#include "script/host/silent_log.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/sandbox.h"
 #include "script/test/test_prelude.h"
@@ -124,7 +123,7 @@ void check_loaded(Looked& looked) {
 
 std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
                                          const Catalog& catalog) {
-  SilentLog silence;
+  BehaviorLog silence;
   const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
   Behavior::Parts parts(settings, catalog, silence);
   std::vector<InputProblem> problems;
@@ -149,7 +148,7 @@ void tell_once(std::vector<InputProblem>& problems) {
 }
 
 CheckedScript check_script(const fs::path& root, const fs::path& file, const Catalog* catalog) {
-  SilentLog silence;
+  BehaviorLog silence;
   const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
   Behavior::Parts parts(settings, catalog == nullptr ? no_robot : *catalog, silence);
   parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = root,

@@ -6,7 +6,6 @@
 #include "play_order_bytes.h"
 #include "script/bindings/machine_sets.h"
 #include "signal/byte_order.h"
-#include "silent_log.h"
 
 namespace kadans {
 namespace {
@@ -135,7 +134,7 @@ std::vector<std::filesystem::path> ScriptHost::files() const {
     for (std::filesystem::path& file : behavior.files()) all.push_back(std::move(file));
   };
   for (const PlayList::Entry& entry : list_.entries()) add(*entry.behavior);
-  SilentLog silence;
+  BehaviorLog silence;
   for (const Due& due : events_) {
     for (const PlayList::Entry& entry : due.loaded) add(*entry.behavior);
     if (due.order.file.empty()) continue;

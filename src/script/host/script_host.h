@@ -16,6 +16,7 @@
 
 #include "config/scenario/play_item.h"
 #include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
 #include "file_watch.h"
 #include "pause.h"
 #include "play_list.h"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "budget.h"
-#include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
 #include "script_error.h"
 
 struct lua_State;

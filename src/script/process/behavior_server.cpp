@@ -10,38 +10,32 @@
 
 namespace kadans {
 
-void SpokenLines::begin(std::uint8_t kind, const std::string& behavior) {
+bool SpokenLines::push(const Line& line) {
+  const Transition* t = line.transition;
   line_.clear();
   line_.put(std::uint32_t{0});
-  line_.put(kind);
-  line_.put_string(behavior);
-}
-
-bool SpokenLines::push() {
+  line_.put(t != nullptr ? transition_line : static_cast<std::uint8_t>(line.severity));
+  line_.put_string(line.behavior);
+  if (t != nullptr) {
+    for (const std::string* text : {&t->from, &t->to, &t->why}) line_.put_string(*text);
+  } else {
+    line_.put_string(line.text);
+  }
   line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
   const bool fits = link_.lines.try_push(line_.bytes());
   dropped_ += fits ? 0 : 1;
   return fits;
 }
 
-void SpokenLines::transition(const Transition& transition) {
-  begin(transition_line, transition.behavior);
-  for (const std::string* text : {&transition.from, &transition.to, &transition.why}) line_.put_string(*text);
-  (void)push();
+void SpokenLines::tell(const Line& line) {
+  if (!push(line) || dropped_ == 0) return;
+  const std::string text = std::to_string(std::exchange(dropped_, 0)) + " lines found no place";
+  (void)push({line.time_ns, BehaviorLog::Severity::warning, "supervisor", text});
 }
 
-void SpokenLines::message(std::int64_t time_ns, Severity severity, const std::string& behavior,
-                          const std::string& text) {
-  begin(static_cast<std::uint8_t>(severity), behavior);
-  line_.put_string(text);
-  if (!push() || dropped_ == 0) return;
-  const std::uint64_t dropped = std::exchange(dropped_, 0);
-  message(time_ns, Severity::warning, "supervisor", std::to_string(dropped) + " lines found no place");
-}
-
-BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, SpokenLines& lines,
+BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,
                                const Catalog& catalog)
-    : link_(link), bell_(bell), host_(host), lines_(lines), commands_(link.commands) {
+    : link_(link), bell_(bell), host_(host), log_(log), commands_(link.commands) {
   link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
     const std::string& name = host_.behavior(i).name();
@@ -66,7 +60,7 @@ bool BehaviorServer::answer() {
   take_order();
   host_.tick(snapshot_, commands_);
   if (!host_.lost().empty()) {
-    lines_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", "cannot go on: " + host_.lost());
+    log_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", "cannot go on: " + host_.lost());
     return false;
   }
   tell_status();
@@ -81,7 +75,7 @@ void BehaviorServer::take_order() {
   try {
     host_.order(kadans::take_order(bytes));
   } catch (const InputError& error) {
-    lines_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", error.what());
+    log_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", error.what());
   }
 }
 
@@ -106,8 +100,8 @@ void BehaviorServer::keep(std::int64_t time_ns) {
   if (!why.empty()) {
     kept_.clear();
     if (why != unkept_) {
-      lines_.message(time_ns, BehaviorLog::Severity::warning, "supervisor",
-                     "the state of what plays would be lost with this process: " + why);
+      log_.message(time_ns, BehaviorLog::Severity::warning, "supervisor",
+                   "the state of what plays would be lost with this process: " + why);
     }
   }
   const bool turned = why.empty() != unkept_.empty();

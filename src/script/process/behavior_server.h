@@ -15,16 +15,14 @@ namespace kadans {
 
 // Writes the log lines of behaviors into the shared memory. Lines that do not fit are dropped and counted, and the
 // count is logged.
-class SpokenLines final : public BehaviorLog {
+class SpokenLines final : public LineSink {
  public:
   explicit SpokenLines(BehaviorLink& link) : link_(link) {}
 
-  void transition(const Transition& transition) override;
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
+  void tell(const Line& line) override;
 
  private:
-  void begin(std::uint8_t kind, const std::string& behavior);
-  bool push();
+  bool push(const Line& line);
 
   BehaviorLink& link_;
   ByteWriter line_;
@@ -33,8 +31,8 @@ class SpokenLines final : public BehaviorLog {
 
 class BehaviorServer {
  public:
-  // The host's log must be `lines`, or pass its lines on to it. `catalog` is the host's catalog.
-  BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, SpokenLines& lines, const Catalog& catalog);
+  // `log` and `catalog` are those of the host; SpokenLines is a sink of the log.
+  BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log, const Catalog& catalog);
 
   // Serves until the runtime closes the doorbell. Returns the exit code of the process: 0, or 1 when the host cannot
   // continue from the kept state.
@@ -49,7 +47,7 @@ class BehaviorServer {
   BehaviorLink& link_;
   Doorbell& bell_;
   ScriptHost& host_;
-  SpokenLines& lines_;
+  BehaviorLog& log_;
   CommandSender commands_;
   Snapshot snapshot_;
   ByteWriter kept_;

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "behavior_link.h"
-#include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
 #include "script/behavior/behavior_status.h"
 #include "script/host/play_list.h"
 

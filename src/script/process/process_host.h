@@ -28,6 +28,7 @@
 #include "child_answer.h"
 #include "config/scenario/play_item.h"
 #include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
 #include "engine/clock.h"
 #include "engine/tick/tick_statistics.h"
 #include "kadans/control/catalog.h"

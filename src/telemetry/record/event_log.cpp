@@ -34,33 +34,21 @@ void put_what(nlohmann::ordered_json& json, const ToldFault& fault) {
 
 EventLog::EventLog() : ring_(std::make_unique<Bytes>()) {}
 
-void EventLog::begin(Event::Kind kind, std::int64_t time_ns) {
+void EventLog::tell(const Line& line) {
+  const Transition* t = line.transition;
   outgoing_.clear();
   outgoing_.put(std::uint32_t{0});
-  outgoing_.put(time_ns);
-  outgoing_.put(static_cast<std::uint8_t>(kind));
-}
-
-void EventLog::push() {
+  outgoing_.put(line.time_ns);
+  outgoing_.put(static_cast<std::uint8_t>(t != nullptr ? Event::Kind::transition : Event::Kind::message));
+  outgoing_.put_string(line.behavior);
+  if (t != nullptr) {
+    for (const std::string* text : {&t->from, &t->to, &t->why}) outgoing_.put_string(*text);
+  } else {
+    outgoing_.put(static_cast<std::uint8_t>(line.severity));
+    outgoing_.put_string(line.text);
+  }
   outgoing_.set(0, static_cast<std::uint32_t>(outgoing_.size() - head_bytes));
   if (!ring_->try_push(outgoing_.bytes())) dropped_.fetch_add(1, std::memory_order_relaxed);
-}
-
-void EventLog::transition(const Transition& transition) {
-  begin(Event::Kind::transition, transition.time_ns);
-  outgoing_.put_string(transition.behavior);
-  outgoing_.put_string(transition.from);
-  outgoing_.put_string(transition.to);
-  outgoing_.put_string(transition.why);
-  push();
-}
-
-void EventLog::message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) {
-  begin(Event::Kind::message, time_ns);
-  outgoing_.put_string(behavior);
-  outgoing_.put(static_cast<std::uint8_t>(severity));
-  outgoing_.put_string(text);
-  push();
 }
 
 bool EventLog::pop(std::int64_t time_ns, Event& event) {

@@ -1,5 +1,5 @@
-// A queue of the behaviors' transitions and messages, from the behavior thread to the thread that drains the record. It
-// never blocks: events that do not fit are dropped and counted.
+// A queue of transitions and messages: a sink of the log of one thread, drained by another thread. It never blocks:
+// events that do not fit are dropped and counted.
 #pragma once
 
 #include <atomic>
@@ -12,9 +12,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
 #include "kadans/exchange/ring.h"
 #include "kadans/model/robot_model.h"
+#include "kadans/signal/fault.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -25,6 +26,11 @@ struct Event {
   Transition transition;  // both kinds use its time_ns and behavior
   BehaviorLog::Severity severity = BehaviorLog::Severity::info;
   std::string text;
+
+  // Valid as long as the event.
+  Line line() const noexcept {
+    return {transition.time_ns, severity, transition.behavior, text, kind == Kind::transition ? &transition : nullptr};
+  }
 };
 
 // The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition and kadans.Fault.
@@ -37,13 +43,11 @@ extern const char* const log_schema;
 extern const char* const transition_schema;
 extern const char* const fault_schema;
 
-class EventLog final : public BehaviorLog {
+class EventLog final : public LineSink {
  public:
   EventLog();
 
-  // Behavior thread only.
-  void transition(const Transition& transition) override;
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override;
+  void tell(const Line& line) override;  // filling thread only
 
   // Draining thread only. False when no event up to `time_ns` is waiting.
   [[nodiscard]] bool pop(std::int64_t time_ns, Event& event);
@@ -54,11 +58,8 @@ class EventLog final : public BehaviorLog {
   using Bytes = Ring<std::byte, std::size_t{1} << 18U>;
   static constexpr std::size_t head_bytes = sizeof(std::uint32_t) + sizeof(std::int64_t);
 
-  void begin(Event::Kind kind, std::int64_t time_ns);
-  void push();
-
   std::unique_ptr<Bytes> ring_;
-  ByteWriter outgoing_;              // behavior thread
+  ByteWriter outgoing_;              // filling thread
   std::vector<std::byte> incoming_;  // draining thread
   std::atomic<std::uint32_t> dropped_{0};
 };

@@ -49,7 +49,7 @@ class Recorder final : public RecordSink {
   void timing(const std::string& json, std::int64_t time_ns);
 
   void record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept override;
-  BehaviorLog& events() noexcept { return events_; }
+  LineSink& events() noexcept { return events_; }
   void fault(const Fault& fault) noexcept { (void)faults_.try_push(fault); }
 
   // Writes all waiting rows, events and faults; the file grows chunk by chunk. False once the file has failed; the ring

@@ -1,0 +1,168 @@
+#include "behavior_log.h"
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include <spdlog/formatter.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+namespace {
+
+// All that spdlog's own sinks read, and with it the facts that have no place there.
+struct Message final : spdlog::details::log_msg {
+  explicit Message(const Line& said)
+      : log_msg(spdlog::log_clock::time_point(
+                    std::chrono::duration_cast<spdlog::log_clock::duration>(std::chrono::nanoseconds(said.time_ns))),
+                {}, {said.behavior.data(), said.behavior.size()}, level_of(said), {said.text.data(), said.text.size()}),
+        line(said) {}
+  static spdlog::level::level_enum level_of(const Line& line) {
+    if (line.transition != nullptr) return spdlog::level::debug;
+    if (line.severity == BehaviorLog::Severity::error) return spdlog::level::err;
+    return line.severity == BehaviorLog::Severity::warning ? spdlog::level::warn : spdlog::level::info;
+  }
+  const Line& line;
+};
+
+// Only the log's own messages come to its sinks.
+const Line& line_of(const spdlog::details::log_msg& message) { return static_cast<const Message&>(message).line; }
+
+class FactSink final : public spdlog::sinks::sink {
+ public:
+  explicit FactSink(LineSink& to) : to_(to) {}
+  void log(const spdlog::details::log_msg& message) override { to_.tell(line_of(message)); }
+  void flush() override {}
+  void set_pattern(const std::string& /*pattern*/) override {}
+  void set_formatter(std::unique_ptr<spdlog::formatter> /*formatter*/) override {}
+
+ private:
+  LineSink& to_;
+};
+
+enum class Medium : std::uint8_t { plain, terminal, colored_terminal, journal };
+
+class LineFormatter final : public spdlog::formatter {
+ public:
+  explicit LineFormatter(Medium medium) : medium_(medium) {}
+
+  void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& text) override {
+    const Line& line = line_of(message);
+    put_priority(message.level, text);
+    if (line.time_ns != Line::no_time) {
+      // A bar that shows progress may stand there.
+      if (medium_ == Medium::terminal || medium_ == Medium::colored_terminal) put("\r\033[K", text);
+      char time[32];
+      const int size = std::snprintf(time, sizeof time, "%9.2f s  ", 1e-9 * static_cast<double>(line.time_ns));
+      put({time, static_cast<std::size_t>(size)}, text);
+    } else if (message.level == spdlog::level::err && line.behavior.empty()) {
+      put(medium_ == Medium::colored_terminal ? "\033[31;1merror:\033[0m " : "error: ", text);
+    }
+    if (!line.behavior.empty()) {
+      put(line.behavior, text);
+      put(": ", text);
+    }
+    if (const Transition* t = line.transition; t != nullptr) {
+      for (const std::string_view part : {std::string_view(t->from), std::string_view(" -> "), std::string_view(t->to),
+                                          std::string_view(" ("), std::string_view(t->why), std::string_view(")")})
+        put(part, text);
+    }
+    for (const char c : line.text) {
+      text.push_back(c);
+      if (c == '\n') put_priority(message.level, text);
+    }
+    text.push_back('\n');
+  }
+  std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<LineFormatter>(medium_); }
+
+ private:
+  static void put(std::string_view part, spdlog::memory_buf_t& text) {
+    text.append(part.data(), part.data() + part.size());
+  }
+  // As in sd-daemon(3): 3 error, 4 warning, 6 information, 7 debug.
+  void put_priority(spdlog::level::level_enum level, spdlog::memory_buf_t& text) const {
+    if (medium_ != Medium::journal) return;
+    put(level == spdlog::level::err    ? "<3>"
+        : level == spdlog::level::warn ? "<4>"
+        : level == spdlog::level::info ? "<6>"
+                                       : "<7>",
+        text);
+  }
+  Medium medium_;
+};
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nothing sets variables
+  return value == nullptr ? "" : value;
+}
+
+Medium medium_of_stderr() {
+  if (stderr_is_journal()) return Medium::journal;
+  if (isatty(STDERR_FILENO) != 1) return Medium::plain;
+  return environment("NO_COLOR").empty() ? Medium::colored_terminal : Medium::terminal;
+}
+
+}  // namespace
+
+class BehaviorLog::Logger final : public spdlog::logger {
+ public:
+  Logger() : spdlog::logger("") { flush_on(spdlog::level::trace); }
+  void say(const Line& line) { log_it_(Message(line), true, false); }
+};
+
+BehaviorLog::BehaviorLog(std::initializer_list<LineSink*> sinks) : logger_(std::make_unique<Logger>()) {
+  for (LineSink* sink : sinks) add(*sink);
+}
+BehaviorLog::BehaviorLog(TextSink sink) : BehaviorLog() { add(std::move(sink)); }
+BehaviorLog::~BehaviorLog() = default;
+
+void BehaviorLog::add(LineSink& sink) { add(std::make_shared<FactSink>(sink)); }
+void BehaviorLog::add(TextSink sink) { logger_->sinks().push_back(std::move(sink)); }
+void BehaviorLog::say(const Line& line) { logger_->say(line); }
+
+void BehaviorLog::transition(const Transition& transition) {
+  say({.time_ns = transition.time_ns, .behavior = transition.behavior, .text = {}, .transition = &transition});
+}
+
+void BehaviorLog::message(std::int64_t time_ns, Severity severity, std::string_view behavior, std::string_view text) {
+  say({.time_ns = time_ns, .severity = severity, .behavior = behavior, .text = text});
+}
+
+// systemd.exec(5): the device and inode of the stream that it connected.
+bool stderr_is_journal() {
+  struct stat is {};
+  if (fstat(STDERR_FILENO, &is) != 0) return false;
+  return environment("JOURNAL_STREAM") == std::to_string(is.st_dev) + ":" + std::to_string(is.st_ino);
+}
+
+TextSink stderr_sink(Shown shown) {
+  auto sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+  sink->set_formatter(std::make_unique<LineFormatter>(medium_of_stderr()));
+  sink->set_level(shown == Shown::errors     ? spdlog::level::err
+                  : shown == Shown::messages ? spdlog::level::info
+                                             : spdlog::level::trace);
+  return sink;
+}
+
+TextSink file_sink(const std::string& file) {
+  try {
+    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file);
+    sink->set_formatter(std::make_unique<LineFormatter>(Medium::plain));
+    return sink;
+  } catch (const spdlog::spdlog_ex& error) {
+    throw InputError({.message = error.what()});
+  }
+}
+
+BehaviorLog& program_log() {
+  static BehaviorLog log(stderr_sink(Shown::all));
+  return log;
+}
+
+}  // namespace kadans

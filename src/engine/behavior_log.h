@@ -1,0 +1,84 @@
+// Where behaviors and the parts of the runtime speak to people. A log is an spdlog logger: each line goes to all of its
+// sinks, on the thread that says it. Text sinks write it as text: stderr, the journal, a file. Other sinks (LineSink)
+// read its facts: the record, the servers of an instance, the lines kept for a report. Each thread of a live run has a
+// log of its own. What behaviors say reaches the supervisor's log through a queue: that queue is a sink of the
+// behaviors' log (telemetry/record/event_log.h). Real-time threads say nothing.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace spdlog::sinks {
+class sink;
+}
+
+namespace kadans {
+
+// One change of state of a behavior, for the record and the console.
+struct Transition {
+  std::int64_t time_ns = 0;
+  std::string behavior;
+  std::string from;  // path of the state, "stand.wait"; "" when entering
+  std::string to;
+  std::string why;
+};
+
+struct Line;
+class LineSink;
+using TextSink = std::shared_ptr<spdlog::sinks::sink>;
+
+class BehaviorLog {
+ public:
+  enum class Severity : std::uint8_t { info, warning, error };
+
+  BehaviorLog(std::initializer_list<LineSink*> sinks = {});  // without a sink it drops everything
+  explicit BehaviorLog(TextSink sink);
+  ~BehaviorLog();
+  BehaviorLog(const BehaviorLog&) = delete;
+  BehaviorLog& operator=(const BehaviorLog&) = delete;
+
+  // On the thread that says lines, or before the first one. A LineSink must outlive the last line.
+  void add(LineSink& sink);
+  void add(TextSink sink);
+
+  void say(const Line& line);
+  void transition(const Transition& transition);
+  void message(std::int64_t time_ns, Severity severity, std::string_view behavior, std::string_view text);
+
+ private:
+  class Logger;
+  std::unique_ptr<Logger> logger_;
+};
+
+// Valid while it is said.
+struct Line {
+  static constexpr std::int64_t no_time = -1;  // said outside of a run
+
+  std::int64_t time_ns = no_time;  // of the run: virtual in a simulation
+  BehaviorLog::Severity severity = BehaviorLog::Severity::info;
+  std::string_view behavior;               // or the part of the runtime that says it; "": the program
+  std::string_view text;                   // of a message
+  const Transition* transition = nullptr;  // nullptr: it is a message
+};
+
+class LineSink {
+ public:
+  virtual ~LineSink() = default;
+  virtual void tell(const Line& line) = 0;
+};
+
+// Text sinks write "     1.50 s  squat: on my way". They lock, so no real-time thread uses them.
+// When stderr is systemd's journal, each line of stderr_sink begins with its priority, "<4>".
+enum class Shown : std::uint8_t { errors, messages, all };  // all: messages and transitions
+TextSink stderr_sink(Shown shown);
+bool stderr_is_journal();
+// Appends. Throws InputError when the file cannot be opened.
+TextSink file_sink(const std::string& file);
+
+// What the program says of itself, on stderr. Any thread that is not real-time; add() only before other threads start.
+BehaviorLog& program_log();
+
+}  // namespace kadans

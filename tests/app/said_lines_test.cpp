@@ -1,0 +1,36 @@
+// Where `kadans run` writes its lines: stderr, systemd's journal, a file.
+#include <cstdlib>
+
+#include <doctest/doctest.h>
+
+#include "program.h"
+
+using namespace kadans::program;
+
+TEST_CASE("run --log-file appends all lines, transitions and faults too, though stderr shows errors alone") {
+  const auto project = project_copy("log_file");
+  const std::string squat =
+      "run config/tulip/robot.json --play squat --threads-on-virtual-time --duration 1 --log-file lines.txt";
+  const Outcome first = run(squat, project);
+  CHECK_MESSAGE(first.exit_code == 0, first.err);
+  CHECK_FALSE(has(first.err, " -> "));
+  const std::string lines = read(project / "lines.txt");
+  CHECK(has(lines, "     0.00 s  squat:  -> settle ("));
+  (void)run(squat, project);
+  CHECK(read(project / "lines.txt") == lines + lines);
+
+  const Outcome nowhere = run(squat + "/none", project);
+  CHECK(nowhere.exit_code == 2);
+  CHECK(has(nowhere.err, "error: Failed opening file lines.txt/none for writing"));
+}
+
+TEST_CASE("Lines on systemd's journal begin with their priority, all others do not") {
+  const auto folder = fresh_folder("journal");
+  const std::string program = std::string(KADANS_BINARY_DIR) + "/kadans";
+  write(folder / "say.sh",
+        "touch err; JOURNAL_STREAM=$(stat -c %d:%i err) $1 check none.json 2>err\n"
+        "JOURNAL_STREAM=1:1 $1 check none.json 2>other; true\n");
+  REQUIRE(std::system(("cd '" + folder.string() + "' && sh say.sh '" + program + "'").c_str()) == 0);
+  CHECK(read(folder / "err").starts_with("<3>error: "));
+  CHECK(read(folder / "other").starts_with("error: "));
+}
