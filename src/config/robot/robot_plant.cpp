@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 
-#include "config/json/name_pattern.h"
 #include "kadans/model/kinematics.h"
 #include "robot_reader.h"
 #include "signal/nearest_name.h"

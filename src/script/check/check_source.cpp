@@ -6,7 +6,6 @@
 #include <set>
 
 #include "check_arguments.h"
-#include "check_chart.h"
 #include "hint.h"
 #include "source_scopes.h"
 
