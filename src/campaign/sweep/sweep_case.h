@@ -47,8 +47,6 @@ std::vector<QuantityValue> settings_at(const std::vector<SampleAxis>& axes, cons
 // The same values by the full names of the quantities; each name stands once.
 std::vector<QuantityValue> quantities_at(const std::vector<SampleAxis>& axes, const std::vector<double>& point);
 
-// The cases of a sweep: which run each case is, and the name under which its result is stored.
-
 // A scenario of the plan, with what is known only after its robot was assembled.
 struct SweepSubject {
   ExperimentScenario scenario;
