@@ -2,7 +2,6 @@
 #include "task_thread.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>

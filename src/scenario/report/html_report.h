@@ -1,8 +1,6 @@
 // Reports as HTML pages.
 #pragma once
 
-#include <cstddef>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -2,7 +2,6 @@
 #include "signal_plot.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
