@@ -13,7 +13,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::int64_t ns_per_s = 1'000'000'000;
+constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::uint64_t parameters_every_ticks = 10;
 
 constexpr const char* parameters_schema = R"({
@@ -149,7 +149,7 @@ bool RecordWriter::put_parameters(std::int64_t time_ns) {
     changed.push_back({{"name", table.info(id).name}, {"value", value}});
   }
   if (changed.empty()) return true;
-  const nlohmann::ordered_json json{{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
+  const nlohmann::ordered_json json{{"timestamp", {{"sec", time_ns / second_ns}, {"nsec", time_ns % second_ns}}},
                                     {"parameters", changed}};
   return file_.write(parameters_channel_, 0, time_ns, bytes_of(json_text(json)));
 }
