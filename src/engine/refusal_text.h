@@ -5,7 +5,7 @@
 #include <string>
 
 #include "kadans/control/catalog.h"
-#include "kadans/signal/refusal.h"
+#include "kadans/signal/command.h"
 
 namespace kadans {
 

@@ -16,6 +16,15 @@
 
 namespace kadans {
 
+// A set of fault codes, one bit each: what a watch found in a tick.
+using FaultMask = std::uint64_t;
+static_assert(fault_codes <= 64);
+
+constexpr FaultMask bit(FaultCode code) noexcept { return FaultMask{1} << static_cast<unsigned>(code); }
+constexpr FaultMask bit_if(bool condition, FaultCode code) noexcept { return condition ? bit(code) : 0; }
+// Of a mask that is not empty.
+constexpr FaultCode first_of(FaultMask mask) noexcept { return static_cast<FaultCode>(std::countr_zero(mask)); }
+
 // The reaction to a fault: the rungs of the ladder that it asks for, and how they are left again. Each fault code has a
 // reaction, and each reaction is a key of the robot's configuration.
 //
@@ -64,14 +73,5 @@ class Ladder {
   SafetyLevel level_ = SafetyLevel::normal;
   bool idle_ = true;
 };
-
-// A set of fault codes, one bit each: what a watch found in a tick.
-using FaultMask = std::uint64_t;
-static_assert(fault_codes <= 64);
-
-constexpr FaultMask bit(FaultCode code) noexcept { return FaultMask{1} << static_cast<unsigned>(code); }
-constexpr FaultMask bit_if(bool condition, FaultCode code) noexcept { return condition ? bit(code) : 0; }
-// Of a mask that is not empty.
-constexpr FaultCode first_of(FaultMask mask) noexcept { return static_cast<FaultCode>(std::countr_zero(mask)); }
 
 }  // namespace kadans

@@ -8,7 +8,6 @@
 
 #include "kadans/control/minimum_jerk.h"
 #include "kadans/testing/joint_bench.h"
-#include "kadans/testing/reference.h"
 #include "telemetry/plot.h"
 
 namespace kadans::testing {

@@ -1,11 +1,11 @@
 // Samples: where the points of each kind lie, and that what else varies makes no difference to an axis.
-#include "campaign/sweep/sampling.h"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include <doctest/doctest.h>
+
+#include "campaign/sweep/sweep_case.h"
 
 using namespace kadans;
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "config/json/name_pattern.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

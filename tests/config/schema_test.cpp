@@ -1,5 +1,5 @@
 // The schemas in config/schema are what the readers' field lists say, and the shipped files keep to them.
-#include "config/json/schema.h"
+#include "schema.h"
 
 #include <filesystem>
 #include <fstream>

@@ -6,8 +6,7 @@
 #include "fuzz_input.h"
 #include "telemetry/plot/signal_plot.h"
 #include "telemetry/reading/record_comparison.h"
-#include "telemetry/reading/record_cut.h"
-#include "telemetry/reading/record_text.h"
+#include "telemetry/reading/record_export.h"
 
 namespace {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "fuzz_input.h"
-#include "kadans/model/urdf_frames.h"
 
 namespace {
 

@@ -1,5 +1,3 @@
-#include "kadans/model/urdf_frames.h"
-
 #include <numbers>
 
 #include <doctest/doctest.h>

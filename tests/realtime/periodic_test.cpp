@@ -1,8 +1,7 @@
-#include "realtime/periodic.h"
-
 #include <doctest/doctest.h>
 
 #include "fake_wait.h"
+#include "realtime/task_thread.h"
 
 using namespace kadans;
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "kadans/signal/input_error.h"
-#include "telemetry/reading/record_cut.h"
+#include "telemetry/reading/record_export.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) {

@@ -1,11 +1,9 @@
 // A stretch of a record is a record.
-#include "telemetry/reading/record_cut.h"
-
 #include <doctest/doctest.h>
 
 #include "kadans/signal/input_error.h"
 #include "telemetry/reading/record_comparison.h"
-#include "telemetry/reading/record_text.h"
+#include "telemetry/reading/record_export.h"
 #include "written_record.h"
 
 using namespace kadans;

@@ -1,12 +1,11 @@
 // Rows as lines of JSON and as tables: the same numbers, in the order of the file.
-#include "telemetry/reading/record_text.h"
-
 #include <limits>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include "kadans/signal/input_error.h"
+#include "telemetry/reading/record_export.h"
 #include "written_record.h"
 
 using namespace kadans;

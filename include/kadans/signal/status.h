@@ -8,10 +8,10 @@
 #include <limits>
 #include <type_traits>
 
+#include "kadans/signal/command.h"
 #include "kadans/signal/fault.h"
 #include "kadans/signal/frames.h"
 #include "kadans/signal/joystick.h"
-#include "kadans/signal/refusal.h"
 
 namespace kadans {
 

@@ -17,7 +17,6 @@
 #include "kadans/testing/frequency_response.h"
 #include "kadans/testing/golden_record.h"
 #include "kadans/testing/joint_bench.h"
-#include "kadans/testing/reference.h"
 #include "kadans/testing/step_response.h"
 #include "kadans/testing/switch_record.h"
 #include "kadans/testing/tracking.h"

@@ -1,7 +1,7 @@
 #include "app/terminal.h"
 #include "log_verbs.h"
 #include "signal/number_text.h"
-#include "telemetry/reading/record_cut.h"
+#include "telemetry/reading/record_export.h"
 
 namespace kadans {
 

@@ -3,7 +3,7 @@
 
 #include "app/terminal.h"
 #include "log_verbs.h"
-#include "telemetry/reading/record_text.h"
+#include "telemetry/reading/record_export.h"
 
 namespace kadans {
 namespace {

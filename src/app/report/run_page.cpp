@@ -6,7 +6,7 @@
 
 #include "app/live/record_pictures.h"
 #include "campaign/work/durable_file.h"
-#include "config/json/name_pattern.h"
+#include "signal/nearest_name.h"
 #include "version.h"
 
 namespace kadans {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "config/json/name_pattern.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "app/option_checks.h"
-#include "config/json/name_pattern.h"
+#include "signal/nearest_name.h"
 #include "sweep_subjects.h"
 #include "tune_command.h"
 

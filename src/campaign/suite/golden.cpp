@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <sstream>
-#include <system_error>
 #include <tuple>
 
 #include <nlohmann/json.hpp>

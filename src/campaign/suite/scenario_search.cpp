@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "config/json/json_value.h"
-#include "config/json/name_pattern.h"
 #include "config/scenario/scenario_config.h"
 #include "signal/nearest_name.h"
 

@@ -2,7 +2,6 @@
 #include "suite_report.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include <tinyxml2.h>
 

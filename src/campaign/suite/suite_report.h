@@ -33,7 +33,7 @@ std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s);
 // A run gets a link when its report lies in `folder`. `wall_s` is the time of the whole suite.
 std::string suite_page(const std::vector<RunOutcome>& runs, double wall_s, const std::filesystem::path& folder);
 
-// Results as JUnit XML, which CI servers read.
+// A result for CI servers.
 struct JunitCase {
   enum class Verdict : std::uint8_t { passed, failed, error, skipped };
   std::string file, name;

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "config/json/fields.h"
-#include "config/json/name_pattern.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -1,7 +1,6 @@
 #include "content_hash.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
 #include "kadans/signal/input_error.h"

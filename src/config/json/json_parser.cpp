@@ -1,12 +1,9 @@
 // Reads a JSON text into the tree of json_value.h.
-#include <array>
 #include <charconv>
 #include <cstddef>
-#include <optional>
 #include <string_view>
 #include <system_error>
 #include <unordered_map>
-#include <utility>
 
 #include "json_value.h"
 #include "problems.h"

@@ -5,7 +5,6 @@
 #include <limits>
 #include <sstream>
 
-#include "config/json/name_pattern.h"
 #include "signal/nearest_name.h"
 #include "signal/number_text.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "config/json/name_pattern.h"
 #include "config/scenario/based_on.h"
 #include "config/scenario/play_item.h"
 #include "kadans/model/urdf.h"

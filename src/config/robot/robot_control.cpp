@@ -1,10 +1,8 @@
 // The parts of a robot's configuration that are about control: objects, sets, poses, parameters and presets.
-
 #include <algorithm>
 #include <map>
 #include <stdexcept>
 
-#include "config/json/name_pattern.h"
 #include "kadans/control/set_partition.h"
 #include "robot_config.h"
 #include "robot_reader.h"

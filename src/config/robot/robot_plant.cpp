@@ -1,8 +1,6 @@
 // The parts of a robot's configuration that stand on plant, start, estimator and safety.
 #include <algorithm>
-#include <array>
 
-#include "config/json/name_pattern.h"
 #include "kadans/model/kinematics.h"
 #include "robot_reader.h"
 #include "signal/nearest_name.h"
@@ -39,7 +37,7 @@ void drive_fields(Fields& f, DriveSettings& d) {
            "dry friction of the brake that holds the joint while its drive is not enabled; 0: none");
 }
 
-constexpr NumberRange anywhere_m{-10, 10, "m"};
+constexpr NumberRange sensor_position_m{-10, 10, "m"};
 
 // A plant type's list of fields, as one of the file's.
 class TypeFields final : public PlantFields {
@@ -175,7 +173,7 @@ void RobotReader::surface(Fields& entry) {
 void RobotReader::imu(Fields& f) {
   ImuSettings& imu = config_.plant.imu;
   Vec3 angles_rad{};
-  f.numbers("position_m", imu.pose.position_m, anywhere_m, "where it sits, in the base frame");
+  f.numbers("position_m", imu.pose.position_m, sensor_position_m, "where it sits, in the base frame");
   if (f.numbers("roll_pitch_yaw_rad", angles_rad, {-7, 7, "rad"}, "how it sits, in the base frame")) {
     imu.pose.orientation = from_roll_pitch_yaw(angles_rad[0], angles_rad[1], angles_rad[2]);
   }
@@ -189,10 +187,14 @@ void RobotReader::imu(Fields& f) {
 void RobotReader::foot(Fields& f) {
   FootSettings foot;
   f.string("link", foot.link, "the link that carries the sole", Need::required);
-  f.numbers("heel_inner_m", foot.sensors_m[0], anywhere_m, "pressure sensor, in the link's frame", Need::required);
-  f.numbers("heel_outer_m", foot.sensors_m[1], anywhere_m, "pressure sensor, in the link's frame", Need::required);
-  f.numbers("toe_inner_m", foot.sensors_m[2], anywhere_m, "pressure sensor, in the link's frame", Need::required);
-  f.numbers("toe_outer_m", foot.sensors_m[3], anywhere_m, "pressure sensor, in the link's frame", Need::required);
+  f.numbers("heel_inner_m", foot.sensors_m[0], sensor_position_m, "pressure sensor, in the link's frame",
+            Need::required);
+  f.numbers("heel_outer_m", foot.sensors_m[1], sensor_position_m, "pressure sensor, in the link's frame",
+            Need::required);
+  f.numbers("toe_inner_m", foot.sensors_m[2], sensor_position_m, "pressure sensor, in the link's frame",
+            Need::required);
+  f.numbers("toe_outer_m", foot.sensors_m[3], sensor_position_m, "pressure sensor, in the link's frame",
+            Need::required);
   f.number("noise_N", foot.noise_N, {0, 1e3, "N"}, "standard deviation of each sensor");
   if (!have_model_) return;
   if (!foot.link.empty() && !config_.model.find_link(foot.link)) {

@@ -7,7 +7,7 @@
 namespace kadans {
 namespace {
 
-constexpr const char* key = "based_on";
+constexpr const char* base_key = "based_on";
 
 void stand_at(TextPlace place, JsonValue& value) {
   value.place = place;
@@ -68,7 +68,7 @@ void merge(JsonValue& base, const JsonValue& given) {
 
 // What the value is based on; nothing when it does not say so, or not by a name: then its reader refuses it.
 const JsonMember* base_of(const JsonValue& value) {
-  const JsonMember* base = value.kind == JsonValue::Kind::object ? value.find(key) : nullptr;
+  const JsonMember* base = value.kind == JsonValue::Kind::object ? value.find(base_key) : nullptr;
   return base != nullptr && base->value.kind == JsonValue::Kind::string ? base : nullptr;
 }
 
@@ -80,7 +80,7 @@ BasedJson parse(std::string_view text, const std::string& file, std::size_t dept
   Problems problems(file);
   if (depth == based_on_depth_max)
     problems.add(place, "based_on: more than " + std::to_string(depth) + " files, or one that is based on itself");
-  const std::filesystem::path base = resolve_file(given->value.text, place, key, problems);
+  const std::filesystem::path base = resolve_file(given->value.text, place, base_key, problems);
   problems.throw_if_any();
   BasedJson whole = parse(read_input_file(base), base.string(), depth + 1);
   stand_at(place, whole.value);

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
 
 #include "config/robot/project_root.h"
 

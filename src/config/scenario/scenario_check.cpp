@@ -94,8 +94,6 @@ void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std:
 namespace {
 
 const std::array<std::string, 8> metric_kinds{"max", "min", "mean", "rms", "end", "share", "first_time", "since"};
-constexpr NumberRange time_range{0, 1e6, "s"};
-
 bool takes_signal(MetricKind kind) { return kind <= MetricKind::end; }
 bool takes_condition(MetricKind kind) { return kind >= MetricKind::end; }
 

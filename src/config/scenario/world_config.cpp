@@ -5,7 +5,6 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "config/json/name_pattern.h"
 #include "kadans/model/kinematics.h"
 #include "signal/nearest_name.h"
 

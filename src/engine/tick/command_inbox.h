@@ -1,6 +1,6 @@
 // The control engine's end of the command queue. It applies whole transactions only, checks each before its first
 // effect, and takes at most a fixed number of commands per tick. A transaction with one bad command is refused as a
-// whole and counted; the snapshot says why (refusal.h).
+// whole and counted; the snapshot says why (kadans/signal/command.h).
 //
 // While the safety layer holds the robot, or worse, the set-points, parameters and control sets stay as they are:
 // commands that would change them are refused, unless the same transaction clears the faults first. A motion under way

@@ -5,7 +5,6 @@
 #include "kadans/model/inertia.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/model/urdf.h"
-#include "kadans/model/urdf_frames.h"
 #include "signal/input_file.h"
 #include "urdf_description.h"
 

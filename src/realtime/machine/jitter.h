@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "realtime/periodic.h"
+#include "realtime/task_thread.h"
 
 namespace kadans {
 

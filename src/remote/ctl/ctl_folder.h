@@ -1,4 +1,6 @@
-// The folder by which clients find a running instance. It holds three sockets, one for each role. A user who may open a
+// How clients find a running instance and talk to it.
+//
+// An instance has a folder with three sockets, one for each role. A user who may open a
 // socket has its role. So ls -l shows the rights, and chmod and chgrp change them:
 //
 //   read      0666          look: status, lists, values, faults, watch

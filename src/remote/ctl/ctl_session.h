@@ -1,7 +1,4 @@
-// The server's side of one connection: it reads and writes whole lines, and both directions are bounded.
-//
-// The next line is read only when the answer to the last line has been handed to the system. So a client that sends
-// without reading holds up only itself, and at most one answer and one sample wait for it. Server thread.
+// The server's side of a connection, and the requests that come over it.
 #pragma once
 
 #include <algorithm>
@@ -19,6 +16,8 @@
 
 namespace kadans {
 
+struct OrderRequest;
+
 // Counts of all clients so far. Written by the server's thread, read by any thread.
 struct CtlCounts {
   std::atomic<std::uint32_t> served{0};   // clients that found a place
@@ -26,6 +25,10 @@ struct CtlCounts {
   std::atomic<std::uint32_t> dropped{0};  // clients that were too slow, sent too much, or made room for another
 };
 
+// The server's side of one connection: it reads and writes whole lines, and both directions are bounded.
+//
+// The next line is read only when the answer to the last line has been handed to the system. So a client that sends
+// without reading holds up only itself, and at most one answer and one sample wait for it. Server thread.
 class CtlSession {
  public:
   static constexpr std::size_t line_bytes_max = std::size_t{64} * 1024;
@@ -84,8 +87,6 @@ class CtlSession {
 
 // Handles the request lines of ctl_server.h. A request is answered at once, or it becomes an order and its answer
 // becomes the line. Server thread.
-struct OrderRequest;
-
 class CtlRequests {
  public:
   CtlRequests(Instance& instance, InstancePort& port, const CtlCounts& counts);

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "config/json/fields.h"
-#include "config/json/name_pattern.h"
 #include "engine/refusal_text.h"
 #include "run_description.h"
+#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

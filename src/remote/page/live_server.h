@@ -3,7 +3,7 @@
 //
 // It listens on the loopback address unless LiveSettings names another one. A client with the token may write:
 // parameters, orders, the emergency stop. A client without the token may only read, and only if it calls the server by
-// one of its names. A page from another site may not even read (src/remote/page/live_access.h).
+// one of its names. A page from another site may not even read (live_connection.h).
 //
 // Clients can neither end the server nor make it grow without bound (docs/security.md lists the bounds). At most
 // `requests_max` requests are served at a time. When another one comes, the oldest request without the token is closed,

@@ -2,7 +2,6 @@
 // control ticks.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "config/json/name_pattern.h"
 #include "kadans/signal/random.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -2,7 +2,6 @@
 #include "html_report.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "signal/number_text.h"

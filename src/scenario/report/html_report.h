@@ -1,9 +1,6 @@
-// A self-contained HTML page for reports: it holds its styles and pictures, makes no requests, and follows the reader's
-// light or dark setting.
+// Reports as HTML pages.
 #pragma once
 
-#include <cstddef>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,7 +11,8 @@
 namespace kadans {
 
 std::string base64(std::string_view bytes);
-// A whole document. `style` is CSS that is added after the style of all pages.
+// A whole document that holds its styles and pictures, makes no requests, and follows the reader's light or dark
+// setting. `style` is CSS that is added after the style of all pages.
 std::string html_page(const std::string& title, const std::string& body, const std::string& style = {});
 
 // The report of a run as one HTML page: what happened in words, plots and pictures, every check, transition, fault and

@@ -2,8 +2,6 @@
 #include "report.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bindings.h"
 #include "script/check/known_names.h"
 #include "script/motion/motion_options.h"
 #include "signal/status_fields.h"
@@ -280,15 +281,14 @@ std::string range_note(const std::string& name, const std::string& unit, double 
 
 void add_object(std::string& text, const Catalog& catalog, const ObjectInfo& object) {
   const std::string type = "kadans." + object.name;
-  const auto short_name = [&](const std::string& name) { return name.substr(object.name.size() + 1); };
   std::vector<std::string> setpoints, parameters, presets;
   for (const SetpointId id : object.setpoints) {
     const Setpoint& setpoint = catalog.setpoints[id];
-    setpoints.push_back(range_note(short_name(setpoint.name), setpoint.unit, setpoint.min, setpoint.max));
+    setpoints.push_back(range_note(short_name(object, setpoint.name), setpoint.unit, setpoint.min, setpoint.max));
   }
   for (const ParameterId id : object.parameters) {
     const Parameter& parameter = catalog.parameters.info(id);
-    parameters.push_back(range_note(short_name(parameter.name), parameter.unit, parameter.min, parameter.max));
+    parameters.push_back(range_note(short_name(object, parameter.name), parameter.unit, parameter.min, parameter.max));
   }
   for (const Preset& preset : object.presets) presets.push_back("'\"" + preset.name + "\"'");
   text += alternatives(type + ".setpoint", setpoints) + alternatives(type + ".parameter", parameters) +

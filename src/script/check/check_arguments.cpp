@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "hint.h"
+#include "script/bindings/bindings.h"
 #include "script/motion/motion_options.h"
 
 namespace kadans {
@@ -37,10 +38,6 @@ std::string outside(const std::string& name, double value, double min, double ma
 bool whole_text(const std::vector<SourceToken>& tokens, std::size_t at) {
   const SourceToken& after = tokens[at + 1];
   return tokens[at].kind == Kind::text && !after.is("..") && !after.is(":");
-}
-
-std::string short_name(const ObjectInfo& object, const std::string& name) {
-  return name.substr(std::min(name.size(), object.name.size() + 1));
 }
 
 // Where the names stand in { name = value, ... } at `at`.

@@ -4,7 +4,6 @@
 #include <iterator>
 #include <tuple>
 
-#include "check_chart.h"
 #include "check_source.h"
 #include "hint.h"
 #include "known_names.h"

@@ -1,8 +1,7 @@
-#include "check_chart.h"
-
 #include <algorithm>
 #include <set>
 
+#include "check_source.h"
 #include "hint.h"
 #include "kadans/signal/input_error.h"
 #include "script/behavior/behavior_parts.h"

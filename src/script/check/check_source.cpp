@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 
 #include "check_arguments.h"
-#include "check_chart.h"
 #include "hint.h"
 #include "source_scopes.h"
 

@@ -1,13 +1,17 @@
-// Checks of an author's own modules: fields that are assigned while they run, files that return nothing, and guards in
-// them.
+// The checks of a loaded behavior: of the shape of its chart, of its modules, and of the text in every branch.
 #pragma once
 
 #include <vector>
 
 #include "known_names.h"
+#include "script/behavior/behavior_parts.h"
+#include "script/chart/chart.h"
 #include "source_scopes.h"
 
 namespace kadans {
+
+// Checks of an author's own modules: fields that are assigned while they run, files that return nothing, and guards in
+// them.
 
 // A loaded file and its parsed text.
 struct ReadSource {
@@ -38,5 +42,20 @@ void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& k
 // Checks the file of a loaded behavior and all files that it requires and calls. Fields that the files assign to
 // modules are added to `known`.
 void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<InputProblem>& problems);
+
+// Finds mistakes in the shape of a chart that could still run: states that cannot be reached, states without a way out,
+// final states without an outcome, transitions that can never be taken.
+
+// The chart must be resolved and free of other problems.
+void check_chart(const Chart& chart, std::vector<InputProblem>& problems);
+
+// Finds transitions on an event that is never emitted: neither by a function of the behavior or of the files that it
+// requires and calls, nor by a final state inside the waiting state.
+void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::vector<InputProblem>& problems);
+
+// Checks that `vars`, `args` and the arguments of k.call are plain data, because entering copies them and a reload
+// keeps them. Anything else would raise as soon as the behavior is entered.
+// `parts` is a loaded behavior.
+void check_vars(Behavior::Parts& parts, std::vector<InputProblem>& problems);
 
 }  // namespace kadans

@@ -10,7 +10,7 @@
 
 #include <lua.hpp>
 
-#include "kadans/signal/refusal.h"
+#include "kadans/signal/command.h"
 #include "kadans/signal/setpoint.h"
 #include "kadans/signal/status.h"
 

@@ -2,10 +2,8 @@
 #include "record_comparison.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 #include <sstream>
 #include <unordered_map>

@@ -1,6 +1,6 @@
 // Reads the messages of a record one after the other and decodes them: rows of named signals, events, JSON, and other
 // payloads. The metadata of its channel says what a topic holds, so topics of any name, rate or number of signals can
-// be read. The record may have any length. One thread.
+// be read. The record may have any length. One thread. An outline tells what a whole record holds.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,5 @@
-// The memory of a flight recorder: the newest rows of a run, compressed, in a fixed number of bytes.
-//
-// Rows are collected in blocks of 100 (0.1 s at 1 kHz). A full block is transposed: it stores signal by signal. Each
-// value is in single precision, as the difference of its bits from the bits of the row before; the lowest bytes of all
-// rows come first, then the next bytes. So a signal that stands still or moves slowly becomes mostly zeros, and zstd
-// compresses them: 30 s of TULip's 220 signals at 1 kHz take 7 MB, a third of a record. Packed blocks lie in a ring
-// buffer of bytes, and the oldest blocks are dropped. Ticks and times keep all their bits.
-//
-// One thread at a time.
+// Flight recorder: keeps the last seconds of a run in memory, compressed, and writes them to a record when a fault
+// latches.
 #pragma once
 
 #include <cstddef>
@@ -25,6 +18,15 @@ struct ZSTD_CCtx_s;
 
 namespace kadans {
 
+// The memory of a flight recorder: the newest rows of a run, compressed, in a fixed number of bytes.
+//
+// Rows are collected in blocks of 100 (0.1 s at 1 kHz). A full block is transposed: it stores signal by signal. Each
+// value is in single precision, as the difference of its bits from the bits of the row before; the lowest bytes of all
+// rows come first, then the next bytes. So a signal that stands still or moves slowly becomes mostly zeros, and zstd
+// compresses them: 30 s of TULip's 220 signals at 1 kHz take 7 MB, a third of a record. Packed blocks lie in a ring
+// buffer of bytes, and the oldest blocks are dropped. Ticks and times keep all their bits.
+//
+// One thread at a time.
 struct FlightSettings {
   double kept_s = 0;                          // 0: no flight recorder
   std::size_t bytes = std::size_t{8} << 20U;  // for packed rows; when they do not suffice, less than kept_s is kept
@@ -77,13 +79,10 @@ class FlightMemory {
   std::vector<float> values_;                 // row by row
 };
 
-// Flight recorder: keeps the last seconds of a run in memory and writes them to a record of their own when a fault
-// latches.
-//
-// It gets every row and event that the recorder drains, also when no record is open. When safety.level rises to hold or
-// beyond, a dump becomes due `aftermath` later, so that it shows what followed. A rise within kept_s after the last
-// such rise is ignored. The caller names the file. Each step() writes a few blocks, so that the draining thread is not
-// held up; meanwhile new rows go into memory. Values are in single precision.
+// The recorder gets every row and event that the recorder drains, also when no record is open. When safety.level rises
+// to hold or beyond, a dump becomes due `aftermath` later, so that it shows what followed. A rise within kept_s after
+// the last such rise is ignored. The caller names the file. Each step() writes a few blocks, so that the draining
+// thread is not held up; meanwhile new rows go into memory. Values are in single precision.
 //
 // Use it on the draining thread only.
 class FlightRecorder {

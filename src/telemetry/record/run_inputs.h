@@ -7,7 +7,6 @@
 // cut short still has them.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fields.h"
+#include "config/json/fields.h"
 
 namespace kadans {
 

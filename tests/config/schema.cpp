@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "config/json/foreign_json.h"
 #include "config/plan/experiment_plans.h"
 #include "config/robot/robot_config.h"
 #include "config/scenario/scenario_config.h"
-#include "foreign_json.h"
 
 namespace kadans {
 namespace {

@@ -1,5 +1,4 @@
-// Writes a record as text for other tools: every message as JSON lines, or chosen signals as a table (CSV). It works
-// line by line, so the record may have any length. Numbers have enough digits to read back exactly the same number.
+// Writes parts of a record for others: as text for other tools, or as a complete record of their own.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +10,8 @@
 
 namespace kadans {
 
+// Writes a record as text for other tools: every message as JSON lines, or chosen signals as a table (CSV). It works
+// line by line, so the record may have any length. Numbers have enough digits to read back exactly the same number.
 void append_number(std::string& text, double value);           // shortest; "nan", "inf", "-inf"
 void append_seconds(std::string& text, std::int64_t time_ns);  // exact: "1.234"
 
@@ -71,5 +72,21 @@ class CsvLines {
   std::int64_t last_ns_ = 0;  // of the last row
   std::uint64_t lines_ = 0;
 };
+
+// Cuts a time span and chosen signals out of a record and writes them as a complete record of their own, with chunks,
+// CRCs, index, schemas, facts and attachments. The new record begins with the state at the beginning of the span. For
+// signals it holds the last row before the span with that row's own time, because a signal that stands still may have
+// no row for a while. For descriptions (topics with neither rows nor events: URDF, parameters) it holds the last
+// message, at the time at which the span begins.
+struct RecordCut {
+  TimeSpan span;
+  std::vector<std::string> signals;  // patterns for choose_signals; empty: all signals
+};
+struct CutRecord {
+  std::uint64_t messages = 0, file_bytes = 0;
+  std::size_t signals = 0;
+};
+// Replaces the file `to`. Throws InputError when the span holds no message, or when the file cannot be written.
+CutRecord cut_record(const RecordOutline& record, const RecordCut& cut, const std::string& to);
 
 }  // namespace kadans
