@@ -14,19 +14,21 @@ void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& proble
   f.string("name", experiment.name, "the plan's name", Need::required);
   f.string("doc", experiment.doc, "what it shows, one or two sentences");
   std::vector<PlacedName> scenarios;
-  f.strings("scenarios", scenarios, {1, 1000}, "files, from the project root; cases go round them", Need::required);
+  f.strings("scenarios", scenarios, {1, 1000}, "files, from the project root; the cases use them in turn",
+            Need::required);
   for (const PlacedName& scenario : scenarios) {
     experiment.scenarios.push_back(
         {scenario.name, resolve_file(scenario.name, scenario.place, "scenarios", problems).string(), scenario.place});
   }
   f.integer("seed", experiment.seed, {0, std::numeric_limits<std::uint64_t>::max()},
-            "where the sample and the seeds of all runs come from");
+            "seed of the sample and of the seeds of all runs");
   f.boolean("sample_randomise", experiment.sample_randomise,
-            "what the scenarios randomise is part of the sample too, else each run's seed draws it");
-  f.map("vary", "quantities that differ from case to case, by a pattern over their names", [&](Fields& e) {
+            "the sample also chooses what the scenarios randomise (default: each run's seed draws it)");
+  f.map("vary", "quantities that differ from case to case, by a pattern of their names", [&](Fields& e) {
     ExperimentAxis axis{.variation = {.pattern = {e.key(), e.key_place()}, .distribution = {}}};
     distribution_fields(e, axis.variation.distribution, problems);
-    e.integer("steps", axis.steps, {1, 10'000}, "points in a grid, both ends among them; values are points themselves");
+    e.integer("steps", axis.steps, {1, 10'000},
+              "number of points in a grid, including both ends; not for values, each of which is a point");
     if (e.reading()) experiment.vary.push_back(std::move(axis));
   });
   metrics_fields(f, experiment.metrics, problems);

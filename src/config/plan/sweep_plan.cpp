@@ -32,17 +32,19 @@ void plan_fields(Fields& f, SweepPlan& plan, Problems& problems) {
   experiment_fields(f, plan, problems);
   f.choice("sampling", plan.sampling, sampling_names, "how the points are chosen");
   f.integer("cases", plan.cases, {0, sweep_cases_max},
-            "runs of all scenarios together; a grid without it runs each point once, with it goes round the points");
+            "number of runs of all scenarios together; a grid without it runs each point once, with it uses the points "
+            "in turn");
   f.boolean("same_seeds", plan.same_seeds,
-            "all points of a round of a grid, or all scenarios of one sample, have the same seed");
+            "all points in one round of a grid, or all scenarios of one sample, have the same seed");
   f.number("passed_min", plan.passed_min, {0, 1}, "share of the cases that must pass for the sweep to pass");
-  placed_string(f, "first_try", plan.first_try, "metric that is not 0 when a run that passed did so at its first try");
+  placed_string(f, "first_try", plan.first_try, "metric that is not 0 when a passed run succeeded at its first try");
   placed_string(f, "time", plan.time, "metric in seconds whose median over the passed runs is reported");
   placed_string(f, "worst", plan.worst, "metric whose greatest values are shown as the worst cases");
   f.object("heat_map", "two quantities over which the results are drawn", [&](Fields& e) {
-    placed_string(e, "x", plan.heat_map.x, "quantity to the right");
-    placed_string(e, "y", plan.heat_map.y, "quantity upwards");
-    placed_string(e, "metric", plan.heat_map.metric, "metric whose mean is drawn, else the share that passed");
+    placed_string(e, "x", plan.heat_map.x, "quantity on the horizontal axis");
+    placed_string(e, "y", plan.heat_map.y, "quantity on the vertical axis");
+    placed_string(e, "metric", plan.heat_map.metric,
+                  "metric whose mean is drawn (default: the share of runs that passed)");
   });
   if (f.reading()) verify(f, plan, problems);
 }

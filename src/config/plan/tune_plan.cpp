@@ -10,8 +10,8 @@ void parameter_fields(Fields& e, TunedParameter& parameter, Problems& problems) 
   bool log = false;
   e.number("min", min, {}, "least value, in the parameter's unit", Need::required);
   e.number("max", max, {}, "greatest value", Need::required);
-  e.boolean("log", log, "factors matter, not differences: for what ranges over decades");
-  if (e.number("start", start, {}, "where the search begins, else what the robot's configuration says"))
+  e.boolean("log", log, "the search is on a logarithmic scale, for a range of several decades");
+  if (e.number("start", start, {}, "value at which the search begins (default: the one in the robot's configuration)"))
     parameter.start = start;
   if (!e.reading()) return;
   parameter.range = {.kind = log ? Distribution::Kind::log_uniform : Distribution::Kind::uniform, .of = {min, max}};
@@ -31,21 +31,22 @@ void parameter_fields(Fields& e, TunedParameter& parameter, Problems& problems) 
 
 void plan_fields(Fields& f, TunePlan& plan, Problems& problems) {
   experiment_fields(f, plan, problems);
-  f.map("tune", "parameters that are sought, by a pattern over their names", [&](Fields& e) {
+  f.map("tune", "parameters to be tuned, by a pattern of their names", [&](Fields& e) {
     TunedParameter parameter{.pattern = {e.key(), e.key_place()}, .range = {}, .start = {}};
     parameter_fields(e, parameter, problems);
     if (e.reading()) plan.tune.push_back(std::move(parameter));
   });
-  f.integer("runs", plan.runs, {1, 10'000}, "runs of each candidate, with the same seeds and points for all");
-  f.integer("check_runs", plan.check_runs, {2, 100'000}, "runs before and after, with seeds that the search never saw");
-  f.integer("population", plan.population, {5, 1000}, "candidates of a generation");
-  f.integer("generations", plan.generations, {1, 10'000}, "how often");
-  f.number("step", plan.step, {1e-3, 1}, "first spread of the candidates, as a share of the ranges");
-  f.string("score", plan.score.name, "metric whose mean over the runs is to become small", Need::required);
+  f.integer("runs", plan.runs, {1, 10'000},
+            "number of runs of each candidate; all candidates have the same seeds and points");
+  f.integer("check_runs", plan.check_runs, {2, 100'000},
+            "number of runs with the old and with the new values, with seeds that the search did not use");
+  f.integer("population", plan.population, {5, 1000}, "number of candidates in a generation");
+  f.integer("generations", plan.generations, {1, 10'000}, "number of generations");
+  f.number("step", plan.step, {1e-3, 1}, "spread of the first candidates, as a share of the ranges");
+  f.string("score", plan.score.name, "metric whose mean over the runs is minimised", Need::required);
   plan.score.place = f.place("score");
-  f.boolean("greatest", plan.greatest, "the score is to become great instead");
-  f.number("failed_score", plan.failed_score, {}, "what a run counts that did not pass or has no value",
-           Need::required);
+  f.boolean("greatest", plan.greatest, "the score is maximised instead");
+  f.number("failed_score", plan.failed_score, {}, "score of a run that did not pass or has no value", Need::required);
   if (!f.reading()) return;
   if (plan.tune.empty()) problems.add(f.place("tune"), "tune is missing: the parameters that are sought");
   verify_metric(plan.score, plan, problems);

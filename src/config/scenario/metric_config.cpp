@@ -32,13 +32,14 @@ void verify(const Fields& f, const MetricConfig& metric, Problems& problems) {
 }  // namespace
 
 void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics, Problems& problems) {
-  f.map("metrics", "numbers that each run is judged by, by their names", [&](Fields& e) {
+  f.map("metrics", "numbers by which each run is judged, by name", [&](Fields& e) {
     MetricConfig metric{.name = e.key(), .place = e.key_place(), .signal = {}, .that = {}};
-    e.choice("kind", metric.kind, metric_kinds, "what is made of the signal or the condition", Need::required);
-    e.string("signal", metric.signal, "max, min, mean, rms, end: name of the signal");
-    e.string("that", metric.that, "end, share, first_time, since: a condition on signals in Lua");
-    e.number("from_s", metric.from_s, time_range, "looked at from this time on");
-    e.number("until_s", metric.until_s, time_range, "looked at up to this time, else to the end");
+    e.choice("kind", metric.kind, metric_kinds, "how the metric is computed from the signal or the condition",
+             Need::required);
+    e.string("signal", metric.signal, "for max, min, mean, rms and end: name of the signal");
+    e.string("that", metric.that, "for end, share, first_time and since: a condition on signals in Lua");
+    e.number("from_s", metric.from_s, time_range, "time from which it counts");
+    e.number("until_s", metric.until_s, time_range, "time until which it counts (default: the end)");
     metric.signal_place = e.place("signal");
     metric.that_place = e.place("that");
     if (!e.reading()) return;

@@ -10,16 +10,16 @@ const std::array<std::string, 6> check_kinds{"always", "never", "eventually", "a
 constexpr NumberRange time_range{0, 1e6, "s"};
 
 void list_fields(Fields& f, ScenarioCheck& check) {
-  f.string("name", check.name, "what is shown to hold", Need::required);
-  f.choice("kind", check.kind, check_kinds, "when it must (never: must not) hold", Need::required);
-  f.string("signal", check.signal, "name of a signal that must be in min..max");
+  f.string("name", check.name, "name of the check: what must hold", Need::required);
+  f.choice("kind", check.kind, check_kinds, "when the condition must hold (never: must not hold)", Need::required);
+  f.string("signal", check.signal, "name of a signal that must lie between min and max");
   f.number("min", check.min, {}, "least value, in the signal's unit");
   f.number("max", check.max, {}, "greatest value, in the signal's unit");
-  f.string("that", check.that, "or a condition on signals in Lua, such as base.height_m > 0.6");
-  f.string("when", check.when, "within, settles: the condition that starts the clock");
-  f.number("within_s", check.within_s, time_range, "within, settles: time it may take");
-  f.number("from_s", check.from_s, time_range, "looked at from this time on");
-  f.number("until_s", check.until_s, time_range, "looked at up to this time, else to the end");
+  f.string("that", check.that, "instead of signal: a condition on signals in Lua, such as base.height_m > 0.6");
+  f.string("when", check.when, "for within and settles: the condition from which the time counts");
+  f.number("within_s", check.within_s, time_range, "for within and settles: time after which the condition must hold");
+  f.number("from_s", check.from_s, time_range, "time from which the check applies");
+  f.number("until_s", check.until_s, time_range, "time until which the check applies (default: the end)");
   check.signal_place = f.place("signal");
   check.that_place = f.place("that");
   check.when_place = f.place("when");

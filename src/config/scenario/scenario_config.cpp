@@ -43,16 +43,18 @@ void suite_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
                    "tag " + in_quotes(tag.name) + " must be a word without blanks, commas, slashes and stars");
     scenario.tags.push_back(tag.name);
   }
-  f.integer("repeat", scenario.repeat, {1, 10'000}, "runs of it in kadans test, each with the next seed");
-  f.number("wall_limit_s", scenario.wall_limit_s, {0.1, 1e6, "s"}, "a run that takes longer is stopped and has failed");
+  f.integer("repeat", scenario.repeat, {1, 10'000}, "number of runs in kadans test, each with the next seed");
+  f.number("wall_limit_s", scenario.wall_limit_s, {0.1, 1e6, "s"},
+           "wall-clock time after which a run is stopped and has failed");
 }
 
 // How this run's robot differs from the configured one.
 void variant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
-  f.string("start_pose", scenario.start_pose.name, "the pose in which the robot starts, else its own");
+  f.string("start_pose", scenario.start_pose.name,
+           "the pose in which the robot starts (default: the one in its configuration)");
   scenario.start_pose.place = f.place("start_pose");
-  f.object("set", "quantities that differ from the robot's files, by patterns over their names",
-           [&](Fields& e) { e.number_entries(scenario.set, {}, "the quantity's value"); });
+  f.object("set", "quantities that differ from the robot's files, by a pattern of their names",
+           [&](Fields& e) { e.number_entries(scenario.set, {}, "value of the quantity"); });
   variation_fields(f, "randomise", scenario.randomise, problems);
 }
 
@@ -62,9 +64,9 @@ void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   joystick.place = f.place("recording");
   if (!joystick.recording.empty())
     joystick.recording = resolve_file(joystick.recording, joystick.place, "recording", problems).string();
-  f.number("at_s", joystick.at_s, {0, scenario_duration_max_s, "s"}, "when its first event comes");
+  f.number("at_s", joystick.at_s, {0, scenario_duration_max_s, "s"}, "time of its first event");
   f.number("lost_at_s", joystick.lost_at_s, {0, scenario_duration_max_s, "s"},
-           "from when on it is unplugged; else never");
+           "time at which it is unplugged (default: never)");
 }
 
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
@@ -78,9 +80,10 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", problems).string();
   }
   plant_fields(f, scenario, problems);
-  f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"}, "simulated time", Need::required);
+  f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"}, "duration of the simulation",
+           Need::required);
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
-            "where all random numbers of the run come from");
+            "seed of all random numbers of the run");
   suite_fields(f, scenario, problems);
   variant_fields(f, scenario, problems);
   std::vector<PlacedName> lists;
@@ -90,7 +93,7 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     const TextPlace start{list.place.line, list.place.column + 1};  // behind the quote
     std::ranges::move(read_play_items(list.name, start, folders, problems), std::back_inserter(scenario.behaviors));
   }
-  f.list("events", {0, 10'000}, "what happens to what plays, each at its time", [&](Fields& e) {
+  f.list("events", {0, 10'000}, "changes to the list of behaviors, each at its time", [&](Fields& e) {
     ScenarioEvent event;
     event_fields(e, event, folders, problems);
     if (e.reading()) scenario.events.push_back(std::move(event));
@@ -100,7 +103,7 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     push_fields(e, push, problems);
     if (e.reading()) scenario.pushes.push_back(std::move(push));
   });
-  f.list("faults", {0, 1000}, "what fails, each at its time", [&](Fields& e) {
+  f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {
     ScenarioFault fault;
     fault_fields(e, fault, problems);
     if (e.reading()) scenario.faults.push_back(std::move(fault));
@@ -108,7 +111,7 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   world_fields(f, scenario.world, problems);
   f.object("joystick", "a joystick that is played from a recording",
            [&](Fields& e) { joystick_fields(e, scenario, problems); });
-  f.list("checks", {0, 1000}, "what must hold", [&](Fields& e) {
+  f.list("checks", {0, 1000}, "checks that must hold", [&](Fields& e) {
     ScenarioCheck check;
     check_fields(e, check, scenario.duration_s, scenario.checks, problems);
     if (e.reading()) scenario.checks.push_back(std::move(check));

@@ -92,11 +92,11 @@ const std::array<std::string, 2> shape_names{"constant", "half_sine"};
 void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, Problems& problems) {
   std::string list, file;
   PlayOrder& order = event.order;
-  f.number("at_s", event.at_s, {0, time_max_s, "s"}, "when", Need::required);
-  const bool known = f.choice("do", order.kind, play_order_names, "what happens to what plays", Need::required);
-  f.string("list", list, "play, replace: what to play, \"squat{depth_m=0.08}, wave\"");
-  f.string("behavior", order.behavior.name, "reload: name of a behavior that plays");
-  f.string("file", file, "reload: what it goes on with, from the project root");
+  f.number("at_s", event.at_s, {0, time_max_s, "s"}, "time of the event", Need::required);
+  const bool known = f.choice("do", order.kind, play_order_names, "change to the list of behaviors", Need::required);
+  f.string("list", list, "for play and replace: the behaviors, such as \"squat{depth_m=0.08}, wave\"");
+  f.string("behavior", order.behavior.name, "for reload: name of a behavior that plays");
+  f.string("file", file, "for reload: the file with which it continues, from the project root");
   if (!f.reading() || !known) return;
   using Kind = PlayOrder::Kind;
   verify(f, event, {order.kind == Kind::play || order.kind == Kind::replace, order.kind == Kind::reload}, problems);
@@ -110,11 +110,12 @@ void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, P
 
 void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
   constexpr NumberRange time{0, 1e6, "s"};
-  f.choice("kind", fault.kind, names_of_kinds(), "what fails and how", Need::required);
-  f.string("of", fault.of.name, "of sensors: a joint, a foot's link, a sensor, or imu; of drives: a joint");
-  f.number("from_s", fault.from_s, time, "from this time on");
-  f.number("until_s", fault.until_s, time, "up to this time, else to the end");
-  f.number("size", fault.size, {-1e6, 1e6, ""}, "how much; what it means depends on the kind");
+  f.choice("kind", fault.kind, names_of_kinds(), "kind of fault", Need::required);
+  f.string("of", fault.of.name,
+           "where it happens; for sensors a joint, a foot's link, a sensor's name or imu, for drives a joint");
+  f.number("from_s", fault.from_s, time, "time at which the fault begins");
+  f.number("until_s", fault.until_s, time, "time at which the fault ends (default: the end of the run)");
+  f.number("size", fault.size, {-1e6, 1e6, ""}, "size of the fault; the kind says what it means");
   if (!f.reading()) return;
   fault.of.place = f.place("of");
   verify(f, fault, problems);
@@ -123,14 +124,14 @@ void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
 void push_fields(Fields& f, ScenarioPush& push, Problems& problems) {
   constexpr NumberRange time{0, 1e6, "s"};
   f.string("link", push.link.name, "the link that is pushed", Need::required);
-  f.number("at_s", push.at_s, time, "when", Need::required);
-  f.number("duration_s", push.duration_s, {1e-3, 1e6, "s"}, "how long");
-  f.choice("shape", push.shape, shape_names, "how the force goes over its time");
+  f.number("at_s", push.at_s, time, "time at which the push begins", Need::required);
+  f.number("duration_s", push.duration_s, {1e-3, 1e6, "s"}, "duration of the push");
+  f.choice("shape", push.shape, shape_names, "shape of the force over time");
   f.numbers("impulse_Ns", push.impulse_Ns, {-push_max_Ns, push_max_Ns, "Ns"},
-            "the whole push, world axes: x forward, y left, z up");
+            "impulse of the push in world axes: x forward, y left, z up");
   Vec3 force_N{};
-  f.numbers("force_N", force_N, {-1e5, 1e5, "N"}, "or the force, of half_sine its peak");
-  f.numbers("point_m", push.point_m, {-10, 10, "m"}, "where on the link, in its frame");
+  f.numbers("force_N", force_N, {-1e5, 1e5, "N"}, "instead of impulse_Ns: the force; for half_sine its peak");
+  f.numbers("point_m", push.point_m, {-10, 10, "m"}, "point of the link, in its frame");
   if (!f.reading()) return;
   push.link.place = f.place("link");
   if (f.has("impulse_Ns") == f.has("force_N")) {
