@@ -10,12 +10,12 @@ namespace kadans {
 void add_record_options(CLI::App& command, RecordOptions& options) {
   command
       .add_option("--signals", options.signals,
-                  "What is recorded, and nothing else: \"joint.*, base.*@100\" (default: all, or the robot's choice)")
+                  "Record only these signals: \"joint.*, base.*@100\" (default: the robot's choice, else all)")
       ->type_name("PATTERN[@HZ],...");
   command
       .add_option("--flight", options.flight_s,
-                  "Seconds that are always in memory, written when a fault latches; 0: none (default: the robot's 30 "
-                  "in a run on the wall clock, else 0)")
+                  "Keep the last S seconds in memory, and write them when a fault latches; 0: none (default: the "
+                  "robot's flight_s in a run on the wall clock, else 0)")
       ->type_name("S")
       ->check(number_within(0.0, 600.0));
 }

@@ -74,7 +74,7 @@ int run_graph(const BehaviorOptions& options) {
 
 void add_files(CLI::App* command, BehaviorOptions& options, const char* what) {
   command->add_option("files", options.files, what)->required()->type_name("FILE...");
-  command->add_option("--robot", options.robot, "Robot that they are for (default: by their folder)")
+  command->add_option("--robot", options.robot, "Robot of the behaviors (default: the one of their folder)")
       ->type_name("FILE");
 }
 
@@ -83,13 +83,13 @@ void add_files(CLI::App* command, BehaviorOptions& options, const char* what) {
 void add_behavior(CLI::App& app, BehaviorOptions& options) {
   CLI::App* behavior = app.add_subcommand("behavior", "Check, test and draw behaviors");
   behavior->require_subcommand(1);
-  CLI::App* check = behavior->add_subcommand("check", "Say what is wrong in behaviors, without running them");
+  CLI::App* check = behavior->add_subcommand("check", "Report mistakes in behaviors, without running them");
   add_files(check, options, "Behaviors, modules and tests (Lua); folders, patterns");
-  check->add_flag("--plugins", options.plugins, "Load the plug-ins that robots name: that runs code of their own");
+  check->add_flag("--plugins", options.plugins, "Load the plug-ins that robots name; this runs code of the plug-ins");
   CLI::App* test =
       behavior->add_subcommand("test", "Run tests of behaviors on a robot without physics, in virtual time");
   add_files(test, options, "Tests (*_test.lua), or folders of them");
-  test->add_option("--only", options.only, "Only tests with this in their name, that of `describe` included")
+  test->add_option("--only", options.only, "Run only tests whose name, with that of `describe`, contains this text")
       ->type_name("TEXT");
   test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
   test->add_flag("--json", options.json, "Print one JSON object a test instead of text");

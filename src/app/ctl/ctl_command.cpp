@@ -22,7 +22,7 @@ namespace {
 constexpr int reply_ms = 15'000;  // longer than the server waits for the behavior thread
 
 // A console is a mode of the command line that uses two orders of the sockets.
-constexpr const char *console = "repl", *console_doc = "A console in the running instance";
+constexpr const char *console = "repl", *console_doc = "Open a console in the running instance";
 
 // "--rate" of an argument that is shown as "--rate HZ"; "" when the argument is no option.
 std::string option_name(const OrderArgument& argument) {
@@ -124,7 +124,7 @@ CLI::App* add_group(CLI::App& ctl, const std::string& group) {
     const std::string_view words = order.words;
     if (words.starts_with(group + " ")) doc += (doc.empty() ? "" : ", ") + std::string(words.substr(group.size() + 1));
   }
-  CLI::App* to = ctl.add_subcommand(group, "Of its " + group + "s: " + doc);
+  CLI::App* to = ctl.add_subcommand(group, "Orders about " + group + "s: " + doc);
   return to->require_subcommand(1)->fallthrough();
 }
 
@@ -153,20 +153,21 @@ void add(CLI::App& ctl, const OrderInfo& order, CtlOptions& options) {
 }  // namespace
 
 void add_ctl(CLI::App& app, CtlOptions& options) {
-  CLI::App* ctl = app.add_subcommand("ctl", "Look into a running instance, command it, tune it");
+  CLI::App* ctl = app.add_subcommand("ctl", "Read, command and tune a running instance");
   ctl->require_subcommand(1)->fallthrough();
-  ctl->add_option("--socket", options.socket, "Its folder of sockets, or one socket (default: where they usually are)")
+  ctl->add_option("--socket", options.socket,
+                  "Folder of the instance's sockets, or one socket (default: see docs/ctl.md)")
       ->type_name("PATH");
-  ctl->add_flag("--json", options.json, "Print the answer as JSON, samples as one object a line");
+  ctl->add_flag("--json", options.json, "Print the answer as JSON; samples as one object a line");
   for (const OrderInfo& order : order_table()) {
     if (order.words[0] != '\0') add(*ctl, order, options);
   }
   ctl->add_subcommand(console, console_doc)->fallthrough();
-  ctl->get_subcommand("list")->add_flag("--names", options.names, "Their names alone, one a line");
+  ctl->get_subcommand("list")->add_flag("--names", options.names, "Print only names, one a line");
   ctl->get_subcommand("list")->get_option("what")->check(
-      CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals"}));
+      CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals", "joints"}));
   ctl->get_subcommand("watch")
-      ->add_option("--count", options.count, "Ends after so many samples")
+      ->add_option("--count", options.count, "End after N samples")
       ->type_name("N")
       ->check(whole_within(1, 1'000'000'000));
   ctl->footer("Exit codes: 0 done, 1 refused, 2 wrong usage or no instance. docs/ctl.md tells of roles and sockets.");

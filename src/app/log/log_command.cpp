@@ -22,34 +22,36 @@ CLI::App* verb(CLI::App& log, LogOptions& options, const char* name, const char*
 }
 
 void add_span(CLI::App& verb, LogOptions& options) {
-  verb.add_option("--from", options.from_s, "From this second of the record's time (default: its beginning)")
+  verb.add_option("--from", options.from_s, "First second, in the record's time (default: its beginning)")
       ->type_name("S")
       ->check(any_number());
-  verb.add_option("--to", options.to_s, "To this second (default: its end)")->type_name("S")->check(any_number());
+  verb.add_option("--to", options.to_s, "Last second, in the record's time (default: its end)")
+      ->type_name("S")
+      ->check(any_number());
 }
 
 void add_out(CLI::App& verb, LogOptions& options, const char* doc, const char* type) {
   verb.add_option("-o,--out", options.out, doc)->type_name(type);
-  verb.add_flag("--force", options.force, "Replace that file if it is there");
+  verb.add_flag("--force", options.force, "Overwrite that file if it exists");
 }
 
 void add_reading(CLI::App& log, LogOptions& options) {
-  CLI::App* info = verb(log, options, "info", "What run it is of, what it holds, and whether it is whole");
+  CLI::App* info = verb(log, options, "info", "The record's run and contents, and whether it is complete");
   info->add_flag("--json", options.json, "Print one JSON object instead of text");
 
-  CLI::App* cat = verb(log, options, "cat", "Every message as a line of JSON");
-  cat->add_option("--topic", options.topics, "Only this one, such as /joint or transitions; once or more")
+  CLI::App* cat = verb(log, options, "cat", "Print each message as a line of JSON");
+  cat->add_option("--topic", options.topics, "Print only this topic, such as /joint or transitions; may be repeated")
       ->type_name("TOPIC")
       ->allow_extra_args(false);
   add_span(*cat, options);
 
-  CLI::App* csv = verb(log, options, "csv", "Signals as a table with their units, every digit of them");
+  CLI::App* csv = verb(log, options, "csv", "Print signals as a table with units, with all digits");
   csv->add_option("signals", options.signals, std::string(signals_help) + " (default: all)")->type_name("SIGNAL...");
   add_span(*csv, options);
-  csv->add_option("--every", options.every_s, "A line each so many seconds, with the newest values")
+  csv->add_option("--every", options.every_s, "Print a line every S seconds, with the newest values")
       ->type_name("S")
       ->check(number_within(1e-6, 1e6));
-  add_out(*csv, options, "Into a file (default: onto stdout)", "FILE");
+  add_out(*csv, options, "Write into a file (default: stdout)", "FILE");
 }
 
 void add_making(CLI::App& log, LogOptions& options) {
@@ -58,14 +60,15 @@ void add_making(CLI::App& log, LogOptions& options) {
   add_span(*plot, options);
   add_out(*plot, options, "Picture, by its ending SVG or PNG (default: a sketch in the terminal)", "FILE");
 
-  CLI::App* diff = verb(log, options, "diff", "Where two records part, and by how much");
+  CLI::App* diff = verb(log, options, "diff", "Report where two records differ, and by how much");
   diff->add_option("other", options.other, "The record that it is compared with")->required()->type_name("OTHER");
-  diff->add_option("--tolerance", options.tolerance, "Numbers that are no further apart are the same (default: 0)")
+  diff->add_option("--tolerance", options.tolerance,
+                   "Largest difference between numbers that count as equal (default: 0)")
       ->type_name("X")
       ->check(number_within(0.0, 1e300));
   diff->add_flag("--json", options.json, "Print one JSON object instead of text");
 
-  CLI::App* cut = verb(log, options, "cut", "A stretch of it, or some of its signals, as a record of its own");
+  CLI::App* cut = verb(log, options, "cut", "Write a time span or some signals as a new record");
   add_span(*cut, options);
   cut->add_option("--signals", options.signals, std::string(signals_help) + "; once or more (default: all)")
       ->type_name("SIGNAL")
@@ -77,7 +80,7 @@ void add_making(CLI::App& log, LogOptions& options) {
 }  // namespace
 
 void add_log(CLI::App& app, LogOptions& options) {
-  CLI::App* log = app.add_subcommand("log", "Look into a record: info, cat, csv, plot, diff, cut");
+  CLI::App* log = app.add_subcommand("log", "Examine a record: info, cat, csv, plot, diff, cut");
   log->require_subcommand(1);
   add_reading(*log, options);
   add_making(*log, options);
