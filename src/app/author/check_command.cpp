@@ -4,7 +4,6 @@
 
 #include "app/commands.h"
 #include "app/terminal.h"
-#include "checked_files.h"
 #include "file_checks.h"
 
 namespace kadans {

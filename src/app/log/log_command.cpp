@@ -1,16 +1,134 @@
 #include "log_command.h"
 
 #include <array>
+#include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <functional>
 
 #include <CLI/CLI.hpp>
 
 #include "app/option_checks.h"
 #include "app/terminal.h"
+#include "campaign/work/durable_file.h"
 #include "log_verbs.h"
+#include "signal/number_text.h"
+#include "telemetry/plot/signal_plot.h"
+#include "telemetry/reading/record_cut.h"
+#include "telemetry/reading/record_text.h"
 
 namespace kadans {
+
+int log_cut(const LogOptions& options) {
+  const RecordCut cut{.span = span_of(options), .signals = options.signals};
+  require_free(options);
+  const RecordOutline record = outline_of(options.file);
+  require_overlap(record, cut.span);
+  UnfinishedFile file(options.out);
+  const CutRecord made = cut_record(record, cut, file.path());
+  file.finish();
+  std::printf("%s: %s, %s, %.1f kB\n", options.out.c_str(), plural(made.messages, "message").c_str(),
+              plural(made.signals, "signal").c_str(), 1e-3 * static_cast<double>(made.file_bytes));
+  tell_problem(record);
+  return exit_passed;
+}
+
+// `kadans log cat` and `kadans log csv`: print a record line by line.
+
+namespace {
+
+// Prints all lines. False: interrupted, or the reader has stopped reading.
+template <typename Lines>
+bool pour(Lines& lines, LineOutput& output) {
+  for (std::string line; lines.next(line);) {
+    if (interrupted() || !output.put(line)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int log_cat(const LogOptions& options) {
+  const TimeSpan span = span_of(options);
+  JsonLines lines(options.file, options.topics, span);
+  LineOutput output("");
+  const bool all = pour(lines, output);
+  output.finish();
+  if (interrupted()) return exit_interrupted;
+  if (!all) return exit_passed;
+  if (!lines.unknown_topics().empty()) (void)choose_topics(outline_of(options.file), lines.unknown_topics());  // throws
+  if (lines.lines() == 0) require_overlap(outline_of(options.file), span);
+  tell_problem(lines.reader());
+  return exit_passed;
+}
+
+int log_csv(const LogOptions& options) {
+  const TimeSpan span = span_of(options);
+  if (!options.out.empty()) require_free(options);
+  const RecordOutline record = outline_of(options.file);
+  require_overlap(record, span);
+  std::optional<std::int64_t> every_ns;
+  if (options.every_s) every_ns = std::llround(*options.every_s * 1e9);
+  CsvLines lines(options.file, choose_signals(record, options.signals), span, every_ns);
+  LineOutput output(options.out);
+  const bool all = pour(lines, output);
+  if (interrupted()) return exit_interrupted;
+  output.finish();
+  if (all) tell_problem(record);
+  return exit_passed;
+}
+
+namespace {
+
+constexpr std::size_t signals_max = 64;  // nobody can distinguish more lines
+constexpr std::size_t sketch_columns = 72;
+
+PlotFormat format_of(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  if (ending == ".svg") return PlotFormat::svg;
+  if (ending == ".png") return PlotFormat::png;
+  throw InputError({.file = file, .message = "a plot's file ends with .svg or .png"});
+}
+
+void sketch(const SignalPlot& plot) {
+  for (const PlotPanel& panel : plot.panels) {
+    const Plot one{
+        .x = {.name = "s", .range = {plot.from_s, plot.to_s}}, .y = {.name = panel.unit}, .lines = panel.lines};
+    std::printf("%s\n", plot_text(one, {.columns = sketch_columns}).c_str());
+  }
+  std::printf("a picture with states and faults: -o FILE.svg or FILE.png\n");
+}
+
+std::string title_of(const RecordOutline& record) {
+  const std::string name = std::filesystem::path(record.file).filename().string();
+  const std::string seed = record.fact("run", "seed");
+  return name + (seed.empty() ? "" : ", seed " + seed);
+}
+
+}  // namespace
+
+int log_plot(const LogOptions& options) {
+  const TimeSpan span = span_of(options);
+  const PlotFormat format = options.out.empty() ? PlotFormat::svg : format_of(options.out);
+  if (!options.out.empty()) require_free(options);
+  const RecordOutline record = outline_of(options.file);
+  require_overlap(record, span);
+  const std::vector<ChosenSignal> signals = choose_signals(record, options.signals);
+  if (signals.size() > signals_max)
+    throw InputError({.message = "these are " + std::to_string(signals.size()) + " signals; a plot of more than " +
+                                 std::to_string(signals_max) + " cannot be read, choose fewer"});
+  SignalPlot plot = plot_of(record, panels_by_unit(signals), span);
+  plot.title = title_of(record);
+  tell_problem(record);
+  if (options.out.empty()) {
+    sketch(plot);
+    return exit_passed;
+  }
+  write_durably(options.out, draw(plot, format));
+  std::printf("%s\n", options.out.c_str());
+  return exit_passed;
+}
+
 namespace {
 
 constexpr const char* signals_help = "Names, patterns (\"joint.*knee*\") or front parts (joint.l_knee) of signals";
