@@ -8,7 +8,6 @@
 
 #include "app/ctl/ctl_service.h"
 #include "app/live/live_service.h"
-#include "app/report/report_options.h"
 #include "app/ros2/ros2_service.h"
 #include "app/run/run_request.h"
 #include "record_options.h"

@@ -35,8 +35,8 @@ void print_json(const std::vector<MachineFinding>& findings, bool good) {
 }  // namespace
 
 void add_doctor(CLI::App& app, DoctorOptions& options) {
-  CLI::App* doctor = app.add_subcommand("doctor", "Say what of this machine is in the way of real time");
-  doctor->add_option("--root", options.root, "Folder that stands for / (default: /)")->type_name("FOLDER");
+  CLI::App* doctor = app.add_subcommand("doctor", "Report what keeps this machine from real time");
+  doctor->add_option("--root", options.root, "Root folder of the examined system (default: /)")->type_name("FOLDER");
   doctor->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 

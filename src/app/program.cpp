@@ -34,27 +34,30 @@ void add_run(CLI::App& app, RunOptions& options) {
       app.add_subcommand("run", "Drive a robot, or a model of it, on the wall clock until SIGINT or SIGTERM");
   run->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
   run->add_option("--plant", options.plant,
-                  "What is driven (default: bullet):" + plant_type_docs() + "; or a plug-in's")
+                  "Plant to drive (default: bullet):" + plant_type_docs() + "; or a plug-in's")
       ->type_name("TYPE");
-  run->add_option("--peer", options.peer,
-                  "Where the drives are, or `kadans plant` (default: as the configuration says)")
+  run->add_option("--peer", options.peer, "Address of the drives, or of `kadans plant` (default: the configuration's)")
       ->type_name("HOST:PORT");
-  run->add_option("--play", options.play, "What to play: \"squat, wave\" (default: nothing, the robot holds)")
+  run->add_option("--play", options.play,
+                  "Behaviors to play: \"squat, wave\" (default: none, the robot holds its position)")
       ->type_name("LIST");
-  run->add_option("--joystick", options.joystick,
-                  "/dev/input/event5, or a recording of one, for s.joystick of behaviors")
+  run->add_option(
+         "--joystick", options.joystick,
+         "Joystick that behaviors read as s.joystick: a device such as /dev/input/event5, or a recording of one")
       ->type_name("FILE");
-  run->add_option("--duration", options.duration_s, "Seconds to run (default: until it is told to stop)")
+  run->add_option("--duration", options.duration_s, "Seconds to run (default: until SIGINT or SIGTERM)")
       ->type_name("S")
       ->check(number_within(0.001, 1e9));
-  run->add_option("--record", options.record, "Write a record (default: none)")->type_name("FILE");
+  run->add_option("--record", options.record, "Write a record to this file (default: none)")->type_name("FILE");
   add_record_options(*run, options.recording);
-  run->add_option("--seed", options.seed, "Seed of a model's noise (default: 1)")->type_name("N")->check(any_seed());
-  run->add_flag("--soft", options.soft, "Go on without the rights that real time needs");
+  run->add_option("--seed", options.seed, "Seed of a model's random numbers (default: 1)")
+      ->type_name("N")
+      ->check(any_seed());
+  run->add_flag("--soft", options.soft, "Run even without the rights that real time needs");
   run->add_flag("--threads-on-virtual-time", options.virtual_time,
-                "The same threads, but time waits for all of them: as fast or slow as the machine is");
-  CLI::Option* sleep = run->add_flag("--sleep-only", options.sleep_only, "Sleep to the end, without spinning");
-  run->add_option("--spin-us", options.spin_us, "How long to spin after sleeping")
+                "Run the same threads on virtual time, which waits for all of them");
+  CLI::Option* sleep = run->add_flag("--sleep-only", options.sleep_only, "Sleep until the next tick, without spinning");
+  run->add_option("--spin-us", options.spin_us, "Time to spin after sleeping")
       ->type_name("US")
       ->check(number_within(1.0, 900.0))
       ->excludes(sleep);
@@ -63,25 +66,27 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("N")
       ->check(whole_within(0, 1023));
   run->add_option("--behaviors", options.behaviors,
-                  "Where behaviors play: in a thread (default), or in a process of their own that may die")
+                  "Play behaviors in a thread (default), or in a process of their own, which may die")
       ->check(CLI::IsMember({"thread", "process"}));
-  run->add_option("--behaviors-patience", options.behaviors_patience_s,
-                  "How long their process may be silent before it is killed (default: 0.3; on virtual time 10)")
+  run->add_option(
+         "--behaviors-patience", options.behaviors_patience_s,
+         "Time without an answer after which the behaviors' process is killed (default: 0.3; on virtual time 10)")
       ->type_name("S")
       ->check(number_within(0.01, 1000.0));
   run->add_option("--behaviors-deaths", options.behaviors_deaths,
-                  "After how many deaths in a row their process stays down (default: 8)")
+                  "Deaths in a row after which the behaviors' process is not started again (default: 8)")
       ->type_name("N")
       ->check(whole_within(1, 1'000'000'000));
-  run->add_option("--behaviors-memory", options.behaviors_memory_MB,
-                  "What their process may take while it plays, above what it has then (default: 256)")
+  run->add_option(
+         "--behaviors-memory", options.behaviors_memory_MB,
+         "Memory that the behaviors' process may take in addition to what it has when it begins to play (default: 256)")
       ->type_name("MB")
       ->check(number_within(1.0, 1e6));
   add_ctl_service(*run, options.ctl);
   add_live_service(*run, options.live);
   add_ros2_service(*run, options.ros2);
   run->add_flag("--json", options.json, "Print one JSON object instead of text");
-  run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log, and their transitions");
+  run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log and their transitions");
   run->add_option("--log-file", options.log_file, "Append all log lines to this file, transitions too (default: none)")
       ->type_name("FILE");
 }

@@ -10,12 +10,12 @@ namespace kadans {
 void add_record_options(CLI::App& command, RecordOptions& options) {
   command
       .add_option("--signals", options.signals,
-                  "What is recorded, and nothing else: \"joint.*, base.*@100\" (default: all, or the robot's choice)")
+                  "Record only these signals: \"joint.*, base.*@100\" (default: the robot's choice, else all)")
       ->type_name("PATTERN[@HZ],...");
   command
       .add_option("--flight", options.flight_s,
-                  "Seconds that are always in memory, written when a fault latches; 0: none (default: the robot's 30 "
-                  "in a run on the wall clock, else 0)")
+                  "Keep the last S seconds in memory, and write them when a fault latches; 0: none (default: the "
+                  "robot's flight_s in a run on the wall clock, else 0)")
       ->type_name("S")
       ->check(number_within(0.0, 600.0));
 }
@@ -33,6 +33,14 @@ RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, b
   plan.flight = {.kept_s = options.flight_s.value_or(flies ? config.flight_s : 0),
                  .bytes = static_cast<std::size_t>(config.flight_MB * 1e6)};
   return plan;
+}
+
+void add_report_options(CLI::App& command, ReportOptions& place, const char* what, const char* film) {
+  place.film = film;
+  CLI::Option* folder = command.add_option("--report", place.folder, what)->type_name("FOLDER");
+  command.add_option("--film", place.film, std::string("With --report: pictures of the robot (default: ") + film + ")")
+      ->check(CLI::IsMember({"always", "failed", "never"}))
+      ->needs(folder);
 }
 
 }  // namespace kadans

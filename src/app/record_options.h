@@ -23,4 +23,13 @@ void add_record_options(CLI::App& command, RecordOptions& options);
 // wrong.
 RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, bool flies);
 
+// --report: the folder for the pages of runs, and when they get pictures.
+struct ReportOptions {
+  std::string folder;  // "": no report
+  std::string film;    // always, failed, never
+
+  bool wanted() const noexcept { return !folder.empty(); }
+};
+void add_report_options(CLI::App& command, ReportOptions& place, const char* what, const char* film);
+
 }  // namespace kadans

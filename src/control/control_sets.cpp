@@ -89,9 +89,9 @@ void ControlSets::make_plan(Catalog& catalog, const ControlSetInfo& set) {
     const Composition composition = set.compositions.empty() ? Composition::set : set.compositions[i];
     plan.push_back({index, object.divisor, composition, 1});
     if (composition != Composition::blend) continue;
-    catalog.parameters.add(
-        {set.name + "." + object.name + ".weight", "", 0, 1, 1, "Its share in the joints it blends."},
-        &plan.back().weight, max_objects);
+    catalog.parameters.add({set.name + "." + object.name + ".weight", "", 0, 1, 1,
+                            "Share of the object in the actuation of the joints that it blends."},
+                           &plan.back().weight, max_objects);
   }
 }
 

@@ -338,9 +338,10 @@ void Safety::declare_signals(SignalTable& table, const RobotModel& model) const 
             &engine_.missed_ticks());
   for (std::size_t i = 0; i < joint_count_; ++i) {
     const std::string prefix = "safety." + model.joints[i].name;
-    table.add({prefix + ".level", "", "Rung of the joint, the robot's included."}, &joints_[i].level_number);
+    table.add({prefix + ".level", "", "Rung of the joint, or of the robot if that is worse."},
+              &joints_[i].level_number);
     if (joints_[i].limiter.passive()) continue;
-    table.add({prefix + ".temperature_C", "C", "Of the motor's winding, by the thermal model."},
+    table.add({prefix + ".temperature_C", "C", "Temperature of the motor's winding, by the thermal model."},
               &joints_[i].watch.thermal().temperature_C());
   }
 }

@@ -4,22 +4,22 @@
 
 #include "app/commands.h"
 #include "app/terminal.h"
-#include "checked_files.h"
 #include "file_checks.h"
 
 namespace kadans {
 
 void add_check(CLI::App& app, CheckOptions& options) {
-  CLI::App* check = app.add_subcommand("check", "Say what is wrong in files, without running them");
+  CLI::App* check = app.add_subcommand("check", "Report mistakes in files, without running them");
   check
       ->add_option("files", options.files,
                    "URDF, robot, scenario or plan (JSON), behaviors, modules and tests (Lua); folders, patterns")
       ->required()
       ->type_name("PATH...");
-  check->add_option("--robot", options.robot, "Robot that behaviors are checked against (default: by their folder)")
+  check
+      ->add_option("--robot", options.robot, "Robot for which behaviors are checked (default: the one of their folder)")
       ->type_name("FILE");
   check->add_flag("--plugins", options.plugins,
-                  "Load the plug-ins that robots name, to check what uses them too: that runs code of their own");
+                  "Load the plug-ins that robots name, and check what uses them; this runs code of the plug-ins");
 }
 
 int run_check(const CheckOptions& options) {

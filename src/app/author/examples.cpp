@@ -18,20 +18,20 @@ constexpr Examples all_examples[] = {
      "  kadans sim config/scenarios/squat.json             run a scenario, read what happened\n"
      "  kadans sim config/scenarios/squat.json --json      the same as one JSON object\n"
      "  kadans test push --jobs 2                          run all scenarios tagged push, two at a time\n"
-     "  kadans replay squat.mcap                           run a record again; where does it part, and why\n"
+     "  kadans replay squat.mcap                           run a record again, and report where it differs\n"
      "  kadans repl config/scenarios/squat.json            look into a simulation, and command it\n"
      "  kadans run config/tulip/robot.json --play squat    drive the robot, or its model, on the wall clock\n"
      "  kadans view squat.mcap                             show a record in the browser: robot, plots, states\n"
      "  kadans log info squat.mcap                         what a record holds; also cat, csv, plot, diff, cut\n"
-     "  kadans ctl status                                  how a running robot is; 'kadans ctl --help' has the rest\n"
-     "  kadans check behaviors config                      say what is wrong in files, without running them\n"
+     "  kadans ctl status                                  the state of a running robot; see 'kadans ctl --help'\n"
+     "  kadans check behaviors config                      report mistakes in files, without running them\n"
      "  kadans new control-object knee_damper              write a control object with its test, ready to build\n"},
     {"sim",
-     "  kadans sim config/scenarios/squat.json                       leaves squat.mcap\n"
+     "  kadans sim config/scenarios/squat.json                       writes squat.mcap\n"
      "  kadans sim config/scenarios/squat.json --seed 7 --duration 5 --no-record\n"
      "  kadans sim config/scenarios/squat.json --set ground.friction=0.3 --play 'squat{depth_m=0.08}, wave'\n"
      "  kadans sim config/scenarios/squat.json --checkpoint 2.5=later.mcap\n"
-     "  kadans sim --from later.mcap --push torso=0,1,0              what if\n"
+     "  kadans sim --from later.mcap --push torso=0,1,0              continue with a push\n"
      "  kadans sim config/scenarios/squat.json --live --speed 0.5    in the browser\n"},
     {"test",
      "  kadans test                                all of config/scenarios, one a core\n"

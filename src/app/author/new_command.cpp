@@ -16,13 +16,13 @@ namespace kadans {
 namespace fs = std::filesystem;
 
 void add_new(CLI::App& app, NewControlObjectOptions& options) {
-  CLI::App* made = app.add_subcommand("new", "Write a first version of something of your own");
+  CLI::App* made = app.add_subcommand("new", "Write the first version of a new part of your project");
   made->require_subcommand(1);
-  CLI::App* object = made->add_subcommand("control-object", "A control object: source, test and what builds them");
-  object->add_option("name", options.name, "Its type's name, for example knee_damper")->required()->type_name("NAME");
-  object->add_option("--in", options.folder, "Folder in which its own folder is made (default: here)")
+  CLI::App* object = made->add_subcommand("control-object", "Write a control object: source, test and build files");
+  object->add_option("name", options.name, "Name of its type, for example knee_damper")->required()->type_name("NAME");
+  object->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
       ->type_name("FOLDER");
-  object->add_flag("--plugin", options.plugin, "As a plug-in instead of a program of its own");
+  object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
 }
 
 int run_new_control_object(const NewControlObjectOptions& options) {

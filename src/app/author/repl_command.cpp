@@ -164,18 +164,20 @@ class Repl {
 }  // namespace
 
 void add_repl(CLI::App& app, ReplOptions& options) {
-  CLI::App* repl = app.add_subcommand("repl", "A console in a simulation: look at signals, command, play behaviors");
+  CLI::App* repl =
+      app.add_subcommand("repl", "Open a console in a simulation: read signals, command the robot, play behaviors");
   repl->add_option("scenario", options.scenario, "Scenario file (default: the project's robot, nothing plays)")
       ->type_name("FILE");
-  repl->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
+  repl->add_option("--play", options.play, "Behaviors to play instead of the scenario's: \"squat, wave\"")
       ->type_name("LIST");
-  repl->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")
+  repl->add_option("--seed", options.seed, "Seed of all random numbers (default: the scenario's)")
       ->type_name("N")
       ->check(any_seed());
-  repl->add_option("--speed", options.speed, "Simulated seconds a second on a terminal; 0: only by :run (default: 1)")
+  repl->add_option("--speed", options.speed,
+                   "Speed on a terminal as a multiple of the wall clock's; 0: time passes by :run only (default: 1)")
       ->type_name("X")
       ->check(number_within(0.0, 1000.0));
-  repl->footer("Type :help. From a pipe time passes by :run only, and a wrong line makes the exit code 1.");
+  repl->footer("Type :help. With input from a pipe, time passes by :run only, and a wrong line makes the exit code 1.");
 }
 
 int run_repl(const ReplOptions& options) {

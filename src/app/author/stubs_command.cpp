@@ -78,8 +78,8 @@ void print_json(const std::vector<Row>& rows) {
 }  // namespace
 
 void add_stubs(CLI::App& app, StubsOptions& options) {
-  CLI::App* stubs = app.add_subcommand("lua-stubs", "Write what editors need to complete and check behaviors");
-  stubs->add_option("--robot", options.robot, "Robot whose names they hold (default: the project's only one)")
+  CLI::App* stubs = app.add_subcommand("lua-stubs", "Write the files with which editors complete and check behaviors");
+  stubs->add_option("--robot", options.robot, "Robot whose names they contain (default: the only one of the project)")
       ->type_name("FILE");
   stubs->add_option("--output", options.output, "Folder for kadans.lua and .luarc.json")->type_name("DIR");
   stubs->add_flag("--markdown", options.markdown, "Print the reference instead");
@@ -104,7 +104,8 @@ void add_params(CLI::App& app, ParamsOptions& options) {
   params->add_option("file", options.file, "Behavior (Lua) or robot configuration (JSON)")
       ->required()
       ->type_name("FILE");
-  params->add_option("--robot", options.robot, "Robot of the behavior (default: by its folder)")->type_name("FILE");
+  params->add_option("--robot", options.robot, "Robot of the behavior (default: the one of its folder)")
+      ->type_name("FILE");
   params->add_flag("--json", options.json, "Print one JSON array instead of text");
 }
 

@@ -85,7 +85,7 @@ if [[ $funcstack[1] == _kadans ]]; then _kadans "$@"; elif (( $+functions[compde
 }  // namespace
 
 void add_completion(CLI::App& app, CompletionOptions& options) {
-  CLI::App* completion = app.add_subcommand("completion", "Print what a shell needs to complete this command line");
+  CLI::App* completion = app.add_subcommand("completion", "Print the completion script of a shell");
   completion->add_option("shell", options.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
 }
 

@@ -2,14 +2,16 @@
 
 #include <cstdio>
 #include <functional>
+#include <iostream>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "app/line_editor.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
-#include "ctl_console.h"
 #include "ctl_print.h"
 #include "kadans/signal/input_error.h"
 #include "remote/ctl/ctl_folder.h"
@@ -17,12 +19,72 @@
 #include "signal/number_text.h"
 
 namespace kadans {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int answer_ms = 15'000;
+constexpr int keys_ms = 100;
+
+Json ask(CtlLink& link, const char* verb, const std::string& text) {
+  link.send(json_text(Json{{"verb", verb}, {"text", text}}));
+  const std::optional<std::string> line = link.receive(answer_ms);
+  if (!line) throw InputError({.message = "the instance does not answer"});
+  return parse_foreign_json(*line);
+}
+
+int from_pipe(CtlLink& link) {
+  int code = exit_passed;
+  for (std::string line; std::getline(std::cin, line);) {
+    const Json answer = ask(link, "line", line);
+    if (answer.value("ok", false)) {
+      const std::string text = answer.at("text");
+      if (!text.empty()) std::puts(text.c_str());
+    } else {
+      code = exit_failed;
+      print_error(answer.at("error"));
+    }
+    std::fflush(stdout);
+    if (answer.value("leaves", false) || interrupted()) break;
+  }
+  return code;
+}
+
+int from_terminal(CtlLink& link) {
+  catch_interrupts();
+  std::puts(":help tells what can be typed; :quit leaves, the instance goes on");
+  LineEditor editor("kadans> ", state_file("history"), [&link](const std::string& text) {
+    const Json answer = ask(link, "complete", text);
+    if (!answer.value("ok", false)) return LineEditor::Completion{};
+    return LineEditor::Completion{answer.at("begin"), answer.at("words")};
+  });
+  while (!editor.ended() && !interrupted()) {
+    const std::optional<std::string> line = editor.poll(keys_ms);
+    if (!line) continue;
+    const Json answer = ask(link, "line", *line);
+    const bool good = answer.value("ok", false);
+    const std::string text = good ? answer.at("text") : answer.at("error");
+    if (!text.empty()) editor.print(good ? text : "error: " + text);
+    if (answer.value("leaves", false)) break;
+    editor.prompt(answer.value("incomplete", false) ? "   ... "
+                  : answer.value("writes", false)   ? "kadans! "
+                                                    : "kadans> ");
+  }
+  std::puts("");
+  return exit_passed;
+}
+
+}  // namespace
+
+int ctl_console(CtlLink& link) { return isatty(STDIN_FILENO) == 1 ? from_terminal(link) : from_pipe(link); }
+
 namespace {
 
 constexpr int reply_ms = 15'000;  // longer than the server waits for the behavior thread
 
 // A console is a mode of the command line that uses two orders of the sockets.
-constexpr const char *console = "repl", *console_doc = "A console in the running instance";
+constexpr const char *console = "repl", *console_doc = "Open a console in the running instance";
 
 // "--rate" of an argument that is shown as "--rate HZ"; "" when the argument is no option.
 std::string option_name(const OrderArgument& argument) {
@@ -124,7 +186,7 @@ CLI::App* add_group(CLI::App& ctl, const std::string& group) {
     const std::string_view words = order.words;
     if (words.starts_with(group + " ")) doc += (doc.empty() ? "" : ", ") + std::string(words.substr(group.size() + 1));
   }
-  CLI::App* to = ctl.add_subcommand(group, "Of its " + group + "s: " + doc);
+  CLI::App* to = ctl.add_subcommand(group, "Orders about " + group + "s: " + doc);
   return to->require_subcommand(1)->fallthrough();
 }
 
@@ -153,20 +215,21 @@ void add(CLI::App& ctl, const OrderInfo& order, CtlOptions& options) {
 }  // namespace
 
 void add_ctl(CLI::App& app, CtlOptions& options) {
-  CLI::App* ctl = app.add_subcommand("ctl", "Look into a running instance, command it, tune it");
+  CLI::App* ctl = app.add_subcommand("ctl", "Read, command and tune a running instance");
   ctl->require_subcommand(1)->fallthrough();
-  ctl->add_option("--socket", options.socket, "Its folder of sockets, or one socket (default: where they usually are)")
+  ctl->add_option("--socket", options.socket,
+                  "Folder of the instance's sockets, or one socket (default: see docs/ctl.md)")
       ->type_name("PATH");
-  ctl->add_flag("--json", options.json, "Print the answer as JSON, samples as one object a line");
+  ctl->add_flag("--json", options.json, "Print the answer as JSON; samples as one object a line");
   for (const OrderInfo& order : order_table::orders) {
     if (order.words[0] != '\0') add(*ctl, order, options);
   }
   ctl->add_subcommand(console, console_doc)->fallthrough();
-  ctl->get_subcommand("list")->add_flag("--names", options.names, "Their names alone, one a line");
+  ctl->get_subcommand("list")->add_flag("--names", options.names, "Print only names, one a line");
   ctl->get_subcommand("list")->get_option("what")->check(
-      CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals"}));
+      CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals", "joints"}));
   ctl->get_subcommand("watch")
-      ->add_option("--count", options.count, "Ends after so many samples")
+      ->add_option("--count", options.count, "End after N samples")
       ->type_name("N")
       ->check(whole_within(1, 1'000'000'000));
   ctl->footer("Exit codes: 0 done, 1 refused, 2 wrong usage or no instance. docs/ctl.md tells of roles and sockets.");

@@ -9,11 +9,15 @@ namespace kadans {
 
 void add_ctl_service(CLI::App& command, CtlServiceOptions& place) {
   CLI::Option* folder =
-      command.add_option("--ctl", place.folder, "Where 'kadans ctl' finds this run (default: docs/ctl.md says)")
+      command
+          .add_option("--ctl", place.folder, "Folder in which 'kadans ctl' finds this run (default: see docs/ctl.md)")
           ->type_name("FOLDER");
-  command.add_flag("!--no-ctl", place.wanted, "Not to be found by 'kadans ctl'")->excludes(folder);
+  command.add_flag("!--no-ctl", place.wanted, "Hide this run from 'kadans ctl'")->excludes(folder);
   command.add_option("--ctl-operators", place.operators, "Group that may operate this run")->type_name("GROUP");
-  command.add_option("--ctl-developers", place.developers, "Group that may also tune it")->type_name("GROUP");
+  command
+      .add_option("--ctl-developers", place.developers,
+                  "Group that may also change parameters and behaviors of this run")
+      ->type_name("GROUP");
 }
 
 CtlService::CtlService(const CtlServiceOptions& place, Instance& instance) {

@@ -11,11 +11,13 @@
 namespace kadans {
 
 void add_live_service(CLI::App& command, LiveServiceOptions& place) {
-  command.add_flag("--live{8765}", place.port, "Show it in a browser and to Foxglove's kin; --live=PORT, 0: any")
+  command
+      .add_flag("--live{8765}", place.port,
+                "Serve this run to browsers and to viewers such as Foxglove; --live=PORT, 0: any free port")
       ->check(whole_within(0, 65535));
   command.add_option("--live-address", place.address, "Address to listen on (default: this machine alone)")
       ->type_name("IP");
-  command.add_option("--live-token", place.token, "What a client must know to change anything (default: a new one)")
+  command.add_option("--live-token", place.token, "Token that a client needs to change anything (default: a new one)")
       ->type_name("TEXT");
   add_live_hosts(command, place);
 }
@@ -23,7 +25,7 @@ void add_live_service(CLI::App& command, LiveServiceOptions& place) {
 void add_live_hosts(CLI::App& command, LiveServiceOptions& place) {
   command
       .add_option("--live-host", place.hosts,
-                  "A name that clients without the token may call this machine by, beside its addresses")
+                  "Another name of this machine, by which clients without the token may reach it")
       ->type_name("NAME")
       ->allow_extra_args(false);
 }

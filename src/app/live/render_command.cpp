@@ -44,18 +44,18 @@ void add_render(CLI::App& app, RenderOptions& options) {
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
   CLI::Option* at =
-      render->add_option("--at", options.at_s, "One picture, at this second")->type_name("S")->check(any_number());
-  CLI::Option* every = render->add_option("--every", options.every_s, "A picture each so many seconds")
+      render->add_option("--at", options.at_s, "Draw one picture, at this second")->type_name("S")->check(any_number());
+  CLI::Option* every = render->add_option("--every", options.every_s, "Draw a picture every S seconds")
                            ->type_name("S")
                            ->check(number_within(0.001, 1e6))
                            ->excludes(at);
-  render->add_flag("--film", options.film, "An animated PNG of all of it")->excludes(at)->excludes(every);
-  render->add_option("--fps", options.frames_per_s, "Pictures a second of the film (20)")
+  render->add_flag("--film", options.film, "Draw the whole record as an animated PNG")->excludes(at)->excludes(every);
+  render->add_option("--fps", options.frames_per_s, "Pictures in a second of the film (default: 20)")
       ->type_name("N")
       ->check(whole_within(1, 60));
   render->add_option("-o,--out", options.out, "File, or with --every folder (default: named as the record, here)")
       ->type_name("PATH");
-  render->add_option("--size", options.size, "Width and height (960x720)")->type_name("WxH");
+  render->add_option("--size", options.size, "Width and height (default: 960x720)")->type_name("WxH");
   render->add_option("--theme", options.theme, "light (default) or dark")->check(CLI::IsMember({"light", "dark"}));
 }
 

@@ -30,11 +30,11 @@ std::string in_url(const std::string& text) {
 
 void add_view(CLI::App& app, ViewOptions& options) {
   CLI::App* view = app.add_subcommand("view", "Show a record in the browser");
-  view->add_option("record", options.record, "Record (MCAP); without one the page waits for one to be dropped on it")
+  view->add_option("record", options.record, "Record (MCAP); without it, drop one onto the page")
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
   options.live.port = "0";
-  view->add_option("--port", options.live.port, "Port (default: one that is free)")
+  view->add_option("--port", options.live.port, "Port (default: a free one)")
       ->type_name("N")
       ->check(whole_within(0, 65535));
   view->add_option("--live-address", options.live.address, "Address to listen on (default: this machine alone)")

@@ -1,16 +1,134 @@
 #include "log_command.h"
 
 #include <array>
+#include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <functional>
 
 #include <CLI/CLI.hpp>
 
 #include "app/option_checks.h"
 #include "app/terminal.h"
+#include "campaign/work/durable_file.h"
 #include "log_verbs.h"
+#include "signal/number_text.h"
+#include "telemetry/plot/signal_plot.h"
+#include "telemetry/reading/record_export.h"
+#include "telemetry/reading/record_export.h"
 
 namespace kadans {
+
+int log_cut(const LogOptions& options) {
+  const RecordCut cut{.span = span_of(options), .signals = options.signals};
+  require_free(options);
+  const RecordOutline record = outline_of(options.file);
+  require_overlap(record, cut.span);
+  UnfinishedFile file(options.out);
+  const CutRecord made = cut_record(record, cut, file.path());
+  file.finish();
+  std::printf("%s: %s, %s, %.1f kB\n", options.out.c_str(), plural(made.messages, "message").c_str(),
+              plural(made.signals, "signal").c_str(), 1e-3 * static_cast<double>(made.file_bytes));
+  tell_problem(record);
+  return exit_passed;
+}
+
+// `kadans log cat` and `kadans log csv`: print a record line by line.
+
+namespace {
+
+// Prints all lines. False: interrupted, or the reader has stopped reading.
+template <typename Lines>
+bool pour(Lines& lines, LineOutput& output) {
+  for (std::string line; lines.next(line);) {
+    if (interrupted() || !output.put(line)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int log_cat(const LogOptions& options) {
+  const TimeSpan span = span_of(options);
+  JsonLines lines(options.file, options.topics, span);
+  LineOutput output("");
+  const bool all = pour(lines, output);
+  output.finish();
+  if (interrupted()) return exit_interrupted;
+  if (!all) return exit_passed;
+  if (!lines.unknown_topics().empty()) (void)choose_topics(outline_of(options.file), lines.unknown_topics());  // throws
+  if (lines.lines() == 0) require_overlap(outline_of(options.file), span);
+  tell_problem(lines.reader());
+  return exit_passed;
+}
+
+int log_csv(const LogOptions& options) {
+  const TimeSpan span = span_of(options);
+  if (!options.out.empty()) require_free(options);
+  const RecordOutline record = outline_of(options.file);
+  require_overlap(record, span);
+  std::optional<std::int64_t> every_ns;
+  if (options.every_s) every_ns = std::llround(*options.every_s * 1e9);
+  CsvLines lines(options.file, choose_signals(record, options.signals), span, every_ns);
+  LineOutput output(options.out);
+  const bool all = pour(lines, output);
+  if (interrupted()) return exit_interrupted;
+  output.finish();
+  if (all) tell_problem(record);
+  return exit_passed;
+}
+
+namespace {
+
+constexpr std::size_t signals_max = 64;  // nobody can distinguish more lines
+constexpr std::size_t sketch_columns = 72;
+
+PlotFormat format_of(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  if (ending == ".svg") return PlotFormat::svg;
+  if (ending == ".png") return PlotFormat::png;
+  throw InputError({.file = file, .message = "a plot's file ends with .svg or .png"});
+}
+
+void sketch(const SignalPlot& plot) {
+  for (const PlotPanel& panel : plot.panels) {
+    const Plot one{
+        .x = {.name = "s", .range = {plot.from_s, plot.to_s}}, .y = {.name = panel.unit}, .lines = panel.lines};
+    std::printf("%s\n", plot_text(one, {.columns = sketch_columns}).c_str());
+  }
+  std::printf("a picture with states and faults: -o FILE.svg or FILE.png\n");
+}
+
+std::string title_of(const RecordOutline& record) {
+  const std::string name = std::filesystem::path(record.file).filename().string();
+  const std::string seed = record.fact("run", "seed");
+  return name + (seed.empty() ? "" : ", seed " + seed);
+}
+
+}  // namespace
+
+int log_plot(const LogOptions& options) {
+  const TimeSpan span = span_of(options);
+  const PlotFormat format = options.out.empty() ? PlotFormat::svg : format_of(options.out);
+  if (!options.out.empty()) require_free(options);
+  const RecordOutline record = outline_of(options.file);
+  require_overlap(record, span);
+  const std::vector<ChosenSignal> signals = choose_signals(record, options.signals);
+  if (signals.size() > signals_max)
+    throw InputError({.message = "these are " + std::to_string(signals.size()) + " signals; a plot of more than " +
+                                 std::to_string(signals_max) + " cannot be read, choose fewer"});
+  SignalPlot plot = plot_of(record, panels_by_unit(signals), span);
+  plot.title = title_of(record);
+  tell_problem(record);
+  if (options.out.empty()) {
+    sketch(plot);
+    return exit_passed;
+  }
+  write_durably(options.out, draw(plot, format));
+  std::printf("%s\n", options.out.c_str());
+  return exit_passed;
+}
+
 namespace {
 
 constexpr const char* signals_help = "Names, patterns (\"joint.*knee*\") or front parts (joint.l_knee) of signals";
@@ -22,34 +140,36 @@ CLI::App* verb(CLI::App& log, LogOptions& options, const char* name, const char*
 }
 
 void add_span(CLI::App& verb, LogOptions& options) {
-  verb.add_option("--from", options.from_s, "From this second of the record's time (default: its beginning)")
+  verb.add_option("--from", options.from_s, "First second, in the record's time (default: its beginning)")
       ->type_name("S")
       ->check(any_number());
-  verb.add_option("--to", options.to_s, "To this second (default: its end)")->type_name("S")->check(any_number());
+  verb.add_option("--to", options.to_s, "Last second, in the record's time (default: its end)")
+      ->type_name("S")
+      ->check(any_number());
 }
 
 void add_out(CLI::App& verb, LogOptions& options, const char* doc, const char* type) {
   verb.add_option("-o,--out", options.out, doc)->type_name(type);
-  verb.add_flag("--force", options.force, "Replace that file if it is there");
+  verb.add_flag("--force", options.force, "Overwrite that file if it exists");
 }
 
 void add_reading(CLI::App& log, LogOptions& options) {
-  CLI::App* info = verb(log, options, "info", "What run it is of, what it holds, and whether it is whole");
+  CLI::App* info = verb(log, options, "info", "The record's run and contents, and whether it is complete");
   info->add_flag("--json", options.json, "Print one JSON object instead of text");
 
-  CLI::App* cat = verb(log, options, "cat", "Every message as a line of JSON");
-  cat->add_option("--topic", options.topics, "Only this one, such as /joint or transitions; once or more")
+  CLI::App* cat = verb(log, options, "cat", "Print each message as a line of JSON");
+  cat->add_option("--topic", options.topics, "Print only this topic, such as /joint or transitions; may be repeated")
       ->type_name("TOPIC")
       ->allow_extra_args(false);
   add_span(*cat, options);
 
-  CLI::App* csv = verb(log, options, "csv", "Signals as a table with their units, every digit of them");
+  CLI::App* csv = verb(log, options, "csv", "Print signals as a table with units, with all digits");
   csv->add_option("signals", options.signals, std::string(signals_help) + " (default: all)")->type_name("SIGNAL...");
   add_span(*csv, options);
-  csv->add_option("--every", options.every_s, "A line each so many seconds, with the newest values")
+  csv->add_option("--every", options.every_s, "Print a line every S seconds, with the newest values")
       ->type_name("S")
       ->check(number_within(1e-6, 1e6));
-  add_out(*csv, options, "Into a file (default: onto stdout)", "FILE");
+  add_out(*csv, options, "Write into a file (default: stdout)", "FILE");
 }
 
 void add_making(CLI::App& log, LogOptions& options) {
@@ -58,14 +178,15 @@ void add_making(CLI::App& log, LogOptions& options) {
   add_span(*plot, options);
   add_out(*plot, options, "Picture, by its ending SVG or PNG (default: a sketch in the terminal)", "FILE");
 
-  CLI::App* diff = verb(log, options, "diff", "Where two records part, and by how much");
+  CLI::App* diff = verb(log, options, "diff", "Report where two records differ, and by how much");
   diff->add_option("other", options.other, "The record that it is compared with")->required()->type_name("OTHER");
-  diff->add_option("--tolerance", options.tolerance, "Numbers that are no further apart are the same (default: 0)")
+  diff->add_option("--tolerance", options.tolerance,
+                   "Largest difference between numbers that count as equal (default: 0)")
       ->type_name("X")
       ->check(number_within(0.0, 1e300));
   diff->add_flag("--json", options.json, "Print one JSON object instead of text");
 
-  CLI::App* cut = verb(log, options, "cut", "A stretch of it, or some of its signals, as a record of its own");
+  CLI::App* cut = verb(log, options, "cut", "Write a time span or some signals as a new record");
   add_span(*cut, options);
   cut->add_option("--signals", options.signals, std::string(signals_help) + "; once or more (default: all)")
       ->type_name("SIGNAL")
@@ -77,7 +198,7 @@ void add_making(CLI::App& log, LogOptions& options) {
 }  // namespace
 
 void add_log(CLI::App& app, LogOptions& options) {
-  CLI::App* log = app.add_subcommand("log", "Look into a record: info, cat, csv, plot, diff, cut");
+  CLI::App* log = app.add_subcommand("log", "Examine a record: info, cat, csv, plot, diff, cut");
   log->require_subcommand(1);
   add_reading(*log, options);
   add_making(*log, options);

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "report_options.h"
+#include "app/record_options.h"
 #include "scenario/report/html_report.h"
 #include "telemetry/plot/signal_plot.h"
 

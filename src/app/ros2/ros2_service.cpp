@@ -32,13 +32,14 @@ void add_ros2_service(CLI::App& command, Ros2Options& place) {
   CLI::Option* ros2 =
       command
           .add_flag("--ros2{-1}", place.domain,
-                    "Publish topics of ROS 2 on this machine; --ros2=DOMAIN (default: ROS_DOMAIN_ID, else 0)")
+                    "Publish ROS 2 topics on this machine; --ros2=DOMAIN (default: ROS_DOMAIN_ID, else 0)")
           ->check(whole_within(-1, domain_max));
-  command.add_option("--ros2-rate", place.rate_hz, "How often (default: 100)")
+  command.add_option("--ros2-rate", place.rate_hz, "Rate of the topics (default: 100)")
       ->type_name("HZ")
       ->check(number_within(1.0, 1000.0))
       ->needs(ros2);
-  command.add_flag("--ros2-commands", place.commands, "Obey whoever writes to /kadans/command there")->needs(ros2);
+  command.add_flag("--ros2-commands", place.commands, "Carry out the commands that anybody sends to /kadans/command")
+      ->needs(ros2);
 }
 
 Ros2Service::Ros2Service(const Ros2Options& place, Instance& instance, const Assembly& assembly, LivePace* pace,

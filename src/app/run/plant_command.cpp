@@ -138,9 +138,12 @@ class PlantService {
 }  // namespace
 
 void add_plant(CLI::App& app, PlantOptions& options) {
-  CLI::App* plant = app.add_subcommand("plant", "Serve a model of a robot to `kadans run --plant udp` elsewhere");
+  CLI::App* plant =
+      app.add_subcommand("plant", "Serve a model of a robot to `kadans run --plant udp` on another machine");
   plant->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
-  plant->add_option("--listen", options.listen, "Where it listens: \":7100\" on every address of this machine")
+  plant
+      ->add_option("--listen", options.listen,
+                   "Address to listen on; \":7100\": port 7100 on every address of this machine")
       ->required()
       ->type_name("HOST:PORT");
   const auto names = [](bool (PlantType::*is)() const noexcept) {
@@ -154,15 +157,15 @@ void add_plant(CLI::App& app, PlantOptions& options) {
       ->add_option("--as", options.as,
                    "In whose protocol (default: udp): " + names(&PlantType::is_protocol) + ", or a plug-in's type")
       ->type_name("TYPE");
-  plant->add_option("--seed", options.seed, "Seed of the model's noise (default: 1)")
+  plant->add_option("--seed", options.seed, "Seed of the model's random numbers (default: 1)")
       ->type_name("N")
       ->check(any_seed());
   plant->add_flag("--once", options.once, "End with the first session");
-  plant->add_flag("--soft", options.soft, "Go on without the rights that real time needs");
+  plant->add_flag("--soft", options.soft, "Run even without the rights that real time needs");
   plant->add_option("--cpu", options.cpu, "CPU of the model's thread (default: an isolated one, else the last)")
       ->type_name("N")
       ->check(whole_within(0, 1023));
-  plant->add_flag("--json", options.json, "Tell of each session as one JSON object on a line of its own");
+  plant->add_flag("--json", options.json, "Print each session as one JSON object on a line of its own");
 }
 
 int run_plant(const PlantOptions& options) {

@@ -218,11 +218,11 @@ std::vector<std::string> notes_of(const Replay& replay, const RunInputs& inputs)
 }  // namespace
 
 void add_replay(CLI::App& app, ReplayOptions& options) {
-  CLI::App* replay = app.add_subcommand("replay", "Run a record again, and say where and why it is not the same");
-  replay->add_option("record", options.record, "What kadans sim left (MCAP)")->required()->type_name("FILE");
-  replay->add_flag("--from-record", options.from_record, "With the files inside the record, not those on the disk");
+  CLI::App* replay = app.add_subcommand("replay", "Run a record again, and report where and why it differs");
+  replay->add_option("record", options.record, "Record of kadans sim (MCAP)")->required()->type_name("FILE");
+  replay->add_flag("--from-record", options.from_record, "Use the files inside the record, not those on the disk");
   replay->add_flag("--allow-plugins", options.allow_plugins,
-                   "Load the project's plug-ins, be they others than the record's or of another project");
+                   "Load the project's plug-ins, even if they differ from the record's");
   replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 

@@ -68,47 +68,48 @@ void refuse_wrong_mixtures(const SimOptions& options) {
 void add_sim(CLI::App& app, SimOptions& options) {
   CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
   sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->type_name("FILE");
-  sim->add_option("--seed", options.seed, "Seed of all noise (default: the scenario's)")
+  sim->add_option("--seed", options.seed, "Seed of all random numbers (default: the scenario's)")
       ->type_name("N")
       ->check(any_seed());
   sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
       ->type_name("S")
       ->check(number_within(0.001, scenario_duration_max_s));
-  sim->add_option("--play", options.play, "What to play in place of the scenario's behaviors: \"squat, wave\"")
+  sim->add_option("--play", options.play, "Behaviors to play instead of the scenario's: \"squat, wave\"")
       ->type_name("LIST");
-  sim->add_option("--set", options.set, "A quantity of the robot or its world, such as ground.friction=0.3")
+  sim->add_option("--set", options.set, "Change a quantity of the robot or its world, such as ground.friction=0.3")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);
-  sim->add_option("--metrics", options.metrics, "A plan of a sweep or tuning whose metrics are reported")
+  sim->add_option("--metrics", options.metrics, "Report the metrics of this plan of a sweep or tuning")
       ->type_name("FILE");
   CLI::Option* record =
-      sim->add_option("--record", options.record, "Where the record goes (default: NAME.mcap here)")->type_name("FILE");
-  sim->add_flag("--no-record", options.no_record, "Leave no record")->excludes(record);
+      sim->add_option("--record", options.record, "File of the record (default: NAME.mcap in this folder)")
+          ->type_name("FILE");
+  sim->add_flag("--no-record", options.no_record, "Write no record")->excludes(record);
   add_record_options(*sim, options.recording);
   CLI::Option* realtime = sim->add_flag("--realtime", options.realtime, "Run at the pace of the wall clock");
   sim->add_flag("--watch", options.watch, "Reload behaviors when their files are saved")->needs(realtime);
-  sim->add_option("--checkpoint", options.checkpoints, "Leave a checkpoint at a time, to go on from with --from")
+  sim->add_option("--checkpoint", options.checkpoints, "Write a checkpoint at second S, from which --from continues")
       ->type_name("S=FILE")
       ->allow_extra_args(false);
-  sim->add_option("--from", options.from, "Go on from a checkpoint; --set, --play and --push count from there")
+  sim->add_option("--from", options.from, "Continue from a checkpoint; --set, --play and --push apply from there on")
       ->type_name("FILE");
   sim->add_flag("--allow-plugins", options.allow_plugins,
-                "With --from: load the project's plug-ins, be they others than the checkpoint's");
-  sim->add_option("--push", options.push, "With --from: an impulse in Ns on a link, such as torso=0,2,0")
+                "With --from: load the project's plug-ins, even if they differ from the checkpoint's");
+  sim->add_option("--push", options.push, "With --from: push a link with this impulse in Ns, such as torso=0,2,0")
       ->type_name("LINK=X,Y,Z")
       ->allow_extra_args(false);
   sim->add_option("--branch", options.branches,
                   "With --from, once or more: \"NAME: push LINK=X,Y,Z; set NAME=NUMBER; play LIST\"")
       ->type_name("BRANCH")
       ->allow_extra_args(false);
-  sim->add_option("--hash-every", options.hash_every_s, "With --json: the state hash each so many seconds")
+  sim->add_option("--hash-every", options.hash_every_s, "With --json: print the state hash every S seconds")
       ->type_name("S")
       ->check(number_within(0.001, scenario_duration_max_s));
-  add_report_options(*sim, options.report, "Leave a page about the run in a folder, NAME-SEED.html", "always");
+  add_report_options(*sim, options.report, "Write a page about the run, NAME-SEED.html, into a folder", "always");
   add_ctl_service(*sim, options.ctl);
   add_live_service(*sim, options.live);
   add_ros2_service(*sim, options.ros2);
-  sim->add_option("--speed", options.speed, "With --live or --ros2: as a multiple of the wall clock's pace")
+  sim->add_option("--speed", options.speed, "With --live or --ros2: speed as a multiple of the wall clock's")
       ->type_name("X")
       ->check(number_within(0.01, 100.0));
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");

@@ -136,7 +136,7 @@ class Suite final : public JobWatcher {
 }  // namespace
 
 void add_test(CLI::App& app, TestOptions& options) {
-  CLI::App* test = app.add_subcommand("test", "Run scenarios side by side and say which failed, and how");
+  CLI::App* test = app.add_subcommand("test", "Run scenarios in parallel, and report which failed and why");
   test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
       ->type_name("PATH|TAG|NAME...");
   test->add_option("--in", options.folder, "Folder of scenarios (default: config/scenarios)")->type_name("FOLDER");
@@ -148,16 +148,16 @@ void add_test(CLI::App& app, TestOptions& options) {
       ->check(whole_within(1, 1'000'000));
   test->add_option("--seed", options.seed, "First seed (default: each scenario's)")->type_name("N")->check(any_seed());
   test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
-  test->add_flag("--rerun-failed", options.rerun_failed, "Only what failed the last time");
-  test->add_flag("--list", options.list, "Say what would run");
+  test->add_flag("--rerun-failed", options.rerun_failed, "Run only the scenarios that failed the last time");
+  test->add_flag("--list", options.list, "List the scenarios, but do not run them");
   CLI::Option* golden =
-      test->add_flag("--golden", options.golden, "Fail what ends in another state than FOLDER.golden.json says");
-  CLI::Option* renew = test->add_flag("--renew-golden", options.renew_golden,
-                                      "Write the states into that file, and say what that changes");
+      test->add_flag("--golden", options.golden, "Fail scenarios that end in another state than in FOLDER.golden.json");
+  CLI::Option* renew =
+      test->add_flag("--renew-golden", options.renew_golden, "Write the states into that file, and print the changes");
   renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
   test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
-  add_report_options(*test, options.report, "Leave a page about each run in a folder, and index.html about all",
-                     "failed");
+  add_report_options(*test, options.report,
+                     "Write a page about each run into a folder, and index.html about all of them", "failed");
   test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
 }
 

@@ -37,15 +37,21 @@ int run_merge(const MergeOptions& options) {
 }
 
 void add_merge(CLI::App& app, MergeOptions& options) {
-  CLI::App* merge = app.add_subcommand("merge", "Make one table of the results of a sweep's parts");
+  CLI::App* merge = app.add_subcommand("merge", "Join the results of a sweep's parts in one table");
   merge->add_option("folders", options.folders, "Folders of results")->required()->type_name("FOLDER...");
   merge->add_option("--sqlite", options.sqlite, "Write a database with the table cases")->type_name("FILE");
   merge->add_option("--csv", options.csv, "Write the table as text")->type_name("FILE");
   CLI::Option* map = merge->add_option("--heat-map", options.heat_map, "Draw the results over two quantities (SVG)")
                          ->type_name("FILE");
-  merge->add_option("--x", options.x, "Quantity to the right (default: the plan's)")->type_name("NAME")->needs(map);
-  merge->add_option("--y", options.y, "Quantity upwards (default: the plan's)")->type_name("NAME")->needs(map);
-  merge->add_option("--metric", options.metric, "Metric that is drawn (default: the plan's, else what passed)")
+  merge->add_option("--x", options.x, "Quantity on the horizontal axis (default: the plan's)")
+      ->type_name("NAME")
+      ->needs(map);
+  merge->add_option("--y", options.y, "Quantity on the vertical axis (default: the plan's)")
+      ->type_name("NAME")
+      ->needs(map);
+  merge
+      ->add_option("--metric", options.metric,
+                   "Metric that is drawn (default: the plan's, else the share of runs that passed)")
       ->type_name("NAME")
       ->needs(map);
   merge->add_flag("--json", options.json, "Print one JSON object instead of text");

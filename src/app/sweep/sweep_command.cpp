@@ -79,8 +79,8 @@ std::string check_sweep_plan(const std::string& file, const PluginGate& gate) {
 
 void add_sweep(CLI::App& app, SweepOptions& options) {
   CLI::App* sweep = app.add_subcommand("sweep", "Run scenarios over a sample of their quantities");
-  sweep->add_option("plan", options.plan, "What is run, and what varies (JSON)")->required()->type_name("PLAN");
-  sweep->add_option("--cases", options.cases, "How many runs (default: the plan's)")
+  sweep->add_option("plan", options.plan, "Plan: what is run, and what varies (JSON)")->required()->type_name("PLAN");
+  sweep->add_option("--cases", options.cases, "Number of runs (default: the plan's)")
       ->type_name("N")
       ->check(whole_within(1, sweep_cases_max));
   sweep->add_option("--seed", options.seed, "Seed of the sample (default: the plan's)")
@@ -90,9 +90,12 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
       ->type_name("N")
       ->check(whole_within(1, 1024));
   sweep
-      ->add_option("--shard", options.shard, "Only this part of the cases, 0/4 to 3/4 (default: that of a Slurm array)")
+      ->add_option("--shard", options.shard,
+                   "Run only this part of the cases, 0/4 to 3/4 (default: that of the Slurm array)")
       ->type_name("PART/PARTS");
-  sweep->add_option("--out", options.out, "Folder of the results; what is there is not run again (default: in sweeps/)")
+  sweep
+      ->add_option("--out", options.out,
+                   "Folder of the results; cases that have a result there are not run again (default: in sweeps/)")
       ->type_name("FOLDER");
   sweep->add_flag("--json", options.json, "Print one JSON object a case, and one for the sweep at the end");
 }

@@ -30,14 +30,12 @@ void verify(const TunedAxis& axis, const Parameter& parameter, Problems& problem
 }  // namespace
 
 void add_tune(CLI::App& app, TuneOptions& options) {
-  CLI::App* tune = app.add_subcommand("tune", "Seek parameters with which scenarios go best");
-  tune->add_option("plan", options.plan, "What is sought, and what is to become small (JSON)")
-      ->required()
-      ->type_name("PLAN");
+  CLI::App* tune = app.add_subcommand("tune", "Search for the parameters with the best score in scenarios");
+  tune->add_option("plan", options.plan, "Plan: the parameters and the score (JSON)")->required()->type_name("PLAN");
   tune->add_option("--seed", options.seed, "Seed of the search and of its runs (default: the plan's)")
       ->type_name("N")
       ->check(any_seed());
-  tune->add_option("--generations", options.generations, "How many (default: the plan's)")
+  tune->add_option("--generations", options.generations, "Number of generations (default: the plan's)")
       ->type_name("N")
       ->check(whole_within(1, 10'000));
   tune->add_option("--runs", options.runs, "Runs of each candidate (default: the plan's)")
@@ -46,16 +44,18 @@ void add_tune(CLI::App& app, TuneOptions& options) {
   tune->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
       ->type_name("N")
       ->check(whole_within(1, 1024));
-  tune->add_option("--shard", options.shard, "Only this part of each generation, the folder shared with the others")
+  tune->add_option("--shard", options.shard,
+                   "Run only this part of each generation; all parts share the folder of results")
       ->type_name("PART/PARTS");
   tune->add_option("--wait", options.wait_s, "Seconds to wait for the other parts of a generation (default: 600)")
       ->type_name("S")
       ->check(number_within(0.0, 1e9));
-  tune->add_option("--out", options.out, "Folder of the results; what is there is not run again (default: in tunings/)")
+  tune->add_option("--out", options.out,
+                   "Folder of the results; runs that have a result there are not run again (default: in tunings/)")
       ->type_name("FOLDER");
-  tune->add_option("--write", options.write, "Where the tuned configuration goes (default: robot.json in that folder)")
+  tune->add_option("--write", options.write, "File of the tuned configuration (default: robot.json in that folder)")
       ->type_name("FILE");
-  tune->add_flag("--overwrite", options.overwrite, "Also when that file is there");
+  tune->add_flag("--overwrite", options.overwrite, "Overwrite that file if it exists");
   tune->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 

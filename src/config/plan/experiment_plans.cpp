@@ -16,19 +16,21 @@ void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& proble
   f.string("name", experiment.name, "the plan's name", Need::required);
   f.string("doc", experiment.doc, "what it shows, one or two sentences");
   std::vector<PlacedName> scenarios;
-  f.strings("scenarios", scenarios, {1, 1000}, "files, from the project root; cases go round them", Need::required);
+  f.strings("scenarios", scenarios, {1, 1000}, "files, from the project root; the cases use them in turn",
+            Need::required);
   for (const PlacedName& scenario : scenarios) {
     experiment.scenarios.push_back(
         {scenario.name, resolve_file(scenario.name, scenario.place, "scenarios", problems).string(), scenario.place});
   }
   f.integer("seed", experiment.seed, {0, std::numeric_limits<std::uint64_t>::max()},
-            "where the sample and the seeds of all runs come from");
+            "seed of the sample and of the seeds of all runs");
   f.boolean("sample_randomise", experiment.sample_randomise,
-            "what the scenarios randomise is part of the sample too, else each run's seed draws it");
-  f.map("vary", "quantities that differ from case to case, by a pattern over their names", [&](Fields& e) {
+            "the sample also chooses what the scenarios randomise (default: each run's seed draws it)");
+  f.map("vary", "quantities that differ from case to case, by a pattern of their names", [&](Fields& e) {
     ExperimentAxis axis{.variation = {.pattern = {e.key(), e.key_place()}, .distribution = {}}};
     distribution_fields(e, axis.variation.distribution, problems);
-    e.integer("steps", axis.steps, {1, 10'000}, "points in a grid, both ends among them; values are points themselves");
+    e.integer("steps", axis.steps, {1, 10'000},
+              "number of points in a grid, including both ends; not for values, each of which is a point");
     if (e.reading()) experiment.vary.push_back(std::move(axis));
   });
   metrics_fields(f, experiment.metrics, problems);
@@ -84,17 +86,19 @@ void plan_fields(Fields& f, SweepPlan& plan, Problems& problems) {
   experiment_fields(f, plan, problems);
   f.choice("sampling", plan.sampling, sampling_names, "how the points are chosen");
   f.integer("cases", plan.cases, {0, sweep_cases_max},
-            "runs of all scenarios together; a grid without it runs each point once, with it goes round the points");
+            "number of runs of all scenarios together; a grid without it runs each point once, with it uses the points "
+            "in turn");
   f.boolean("same_seeds", plan.same_seeds,
-            "all points of a round of a grid, or all scenarios of one sample, have the same seed");
+            "all points in one round of a grid, or all scenarios of one sample, have the same seed");
   f.number("passed_min", plan.passed_min, {0, 1}, "share of the cases that must pass for the sweep to pass");
-  placed_string(f, "first_try", plan.first_try, "metric that is not 0 when a run that passed did so at its first try");
+  placed_string(f, "first_try", plan.first_try, "metric that is not 0 when a passed run succeeded at its first try");
   placed_string(f, "time", plan.time, "metric in seconds whose median over the passed runs is reported");
   placed_string(f, "worst", plan.worst, "metric whose greatest values are shown as the worst cases");
   f.object("heat_map", "two quantities over which the results are drawn", [&](Fields& e) {
-    placed_string(e, "x", plan.heat_map.x, "quantity to the right");
-    placed_string(e, "y", plan.heat_map.y, "quantity upwards");
-    placed_string(e, "metric", plan.heat_map.metric, "metric whose mean is drawn, else the share that passed");
+    placed_string(e, "x", plan.heat_map.x, "quantity on the horizontal axis");
+    placed_string(e, "y", plan.heat_map.y, "quantity on the vertical axis");
+    placed_string(e, "metric", plan.heat_map.metric,
+                  "metric whose mean is drawn (default: the share of runs that passed)");
   });
   if (f.reading()) verify(f, plan, problems);
 }
@@ -131,8 +135,8 @@ void parameter_fields(Fields& e, TunedParameter& parameter, Problems& problems) 
   bool log = false;
   e.number("min", min, {}, "least value, in the parameter's unit", Need::required);
   e.number("max", max, {}, "greatest value", Need::required);
-  e.boolean("log", log, "factors matter, not differences: for what ranges over decades");
-  if (e.number("start", start, {}, "where the search begins, else what the robot's configuration says"))
+  e.boolean("log", log, "the search is on a logarithmic scale, for a range of several decades");
+  if (e.number("start", start, {}, "value at which the search begins (default: the one in the robot's configuration)"))
     parameter.start = start;
   if (!e.reading()) return;
   parameter.range = {.kind = log ? Distribution::Kind::log_uniform : Distribution::Kind::uniform, .of = {min, max}};
@@ -152,21 +156,22 @@ void parameter_fields(Fields& e, TunedParameter& parameter, Problems& problems) 
 
 void plan_fields(Fields& f, TunePlan& plan, Problems& problems) {
   experiment_fields(f, plan, problems);
-  f.map("tune", "parameters that are sought, by a pattern over their names", [&](Fields& e) {
+  f.map("tune", "parameters to be tuned, by a pattern of their names", [&](Fields& e) {
     TunedParameter parameter{.pattern = {e.key(), e.key_place()}, .range = {}, .start = {}};
     parameter_fields(e, parameter, problems);
     if (e.reading()) plan.tune.push_back(std::move(parameter));
   });
-  f.integer("runs", plan.runs, {1, 10'000}, "runs of each candidate, with the same seeds and points for all");
-  f.integer("check_runs", plan.check_runs, {2, 100'000}, "runs before and after, with seeds that the search never saw");
-  f.integer("population", plan.population, {5, 1000}, "candidates of a generation");
-  f.integer("generations", plan.generations, {1, 10'000}, "how often");
-  f.number("step", plan.step, {1e-3, 1}, "first spread of the candidates, as a share of the ranges");
-  f.string("score", plan.score.name, "metric whose mean over the runs is to become small", Need::required);
+  f.integer("runs", plan.runs, {1, 10'000},
+            "number of runs of each candidate; all candidates have the same seeds and points");
+  f.integer("check_runs", plan.check_runs, {2, 100'000},
+            "number of runs with the old and with the new values, with seeds that the search did not use");
+  f.integer("population", plan.population, {5, 1000}, "number of candidates in a generation");
+  f.integer("generations", plan.generations, {1, 10'000}, "number of generations");
+  f.number("step", plan.step, {1e-3, 1}, "spread of the first candidates, as a share of the ranges");
+  f.string("score", plan.score.name, "metric whose mean over the runs is minimised", Need::required);
   plan.score.place = f.place("score");
-  f.boolean("greatest", plan.greatest, "the score is to become great instead");
-  f.number("failed_score", plan.failed_score, {}, "what a run counts that did not pass or has no value",
-           Need::required);
+  f.boolean("greatest", plan.greatest, "the score is maximised instead");
+  f.number("failed_score", plan.failed_score, {}, "score of a run that did not pass or has no value", Need::required);
   if (!f.reading()) return;
   if (plan.tune.empty()) problems.add(f.place("tune"), "tune is missing: the parameters that are sought");
   verify_metric(plan.score, plan, problems);

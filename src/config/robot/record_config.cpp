@@ -56,16 +56,16 @@ std::uint32_t ticks_of(const NumberEntry& entry, const std::string& file, double
 }  // namespace
 
 void record_fields(Fields& f, RecordConfig& record) {
-  f.object("signals",
-           "rate in Hz by a pattern over the signals' names, later entries override earlier ones; 0: not recorded",
+  f.object("signals", "rate in Hz by a pattern of signal names; later entries override earlier ones; 0: not recorded",
            [&](Fields& signals) {
              signals.number_entries(record.signals.rates_Hz, {0, rate_max_Hz, "Hz"},
                                     "the control rate divided by a whole number");
            });
   f.boolean("single_precision", record.single_precision, "records hold 32-bit numbers: half the size, 7 digits");
   f.number("flight_s", record.flight_s, {0, 600, "s"},
-           "what `kadans run` always has in memory, to be written when a fault latches; 0: nothing");
-  f.number("flight_MB", record.flight_MB, {1, 1000, "MB"}, "memory for that; where it does not suffice, less is kept");
+           "time that `kadans run` keeps in memory and writes when a fault latches; 0: none");
+  f.number("flight_MB", record.flight_MB, {1, 1000, "MB"},
+           "memory for it; if that does not suffice, a shorter time is kept");
 }
 
 SignalChoice parse_signal_choice(const std::string& text, const std::string& option) {

@@ -21,8 +21,8 @@ void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
   f.number("behavior_time_max_s", engine.behavior_time_max_s, {0, 10, "s"},
            "wall-clock time that one behavior may take in one tick of kadans run; 0: half of behavior_period_s");
   f.integer("commands_per_tick_max", engine.commands_per_tick_max, {max_transaction - 1, command_capacity},
-            "commands applied in one control tick at most; the largest transaction must pass");
-  f.number("command_age_max_s", engine.command_age_max_s, {1e-3, 60, "s"}, "older commands are refused");
+            "largest number of commands applied in one control tick; the largest transaction must pass");
+  f.number("command_age_max_s", engine.command_age_max_s, {1e-3, 60, "s"}, "age above which a command is refused");
   if (f.reading() && engine.behavior_divisor() == 0) {
     problems.add(f.place("behavior_period_s"),
                  f.path("behavior_period_s") + " is " + number_text(engine.behavior_period_s) +
@@ -31,9 +31,10 @@ void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
 }
 
 void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
-  f.string("pose", config.safe.pose, "the pose", Need::required);
-  f.number("after_s", config.safe.after_s, {0, 60, "s"}, "how long the last set-points are held before");
-  f.number("time_s", config.safe.time_s, {0.01, 60, "s"}, "time to go there");
+  f.string("pose", config.safe.pose, "pose to which the robot moves", Need::required);
+  f.number("after_s", config.safe.after_s, {0, 60, "s"},
+           "time for which the last set-points are held before the motion");
+  f.number("time_s", config.safe.time_s, {0.01, 60, "s"}, "duration of the motion");
   if (!f.reading() || config.safe.pose.empty() || config.model.joints.empty())
     return;  // without a model no pose is read
   const std::vector<std::string> names = names_of(config.poses);
@@ -47,9 +48,9 @@ constexpr NumberRange any_value{-2147483648.0, 2147483647.0, ""};
 
 void axis_fields(Fields& f, JoystickAxis& axis, Problems& problems) {
   f.integer("code", axis.code, {0, axis_code_max}, "the kernel's number of the axis, as `evtest` shows it");
-  f.boolean("inverted", axis.inverted, "the axis counts the other way round");
-  f.number("min", axis.min, any_value, "its value at one end, else what the device says");
-  f.number("max", axis.max, any_value, "its value at the other end");
+  f.boolean("inverted", axis.inverted, "the axis counts in the opposite direction");
+  f.number("min", axis.min, any_value, "value at one end of the axis (default: what the device reports)");
+  f.number("max", axis.max, any_value, "value at the other end of the axis");
   if (f.has("min") == f.has("max") && (!f.has("min") || axis.min < axis.max)) return;
   problems.add(f.place("min"), f.path() + ": min and max go together, and min is less");
 }
@@ -70,16 +71,16 @@ void RobotReader::read(Fields& f) {
            [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
   f.map("poses", "positions in radians by joint pattern, for behaviors and the start", [&](Fields& e) { pose(e); });
   f.map("behaviors", "parameters of behaviors on this robot, by behavior", [&](Fields& e) { behavior(e); });
-  f.object("safe", "the posture the robot goes to when a behavior failed",
+  f.object("safe", "the posture to which the robot moves when a behavior has failed",
            [&](Fields& safe) { safe_fields(safe, config_, problems_); });
-  f.object("plant", "what a model of the robot is made of beside its links", [&](Fields& e) { plant(e); });
-  f.map("sensors", "what the robot senses beside joints, IMU and feet, by name", [&](Fields& e) { sensor(e); });
+  f.object("plant", "what a model of the robot has in addition to its links", [&](Fields& e) { plant(e); });
+  f.map("sensors", "sensors in addition to joints, IMU and feet, by name", [&](Fields& e) { sensor(e); });
   for (auto* const channels : {&config_.estimate.channels, &config_.safety.channels})
     *channels = config_.plant.channels;
-  f.object("start", "where the robot starts", [&](Fields& e) { start(e); });
+  f.object("start", "the pose and place in which the robot starts", [&](Fields& e) { start(e); });
   f.object("joystick", "a joystick that behaviors read as s.joystick", [&](Fields& e) { joystick(e); });
-  f.object("estimate", "how the estimator is set up", [&](Fields& e) { estimate(e); });
-  f.object("record", "what records hold", [&](Fields& record) { record_fields(record, config_.record); });
+  f.object("estimate", "settings of the estimator", [&](Fields& e) { estimate(e); });
+  f.object("record", "what is recorded", [&](Fields& record) { record_fields(record, config_.record); });
   f.object("safety", "limits and reactions of the safety layer", [&](Fields& e) { safety(e); });
   f.object(
       "control", "control objects and control sets", [&](Fields& e) { control(e); }, Need::required);
@@ -164,7 +165,7 @@ FieldInfo describe_robot_config() {
 void RobotReader::behavior(Fields& entry) {
   constexpr NumberRange any_number{-1e9, 1e9};
   std::vector<NumberEntry> values;
-  entry.number_entries(values, any_number, "in the parameter's unit");
+  entry.number_entries(values, any_number, "value in the parameter's unit");
   if (!entry.reading() || config_.name.empty()) return;
   const std::vector<std::string> names = playable_names({.project_file = config_.file, .robot = config_.name});
   if (std::ranges::find(names, entry.key()) == names.end()) {
@@ -185,8 +186,9 @@ void RobotReader::behavior(Fields& entry) {
 void RobotReader::joystick(Fields& f) {
   JoystickSettings& settings = config_.joystick;
   config_.engine.joystick = true;
-  f.string("device", settings.device, "what `kadans run` reads, such as /dev/input/by-id/NAME-event-joystick");
-  f.number("dead_zone", settings.dead_zone, {0, 0.9}, "around the middle of an axis, as a share of the way to an end");
+  f.string("device", settings.device, "device that `kadans run` reads, such as /dev/input/by-id/NAME-event-joystick");
+  f.number("dead_zone", settings.dead_zone, {0, 0.9},
+           "zone around the middle of an axis that reads as 0, as a share of the way to an end");
   f.map("axes", "how axes are read: x, y, twist, throttle", [&](Fields& entry) {
     const auto axis = std::ranges::find(joystick_axis_names, std::string_view(entry.key()));
     JoystickAxis scratch;

@@ -82,7 +82,7 @@ void RobotReader::control(Fields& f) {
   f.number("switch_step_max", config_.switching.step_max, {1e-3, 1},
            "largest change of a drive's torque from tick to tick by a switch of sets, as a share of the joint's limit");
   f.number("switch_fade_s", config_.switching.fade_s, {1e-3, 10, "s"},
-           "in which what is left of the old set's torque fades, or longer where switch_step_max wants it");
+           "time in which the rest of the old set's torque fades; longer where switch_step_max demands it");
   unheld(f);
   initial_sets(f);
 }
@@ -90,7 +90,8 @@ void RobotReader::control(Fields& f) {
 void RobotReader::drive_objects(Fields& f) {
   std::vector<PlacedName> given;
   f.strings("at_drives", given, {1, max_objects},
-            "control objects that make the drives do what is wanted of the joints; they are in no set, always active");
+            "actuator-level control objects: they make the drives do what the sets demand of the joints; they are in "
+            "no set and always active");
   const std::vector<std::string> names = names_of(config_.objects);
   for (const PlacedName& object : given) {
     const auto found = std::find(names.begin(), names.end(), object.name);
@@ -112,12 +113,12 @@ void RobotReader::unheld(Fields& f) {
   for (const Joint& joint : config_.model.joints) {
     config_.unheld.push_back({0, joint.passive() ? 0 : config_.safety.damping_Nms_per_rad});
   }
-  f.map("unheld", "what joints do that no active control set holds, by joint pattern; else they damp as in safety",
+  f.map("unheld", "law of joints that no active control set holds, by joint pattern (default: they damp as in safety)",
         [&](Fields& entry) {
           each_joint(entry, config_.unheld, [&](UnheldLaw& law) {
             entry.number("stiffness_Nm_per_rad", law.stiffness_Nm_per_rad, {0, 1e4, "Nm/rad"},
-                         "towards where it was when it was let go; 0: it only damps");
-            entry.number("damping_Nms_per_rad", law.damping_Nms_per_rad, {0, 100, "Nms/rad"}, "of its motion");
+                         "stiffness towards the position at which the joint was let go; 0: it only damps");
+            entry.number("damping_Nms_per_rad", law.damping_Nms_per_rad, {0, 100, "Nms/rad"}, "damping of the joint");
           });
         });
   for (std::size_t i = 0; i < config_.unheld.size(); ++i) {
@@ -128,9 +129,11 @@ void RobotReader::unheld(Fields& f) {
 void RobotReader::initial_sets(Fields& f) {
   std::string one;
   std::vector<PlacedName> several;
-  const bool given = f.string("initial_set", one, "the control set that is active first; else the first one");
+  const bool given =
+      f.string("initial_set", one, "the control set that is active at the start (default: the first one)");
   if (given) several.push_back({one, f.place("initial_set")});
-  f.strings("initial_sets", several, {1, max_control_sets}, "in its place, several that share no joint");
+  f.strings("initial_sets", several, {1, max_control_sets},
+            "instead of initial_set, several control sets that share no joint");
   const std::vector<std::string> names = names_of(config_.sets);
   if (f.reading() && names.size() > max_control_sets) {
     problems_.add(f.place("sets"), f.path("sets") + ": at most " + std::to_string(max_control_sets) + " control sets");
@@ -159,19 +162,20 @@ void RobotReader::object(Fields& f) {
   ObjectConfig object;
   std::vector<PlacedName> patterns;
   object.place = f.place();
-  f.string("name", object.name, "its name for behaviors, parameters and signals", Need::required);
-  f.string("type", object.type.name, "the kind of control object", Need::required);
+  f.string("name", object.name, "name of the object for behaviors, parameters and signals", Need::required);
+  f.string("type", object.type.name, "type of control object", Need::required);
   f.strings("joints", patterns, {1, max_joints}, "patterns of the motor joints that it drives", Need::required);
-  f.integer("divisor", object.divisor, {1, 1000}, "low level every n-th control tick");
-  f.integer("high_level_divisor", object.high_level_divisor, {1, 1000}, "high level every n-th behavior tick");
-  f.object("options", "what its type asks for beyond parameters",
-           [&](Fields& e) { e.text_entries(object.options, "as the type says"); });
+  f.integer("divisor", object.divisor, {1, 1000}, "the low level is computed every n-th control tick");
+  f.integer("high_level_divisor", object.high_level_divisor, {1, 1000},
+            "the high level is computed every n-th behavior tick");
+  f.object("options", "options of the type, in addition to parameters",
+           [&](Fields& e) { e.text_entries(object.options, "value of the option"); });
   f.object("parameters", "first values by parameter pattern",
-           [&](Fields& e) { e.number_entries(object.parameters, any_number, "in the parameter's unit"); });
+           [&](Fields& e) { e.number_entries(object.parameters, any_number, "value in the parameter's unit"); });
   f.map("presets", "named values that a behavior may choose", [&](Fields& e) {
     PresetConfig& preset = object.presets.emplace_back();
     preset.name = {e.key(), e.key_place()};
-    e.number_entries(preset.values, any_number, "in the parameter's unit");
+    e.number_entries(preset.values, any_number, "value in the parameter's unit");
   });
   if (!f.reading()) return;
   object.type.place = f.place("type");
@@ -211,12 +215,13 @@ void RobotReader::object_joints(const std::vector<PlacedName>& patterns, ObjectC
 
 void RobotReader::control_set(Fields& entry) {
   std::vector<PlacedName> objects;
-  entry.strings("objects", objects, {1, max_objects}, "names of its control objects, in the order of computing",
-                Need::required);
+  entry.strings("objects", objects, {1, max_objects},
+                "names of its control objects, in the order in which they are computed", Need::required);
   std::vector<PlacedName> sum, blend, priority;
-  entry.strings("sum", sum, {1, max_objects}, "those of them that add to what stands before them");
-  entry.strings("blend", blend, {1, max_objects}, "those that mix with it, by their parameter SET.OBJECT.weight");
-  entry.strings("priority", priority, {1, max_objects}, "those that replace it while they claim the joint");
+  entry.strings("sum", sum, {1, max_objects}, "objects whose actuation is added to that of the objects before them");
+  entry.strings("blend", blend, {1, max_objects},
+                "objects whose actuation is mixed with it, by the parameter SET.OBJECT.weight");
+  entry.strings("priority", priority, {1, max_objects}, "objects that replace it while they claim the joint");
   for (const auto* composed : {&sum, &blend, &priority}) {
     for (const PlacedName& object : *composed) {
       if (contains(objects, object.name)) continue;

@@ -12,27 +12,30 @@ namespace kadans {
 namespace {
 
 void drive_fields(Fields& f, DriveSettings& d) {
-  f.number("torque_max_Nm", d.torque_max_Nm, {0, 1e4, "Nm"}, "torque limit of the motor at the joint, else the URDF's");
+  f.number("torque_max_Nm", d.torque_max_Nm, {0, 1e4, "Nm"},
+           "torque limit of the motor at the joint (default: the URDF's)");
   f.number("velocity_max_rad_s", d.velocity_max_rad_s, {0, 1e3, "rad/s"},
-           "no-load speed at the joint, else the URDF's");
+           "no-load speed at the joint (default: the URDF's)");
   f.number("knee_velocity_rad_s", d.knee_velocity_rad_s, {0, 1e3, "rad/s"},
-           "speed up to which the full torque is there; it falls to 0 at velocity_max_rad_s");
+           "speed up to which the motor gives its full torque; above it the torque falls to 0 at velocity_max_rad_s");
   f.number("rotor_inertia_kg_m2", d.rotor_inertia_kg_m2, {0, 10, "kg m2"}, "rotor inertia reflected to the joint");
   f.number("viscous_Nms_per_rad", d.viscous_Nms_per_rad, {0, 100, "Nms/rad"}, "viscous friction on the motor's side");
   f.number("coulomb_Nm", d.coulomb_Nm, {0, 100, "Nm"}, "dry friction on the motor's side");
   f.number("spring_Nm_per_rad", d.spring_Nm_per_rad, {0, 1e5, "Nm/rad"},
            "spring between motor and joint (series elastic actuator); 0: rigid");
   f.number("spring_damping_Nms_per_rad", d.spring_damping_Nms_per_rad, {0, 100, "Nms/rad"}, "damping of that spring");
-  f.number("position_gain_Nm_per_rad", d.position_gain_Nm_per_rad, {0, 1e5, "Nm/rad"}, "of the drive's position mode");
+  f.number("position_gain_Nm_per_rad", d.position_gain_Nm_per_rad, {0, 1e5, "Nm/rad"},
+           "gain of the drive's position mode");
   f.number("velocity_gain_Nms_per_rad", d.velocity_gain_Nms_per_rad, {0, 1e4, "Nms/rad"},
-           "of the drive's position and velocity modes");
+           "velocity gain of the drive's position and velocity modes");
   f.number("parallel_spring_Nm_per_rad", d.parallel_spring_Nm_per_rad, {0, 1e5, "Nm/rad"},
            "passive spring parallel to the joint");
-  f.number("parallel_rest_rad", d.parallel_rest_rad, {-10, 10, "rad"}, "where that spring is at rest");
+  f.number("parallel_rest_rad", d.parallel_rest_rad, {-10, 10, "rad"},
+           "position at which the parallel spring gives no torque");
   f.number("parallel_damping_Nms_per_rad", d.parallel_damping_Nms_per_rad, {0, 1e3, "Nms/rad"},
            "passive damper parallel to the joint");
-  f.boolean("enabled", d.enabled, "whether a modelled drive is enabled at the start; else somebody asks for it");
-  f.number("enable_s", d.enable_s, {0, 60, "s"}, "a modelled drive takes so long from the order until it is enabled");
+  f.boolean("enabled", d.enabled, "a modelled drive is enabled from the start; otherwise an order must enable it");
+  f.number("enable_s", d.enable_s, {0, 60, "s"}, "time that a modelled drive takes from the order until it is enabled");
   f.number("brake_Nm", d.brake_Nm, {0, 1e4, "Nm"},
            "dry friction of the brake that holds the joint while its drive is not enabled; 0: none");
 }
@@ -173,13 +176,14 @@ void RobotReader::surface(Fields& entry) {
 void RobotReader::imu(Fields& f) {
   ImuSettings& imu = config_.plant.imu;
   Vec3 angles_rad{};
-  f.numbers("position_m", imu.pose.position_m, sensor_position_m, "where it sits, in the base frame");
-  if (f.numbers("roll_pitch_yaw_rad", angles_rad, {-7, 7, "rad"}, "how it sits, in the base frame")) {
+  f.numbers("position_m", imu.pose.position_m, sensor_position_m, "position of the IMU in the base frame");
+  if (f.numbers("roll_pitch_yaw_rad", angles_rad, {-7, 7, "rad"}, "orientation of the IMU in the base frame")) {
     imu.pose.orientation = from_roll_pitch_yaw(angles_rad[0], angles_rad[1], angles_rad[2]);
   }
-  f.number("gyro_noise_rad_s", imu.gyro_noise_rad_s, {0, 10, "rad/s"}, "standard deviation");
+  f.number("gyro_noise_rad_s", imu.gyro_noise_rad_s, {0, 10, "rad/s"}, "standard deviation of the noise");
   f.number("gyro_bias_rad_s", imu.gyro_bias_rad_s, {0, 10, "rad/s"}, "standard deviation of the bias drawn once a run");
-  f.number("accelerometer_noise_m_s2", imu.accelerometer_noise_m_s2, {0, 100, "m/s2"}, "standard deviation");
+  f.number("accelerometer_noise_m_s2", imu.accelerometer_noise_m_s2, {0, 100, "m/s2"},
+           "standard deviation of the noise");
   f.number("accelerometer_bias_m_s2", imu.accelerometer_bias_m_s2, {0, 100, "m/s2"},
            "standard deviation of the bias drawn once a run");
 }
@@ -195,7 +199,7 @@ void RobotReader::foot(Fields& f) {
             Need::required);
   f.numbers("toe_outer_m", foot.sensors_m[3], sensor_position_m, "pressure sensor, in the link's frame",
             Need::required);
-  f.number("noise_N", foot.noise_N, {0, 1e3, "N"}, "standard deviation of each sensor");
+  f.number("noise_N", foot.noise_N, {0, 1e3, "N"}, "standard deviation of the noise of each sensor");
   if (!have_model_) return;
   if (!foot.link.empty() && !config_.model.find_link(foot.link)) {
     problems_.add_unknown(f.place("link"), "link", foot.link, config_.model.link_names());
@@ -210,16 +214,17 @@ void RobotReader::plant(Fields& f) {
   f.map("encoders", "joint encoders by joint pattern", [&](Fields& entry) {
     each_joint(entry, plant.encoders, [&](EncoderSettings& encoder) {
       entry.number("resolution_rad", encoder.resolution_rad, {0, 1, "rad"}, "step of the reading; 0: continuous");
-      entry.number("noise_rad", encoder.noise_rad, {0, 1, "rad"}, "standard deviation");
+      entry.number("noise_rad", encoder.noise_rad, {0, 1, "rad"}, "standard deviation of the noise");
     });
   });
   f.object("imu", "inertial measurement unit on the base link", [&](Fields& e) { imu(e); });
   f.list("feet", {0, max_feet}, "soles with four pressure sensors", [&](Fields& e) { foot(e); });
   f.map("surfaces", "friction of the links' surfaces by link pattern", [&](Fields& entry) { surface(entry); });
-  f.number("ground_friction", plant.ground_friction, {0, 10}, "of the ground; a contact's friction is the product");
+  f.number("ground_friction", plant.ground_friction, {0, 10},
+           "coefficient of friction of the ground; a contact's coefficient is the product of those of both surfaces");
   f.numbers("gravity_m_s2", plant.gravity_m_s2, {-100, 100, "m/s2"}, "gravity in world axes");
   static const std::vector<std::string> solvers{"tree", "stock"};
-  f.choice("solver", plant.solver, solvers, "of contacts and joint laws: our own, or Bullet's");
+  f.choice("solver", plant.solver, solvers, "solver of contacts and joint laws: the one of this project, or Bullet's");
   f.integer("solver_iterations", plant.solver_iterations, {1, 1000}, "iterations of the contact solver in a step");
   f.boolean("fixed_base", plant.fixed_base, "the base link is bolted to the world");
   f.boolean("self_collision", plant.self_collision, "the robot's links collide with each other");
@@ -242,13 +247,14 @@ void RobotReader::plant(Fields& f) {
 void RobotReader::sensor(Fields& entry) {
   constexpr double most = 1e12;
   SensorChannel channel{.name = std::string(entry.key()), .unit = {}, .doc = {}, .min = -most, .max = most};
-  entry.string("unit", channel.unit, "of its readings, such as m, V or C; none: a switch or a count");
-  entry.string("doc", channel.doc, "a sentence for people");
+  entry.string("unit", channel.unit, "unit of its readings, such as m, V or C; none for a switch or a count");
+  entry.string("doc", channel.doc, "a sentence that says what it measures");
   entry.number("min", channel.min, {-most, most, ""}, "a reading below it is a fault");
   entry.number("max", channel.max, {-most, most, ""}, "a reading above it is a fault");
-  entry.number("period_s", channel.period_s, {0, 60, "s"}, "between two readings; 0: one in each tick");
-  entry.number("value", channel.value, {-most, most, ""}, "that a model reads; scenarios set sensor.NAME.value");
-  entry.number("noise", channel.noise, {0, most, ""}, "of a model: standard deviation");
+  entry.number("period_s", channel.period_s, {0, 60, "s"}, "time between two readings; 0: one reading in each tick");
+  entry.number("value", channel.value, {-most, most, ""},
+               "reading in a model; scenarios change it as sensor.NAME.value");
+  entry.number("noise", channel.noise, {0, most, ""}, "standard deviation of the noise in a model");
   if (!entry.reading()) return;
   constexpr std::size_t longest = 32;
   const bool begins_well = !channel.name.empty() && (channel.name[0] < '0' || channel.name[0] > '9');
@@ -268,12 +274,13 @@ void RobotReader::sensor(Fields& entry) {
 void RobotReader::start(Fields& f) {
   PlantSettings& plant = config_.plant;
   Vec3 angles_rad{};
-  const bool posed = f.string("pose", config_.start_pose, "the pose the joints start in; else all at 0");
-  f.numbers("position_m", plant.base.position_m, {-1000, 1000, "m"}, "of the base frame in the world");
-  if (f.numbers("roll_pitch_yaw_rad", angles_rad, {-7, 7, "rad"}, "of the base frame in the world")) {
+  const bool posed = f.string("pose", config_.start_pose, "pose in which the joints start (default: all at 0)");
+  f.numbers("position_m", plant.base.position_m, {-1000, 1000, "m"}, "position of the base frame in the world");
+  if (f.numbers("roll_pitch_yaw_rad", angles_rad, {-7, 7, "rad"}, "orientation of the base frame in the world")) {
     plant.base.orientation = from_roll_pitch_yaw(angles_rad[0], angles_rad[1], angles_rad[2]);
   }
-  f.boolean("stand_on_ground", plant.stand_on_ground, "choose the height so that the lowest point touches the ground");
+  f.boolean("stand_on_ground", plant.stand_on_ground,
+            "the height is chosen so that the robot's lowest point touches the ground");
   if (!posed || !have_model_) return;
   const auto named = [&](const PoseInfo& pose) { return pose.name == config_.start_pose; };
   const auto found = std::find_if(config_.poses.begin(), config_.poses.end(), named);
@@ -287,27 +294,29 @@ void RobotReader::start(Fields& f) {
 void RobotReader::estimate(Fields& f) {
   EstimateSettings& estimate = config_.estimate;
   f.number("velocity_cutoff_Hz", estimate.velocity_cutoff_Hz, {0.1, 1e4, "Hz"},
-           "cut-off of the joint velocity's filter");
+           "cut-off frequency of the filter of joint velocities");
   f.number("accelerometer_gain_per_s", estimate.accelerometer_gain_per_s, {0, 100, "1/s"},
            "how fast gravity corrects roll and pitch");
   f.number("gyro_bias_gain_per_s2", estimate.gyro_bias_gain_per_s2, {0, 100, "1/s2"},
            "how fast the gyro's bias is learnt");
-  f.number("gyro_bias_max_rad_s", estimate.gyro_bias_max_rad_s, {0, 10, "rad/s"}, "no bias is learnt beyond it");
+  f.number("gyro_bias_max_rad_s", estimate.gyro_bias_max_rad_s, {0, 10, "rad/s"}, "limit of the learnt bias");
   f.number("gravity_tolerance", estimate.gravity_tolerance, {1e-3, 10},
-           "| |a| / g - 1 | where the accelerometer loses its say");
-  f.number("contact_on_N", estimate.contact_on_N, {1e-3, 1e4, "N"}, "a foot with more force is in contact");
-  f.number("contact_off_N", estimate.contact_off_N, {1e-3, 1e4, "N"}, "a foot with less force is not");
+           "| |a| / g - 1 | from which the accelerometer no longer corrects the orientation");
+  f.number("contact_on_N", estimate.contact_on_N, {1e-3, 1e4, "N"}, "a foot that bears more force comes into contact");
+  f.number("contact_off_N", estimate.contact_off_N, {1e-3, 1e4, "N"},
+           "a foot that bears less force is no longer in contact");
   if (f.reading() && !(estimate.contact_off_N <= estimate.contact_on_N)) {
     problems_.add(f.place("contact_off_N"), f.path("contact_off_N") + " is " + number_text(estimate.contact_off_N) +
                                                 ", must be at most contact_on_N, " +
                                                 number_text(estimate.contact_on_N));
   }
-  f.map("joints", "what is different for some joints, by joint pattern", [&](Fields& entry) {
+  f.map("joints", "settings that differ for some joints, by joint pattern", [&](Fields& entry) {
     each_joint(entry, estimate.joint_velocity_cutoff_Hz, [&](double& cutoff_Hz) {
-      entry.number("velocity_cutoff_Hz", cutoff_Hz, {0, 1e4, "Hz"}, "cut-off of its velocity's filter; 0: as all");
+      entry.number("velocity_cutoff_Hz", cutoff_Hz, {0, 1e4, "Hz"},
+                   "cut-off frequency of the filter of its velocity; 0: the same as of all joints");
     });
     each_joint(entry, estimate.sample_divisor, [&](std::uint32_t& divisor) {
-      entry.integer("sample_divisor", divisor, {1, 1000}, "sampled every n-th control tick");
+      entry.integer("sample_divisor", divisor, {1, 1000}, "the joint is sampled every n-th control tick");
     });
   });
 }
@@ -337,72 +346,89 @@ std::vector<std::string> fault_names() {
 }
 
 void soft_stop_fields(Fields& f, SoftStopSettings& s) {
-  f.number("zone_rad", s.zone_rad, {0, 1, "rad"}, "before a position limit: torque towards it fades to none");
+  f.number("zone_rad", s.zone_rad, {0, 1, "rad"},
+           "range before a position limit in which torque towards the limit fades to 0");
   f.number("stiffness_Nm_per_rad", s.stiffness_Nm_per_rad, {0, 1e4, "Nm/rad"},
-           "of the spring that pulls back beyond it");
+           "stiffness of the spring that pulls a joint back beyond its position limit");
 }
 
 void thermal_fields(Fields& f, ThermalSettings& s) {
-  f.number("ambient_C", s.ambient_C, {-50, 80, "C"}, "where a motor starts, and cools down to");
-  f.number("warm_C", s.warm_C, {0, 300, "C"}, "from here torque is derated, down to the continuous one at hot_C");
-  f.number("hot_C", s.hot_C, {0, 300, "C"}, "a winding that reaches it is a fault");
+  f.number("ambient_C", s.ambient_C, {-50, 80, "C"}, "temperature at which a motor starts and to which it cools down");
+  f.number("warm_C", s.warm_C, {0, 300, "C"},
+           "temperature of a winding from which its torque is limited, down to the continuous torque at hot_C");
+  f.number("hot_C", s.hot_C, {0, 300, "C"}, "temperature of a winding from which it is a fault");
 }
 
 void sensor_fields(Fields& f, SensorWatchSettings& s) {
   f.number("jump_rad", s.jump_rad, {0, 10, "rad"},
-           "step between two readings of a joint, beyond what twice its speed limit allows for");
-  f.integer("stuck_ticks", s.stuck_ticks, {2, 100000}, "readings of a joint exactly the same although its motor works");
+           "step between two readings of a joint, in addition to the step at twice its speed limit, above which it is "
+           "a fault");
+  f.integer("stuck_ticks", s.stuck_ticks, {2, 100000},
+            "identical readings in a row, while the joint's motor works, from which it is a fault");
   f.number("stuck_motion_rad", s.stuck_motion_rad, {1e-6, 10, "rad"},
-           "that the motor moved, or was told to, meanwhile");
-  f.number("stuck_effort_share", s.stuck_effort_share, {1e-3, 10},
-           "of its limit that the torque asked changed meanwhile");
-  f.boolean("imu", s.imu, "the robot has an inertial measurement unit to be watched");
-  f.integer("imu_stuck_ticks", s.imu_stuck_ticks, {2, 100000}, "readings exactly the same of an IMU that had noise");
-  f.number("gyro_step_rad_s", s.gyro_step_rad_s, {0, 1e4, "rad/s"}, "between two readings");
-  f.number("gyro_max_rad_s", s.gyro_max_rad_s, {0, 1e4, "rad/s"}, "that the gyro can measure");
-  f.number("acceleration_max_m_s2", s.acceleration_max_m_s2, {0, 1e5, "m/s2"}, "that the accelerometer can measure");
-  f.integer("foot_stuck_ticks", s.foot_stuck_ticks, {2, 100000}, "readings exactly the same of a foot that had noise");
-  f.number("foot_force_max_N", s.foot_force_max_N, {0, 1e6, "N"}, "that one pressure sensor can measure");
+           "motion of the motor, or of its set-point, from which the motor counts as working");
+  f.number(
+      "stuck_effort_share", s.stuck_effort_share, {1e-3, 10},
+      "change of the demanded torque, as a share of its limit, from which a motor without a spring counts as working");
+  f.boolean("imu", s.imu, "the inertial measurement unit is watched");
+  f.integer("imu_stuck_ticks", s.imu_stuck_ticks, {2, 100000},
+            "identical readings in a row of an IMU that had noise, from which it is a fault");
+  f.number("gyro_step_rad_s", s.gyro_step_rad_s, {0, 1e4, "rad/s"},
+           "step between two readings of the gyro above which it is a fault");
+  f.number("gyro_max_rad_s", s.gyro_max_rad_s, {0, 1e4, "rad/s"}, "largest rate that the gyro can measure");
+  f.number("acceleration_max_m_s2", s.acceleration_max_m_s2, {0, 1e5, "m/s2"},
+           "largest acceleration that the accelerometer can measure");
+  f.integer("foot_stuck_ticks", s.foot_stuck_ticks, {2, 100000},
+            "identical readings in a row of a foot that had noise, from which it is a fault");
+  f.number("foot_force_max_N", s.foot_force_max_N, {0, 1e6, "N"}, "largest force that one pressure sensor can measure");
 }
 
 void drive_fields(Fields& f, DriveWatchSettings& s) {
-  f.number("enable_s", s.enable_s, {0, 60, "s"}, "that a drive may take until it is enabled, once asked for torque");
-  f.number("hot_C", s.hot_C, {1, 300, "C"}, "a drive that says so is too hot");
-  f.number("sample_age_max_s", s.sample_age_max_s, {1e-4, 10, "s"}, "of a joint's reading when the frame is made");
+  f.number("enable_s", s.enable_s, {0, 60, "s"},
+           "time that a drive may take until it is enabled, after the first order for torque");
+  f.number("hot_C", s.hot_C, {1, 300, "C"}, "temperature reported by a drive from which it is a fault");
+  f.number("sample_age_max_s", s.sample_age_max_s, {1e-4, 10, "s"},
+           "largest age of a joint's reading when the sensor frame is made");
 }
 
 void supply_fields(Fields& f, SupplySettings& s) {
-  f.number("lowest_V", s.lowest_V, {0, 1000, "V"}, "of the drives' supply; 0: not watched");
-  f.number("highest_V", s.highest_V, {0, 1000, "V"}, "of the drives' supply; 0: not watched");
-  f.number("time_s", s.time_s, {0, 10, "s"}, "beyond them for so long is a fault");
+  f.number("lowest_V", s.lowest_V, {0, 1000, "V"}, "lowest supply voltage of the drives; 0: not watched");
+  f.number("highest_V", s.highest_V, {0, 1000, "V"}, "highest supply voltage of the drives; 0: not watched");
+  f.number("time_s", s.time_s, {0, 10, "s"}, "time outside of these limits after which it is a fault");
 }
 
 void fall_fields(Fields& f, FallSettings& s) {
-  f.number("roll_max_rad", s.roll_max_rad, {0.01, 7, "rad"}, "beyond it the robot falls");
-  f.number("pitch_max_rad", s.pitch_max_rad, {0.01, 7, "rad"}, "beyond it the robot falls");
-  f.number("rate_max_rad_s", s.rate_max_rad_s, {0.01, 1e3, "rad/s"}, "beyond it the robot falls");
-  f.number("time_s", s.time_s, {0, 10, "s"}, "that one of these must last");
-  f.number("soft_share", s.soft_share, {0, 1}, "of every torque while falling; 1: as usual");
-  f.number("rest_rate_rad_s", s.rest_rate_rad_s, {1e-3, 100, "rad/s"}, "a fallen robot turns slower ...");
-  f.number("rest_s", s.rest_s, {0, 60, "s"}, "... for so long; then torque is back");
-  f.number("impact_max_m_s2", s.impact_max_m_s2, {0, 1e5, "m/s2"}, "specific force of an impact that is recorded");
+  f.number("roll_max_rad", s.roll_max_rad, {0.01, 7, "rad"}, "roll beyond which the robot counts as falling");
+  f.number("pitch_max_rad", s.pitch_max_rad, {0.01, 7, "rad"}, "pitch beyond which the robot counts as falling");
+  f.number("rate_max_rad_s", s.rate_max_rad_s, {0.01, 1e3, "rad/s"},
+           "rate of rotation beyond which the robot counts as falling");
+  f.number("time_s", s.time_s, {0, 10, "s"}, "time for which a limit of fall must be exceeded");
+  f.number("soft_share", s.soft_share, {0, 1},
+           "share of every torque that remains while the robot falls; 1: all of it");
+  f.number("rest_rate_rad_s", s.rest_rate_rad_s, {1e-3, 100, "rad/s"},
+           "rate of rotation below which a fallen robot is at rest");
+  f.number("rest_s", s.rest_s, {0, 60, "s"}, "time at rest after which the full torque is back");
+  f.number("impact_max_m_s2", s.impact_max_m_s2, {0, 1e5, "m/s2"},
+           "specific force in a fall above which an impact is recorded");
 }
 
 }  // namespace
 
 void RobotReader::limits(Fields& entry) {
   each_joint(entry, config_.safety.joints, [&](JointLimits& limits) {
-    entry.number("lower_rad", limits.lower_rad, {-1e3, 1e3, "rad"}, "lower position limit, else the URDF's");
-    entry.number("upper_rad", limits.upper_rad, {-1e3, 1e3, "rad"}, "upper position limit, else the URDF's");
-    entry.number("velocity_max_rad_s", limits.velocity_max_rad_s, {0, 1e3, "rad/s"}, "speed limit, else the URDF's");
-    entry.number("effort_max_Nm", limits.effort_max_Nm, {0, 1e4, "Nm"}, "torque limit, else the URDF's");
+    entry.number("lower_rad", limits.lower_rad, {-1e3, 1e3, "rad"}, "lower position limit (default: the URDF's)");
+    entry.number("upper_rad", limits.upper_rad, {-1e3, 1e3, "rad"}, "upper position limit (default: the URDF's)");
+    entry.number("velocity_max_rad_s", limits.velocity_max_rad_s, {0, 1e3, "rad/s"},
+                 "speed limit (default: the URDF's)");
+    entry.number("effort_max_Nm", limits.effort_max_Nm, {0, 1e4, "Nm"}, "torque limit (default: the URDF's)");
     entry.number("effort_rate_max_Nm_s", limits.effort_rate_max_Nm_s, {0, 1e8, "Nm/s"},
-                 "how fast the torque asked may change; 0: effort_max_Nm in a millisecond");
+                 "largest rate of change of the demanded torque; 0: effort_max_Nm in a millisecond");
     entry.number("power_max_W", limits.power_max_W, {0, 1e6, "W"},
                  "limit of torque times speed; 0: effort_max_Nm times velocity_max_rad_s");
     entry.number("continuous_Nm", limits.continuous_Nm, {0, 1e4, "Nm"},
-                 "torque that heats the winding just to thermal.hot_C; 0: 0.6 of effort_max_Nm");
-    entry.number("thermal_time_constant_s", limits.thermal_time_constant_s, {1, 1e5, "s"}, "of the winding");
+                 "constant torque that heats the winding to thermal.hot_C in the end; 0: 0.6 of effort_max_Nm");
+    entry.number("thermal_time_constant_s", limits.thermal_time_constant_s, {1, 1e5, "s"},
+                 "time constant of the winding's temperature");
   });
   if (!have_model_) return;
   for (const std::size_t i : matching(entry.key(), joint_names_)) {
@@ -440,34 +466,42 @@ void RobotReader::reaction(Fields& entry) {
     if (theirs && entry.key() == name(static_cast<FaultCode>(code))) reaction = &config_.safety.reactions[code];
   }
   if (entry.reading() && reaction == &scratch) problems_.add_unknown(entry.key_place(), "fault", entry.key(), faults);
-  entry.choice("joint", reaction->joint, levels, "rung of the joint concerned");
-  entry.choice("robot", reaction->robot, levels, "rung of the robot");
-  entry.boolean("latch", reaction->latch, "stays until faults are cleared");
-  entry.boolean("escalate", reaction->escalate, "while it lasts: after hold_s damp, after another damp_s off");
-  entry.number("exit_s", reaction->exit_s, {0, 60, "s"}, "the fault must be over for so long before its rung is left");
+  entry.choice("joint", reaction->joint, levels, "rung of the ladder for the joint concerned");
+  entry.choice("robot", reaction->robot, levels, "rung of the ladder for the whole robot");
+  entry.boolean("latch", reaction->latch, "the rung stays until faults are cleared");
+  entry.boolean("escalate", reaction->escalate,
+                "while the fault lasts, the rung becomes damp after hold_s, and off after another damp_s");
+  entry.number("exit_s", reaction->exit_s, {0, 60, "s"},
+               "time that must pass after the end of the fault before its rung is left");
 }
 
 void RobotReader::safety(Fields& f) {
   SafetySettings& s = config_.safety;
   f.map("limits", "limits by joint pattern, narrower than the URDF's", [&](Fields& entry) { limits(entry); });
-  f.number("position_margin_rad", s.position_margin_rad, {0, 1, "rad"}, "beyond a limit before it is a fault");
-  f.number("velocity_margin", s.velocity_margin, {1, 10}, "times the limit before it is a fault");
-  f.object("soft_stop", "the last piece before a position limit", [&](Fields& e) { soft_stop_fields(e, s.soft_stop); });
+  f.number("position_margin_rad", s.position_margin_rad, {0, 1, "rad"},
+           "distance beyond a position limit above which it is a fault");
+  f.number("velocity_margin", s.velocity_margin, {1, 10}, "multiple of the speed limit above which it is a fault");
+  f.object("soft_stop", "the range before a position limit", [&](Fields& e) { soft_stop_fields(e, s.soft_stop); });
   f.object("thermal", "the model of the motors' windings", [&](Fields& e) { thermal_fields(e, s.thermal); });
-  f.number("damping_Nms_per_rad", s.damping_Nms_per_rad, {0, 100, "Nms/rad"}, "of a joint that damps");
-  f.number("recover_s", s.recover_s, {1e-3, 60, "s"}, "torque of a joint that comes back grows in this time");
-  f.number("heartbeat_timeout_s", s.heartbeat_timeout_s, {0.01, 60, "s"}, "silence of the behavior engine that counts");
-  f.integer("silent_ticks_max", s.silent_ticks_max, {1, 10000}, "missing readings in a row that do not count");
-  f.object("sensors", "when a sensor is not believed", [&](Fields& e) { sensor_fields(e, s.sensors); });
-  f.object("drives", "what the drives say of themselves", [&](Fields& e) { drive_fields(e, s.drives); });
-  f.object("supply", "the drives' supply", [&](Fields& e) { supply_fields(e, s.supply); });
-  f.integer("overruns_in_a_row_max", s.overruns_in_a_row_max, {1, 10000}, "overruns in a row that count");
+  f.number("damping_Nms_per_rad", s.damping_Nms_per_rad, {0, 100, "Nms/rad"}, "damping of a joint that damps");
+  f.number("recover_s", s.recover_s, {1e-3, 60, "s"},
+           "time in which the torque of a joint that recovers grows to its full value");
+  f.number("heartbeat_timeout_s", s.heartbeat_timeout_s, {0.01, 60, "s"},
+           "time without a heartbeat of the behavior engine after which it is a fault");
+  f.integer("silent_ticks_max", s.silent_ticks_max, {1, 10000},
+            "largest number of missing readings in a row that is not yet a fault");
+  f.object("sensors", "when a sensor's readings are a fault", [&](Fields& e) { sensor_fields(e, s.sensors); });
+  f.object("drives", "when what a drive reports of itself is a fault", [&](Fields& e) { drive_fields(e, s.drives); });
+  f.object("supply", "when the drives' supply voltage is a fault", [&](Fields& e) { supply_fields(e, s.supply); });
+  f.integer("overruns_in_a_row_max", s.overruns_in_a_row_max, {1, 10000}, "overruns in a row from which it is a fault");
   f.integer("joints_lost_max", s.joints_lost_max, {0, max_joints},
-            "more joints that damp or are off make the robot damp");
-  f.number("tilt_max_rad", s.tilt_max_rad, {0, 7, "rad"}, "between the base's z axis and up, while standing");
-  f.object("fall", "when the robot falls, and what it does then", [&](Fields& e) { fall_fields(e, s.fall); });
-  f.number("hold_s", s.hold_s, {0, 60, "s"}, "after a lost heartbeat: hold this long, then damp");
-  f.number("damp_s", s.damp_s, {0, 60, "s"}, "damp this long, then off");
+            "largest number of joints that may damp or be off; with more, the whole robot damps");
+  f.number("tilt_max_rad", s.tilt_max_rad, {0, 7, "rad"},
+           "largest angle between the base's z axis and the vertical while the robot stands");
+  f.object("fall", "when the robot counts as falling, and what it does then",
+           [&](Fields& e) { fall_fields(e, s.fall); });
+  f.number("hold_s", s.hold_s, {0, 60, "s"}, "time for which the robot holds before it damps, when a fault escalates");
+  f.number("damp_s", s.damp_s, {0, 60, "s"}, "time for which it damps before it is off");
   f.map("reactions", "what follows from a fault, by the fault's name", [&](Fields& entry) { reaction(entry); });
   if (f.reading() && !(s.thermal.ambient_C < s.thermal.warm_C && s.thermal.warm_C <= s.thermal.hot_C)) {
     problems_.add(f.place("thermal"), f.path("thermal") + ": ambient_C < warm_C <= hot_C must hold");

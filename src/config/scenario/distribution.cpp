@@ -14,9 +14,11 @@ struct Spread {
   const char* doc;
 };
 constexpr std::array<Spread, 3> spreads{{
-    {"uniform", Distribution::Kind::uniform, "low and high, every value between them as likely"},
-    {"log_uniform", Distribution::Kind::log_uniform, "low and high, every factor between them as likely"},
-    {"normal", Distribution::Kind::normal, "mean and standard deviation, cut off at four of them"},
+    {"uniform", Distribution::Kind::uniform, "low and high; all values between them are equally likely"},
+    {"log_uniform", Distribution::Kind::log_uniform,
+     "low and high; the logarithms of the values between them are equally likely"},
+    {"normal", Distribution::Kind::normal,
+     "mean and standard deviation; the distribution is cut off at four standard deviations"},
 }};
 
 void verify(const Fields& f, const Spread& spread, const Distribution& distribution, Problems& problems) {
@@ -80,11 +82,12 @@ void distribution_fields(Fields& f, Distribution& distribution, Problems& proble
     distribution.of = of;
     verify(f, spread, distribution, problems);
   }
-  if (f.number_list("values", distribution.values, {1, 10'000}, {}, "one of these, each as likely")) {
+  if (f.number_list("values", distribution.values, {1, 10'000}, {}, "one of these values; all are equally likely")) {
     ++given;
     distribution.kind = Distribution::Kind::values;
   }
-  f.boolean("together", distribution.together, "all that the pattern chooses get the same value, else each its own");
+  f.boolean("together", distribution.together,
+            "all quantities that the pattern matches have the same value (default: each has its own)");
   if (!f.reading() || given == 1) return;
   const bool tried = f.has("uniform") || f.has("log_uniform") || f.has("normal") || f.has("values");
   if (given > 1 || !tried)
@@ -92,7 +95,7 @@ void distribution_fields(Fields& f, Distribution& distribution, Problems& proble
 }
 
 void variation_fields(Fields& f, std::string_view name, std::vector<Variation>& variations, Problems& problems) {
-  f.map(name, "quantities that are drawn anew with each seed, by a pattern over their names", [&](Fields& e) {
+  f.map(name, "quantities that each seed draws anew, by a pattern of their names", [&](Fields& e) {
     Variation variation{.pattern = {e.key(), e.key_place()}, .distribution = {}};
     distribution_fields(e, variation.distribution, problems);
     if (e.reading()) variations.push_back(std::move(variation));

@@ -9,16 +9,16 @@ namespace {
 constexpr NumberRange time_range{0, 1e6, "s"};
 
 void list_fields(Fields& f, ScenarioCheck& check) {
-  f.string("name", check.name, "what is shown to hold", Need::required);
-  f.choice("kind", check.kind, check_kinds, "when it must (never: must not) hold", Need::required);
-  f.string("signal", check.signal, "name of a signal that must be in min..max");
+  f.string("name", check.name, "name of the check: what must hold", Need::required);
+  f.choice("kind", check.kind, check_kinds, "when the condition must hold (never: must not hold)", Need::required);
+  f.string("signal", check.signal, "name of a signal that must lie between min and max");
   f.number("min", check.min, {}, "least value, in the signal's unit");
   f.number("max", check.max, {}, "greatest value, in the signal's unit");
-  f.string("that", check.that, "or a condition on signals in Lua, such as base.height_m > 0.6");
-  f.string("when", check.when, "within, settles: the condition that starts the clock");
-  f.number("within_s", check.within_s, time_range, "within, settles: time it may take");
-  f.number("from_s", check.from_s, time_range, "looked at from this time on");
-  f.number("until_s", check.until_s, time_range, "looked at up to this time, else to the end");
+  f.string("that", check.that, "instead of signal: a condition on signals in Lua, such as base.height_m > 0.6");
+  f.string("when", check.when, "for within and settles: the condition from which the time counts");
+  f.number("within_s", check.within_s, time_range, "for within and settles: time after which the condition must hold");
+  f.number("from_s", check.from_s, time_range, "time from which the check applies");
+  f.number("until_s", check.until_s, time_range, "time until which the check applies (default: the end)");
   check.signal_place = f.place("signal");
   check.that_place = f.place("that");
   check.when_place = f.place("when");
@@ -118,13 +118,14 @@ void verify(const Fields& f, const MetricConfig& metric, Problems& problems) {
 }  // namespace
 
 void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics, Problems& problems) {
-  f.map("metrics", "numbers that each run is judged by, by their names", [&](Fields& e) {
+  f.map("metrics", "numbers by which each run is judged, by name", [&](Fields& e) {
     MetricConfig metric{.name = e.key(), .place = e.key_place(), .signal = {}, .that = {}};
-    e.choice("kind", metric.kind, metric_kinds, "what is made of the signal or the condition", Need::required);
-    e.string("signal", metric.signal, "max, min, mean, rms, end: name of the signal");
-    e.string("that", metric.that, "end, share, first_time, since: a condition on signals in Lua");
-    e.number("from_s", metric.from_s, time_range, "looked at from this time on");
-    e.number("until_s", metric.until_s, time_range, "looked at up to this time, else to the end");
+    e.choice("kind", metric.kind, metric_kinds, "how the metric is computed from the signal or the condition",
+             Need::required);
+    e.string("signal", metric.signal, "for max, min, mean, rms and end: name of the signal");
+    e.string("that", metric.that, "for end, share, first_time and since: a condition on signals in Lua");
+    e.number("from_s", metric.from_s, time_range, "time from which it counts");
+    e.number("until_s", metric.until_s, time_range, "time until which it counts (default: the end)");
     metric.signal_place = e.place("signal");
     metric.that_place = e.place("that");
     if (!e.reading()) return;

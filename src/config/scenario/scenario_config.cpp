@@ -98,11 +98,11 @@ const std::array<std::string, 2> shape_names{"constant", "half_sine"};
 void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, Problems& problems) {
   std::string list, file;
   PlayOrder& order = event.order;
-  f.number("at_s", event.at_s, {0, time_max_s, "s"}, "when", Need::required);
-  const bool known = f.choice("do", order.kind, play_order_names, "what happens to what plays", Need::required);
-  f.string("list", list, "play, replace: what to play, \"squat{depth_m=0.08}, wave\"");
-  f.string("behavior", order.behavior.name, "reload: name of a behavior that plays");
-  f.string("file", file, "reload: what it goes on with, from the project root");
+  f.number("at_s", event.at_s, {0, time_max_s, "s"}, "time of the event", Need::required);
+  const bool known = f.choice("do", order.kind, play_order_names, "change to the list of behaviors", Need::required);
+  f.string("list", list, "for play and replace: the behaviors, such as \"squat{depth_m=0.08}, wave\"");
+  f.string("behavior", order.behavior.name, "for reload: name of a behavior that plays");
+  f.string("file", file, "for reload: the file with which it continues, from the project root");
   if (!f.reading() || !known) return;
   using Kind = PlayOrder::Kind;
   verify(f, event, {order.kind == Kind::play || order.kind == Kind::replace, order.kind == Kind::reload}, problems);
@@ -116,11 +116,12 @@ void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, P
 
 void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
   constexpr NumberRange time{0, 1e6, "s"};
-  f.choice("kind", fault.kind, names_of_kinds(), "what fails and how", Need::required);
-  f.string("of", fault.of.name, "of sensors: a joint, a foot's link, a sensor, or imu; of drives: a joint");
-  f.number("from_s", fault.from_s, time, "from this time on");
-  f.number("until_s", fault.until_s, time, "up to this time, else to the end");
-  f.number("size", fault.size, {-1e6, 1e6, ""}, "how much; what it means depends on the kind");
+  f.choice("kind", fault.kind, names_of_kinds(), "kind of fault", Need::required);
+  f.string("of", fault.of.name,
+           "where it happens; for sensors a joint, a foot's link, a sensor's name or imu, for drives a joint");
+  f.number("from_s", fault.from_s, time, "time at which the fault begins");
+  f.number("until_s", fault.until_s, time, "time at which the fault ends (default: the end of the run)");
+  f.number("size", fault.size, {-1e6, 1e6, ""}, "size of the fault; the kind says what it means");
   if (!f.reading()) return;
   fault.of.place = f.place("of");
   verify(f, fault, problems);
@@ -129,14 +130,14 @@ void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
 void push_fields(Fields& f, ScenarioPush& push, Problems& problems) {
   constexpr NumberRange time{0, 1e6, "s"};
   f.string("link", push.link.name, "the link that is pushed", Need::required);
-  f.number("at_s", push.at_s, time, "when", Need::required);
-  f.number("duration_s", push.duration_s, {1e-3, 1e6, "s"}, "how long");
-  f.choice("shape", push.shape, shape_names, "how the force goes over its time");
+  f.number("at_s", push.at_s, time, "time at which the push begins", Need::required);
+  f.number("duration_s", push.duration_s, {1e-3, 1e6, "s"}, "duration of the push");
+  f.choice("shape", push.shape, shape_names, "shape of the force over time");
   f.numbers("impulse_Ns", push.impulse_Ns, {-push_max_Ns, push_max_Ns, "Ns"},
-            "the whole push, world axes: x forward, y left, z up");
+            "impulse of the push in world axes: x forward, y left, z up");
   Vec3 force_N{};
-  f.numbers("force_N", force_N, {-1e5, 1e5, "N"}, "or the force, of half_sine its peak");
-  f.numbers("point_m", push.point_m, {-10, 10, "m"}, "where on the link, in its frame");
+  f.numbers("force_N", force_N, {-1e5, 1e5, "N"}, "instead of impulse_Ns: the force; for half_sine its peak");
+  f.numbers("point_m", push.point_m, {-10, 10, "m"}, "point of the link, in its frame");
   if (!f.reading()) return;
   push.link.place = f.place("link");
   if (f.has("impulse_Ns") == f.has("force_N")) {
@@ -182,16 +183,18 @@ void suite_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
                    "tag " + in_quotes(tag.name) + " must be a word without blanks, commas, slashes and stars");
     scenario.tags.push_back(tag.name);
   }
-  f.integer("repeat", scenario.repeat, {1, 10'000}, "runs of it in kadans test, each with the next seed");
-  f.number("wall_limit_s", scenario.wall_limit_s, {0.1, 1e6, "s"}, "a run that takes longer is stopped and has failed");
+  f.integer("repeat", scenario.repeat, {1, 10'000}, "number of runs in kadans test, each with the next seed");
+  f.number("wall_limit_s", scenario.wall_limit_s, {0.1, 1e6, "s"},
+           "wall-clock time after which a run is stopped and has failed");
 }
 
 // How this run's robot differs from the configured one.
 void variant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
-  f.string("start_pose", scenario.start_pose.name, "the pose in which the robot starts, else its own");
+  f.string("start_pose", scenario.start_pose.name,
+           "the pose in which the robot starts (default: the one in its configuration)");
   scenario.start_pose.place = f.place("start_pose");
-  f.object("set", "quantities that differ from the robot's files, by patterns over their names",
-           [&](Fields& e) { e.number_entries(scenario.set, {}, "the quantity's value"); });
+  f.object("set", "quantities that differ from the robot's files, by a pattern of their names",
+           [&](Fields& e) { e.number_entries(scenario.set, {}, "value of the quantity"); });
   variation_fields(f, "randomise", scenario.randomise, problems);
 }
 
@@ -201,9 +204,9 @@ void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   joystick.place = f.place("recording");
   if (!joystick.recording.empty())
     joystick.recording = resolve_file(joystick.recording, joystick.place, "recording", problems).string();
-  f.number("at_s", joystick.at_s, {0, scenario_duration_max_s, "s"}, "when its first event comes");
+  f.number("at_s", joystick.at_s, {0, scenario_duration_max_s, "s"}, "time of its first event");
   f.number("lost_at_s", joystick.lost_at_s, {0, scenario_duration_max_s, "s"},
-           "from when on it is unplugged; else never");
+           "time at which it is unplugged (default: never)");
 }
 
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
@@ -217,9 +220,10 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", problems).string();
   }
   plant_fields(f, scenario, problems);
-  f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"}, "simulated time", Need::required);
+  f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"}, "duration of the simulation",
+           Need::required);
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
-            "where all random numbers of the run come from");
+            "seed of all random numbers of the run");
   suite_fields(f, scenario, problems);
   variant_fields(f, scenario, problems);
   std::vector<PlacedName> lists;
@@ -229,7 +233,7 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     const TextPlace start{list.place.line, list.place.column + 1};  // behind the quote
     std::ranges::move(read_play_items(list.name, start, folders, problems), std::back_inserter(scenario.behaviors));
   }
-  f.list("events", {0, 10'000}, "what happens to what plays, each at its time", [&](Fields& e) {
+  f.list("events", {0, 10'000}, "changes to the list of behaviors, each at its time", [&](Fields& e) {
     ScenarioEvent event;
     event_fields(e, event, folders, problems);
     if (e.reading()) scenario.events.push_back(std::move(event));
@@ -239,7 +243,7 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     push_fields(e, push, problems);
     if (e.reading()) scenario.pushes.push_back(std::move(push));
   });
-  f.list("faults", {0, 1000}, "what fails, each at its time", [&](Fields& e) {
+  f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {
     ScenarioFault fault;
     fault_fields(e, fault, problems);
     if (e.reading()) scenario.faults.push_back(std::move(fault));
@@ -247,7 +251,7 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   world_fields(f, scenario.world, problems);
   f.object("joystick", "a joystick that is played from a recording",
            [&](Fields& e) { joystick_fields(e, scenario, problems); });
-  f.list("checks", {0, 1000}, "what must hold", [&](Fields& e) {
+  f.list("checks", {0, 1000}, "checks that must hold", [&](Fields& e) {
     ScenarioCheck check;
     check_fields(e, check, scenario.duration_s, scenario.checks, problems);
     if (e.reading()) scenario.checks.push_back(std::move(check));

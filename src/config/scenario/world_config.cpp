@@ -38,7 +38,7 @@ class EntryReader {
   EntryReader(Fields& f, Entry& entry, Problems& problems) : f_(f), entry_(entry), problems_(problems) {}
 
   bool read() {
-    const bool known = f_.choice("kind", entry_.kind, part_kinds, "what it is", Need::required);
+    const bool known = f_.choice("kind", entry_.kind, part_kinds, "kind of object", Need::required);
     all_ = !known;
     if (known && entry_.kind == Kind::pendulum) entry_.length_m = 1.5, entry_.radius_m = 0.1, entry_.mass_kg = 2;
     placing();
@@ -58,14 +58,17 @@ class EntryReader {
   void placing() {
     using enum Kind;
     if (of({box, ramp, stairs, wall, ball, pendulum, payload})) {
-      f_.string("name", entry_.name, "by which signals and messages know it", needed());
+      f_.string("name", entry_.name, "name of the object in signals and messages", needed());
     }
     if (of({box, ramp, stairs, wall, ball, pendulum})) {
       f_.numbers("position_m", entry_.position_m, anywhere_m,
                  "centre of a box or ball, foot of a ramp, stairs or wall, the bob's centre at rest", needed());
       f_.numbers("roll_pitch_yaw_rad", entry_.angles_rad, {-7, 7, "rad"},
-                 "how it is turned; ramps and stairs rise along x, a wall stands across it, a pendulum hits along it");
-      f_.number("friction", entry_.friction, {0, 10}, "of its surface; a contact's friction is the product");
+                 "orientation; ramps and stairs rise along its x axis, a wall stands across that axis, a pendulum "
+                 "swings along it");
+      f_.number(
+          "friction", entry_.friction, {0, 10},
+          "coefficient of friction of its surface; a contact's coefficient is the product of those of both surfaces");
     }
   }
 
@@ -73,54 +76,57 @@ class EntryReader {
     using enum Kind;
     if (of({box})) f_.numbers("size_m", entry_.size_m, size_m, "full edge lengths", needed());
     if (of({ramp, pendulum}))
-      f_.number("length_m", entry_.length_m, size_m, "along the ramp, or from hinge to bob", need({ramp}));
+      f_.number("length_m", entry_.length_m, size_m, "length along the ramp, or from hinge to bob", need({ramp}));
     if (of({ramp, stairs, wall})) f_.number("width_m", entry_.width_m, size_m, "across", needed());
-    if (of({wall})) f_.number("height_m", entry_.height_m, size_m, "of the wall", needed());
-    if (of({wall})) f_.number("thickness_m", entry_.thickness_m, size_m, "of the wall");
-    if (of({ramp})) f_.number("incline_rad", entry_.incline_rad, slope_rad, "how steeply it rises", needed());
+    if (of({wall})) f_.number("height_m", entry_.height_m, size_m, "height of the wall", needed());
+    if (of({wall})) f_.number("thickness_m", entry_.thickness_m, size_m, "thickness of the wall");
+    if (of({ramp})) f_.number("incline_rad", entry_.incline_rad, slope_rad, "slope of the ramp", needed());
     if (of({stairs})) {
       f_.integer("count", entry_.count, {1, max_stairs}, "number of steps", needed());
       f_.number("rise_m", entry_.rise_m, size_m, "height of a step", needed());
       f_.number("run_m", entry_.run_m, size_m, "depth of a step", needed());
     }
-    if (of({ball, pendulum})) f_.number("radius_m", entry_.radius_m, size_m, "of the ball or bob", need({ball}));
+    if (of({ball, pendulum})) f_.number("radius_m", entry_.radius_m, size_m, "radius of the ball or bob", need({ball}));
     if (of({box, ball, pendulum, payload}))
-      f_.number("mass_kg", entry_.mass_kg, mass, "a box without one is fixed", need({ball, payload}));
+      f_.number("mass_kg", entry_.mass_kg, mass, "mass; a box without mass is fixed", need({ball, payload}));
   }
 
   void moving() {
     using enum Kind;
     if (of({ball})) {
-      f_.number("rolling_friction_m", entry_.rolling_friction_m, {0, 1, "m"}, "lever arm of rolling resistance");
-      f_.number("restitution", entry_.restitution, {0, 1}, "share of the speed with which it bounces");
+      f_.number("rolling_friction_m", entry_.rolling_friction_m, {0, 1, "m"}, "lever arm of the rolling resistance");
+      f_.number("restitution", entry_.restitution, {0, 1}, "share of the speed that remains after a bounce");
     }
-    if (of({box, ball})) f_.numbers("velocity_m_s", entry_.velocity_m_s, velocity_m_s, "at the start, when it is free");
+    if (of({box, ball}))
+      f_.numbers("velocity_m_s", entry_.velocity_m_s, velocity_m_s, "velocity at the start, for a free object");
     if (of({pendulum})) {
-      f_.number("distance_m", entry_.distance_m, {0, 1000, "m"}, "how far behind it is held, on the level", needed());
-      f_.number("release_s", entry_.release_s, time_s, "when it is let go");
+      f_.number("distance_m", entry_.distance_m, {0, 1000, "m"}, "horizontal distance to which the bob is drawn back",
+                needed());
+      f_.number("release_s", entry_.release_s, time_s, "time at which the bob is let go");
     }
     if (of({ground})) {
-      f_.number("slope_rad", entry_.slope_rad, slope_rad, "how steeply the ground rises");
-      f_.number("slope_heading_rad", entry_.slope_heading_rad, {-7, 7, "rad"}, "towards where it rises; 0: along x");
+      f_.number("slope_rad", entry_.slope_rad, slope_rad, "slope of the ground");
+      f_.number("slope_heading_rad", entry_.slope_heading_rad, {-7, 7, "rad"},
+                "direction in which the ground rises; 0: along x");
     }
     if (of({payload})) {
       f_.string("link", entry_.link, "the link that carries it", needed());
-      f_.numbers("point_m", entry_.point_m, anywhere_m, "where, in the link's frame");
-      f_.number("from_s", entry_.from_s, time_s, "carried from this time on");
-      f_.number("until_s", entry_.until_s, time_s, "up to this time, else to the end");
+      f_.numbers("point_m", entry_.point_m, anywhere_m, "position in the link's frame");
+      f_.number("from_s", entry_.from_s, time_s, "time from which it is carried");
+      f_.number("until_s", entry_.until_s, time_s, "time until which it is carried (default: the end)");
     }
     if (of({box, ramp, stairs, wall, ground})) {
-      f_.object("motion", "how it is driven, whatever stands on it", [&](Fields& e) { motion(e); });
+      f_.object("motion", "prescribed motion, which no load changes", [&](Fields& e) { motion(e); });
     }
   }
 
   void motion(Fields& f) {
     f.list(
-        "profile", {1, 10'000}, "its velocity over time: straight lines between these",
+        "profile", {1, 10'000}, "velocity over time, linear between these points",
         [&](Fields& e) {
           MotionSettings::Knot knot;
-          e.number("time_s", knot.time_s, time_s, "when", Need::required);
-          e.numbers("velocity_m_s", knot.velocity_m_s, velocity_m_s, "in world axes", Need::required);
+          e.number("time_s", knot.time_s, time_s, "time of this point", Need::required);
+          e.numbers("velocity_m_s", knot.velocity_m_s, velocity_m_s, "velocity in world axes", Need::required);
           if (!e.reading()) return;
           if (!entry_.motion.knots.empty() && !(knot.time_s > entry_.motion.knots.back().time_s)) {
             problems_.add(e.place("time_s"), e.path("time_s") + " is " + number_text(knot.time_s) +
@@ -130,8 +136,8 @@ class EntryReader {
           entry_.motion.knots.push_back(knot);
         },
         Need::required);
-    f.boolean("repeat", entry_.motion.repeat, "begins again after the last");
-    f.boolean("conveyor", entry_.motion.conveyor, "the surface runs and the object stays");
+    f.boolean("repeat", entry_.motion.repeat, "the profile begins again after its last point");
+    f.boolean("conveyor", entry_.motion.conveyor, "the surface moves and the object stays in its place");
   }
 
   Fields& f_;
@@ -201,7 +207,7 @@ void add(const Fields& f, const Entry& entry, WorldConfig& world) {
 void world_fields(Fields& f, WorldConfig& world, Problems& problems) {
   std::vector<std::string> names;
   if (f.has("world")) world.place = f.place("world");
-  f.list("world", {0, max_world_objects}, "what is around the robot, and what it carries", [&](Fields& e) {
+  f.list("world", {0, max_world_objects}, "objects around the robot, and loads that it carries", [&](Fields& e) {
     Entry entry;
     const bool known = EntryReader(e, entry, problems).read();
     if (!e.reading() || !known) return;

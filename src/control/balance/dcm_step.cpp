@@ -20,8 +20,8 @@ constexpr double torso_over_hips = 0.6;                    // share of the weigh
 
 void DcmStep::declare(Declaration& d) {
   Config& c = config_;
-  d.parameter({"enabled", "", 0, 1, 0, "Whether it steps; 0 lets go."}, &c.enabled);
-  d.parameter({"tilt_max_rad", "rad", 0, 1.5, 0.7, "Lean beyond which it gives up."}, &c.tilt_max_rad);
+  d.parameter({"enabled", "", 0, 1, 0, "1: it may step; 0: it releases its joints."}, &c.enabled);
+  d.parameter({"tilt_max_rad", "rad", 0, 1.5, 0.7, "Tilt of the trunk beyond which it gives up."}, &c.tilt_max_rad);
   d.parameter({"hip_height_m", "m", 0.1, 2, 0.5, "Of the hips over the ankles, both bearing."}, &c.hip_height_m);
   d.parameter({"stance_knee_rad", "rad", 0.05, 2, 0.5, "Of the leg that stands alone."}, &c.stance_knee_rad);
   d.parameter({"torso_Nm_per_rad", "Nm/rad", 0, 2000, 250, "Torque of the stance hip per lean of the torso."},

@@ -32,7 +32,8 @@ void ComputedTorque::declare(Declaration& declaration) {
     AxisTables tables(declaration, parts_[i].axis, static_cast<std::uint32_t>(i));
     declare(tables, parts_[i]);
   }
-  declaration.signal({"model_age_s", "s", "Since mass matrix and bias were measured."}, &model_age_s_);
+  declaration.signal({"model_age_s", "s", "Age of the measurement from which mass matrix and bias were computed."},
+                     &model_age_s_);
 }
 
 void ComputedTorque::declare(AxisTables& t, Part& part) {

@@ -24,7 +24,8 @@ GravityCompensation::~GravityCompensation() = default;
 void GravityCompensation::declare(Declaration& declaration) {
   declaration.parameter({"gain", "", 0, 1, 1, "Share of gravity that is compensated."}, &config_.gain);
   declaration.signal({"gain", "", "Share of gravity that is compensated."}, &gain_);
-  declaration.signal({"model_age_s", "s", "Since the gravity torques were measured."}, &model_age_s_);
+  declaration.signal({"model_age_s", "s", "Age of the measurement from which the gravity torques were computed."},
+                     &model_age_s_);
   for (Part& part : parts_) {
     AxisTables tables(declaration, part.axis, 0);
     const double most = part.axis.effort_max_Nm;

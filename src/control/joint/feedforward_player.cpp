@@ -95,7 +95,7 @@ FeedforwardPlayer::FeedforwardPlayer(const ObjectSetup& setup) : Jointwise(setup
 }
 
 void FeedforwardPlayer::declare(Declaration& declaration) {
-  declaration.parameter({"rate_Hz", "Hz", 0, 20, 1, "Periods a second."}, &rate_Hz_);
+  declaration.parameter({"rate_Hz", "Hz", 0, 20, 1, "Periods of the series in a second."}, &rate_Hz_);
   declaration.signal({"phase_turns", "", "Part of the period that has passed, 0 to 1."}, &phase_.turns);
   Jointwise::declare(declaration);
 }

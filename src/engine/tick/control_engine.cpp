@@ -131,7 +131,7 @@ void ControlEngine::declare_signals(Catalog& catalog) {
               &sensors_.imu.acceleration_m_s2[i]);
   }
   for (std::size_t i = 0; i < catalog.model->joints.size(); ++i) {
-    table.add({"actuation." + catalog.model->joints[i].name + ".effort_Nm", "Nm", "Torque asked of the drive."},
+    table.add({"actuation." + catalog.model->joints[i].name + ".effort_Nm", "Nm", "Torque demanded of the drive."},
               &written_.joints[i].effort_Nm);
   }
   table.add({"engine.commands.applied", "", "Commands applied since the start."}, &inbox_.state().applied);

@@ -16,12 +16,13 @@ class UdpType final : public PlantType {
   bool has_fields() const noexcept override { return true; }
   void fields(PlantFields& f) override {
     f.string("peer", settings_.peer, "HOST:PORT of the machine that serves the plant");
-    f.number("connect_timeout_s", settings_.connect_timeout_s, {0.1, 600, "s"}, "how long to wait for its answer");
+    f.number("connect_timeout_s", settings_.connect_timeout_s, {0.1, 600, "s"}, "time to wait for its first answer");
     f.number("round_trip_max_s", settings_.round_trip_max_s, {1e-4, 1, "s"},
-             "readings that answer an older actuation are not new ones");
+             "age of the actuation that a reading answers, above which the reading is not new");
     f.number("watchdog_s", settings_.watchdog_s, {1e-3, 10, "s"},
-             "the plant damps its joints after so long without actuation");
-    f.number("peer_timeout_s", settings_.peer_timeout_s, {0.1, 600, "s"}, "it is free for another peer after so long");
+             "time without actuation after which the plant damps its joints");
+    f.number("peer_timeout_s", settings_.peer_timeout_s, {0.1, 600, "s"},
+             "time of silence after which the plant is free for another peer");
   }
 
   std::unique_ptr<Plant> make_plant(const PlantSite& site) const override {

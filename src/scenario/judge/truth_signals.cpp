@@ -41,11 +41,13 @@ void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
   table.add({"plant.base.height_m", "m", "Height of the base frame over the ground."}, &state_.height_m);
   table.add({"plant.base.x_m", "m", "Position of the base frame."}, &state_.x_m);
   table.add({"plant.base.y_m", "m", "Position of the base frame."}, &state_.y_m);
-  table.add({"plant.base.tilt_rad", "rad", "Angle between the base's z axis and up."}, &state_.tilt_rad);
+  table.add({"plant.base.tilt_rad", "rad", "Angle between the base's z axis and the vertical."}, &state_.tilt_rad);
   table.add({"plant.base.yaw_rad", "rad", "Heading of the base."}, &state_.yaw_rad);
   table.add({"plant.base.speed_m_s", "m/s", "Speed of the base frame."}, &state_.speed_m_s);
-  table.add({"plant.base.jump_m", "m", "Way of the base in a step beyond what its speed explains."}, &state_.jump_m);
-  table.add({"plant.limits.position_rad", "rad", "How far the worst joint is inside its limits; negative beyond."},
+  table.add({"plant.base.jump_m", "m", "Displacement of the base in one step, beyond what its speed explains."},
+            &state_.jump_m);
+  table.add({"plant.limits.position_rad", "rad",
+             "Distance of the joint that is nearest to a position limit from that limit; negative beyond it."},
             &state_.position_rad);
   table.add({"plant.limits.motor_torque_share", "",
              "Largest torque of a motor as a share of its limit; what it cannot give at its speed counts as used up."},
@@ -53,7 +55,7 @@ void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
   table.add({"plant.limits.torque_share", "", "Largest torque of a transmission on its joint as a share of its limit."},
             &state_.torque_share);
   table.add({"plant.limits.speed_share", "", "Largest joint velocity as a share of its limit."}, &state_.speed_share);
-  table.add({"plant.limits.overspeed_s", "s", "How long now a joint has been faster than its limit."},
+  table.add({"plant.limits.overspeed_s", "s", "Time for which a joint has now been faster than its limit."},
             &state_.overspeed_s);
   table.add({"reference.base.height_m", "m", "Height of the base with every joint at its set-point."},
             &state_.reference_height_m);
@@ -62,7 +64,8 @@ void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
   for (std::size_t i = 0; i < feet.size(); ++i) {
     const std::string foot = "plant.foot." + feet[i].link + ".";
     table.add({foot + "force_N", "N", "Vertical force of the ground on the foot."}, &feet_[i].force_N);
-    table.add({foot + "slip_m", "m", "Way of the foot along the ground since it settled."}, &feet_[i].slip_m);
+    table.add({foot + "slip_m", "m", "Distance that the foot has slid along the ground since it settled."},
+              &feet_[i].slip_m);
   }
 }
 
@@ -214,7 +217,7 @@ void WorldSignals::declare(SignalTable& table, const WorldObject& object, State&
     table.add({name + axis + "_m", "m", "Position of the object."}, &state.position_m[i]);
     table.add({velocity, "m/s", "Velocity of the object."}, &state.velocity_m_s[i]);
   }
-  table.add({name + "tilt_rad", "rad", "Angle between the object's z axis and up."}, &state.tilt_rad);
+  table.add({name + "tilt_rad", "rad", "Angle between the object's z axis and the vertical."}, &state.tilt_rad);
 }
 
 void WorldSignals::update(const PlantTruth& truth) noexcept {

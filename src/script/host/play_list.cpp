@@ -5,11 +5,11 @@
 namespace kadans {
 
 void PlayStatus::declare(SignalTable& signals) const {
-  signals.add({"play.phase", "", "What the supervisor's list does: 0 nothing, 1 plays, 2 is paused"}, &phase);
-  signals.add({"play.playing", "", "Behaviors whose turn it is"}, &playing);
-  signals.add({"play.waiting", "", "Behaviors whose turn comes"}, &waiting);
-  signals.add({"play.done", "", "Behaviors that ended with done"}, &done);
-  signals.add({"play.not_done", "", "Behaviors that ended otherwise"}, &not_done);
+  signals.add({"play.phase", "", "State of the list of behaviors: 0 nothing plays, 1 plays, 2 is paused"}, &phase);
+  signals.add({"play.playing", "", "Behaviors of the list that play"}, &playing);
+  signals.add({"play.waiting", "", "Behaviors of the list that wait"}, &waiting);
+  signals.add({"play.done", "", "Behaviors that ended with the outcome done"}, &done);
+  signals.add({"play.not_done", "", "Behaviors that ended with another outcome"}, &not_done);
 }
 
 void PlayList::append(std::vector<Entry>& entries) {

@@ -16,16 +16,19 @@ constexpr std::uint8_t move_set = MotionOption::move | MotionOption::set;
 constexpr std::uint8_t limited = move_set | MotionOption::follow;
 constexpr double limit_min = 0.001, velocity_most = 1000, acceleration_most = 10000;
 constexpr MotionOption table[] = {
-    {"time_s", Type::number, 0, 600, "s", nullptr, move_set | MotionOption::point, "Time it takes; 0 is at once"},
-    {"profile", Type::text, 0, 0, "", nullptr, move_set, "'minimum_jerk', when not given, or 'trapezoid'"},
-    {"velocity_max_rad_s", Type::number, limit_min, velocity_most, "rad/s", "rad", limited, "Limit of a trapezoid"},
+    {"time_s", Type::number, 0, 600, "s", nullptr, move_set | MotionOption::point,
+     "Duration of the motion; 0: at once"},
+    {"profile", Type::text, 0, 0, "", nullptr, move_set, "'minimum_jerk' (the default) or 'trapezoid'"},
+    {"velocity_max_rad_s", Type::number, limit_min, velocity_most, "rad/s", "rad", limited,
+     "Largest velocity of a trapezoidal profile"},
     {"acceleration_max_rad_s2", Type::number, limit_min, acceleration_most, "rad/s2", "rad", limited,
-     "Limit of a trapezoid"},
-    {"velocity_max_m_s", Type::number, limit_min, velocity_most, "m/s", "m", MotionOption::set, "Limit of a trapezoid"},
+     "Largest acceleration of a trapezoidal profile"},
+    {"velocity_max_m_s", Type::number, limit_min, velocity_most, "m/s", "m", MotionOption::set,
+     "Largest velocity of a trapezoidal profile"},
     {"acceleration_max_m_s2", Type::number, limit_min, acceleration_most, "m/s2", "m", MotionOption::set,
-     "Limit of a trapezoid"},
+     "Largest acceleration of a trapezoidal profile"},
     {"relative", Type::flag, 0, 0, "", nullptr, move_set | MotionOption::through,
-     "Whether values are offsets to where the set-points are"},
+     "Whether values are relative to the present set-points"},
 };
 
 constexpr MotionMethod methods[] = {
