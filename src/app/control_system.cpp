@@ -32,6 +32,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   ADD_TYPE(spring_torque);
   ADD_TYPE(task_impedance);
 }
+#undef ADD_TYPE
 
 namespace {
 

@@ -58,6 +58,17 @@ TEST_CASE("Latest has news once a value published, and keeps the value afterward
   CHECK(latest.has_news());
 }
 
+TEST_CASE("what a reader of Latest puts in its place it finds until news are published, other readers do not") {
+  Latest<int, 2> latest(1);
+  latest.publish(2);
+  latest.replace(5);
+  CHECK_FALSE(latest.has_news());
+  CHECK(latest.newest() == 5);
+  CHECK(latest.newest(1) == 2);
+  latest.publish(3);
+  CHECK(latest.newest() == 3);
+}
+
 TEST_CASE("Latest never falls back to an older value, however reads and writes interleave") {
   for (unsigned pattern = 0; pattern < 1U << 12U; ++pattern) {
     Latest<int> latest;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "kadans/control/object_options.h"
+#include "kadans/control/state_bytes.h"
 #include "kadans/control/switchover.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/frames.h"
@@ -104,6 +105,9 @@ class ControlObject {
   virtual double motion_remaining_s() const noexcept = 0;
   // Control thread: one or more of its parameters have new values.
   virtual void parameters_changed() noexcept {}
+  // Between ticks: saves or restores all that changes from tick to tick (state_bytes.h). An object without such state
+  // leaves it out.
+  virtual void pass_state(StateBytes& bytes) noexcept { (void)bytes; }
 
   // Behavior thread: the high level.
   virtual void update(const Snapshot& snapshot) { (void)snapshot; }

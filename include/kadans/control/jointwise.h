@@ -9,6 +9,7 @@
 //   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
 //   void cancel(std::uint32_t which) noexcept;
 //   double remaining_s() const noexcept;
+//   void pass_state(StateBytes& bytes) noexcept;                           // all that changes (state_bytes.h)
 //
 // A law whose set-point can be led along a motion that the engine plans (setpoint_motions.h) also has:
 //
@@ -100,6 +101,9 @@ class Jointwise : public ControlObject {
     double remaining_s = 0;
     for (const Part& part : parts_) remaining_s = std::max(remaining_s, part.law.remaining_s());
     return remaining_s;
+  }
+  void pass_state(StateBytes& bytes) noexcept override {
+    for (Part& part : parts_) bytes(part.law, part.running, part.fresh);
   }
 
  protected:

@@ -10,6 +10,8 @@
 // One owner, the control thread; step() neither allocates, locks nor throws.
 #pragma once
 
+#include "kadans/control/state_bytes.h"
+
 namespace kadans {
 
 class Pid {
@@ -44,6 +46,7 @@ class Pid {
   Config& config() noexcept { return config_; }
   const Config& config() const noexcept { return config_; }
   const State& state() const noexcept { return state_; }
+  void pass_state(StateBytes& bytes) noexcept { bytes(state_); }
 
  private:
   Config config_;

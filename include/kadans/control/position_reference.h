@@ -23,6 +23,7 @@ class PositionReference {
   void follow(std::uint32_t, const SetpointState& state) noexcept {
     reference_.follow({state.value, state.velocity, state.acceleration});
   }
+  void pass_state(StateBytes& bytes) noexcept { bytes(reference_); }
 
  protected:
   explicit PositionReference(const JointAxis& axis) : axis_(axis) {}

@@ -38,6 +38,7 @@ class SpringDamper {
   void start(double effort_Nm) noexcept;
   JointActuation step(double reference_rad, double reference_velocity_rad_s, double effort_Nm,
                       const JointState& joint) noexcept;
+  void pass_state(StateBytes& bytes) noexcept { bytes(state_); }
 
  private:
   Config config_;

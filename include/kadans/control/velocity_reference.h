@@ -15,6 +15,7 @@ class VelocityReference {
   void set_point(std::uint32_t, double value, double duration_s) noexcept { ramp_.move(value, duration_s); }
   void cancel(std::uint32_t) noexcept { ramp_.move(0, 0); }
   double remaining_s() const noexcept { return ramp_.remaining_s(); }
+  void pass_state(StateBytes& bytes) noexcept { bytes(motion_, fading_, ramp_); }
 
  protected:
   struct Motion {

@@ -98,6 +98,13 @@ class Latest {
     return *reading;
   }
 
+  // Thread of reader `reader` only, while it has no Reading: read() finds this value until a newer one is published.
+  // Wait-free.
+  void replace(const T& value, std::size_t reader = 0) noexcept {
+    (void)read(reader);
+    put(value, channels_[reader].slots[channels_[reader].read_slot].value);
+  }
+
   // Thread of reader `reader` only: whether read() would bring a value that this reader has not seen. Wait-free.
   bool has_news(std::size_t reader = 0) noexcept {
     return (Memory::at(channels_[reader].middle).load(std::memory_order_relaxed) & fresh) != 0;

@@ -34,6 +34,7 @@ class @Class@ final : public kadans::ControlObject {
   void set_point(std::uint32_t channel, double value, double duration_s) noexcept override;
   void cancel_motion(std::uint32_t channel) noexcept override;
   double motion_remaining_s() const noexcept override;
+  void pass_state(kadans::StateBytes& bytes) noexcept override;
 
  private:
   struct Axis {  // one joint: its tunables, and its state, which is recorded
@@ -116,6 +117,11 @@ double @Class@::motion_remaining_s() const noexcept {
   double remaining_s = 0;
   for (const Axis& axis : axes_) remaining_s = std::max(remaining_s, axis.reference.remaining_s());
   return remaining_s;
+}
+
+// All that changes from tick to tick, to save and restore it.
+void @Class@::pass_state(StateBytes& bytes) noexcept {
+  for (Axis& axis : axes_) bytes(axis.reference, axis.reference_rad, axis.effort_Nm);
 }
 
 std::unique_ptr<ControlObject> make_@type@(const ObjectSetup& setup) { return std::make_unique<@Class@>(setup); }

@@ -36,7 +36,8 @@ class DcmMeasure {
   // keep_heading: x stays where the base points now. follow_heading: x always is where the base points.
   void keep_heading(const ControlInput& input) noexcept;
   void follow_heading() noexcept { keeps_ = false; }
-  double yaw_rad() const noexcept { return yaw_rad_; }  // of the base in the heading frame
+  void pass_state(StateBytes& bytes) noexcept { bytes(keeps_, heading_rad_); }  // all else is measured anew
+  double yaw_rad() const noexcept { return yaw_rad_; }                          // of the base in the heading frame
 
   const OverFoot& over(std::size_t foot) const noexcept { return over_[foot]; }  // 0 left, 1 right
   const Quat& upright() const noexcept { return upright_; }                      // of the base in the heading frame

@@ -181,6 +181,11 @@ void DcmStep::write(const ControlInput& input, ActuationFrame& actuation) noexce
   }
 }
 
+void DcmStep::pass_state(StateBytes& bytes) noexcept {
+  for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.landed_rad, leg.landed_rad_s, leg.effort_Nm);
+  bytes(over_feet_, plan_, phase_, given_up_, lean_rad_, ankle_Nm_, alone_, phase_number_);
+}
+
 std::unique_ptr<ControlObject> make_dcm_step(const ObjectSetup& setup) { return std::make_unique<DcmStep>(setup); }
 
 DcmStep::DcmStep(const ObjectSetup& setup)

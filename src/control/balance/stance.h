@@ -82,6 +82,10 @@ class Stance final : public ControlObject {
   void set_point(std::uint32_t, double, double) noexcept override {}  // has none
   void cancel_motion(std::uint32_t) noexcept override {}
   double motion_remaining_s() const noexcept override { return 0; }
+  void pass_state(StateBytes& bytes) noexcept override {
+    for (Part& part : parts_) bytes(part.effort_Nm);
+    bytes(state_);
+  }
   const State& state() const noexcept { return state_; }
 
  private:

@@ -76,6 +76,7 @@ class SpringTorqueLoop {
   double step(double wanted_Nm, const JointState& joint, double dt_s) noexcept;
 
   double stiffest_gain() const noexcept;  // w^2/w0^2 - 1
+  void pass_state(StateBytes& bytes) noexcept { bytes(state_, rate_, momentum_Nms_, fresh_); }
 
  private:
   double observe(double rotor_rad_s, double dt_s) noexcept;
@@ -101,6 +102,9 @@ class SpringTorque final : public ControlObject {
   void cancel_motion(std::uint32_t) noexcept override {}
   double motion_remaining_s() const noexcept override { return 0; }
   void parameters_changed() noexcept override;
+  void pass_state(StateBytes& bytes) noexcept override {
+    for (Part& part : parts_) bytes(part.loop);
+  }
 
  private:
   struct Part {

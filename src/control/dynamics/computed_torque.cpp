@@ -166,6 +166,13 @@ double ComputedTorque::motion_remaining_s() const noexcept {
   return remaining_s;
 }
 
+void ComputedTorque::pass_state(StateBytes& bytes) noexcept {
+  for (Part& part : parts_) bytes(part.state, part.reference, part.takeover, part.running, part.fresh);
+  bytes(started_ns_, model_age_s_);
+  bytes.newest(data_);
+  bytes.high_level(last_update_ns_);
+}
+
 std::unique_ptr<ControlObject> make_computed_torque(const ObjectSetup& setup) {
   return std::make_unique<ComputedTorque>(setup);
 }

@@ -72,6 +72,7 @@ class ComputedTorque final : public ControlObject {
   bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept override;
   void follow(std::uint32_t channel, const SetpointState& state) noexcept override;
   double motion_remaining_s() const noexcept override;
+  void pass_state(StateBytes& bytes) noexcept override;
   void update(const Snapshot& snapshot) override;
 
  private:

@@ -58,7 +58,6 @@ void GravityCompensation::start(const ControlInput& input) noexcept {
   for (Part& part : parts_) {
     const std::size_t joint = part.axis.joint;
     part.takeover.start(effort_before_Nm({input.joints.joints[joint], input.last.joints[joint], input.dt_s}));
-    part.fresh = true;
   }
 }
 
@@ -81,13 +80,18 @@ void GravityCompensation::step(const ControlInput& input, ActuationFrame& actuat
     const bool measured = std::isfinite(input.joints.joints[part.axis.joint].position_rad);
     const double law_Nm = measured ? gain_ * (data.gravity_Nm[i] + change_Nm[i]) : not_measured;
     double integral_Nm = 0;  // there is none
-    const double offset_Nm = part.takeover.step(law_Nm, known, part.fresh ? 0 : input.dt_s, integral_Nm, 0);
-    part.fresh = false;
+    const double offset_Nm = part.takeover.step(law_Nm, known, input.dt_s, integral_Nm, 0);
     s.effort_Nm = std::clamp(law_Nm + offset_Nm, -part.effort_max_Nm, part.effort_max_Nm);
     s.saturated = s.effort_Nm != law_Nm + offset_Nm;
     if (std::isfinite(s.effort_Nm)) part.takeover.leave(s.effort_Nm);
     actuation.joints[part.axis.joint] = {.effort_Nm = s.effort_Nm, .mode = ActuationMode::effort};
   }
+}
+
+void GravityCompensation::pass_state(StateBytes& bytes) noexcept {
+  for (Part& part : parts_) bytes(part.state, part.takeover);
+  bytes(gain_, started_ns_, model_age_s_);
+  bytes.newest(data_);
 }
 
 std::unique_ptr<ControlObject> make_gravity_compensation(const ObjectSetup& setup) {

@@ -53,6 +53,7 @@ class GravityCompensation final : public ControlObject {
   void set_point(std::uint32_t, double, double) noexcept override {}  // has none
   void cancel_motion(std::uint32_t) noexcept override {}
   double motion_remaining_s() const noexcept override { return 0; }
+  void pass_state(StateBytes& bytes) noexcept override;
   void update(const Snapshot& snapshot) override;
 
  private:
@@ -68,7 +69,6 @@ class GravityCompensation final : public ControlObject {
     double effort_max_Nm = 0;
     State state;
     EffortTakeover takeover;
-    bool fresh = false;
   };
 
   std::vector<Part> parts_;            // control thread

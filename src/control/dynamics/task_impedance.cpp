@@ -95,7 +95,6 @@ void TaskImpedance::take_over_point(const JointStates& joints) noexcept {
 
 void TaskImpedance::start(const ControlInput& input) noexcept {
   located_ = false;
-  fresh_ = true;
   for (Part& part : parts_) {
     const std::size_t joint = part.axis.joint;
     part.takeover.start(effort_before_Nm({input.joints.joints[joint], input.last.joints[joint], input.dt_s}));
@@ -145,8 +144,7 @@ double TaskImpedance::law_Nm(const Part& part, const JointState& joint) const no
 
 void TaskImpedance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const JointStates& joints = input.joints;
-  const double dt_s = fresh_ ? 0 : input.dt_s;
-  fresh_ = false;
+  const double dt_s = input.dt_s;
   if (!measured(joints)) {
     located_ = false;
     for (Direction& direction : directions_) direction.state.force_N = 0;
@@ -186,6 +184,12 @@ double TaskImpedance::motion_remaining_s() const noexcept {
   double remaining_s = 0;
   for (const Direction& direction : directions_) remaining_s = std::max(remaining_s, direction.reference.remaining_s());
   return remaining_s;
+}
+
+void TaskImpedance::pass_state(StateBytes& bytes) noexcept {
+  for (Part& part : parts_) bytes(part.output, part.posture_rad, part.takeover);
+  for (Direction& direction : directions_) bytes(direction.state, direction.reference);
+  bytes(point_started_m_, force_limited_, located_);
 }
 
 std::unique_ptr<ControlObject> make_task_impedance(const ObjectSetup& setup) {

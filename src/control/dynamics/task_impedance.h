@@ -68,6 +68,7 @@ class TaskImpedance final : public ControlObject {
   void follow(std::uint32_t channel, const SetpointState& state) noexcept override;
   double motion_remaining_s() const noexcept override;
   void parameters_changed() noexcept override;
+  void pass_state(StateBytes& bytes) noexcept override;
 
  private:
   struct Direction {
@@ -98,7 +99,6 @@ class TaskImpedance final : public ControlObject {
   double force_max_N_ = 0;
   bool force_limited_ = false;
   bool located_ = false;  // the reference was taken from a known position of the point
-  bool fresh_ = false;    // started, not stepped yet
 };
 
 std::unique_ptr<ControlObject> make_task_impedance(const ObjectSetup& setup);

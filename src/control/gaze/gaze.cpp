@@ -320,6 +320,14 @@ double Gaze::motion_remaining_s() const noexcept {
   return remaining_s;
 }
 
+void Gaze::pass_state(StateBytes& bytes) noexcept {
+  for (Part& part : parts_) bytes(part.state, part.asked_rad_s, part.fading, part.running);
+  bytes(directions_, aimed_, left_rad_, right_rad_, unreachable_, scaled_, at_limit_, located_, fresh_);
+  bytes.newest(rates_);
+  bytes.high_level(retry_);
+  if (bytes.restores() && located_) aim_.publish(aimed_);
+}
+
 std::unique_ptr<ControlObject> make_gaze(const ObjectSetup& setup) { return std::make_unique<Gaze>(setup); }
 
 }  // namespace kadans

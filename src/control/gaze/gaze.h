@@ -71,6 +71,7 @@ class Gaze final : public ControlObject {
   void follow(std::uint32_t channel, const SetpointState& state) noexcept override;
   double motion_remaining_s() const noexcept override;
   void parameters_changed() noexcept override;
+  void pass_state(StateBytes& bytes) noexcept override;
   void update(const Snapshot& snapshot) override;
 
  private:

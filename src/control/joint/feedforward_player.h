@@ -63,6 +63,7 @@ class PlayerLaw {
   void set_point(std::uint32_t, double value, double duration_s) noexcept { amplitude_.move(value, duration_s); }
   void cancel(std::uint32_t) noexcept { amplitude_.move(0, cancel_time_s); }
   double remaining_s() const noexcept { return amplitude_.remaining_s(); }
+  void pass_state(StateBytes& bytes) noexcept { bytes(state_, law_, posture_, amplitude_, effort_before_Nm_); }
 
  private:
   JointAxis axis_;
@@ -80,6 +81,10 @@ class FeedforwardPlayer final : public Jointwise<PlayerLaw> {
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
+  void pass_state(StateBytes& bytes) noexcept override {
+    Jointwise::pass_state(bytes);
+    bytes(phase_, fresh_);
+  }
 
  private:
   double rate_Hz_ = 1;

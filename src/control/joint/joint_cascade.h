@@ -47,6 +47,10 @@ class CascadeLaw : public PositionReference {
   void declare(AxisTables& tables);
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
+  void pass_state(StateBytes& bytes) noexcept {
+    PositionReference::pass_state(bytes);
+    bytes(state_);
+  }
 
  private:
   double velocity_command(const MinimumJerk::State& reference, double position_rad) noexcept;

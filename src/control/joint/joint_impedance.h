@@ -30,6 +30,10 @@ class ImpedanceLaw : public PositionReference {
   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
   void cancel(std::uint32_t which) noexcept;
   double remaining_s() const noexcept;
+  void pass_state(StateBytes& bytes) noexcept {
+    PositionReference::pass_state(bytes);
+    bytes(law_, effort_);
+  }
 
  private:
   SpringDamper law_;

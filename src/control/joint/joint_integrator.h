@@ -34,6 +34,10 @@ class IntegratorLaw : public VelocityReference {
   void declare(AxisTables& tables);
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
+  void pass_state(StateBytes& bytes) noexcept {
+    VelocityReference::pass_state(bytes);
+    bytes(state_, lowest_rad_, highest_rad_);
+  }
 
  private:
   Config config_;

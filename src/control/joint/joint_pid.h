@@ -32,6 +32,10 @@ class PidLaw : public PositionReference {
     const MinimumJerk::State& at = reference.step(dt_s);
     (void)pid.step(at.position, at.velocity, joint.position_rad, joint.velocity_rad_s, dt_s);
   }
+  void pass_state(StateBytes& bytes) noexcept {
+    PositionReference::pass_state(bytes);
+    bytes(pid_);
+  }
 
  private:
   Pid pid_;

@@ -32,6 +32,10 @@ class VelocityLaw : public VelocityReference {
   void declare(AxisTables& tables);
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
+  void pass_state(StateBytes& bytes) noexcept {
+    VelocityReference::pass_state(bytes);
+    bytes(state_);
+  }
 
  private:
   double added_effort_Nm(double dt_s) noexcept;

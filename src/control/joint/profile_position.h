@@ -45,6 +45,7 @@ class ProfileLaw {
   void follow(std::uint32_t, const SetpointState& state) noexcept {
     profile_.set_state({state.value, state.velocity, state.acceleration});
   }
+  void pass_state(StateBytes& bytes) noexcept { bytes(state_, profile_, fading_, lowest_rad_, highest_rad_); }
 
  private:
   MotionProfile::Limits limits() const noexcept;

@@ -54,6 +54,10 @@ class TrajectoryLaw {
   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
   void cancel(std::uint32_t which) noexcept;
   double remaining_s() const noexcept;
+  void pass_state(StateBytes& bytes) noexcept {
+    bytes(pid_, state_, segment_, reference_rad_, reference_rad_s_, commanded_);
+    bytes.high_level(handed_);
+  }
 
   // Behavior thread. False, and nothing changes, when the list is full, the position is not within the joint's limits,
   // or the duration is too short.

@@ -1,0 +1,89 @@
+// The state of a control object as bytes: all that changes from tick to tick. An object that gets it back, or another
+// one of the same type with the same setup and parameters, continues bit for bit as the first one did. Parameters, and
+// what follows from the setup, are no state.
+//
+// An object has one function for both ways, so that saving and restoring cannot differ:
+//
+//   void pass_state(StateBytes& bytes) noexcept override {
+//     for (Part& part : parts_) bytes(part.state, part.reference);  // what the control thread owns
+//     bytes.newest(data_);                                          // what the high level sent to it
+//     bytes.high_level(last_update_ns_);                            // what the behavior thread owns
+//   }
+//
+// A member with a pass_state of its own is asked for it; any other must be trivially copyable. The bytes are those of
+// this build and hold no pointer. How many there are follows from the setup: measure once, before the loop. Nothing
+// here allocates, locks or throws.
+//
+// Threads: the control thread, between ticks. With Levels::both the behavior thread must stand still, too.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <type_traits>
+
+#include "kadans/exchange/latest.h"
+
+namespace kadans {
+
+class StateBytes {
+ public:
+  enum class Levels : bool { low, both };
+
+  explicit StateBytes(Levels levels = Levels::both) noexcept : levels_(levels) {}  // measures: size() says how many
+  static StateBytes saving(std::span<std::byte> bytes, Levels levels = Levels::both) noexcept {
+    StateBytes made(levels);
+    made.to_ = bytes.data();
+    made.room_ = bytes.size();
+    return made;
+  }
+  static StateBytes restoring(std::span<const std::byte> bytes, Levels levels = Levels::both) noexcept {
+    StateBytes made(levels);
+    made.from_ = bytes.data();
+    made.room_ = bytes.size();
+    return made;
+  }
+
+  template <typename... T>
+  void operator()(T&... state) noexcept {
+    (pass(state), ...);
+  }
+  template <typename... T>
+  void high_level(T&... state) noexcept {
+    if (levels_ == Levels::both) (pass(state), ...);
+  }
+  // What the low level finds in a storage of the object.
+  template <typename T, std::size_t readers>
+  void newest(Latest<T, readers>& latest) noexcept {
+    T value = latest.newest();
+    pass(value);
+    if (restores() && ok()) latest.replace(value);
+  }
+
+  bool restores() const noexcept { return from_ != nullptr; }
+  std::size_t size() const noexcept { return size_; }
+  // False: there were too few bytes. Then not all is saved or restored.
+  bool ok() const noexcept { return (to_ == nullptr && from_ == nullptr) || size_ <= room_; }
+
+ private:
+  template <typename T>
+  void pass(T& state) noexcept {
+    if constexpr (requires { state.pass_state(*this); }) {
+      state.pass_state(*this);
+    } else {
+      static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "state is copied as bytes");
+      const std::size_t at = size_;
+      size_ += sizeof state;
+      if (!ok()) return;
+      if (to_ != nullptr) std::memcpy(to_ + at, &state, sizeof state);
+      if (from_ != nullptr) std::memcpy(static_cast<void*>(&state), from_ + at, sizeof state);
+    }
+  }
+
+  Levels levels_;
+  std::byte* to_ = nullptr;
+  const std::byte* from_ = nullptr;
+  std::size_t room_ = 0, size_ = 0;
+};
+
+}  // namespace kadans
