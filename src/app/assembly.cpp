@@ -50,6 +50,24 @@ bool has_joystick(const ScenarioConfig& scenario, const RobotConfig& robot) {
   return robot.engine.joystick || !scenario.joystick.recording.empty() || !scenario.joystick_device.empty();
 }
 
+// Says which robot a behavior plays on.
+class NamedLog final : public BehaviorLog {
+ public:
+  NamedLog(const std::string& robot, BehaviorLog& log) : prefix_(robot + "."), log_(log) {}
+  void transition(const Transition& transition) override {
+    Transition named = transition;
+    named.behavior.insert(0, prefix_);
+    log_.transition(named);
+  }
+  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
+    log_.message(time_ns, severity, prefix_ + behavior, text);
+  }
+
+ private:
+  std::string prefix_;
+  BehaviorLog& log_;
+};
+
 // Checks the behaviors' names in events; they are known only after loading.
 void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
   const std::vector<std::string> names = host.names();
@@ -82,17 +100,49 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
 
 Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
                    ProcessHost* outside)
+    : Assembly(Begun{}, scenario, seed, log, link, outside, 0) {
+  begin_others();
+  complete();
+}
+
+Assembly::Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
+                   ProcessHost* outside, std::size_t number)
     : scenario_(scenario),
+      seed_(seed),
+      number_(number),
       log_(log),
+      named_log_(number == 0 ? nullptr : std::make_unique<NamedLog>(scenario.name, log)),
       link_(link),
       outside_(outside),
       robot_(read_robot(scenario.robot, scenario.plugins)) {
   control_system_ = make_control_system(robot_);
-  Catalog& catalog = control_system_->catalog;
   robot_.config.engine.joystick = has_joystick(scenario, robot_.config);
   try {
-    vary(seed);
-    make_plant(seed);
+    vary();
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.file = robot_.config.file, .message = error.what()});
+  }
+}
+
+// A further robot takes from the first what is the world's and the run's.
+void Assembly::begin_others() {
+  if (link_ != nullptr && !scenario_.robots.empty())
+    refuse(scenario_.file, scenario_.robots.front().plant_place, "robots: a run on the wall clock has one robot");
+  further_ = scenario_.robots;
+  for (ScenarioConfig& robot : further_) {
+    robot.world = scenario_.world;
+    robot.world.settings.payloads.clear();  // the first robot's
+    robot.world.payload_links.clear();
+    robot.plugins = scenario_.plugins;
+    const std::uint64_t seed = RandomStream(seed_, "robot " + robot.name).next();
+    others_.emplace_back(new Assembly(Begun{}, robot, seed, log_, nullptr, nullptr, others_.size() + 1));
+  }
+}
+
+void Assembly::complete() {
+  Catalog& catalog = control_system_->catalog;
+  try {
+    make_plant();
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
     robot_.config.safety.drive_words = plant_type().drive_words();
     estimator_ =
@@ -104,28 +154,43 @@ Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& l
   exchange_ = std::make_unique<EngineExchange>();
   plant().declare_signals(catalog.signals);
   if (const TruthSource* source = truth_source()) {
-    truth_ =
-        std::make_unique<TruthSignals>(*source, catalog, feet_of(variant_.plant), feet_settle_s, variant_.plant.world);
+    const bool several = shared_ != nullptr && shared_->robot_count() > 1;
+    truth_ = std::make_unique<TruthSignals>(*source, catalog, feet_of(variant_.plant), feet_settle_s,
+                                            variant_.plant.world, several);
     for (const ObjectConfig& object : robot_.config.objects) {
       if (object.type.name == "gaze") truth_->watch(catalog, eyes_of(object));
     }
   }
-  if (outside == nullptr) host_ = make_script_host(scenario, robot_.config, catalog, seed, log);
+  BehaviorLog& told = named_log_ ? *named_log_ : static_cast<BehaviorLog&>(log_);
+  if (outside_ == nullptr) host_ = make_script_host(scenario_, robot_.config, catalog, seed_, told);
   upkeep_first_ = catalog.signals.size();
-  if (outside != nullptr) outside->attach(catalog, safe_posture_of(robot_.config.safe));
+  if (outside_ != nullptr) outside_->attach(catalog, safe_posture_of(robot_.config.safe));
   if (host_) host_->declare_signals(catalog.signals);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
+  show_others();
   control_ = std::make_unique<ControlEngine>(robot_.config.engine, plant(), *estimator_, *safety_, *sets_, catalog,
                                              *exchange_);
-  if (host_) faulty_host_ = make_faulty_host(scenario, *host_);
-  disturbances_ = std::make_unique<Disturbances>(scenario, robot_.config.model);
+  if (host_) faulty_host_ = make_faulty_host(scenario_, *host_);
+  disturbances_ = std::make_unique<Disturbances>(scenario_, robot_.config.model);
   make_joystick_player();
   make_behaviors();
 }
 
+void Assembly::show_others() {
+  for (const auto& other : others_) {
+    const SignalTable& theirs = other->catalog().signals;
+    for (SignalId id = 0; id < theirs.size(); ++id) {
+      if (id - other->upkeep_first_ < other->upkeep_count_) continue;
+      Signal signal = theirs.info(id);
+      signal.name.insert(0, other->scenario_.name + ".");
+      control_system_->catalog.signals.add(std::move(signal), &other->control_->row()[id]);
+    }
+  }
+}
+
 // The plant's robot: first the files' values, then the scenario's start pose, then the quantities that it sets and
 // draws.
-void Assembly::vary(std::uint64_t seed) {
+void Assembly::vary() {
   const RobotConfig& config = robot_.config;
   variant_.model = config.model;
   variant_.plant = config.plant;
@@ -134,7 +199,7 @@ void Assembly::vary(std::uint64_t seed) {
   Problems problems(scenario_.file);
   Quantities quantities(variant_, control_system_->catalog);
   for (const NumberEntry& entry : scenario_.set) quantities.set(entry, quantities_, problems);
-  for (const Variation& variation : scenario_.randomise) quantities.draw(variation, seed, quantities_, problems);
+  for (const Variation& variation : scenario_.randomise) quantities.draw(variation, seed_, quantities_, problems);
   for (const NumberEntry& entry : scenario_.set_last) quantities.set(entry, quantities_, problems);
   problems.throw_if_any();
   for (const auto& object : control_system_->objects) object->parameters_changed();
@@ -165,6 +230,8 @@ const PlantType& Assembly::plant_type() const {
                      : plant_type_named(robot_.config, "--plant", {scenario_.plant, place});
   if (world.line > 0 && !type.has_objects())
     refuse(scenario_.file, world, "world: the plant " + scenario_.plant + " has none");
+  if (!scenario_.robots.empty() && !type.has_objects())
+    refuse(scenario_.file, scenario_.robots.front().plant_place, "robots: the plant " + scenario_.plant + " has one");
   return type;
 }
 
@@ -183,26 +250,48 @@ PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
   return site;
 }
 
-void Assembly::make_plant(std::uint64_t seed) {
+void Assembly::make_plant() {
   const PlantType& type = plant_type();
   if (!type.is_model()) {
     elsewhere_ = type.make_plant(plant_site(robot_.config, scenario_.peer));
     return;
   }
-  sound_ = type.make_world({variant_.model, variant_.plant, seed});
-  faulty_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed, *sound_);
+  if (number_ == 0) make_world(type);
   if (link_ != nullptr) linked_ = std::make_unique<LinkedPlant>(*link_, *world());
 }
 
-World* Assembly::world() noexcept { return faulty_ ? faulty_.get() : sound_.get(); }
+// The others' engines are made when all robots are in the world, and before the first's, which shows their signals.
+void Assembly::make_world(const PlantType& type) {
+  if (others_.empty()) {
+    sound_ = type.make_world({variant_.model, variant_.plant, seed_});
+  } else {
+    std::vector<WorldSite> sites{{variant_.model, variant_.plant, seed_}};
+    for (const auto& other : others_) sites.push_back({other->variant_.model, other->variant_.plant, other->seed_});
+    sound_ = type.make_shared_world(sites);
+  }
+  join(*sound_);
+  for (const auto& other : others_) {
+    other->join(*sound_);
+    other->complete();
+  }
+}
+
+void Assembly::join(World& world) {
+  shared_ = &world;
+  faulty_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed_, world, number_);
+}
+
+World* Assembly::world() noexcept { return faulty_ ? faulty_.get() : shared_; }
+
+WorldRobot& Assembly::world_robot() noexcept { return faulty_ ? *faulty_ : shared_->robot(number_); }
 
 Plant& Assembly::plant() noexcept {
   if (elsewhere_) return *elsewhere_;
-  return linked_ ? static_cast<Plant&>(*linked_) : world()->robot(0);
+  return linked_ ? static_cast<Plant&>(*linked_) : world_robot();
 }
 
 const TruthSource* Assembly::truth_source() noexcept {
-  return linked_ ? static_cast<const TruthSource*>(linked_.get()) : world() == nullptr ? nullptr : &world()->robot(0);
+  return linked_ ? static_cast<const TruthSource*>(linked_.get()) : shared_ == nullptr ? nullptr : &world_robot();
 }
 
 void Assembly::make_joystick_player() {
@@ -226,8 +315,13 @@ void Assembly::make_behaviors() {
   BehaviorHost* host = filtered_ ? filtered_.get() : &played();
   lockstep_.reset();
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host);
-  if (World* const stepped = linked_ ? nullptr : world())
-    lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *stepped, *control_, *behaviors_);
+  if (shared_ == nullptr || linked_ || number_ > 0) return;
+  lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *world(), *control_, *behaviors_);
+  try {
+    for (const auto& other : others_) lockstep_->add(other->robot_.config.engine, *other->control_, *other->behaviors_);
+  } catch (const std::invalid_argument& error) {
+    refuse(scenario_.file, scenario_.robots.front().plant_place, std::string("robots: ") + error.what());
+  }
 }
 
 void Assembly::filter(SnapshotFilter& filter) {
@@ -235,17 +329,20 @@ void Assembly::filter(SnapshotFilter& filter) {
   make_behaviors();
 }
 
-RunParts Assembly::parts() noexcept {
-  return {.world = *world(),
-          .control = *control_,
-          .behaviors = *behaviors_,
-          .lockstep = *lockstep_,
-          .truth = *truth_,
-          .log = log_,
-          .disturbances = disturbances_.get(),
-          .joystick = joystick_.get(),
-          .upkeep_first = static_cast<SignalId>(upkeep_first_),
-          .upkeep_count = upkeep_count_};
+RunParts Assembly::parts_in(Lockstep& lockstep) {
+  RunParts parts{.world = *world(),
+                 .robot = world_robot(),
+                 .control = *control_,
+                 .behaviors = *behaviors_,
+                 .lockstep = lockstep,
+                 .truth = *truth_,
+                 .log = log_,
+                 .disturbances = disturbances_.get(),
+                 .joystick = joystick_.get(),
+                 .upkeep_first = static_cast<SignalId>(upkeep_first_),
+                 .upkeep_count = upkeep_count_};
+  for (const auto& other : others_) parts.others.push_back(other->parts_in(lockstep));
+  return parts;
 }
 
 }  // namespace kadans

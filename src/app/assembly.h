@@ -1,5 +1,5 @@
-// Assembles a robot from its files: the only place that names concrete types together. The order of the members is the
-// way of the data; each member keeps references to earlier ones.
+// Assembles a robot from its files, and the further robots of its world: the only place that names concrete types
+// together. The order of the members is the way of the data; each member keeps references to earlier ones.
 #pragma once
 
 #include <filesystem>
@@ -58,6 +58,9 @@ class Assembly {
   // `outside` must outlive the assembly. With `link` the world runs on a thread of its own, and the engines use the
   // other side of the link. With `outside` the scenario's behaviors play in that process, which has been started with
   // them. When the scenario's plant is no model, there is no world: parts(), world() and truth() cannot be used.
+  //
+  // Each further robot of the scenario gets an assembly of its own. What it does is among this robot's signals, as
+  // NAME.<signal>, and its behaviors report as NAME.<behavior>.
   Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
            ProcessHost* outside = nullptr);
 
@@ -69,7 +72,9 @@ class Assembly {
   OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
   // Call before the run: from now on saved files are reloaded. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() { host_->watch(); }
-  RunParts parts() noexcept;
+  RunParts parts() { return parts_in(*lockstep_); }
+  const ScenarioConfig& scenario() const noexcept { return scenario_; }
+  const std::vector<std::unique_ptr<Assembly>>& others() const noexcept { return others_; }
   ControlEngine& control() noexcept { return *control_; }
   BehaviorEngine& behaviors() noexcept { return *behaviors_; }
   Plant& plant() noexcept;                                 // the plant that the engine sees; it is not open yet
@@ -84,25 +89,43 @@ class Assembly {
   void filter(SnapshotFilter& filter);
 
  private:
-  void vary(std::uint64_t seed);
+  struct Begun {};
+  // Reads and varies the robot; complete() does the rest, once there is a world. Robot 0 is the first.
+  Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
+           ProcessHost* outside, std::size_t number);
+  void complete();
+  RunParts parts_in(Lockstep& lockstep);
+  void begin_others();
+  void show_others();
+  void vary();
   void start_in_pose();
   const PlantType& plant_type() const;
-  void make_plant(std::uint64_t seed);
+  void make_plant();
+  void make_world(const PlantType& type);
+  void join(World& world);
+  WorldRobot& world_robot() noexcept;
   const TruthSource* truth_source() noexcept;
   void make_joystick_player();
   void make_behaviors();
   BehaviorHost& played() noexcept;
 
   const ScenarioConfig& scenario_;
+  std::uint64_t seed_;
+  std::size_t number_;  // in the world
   RunLog& log_;
+  std::unique_ptr<BehaviorLog> named_log_;  // of a further robot
   PlantExchange* link_;
   ProcessHost* outside_;
   Robot robot_;
   PlantVariant variant_;
   std::vector<QuantityValue> quantities_;
-  std::unique_ptr<World> sound_, faulty_;  // faulty_ wraps sound_ when the scenario has faults of the plant
-  std::unique_ptr<LinkedPlant> linked_;    // when the world is on another thread
-  std::unique_ptr<Plant> elsewhere_;       // when there is no world
+  std::vector<ScenarioConfig> further_;  // as this scenario completes them
+  std::unique_ptr<World> sound_;         // of the first robot; the others are in it
+  World* shared_ = nullptr;              // the same
+  std::unique_ptr<FaultyPlant> faulty_;  // wraps the robot when the scenario has faults of the plant
+  std::vector<std::unique_ptr<Assembly>> others_;
+  std::unique_ptr<LinkedPlant> linked_;  // when the world is on another thread
+  std::unique_ptr<Plant> elsewhere_;     // when there is no world
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;
   std::unique_ptr<Estimator> estimator_;

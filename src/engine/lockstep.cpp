@@ -18,7 +18,7 @@ void Lockstep::add(const EngineSettings& settings, ControlEngine& control, Behav
   if (behavior_period_ns == 0) {
     throw std::invalid_argument("the behavior period must be a whole multiple of the control period");
   }
-  robots_.push_back({&control, &behaviors, behavior_period_ns});
+  robots_.insert(robots_.begin(), {&control, &behaviors, behavior_period_ns});
 }
 
 void Lockstep::pass_period() {
@@ -37,7 +37,7 @@ void Lockstep::step() {
   }
   for (Engines& robot : robots_) {
     if (now_ns < robot.behaviors_due_ns) continue;
-    if (!behaviors_silent_ || &robot != &robots_.front()) robot.behaviors->tick(now_ns);
+    if (!behaviors_silent_ || &robot != &robots_.back()) robot.behaviors->tick(now_ns);
     robot.behaviors_due_ns = (now_ns / robot.behavior_period_ns + 1) * robot.behavior_period_ns;
   }
   pass_period();

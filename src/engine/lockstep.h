@@ -20,8 +20,9 @@ class Lockstep {
   // whole multiple of the control period.
   Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors);
 
-  // Before the first step: the engines of another robot. They tick after those of the robots before. Keeps references.
-  // Throws std::invalid_argument also when its control period is not that of the first.
+  // Before the first step: the engines of another robot. The first robot's tick last, so that its signals can show
+  // those of the others. Keeps references. Throws std::invalid_argument also when its control period is not that of the
+  // first.
   void add(const EngineSettings& settings, ControlEngine& control, BehaviorEngine& behaviors);
 
   // Throws what the world's step throws.
@@ -48,7 +49,7 @@ class Lockstep {
   void pass_period();
 
   World& world_;
-  std::vector<Engines> robots_;
+  std::vector<Engines> robots_;  // the first robot is the last
   VirtualClock clock_;
   WallClock wall_;
   TickStatistics control_tick_cost_;

@@ -66,10 +66,7 @@ class Run {
   }
 
   void step() {
-    parts_.truth.update(1e-9 * static_cast<double>(parts_.lockstep.time_ns()), parts_.control.row());
-    if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.world.robot(0));
-    if (parts_.joystick != nullptr)
-      parts_.control.exchange().joystick.publish(parts_.joystick->at(parts_.lockstep.time_ns()));
+    parts_.begin_step();
     parts_.lockstep.step();
     const double time_s = 1e-9 * static_cast<double>(parts_.control.state().time_ns);
     const std::span<const double> row = parts_.control.row();
@@ -95,6 +92,13 @@ class Run {
 };
 
 }  // namespace
+
+void RunParts::begin_step() const {
+  truth.update(1e-9 * static_cast<double>(lockstep.time_ns()), control.row());
+  if (disturbances != nullptr) disturbances->apply(lockstep, robot);
+  if (joystick != nullptr) control.exchange().joystick.publish(joystick->at(lockstep.time_ns()));
+  for (const RunParts& other : others) other.begin_step();
+}
 
 RunResult run_scenario(const RunParts& parts, double duration_s, Checks& checks,
                        const std::vector<RunObserver*>& observers) {

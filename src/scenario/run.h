@@ -48,6 +48,7 @@ class RunLog final : public BehaviorLog, private LineSink {
 
 struct RunParts {
   World& world;
+  WorldRobot& robot;
   ControlEngine& control;
   BehaviorEngine& behaviors;
   Lockstep& lockstep;
@@ -59,6 +60,10 @@ struct RunParts {
   // because memory depends on the machine.
   SignalId upkeep_first = 0;
   std::size_t upkeep_count = 0;
+  std::vector<RunParts> others{};  // of the world's further robots; their signals are among the first robot's
+
+  // What comes before a step: the truth of each robot as signals, disturbances, the joystick.
+  void begin_step() const;
 };
 
 // The progress of a run between two ticks.

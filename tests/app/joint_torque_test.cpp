@@ -15,7 +15,7 @@ class TorqueComparison final : public RunObserver {
   explicit TorqueComparison(const RunParts& parts) : parts_(parts) {}
   void tick(double time_s, std::span<const double>) override {
     if (time_s > 0.5) {  // once the robot stands, so that the largest errors are not those of touching down
-      const PlantTruth& truth = parts_.world.robot(0).truth();
+      const PlantTruth& truth = parts_.robot.truth();
       for (std::uint32_t i = 0; i < truth.joint_count; ++i) {
         const double error_Nm = parts_.control.state().joints.joints[i].effort_Nm - last_[i];
         worst_Nm = std::max(worst_Nm, std::abs(error_Nm));
@@ -24,7 +24,7 @@ class TorqueComparison final : public RunObserver {
         ++count;
       }
     }
-    last_ = parts_.world.robot(0).truth().drive_torque_Nm;  // of the step after the tick: the sensors show it in the next one
+    last_ = parts_.robot.truth().drive_torque_Nm;  // of the step after the tick: the sensors show it in the next one
   }
   double rms_Nm() const { return std::sqrt(sum_Nm2 / static_cast<double>(count)); }
 

@@ -40,7 +40,7 @@ class Hanging {
   void run(int ticks) {
     for (int i = 0; i < ticks; ++i) {
       for (const std::size_t foot : feet_) {
-        if (loaded_) parts_.world.robot(0).push(foot, {0.6 * load_N, 0.3 * load_N, -load_N}, {0, 0, 0});
+        if (loaded_) parts_.robot.push(foot, {0.6 * load_N, 0.3 * load_N, -load_N}, {0, 0, 0});
       }
       parts_.lockstep.step();
     }
@@ -63,7 +63,7 @@ class Hanging {
         const Setpoint& setpoint = catalog.setpoints[id];
         const bool position = setpoint.joint != no_joint && setpoint.unit == "rad";
         if (!position && setpoint.unit != "rad/s") continue;
-        const double now = position ? parts_.world.robot(0).truth().position_rad[setpoint.joint] : 0;
+        const double now = position ? parts_.robot.truth().position_rad[setpoint.joint] : 0;
         commands.push_back({.kind = CommandKind::set_point,
                             .index = id,
                             .value = std::clamp(now + by, setpoint.min, setpoint.max),
@@ -75,7 +75,7 @@ class Hanging {
   // Sends the robot on by two ticks; the largest change of a drive's torque from the first to the second. The first
   // applies a command that was sent and computes the new set; in the second it acts.
   void watch(SwitchStep& step) {
-    const PlantTruth& truth = parts_.world.robot(0).truth();
+    const PlantTruth& truth = parts_.robot.truth();
     run(1);
     const auto before = truth.drive_torque_Nm;
     run(1);

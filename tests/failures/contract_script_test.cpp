@@ -56,7 +56,7 @@ struct Play {
     Checks checks(robot.catalog().signals);
     const RunParts parts = robot.parts();
     result = run_scenario(parts, duration_s, checks, {});
-    knee_rad = parts.world.robot(0).truth().position_rad[robot.robot().model.find_joint("l_knee").value()];
+    knee_rad = parts.robot.truth().position_rad[robot.robot().model.find_joint("l_knee").value()];
   }
   bool said(const std::string& what) const {
     for (const LogLine& line : log.lines()) {

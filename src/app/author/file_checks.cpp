@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -171,7 +172,10 @@ std::string FileChecks::check_scenario(const fs::path& file) {
   RunLog log;
   const Assembly assembly(scenario, scenario.seed, log);
   const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
-  const std::vector<InputProblem> problems = problems_of_named(scenario, assembly.catalog());
+  std::vector<InputProblem> problems = problems_of_named(scenario, assembly.catalog());
+  for (const auto& robot : assembly.others()) {
+    std::ranges::move(problems_of_named(robot->scenario(), robot->catalog()), std::back_inserter(problems));
+  }
   if (!problems.empty()) throw InputError(problems);
   return "scenario: " + std::to_string(scenario.behaviors.size()) + " behaviors, " + std::to_string(checks.size()) +
          " checks, " + std::to_string(assembly.catalog().signals.size()) + " signals";

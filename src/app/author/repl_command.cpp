@@ -117,8 +117,7 @@ class Repl {
   std::string prompt() const { return console_.writes() ? "kadans! " : "kadans> "; }
 
   void step() {
-    parts_.truth.update(time_s(), parts_.control.row());
-    if (parts_.disturbances != nullptr) parts_.disturbances->apply(parts_.lockstep, parts_.world.robot(0));
+    parts_.begin_step();
     parts_.lockstep.step();
     Fault fault;
     while (parts_.control.safety().log().try_pop(fault)) {

@@ -77,7 +77,7 @@ void SimRemote::push(const RunMark& mark) {
     }
   }
   for (const Pushes& pushes : pushes_)
-    pushes.apply(parts_.world.robot(0), time_s, 1e-9 * static_cast<double>(parts_.lockstep.control_period_ns()));
+    pushes.apply(parts_.robot, time_s, 1e-9 * static_cast<double>(parts_.lockstep.control_period_ns()));
 }
 
 void SimRemote::between_ticks(const RunMark& mark) {

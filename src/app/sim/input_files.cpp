@@ -105,21 +105,26 @@ class Gathering {
   std::map<std::string, InputFile> files_;
 };
 
-}  // namespace
-
-std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly) {
-  Gathering files(scenario.file);
+void add_robot(const Assembly& assembly, Gathering& files) {
   const RobotConfig& robot = assembly.robot();
   for (const fs::path& file : meshes(robot.model)) files.add_name(file);
   if (!robot.plugins.empty()) {
     for (const PluginFile& plugin : read_plugin_files(robot.file)) files.add_hash(plugin.file);
   }
-  for (const fs::path& file : files_of(scenario.file)) files.add(file);
   for (const fs::path& file : files_of(robot.file)) files.add(file);
   files.add(robot.model.file);
   for (const BehaviorValue& given : robot.behavior_values) files.add(project_root(robot.file) / given.chunk);
-  if (!scenario.joystick.recording.empty()) files.add(scenario.joystick.recording);
   for (const fs::path& file : assembly.host().files()) files.add(file);
+  for (const auto& other : assembly.others()) add_robot(*other, files);
+}
+
+}  // namespace
+
+std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly) {
+  Gathering files(scenario.file);
+  for (const fs::path& file : files_of(scenario.file)) files.add(file);
+  if (!scenario.joystick.recording.empty()) files.add(scenario.joystick.recording);
+  add_robot(assembly, files);
   return files.take();
 }
 

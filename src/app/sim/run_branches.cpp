@@ -124,7 +124,7 @@ void BranchActions::begin(const RunMark& mark) {
 
 void BranchActions::between_ticks(const RunMark& mark) const {
   const RunParts parts = assembly_.parts();
-  pushes_.apply(parts.world.robot(0), 1e-9 * static_cast<double>(mark.time_ns),
+  pushes_.apply(parts.robot, 1e-9 * static_cast<double>(mark.time_ns),
                 1e-9 * static_cast<double>(parts.lockstep.control_period_ns()));
 }
 

@@ -15,15 +15,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A hash of the scenario, the robot with plug-ins, its description with meshes, all behaviors and their libraries.
-std::uint64_t content_of(const ScenarioConfig& scenario, const RobotConfig& robot) {
-  ContentHash hash;
-  for (const fs::path& file : files_of(scenario.file)) hash.add_file(file);
+// The robot's configuration with plug-ins, its description with meshes, and what it plays.
+void add_robot(const Assembly& assembly, ContentHash& hash) {
+  const ScenarioConfig& scenario = assembly.scenario();
   for (const fs::path& file : files_of(scenario.robot)) hash.add_file(file);
   for (const PluginFile& plugin : read_plugin_files(scenario.robot)) hash.add_file(plugin.file);
-  hash.add_folder(fs::path(robot.model.file).parent_path());
-  hash.add_folder(project_root(scenario.file) / "behaviors", ".lua");
+  hash.add_folder(fs::path(assembly.robot().model.file).parent_path());
   for (const PlayItem& item : scenario.behaviors) hash.add_file(item.file);
+  for (const auto& other : assembly.others()) add_robot(*other, hash);
+}
+
+// A hash of the scenario, its robots, all behaviors and their libraries.
+std::uint64_t content_of(const Assembly& assembly) {
+  ContentHash hash;
+  for (const fs::path& file : files_of(assembly.scenario().file)) hash.add_file(file);
+  hash.add_folder(project_root(assembly.scenario().file) / "behaviors", ".lua");
+  add_robot(assembly, hash);
   return hash.value();
 }
 
@@ -66,7 +73,7 @@ SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig&
           .wall_limit_s = scenario.wall_limit_s,
           .randomise = scenario.randomise,
           .quantities = Quantities(variant, system->catalog).names(),
-          .content = content_of(scenario, robot.config)};
+          .content = content_of(assembly)};
 }
 
 }  // namespace

@@ -165,12 +165,15 @@ void plant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   }
   f.choice("plant", chosen, models, doc);
   scenario.plant = models[chosen];
-  if (plant_type(plant_types(), scenario.plant).has_objects() || !f.has("world")) return;
+  if (plant_type(plant_types(), scenario.plant).has_objects()) return;
   std::string others;
   for (const std::string& name : plant_type_names(&PlantType::has_objects))
     others += (others.empty() ? "" : ", ") + name;
-  problems.add(f.place("world"),
-               "world: only the " + others + " plant has one, this scenario's plant is " + scenario.plant);
+  for (const std::string key : {"world", "robots"}) {
+    if (!f.has(key)) continue;
+    problems.add(f.place(key),
+                 key + ": only the " + others + " plant has one, this scenario's plant is " + scenario.plant);
+  }
 }
 
 // How it is run among others.
@@ -196,6 +199,46 @@ void variant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   f.object("set", "quantities that differ from the robot's files, by a pattern of their names",
            [&](Fields& e) { e.number_entries(scenario.set, {}, "value of the quantity"); });
   variation_fields(f, "randomise", scenario.randomise, problems);
+}
+
+// What plays on one robot, and what pushes it.
+void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+  std::vector<PlacedName> lists;
+  f.strings("behaviors", lists, {0, 100}, "what to play, one after the other: files, or \"squat{depth_m=0.08}, wave\"");
+  const PlayFolders folders = folders_of(scenario);
+  for (const PlacedName& list : lists) {
+    const TextPlace start{list.place.line, list.place.column + 1};  // behind the quote
+    std::ranges::move(read_play_items(list.name, start, folders, problems), std::back_inserter(scenario.behaviors));
+  }
+  f.list("events", {0, 10'000}, "changes to the list of behaviors, each at its time", [&](Fields& e) {
+    ScenarioEvent event;
+    event_fields(e, event, folders, problems);
+    if (e.reading()) scenario.events.push_back(std::move(event));
+  });
+  f.list("pushes", {0, 1000}, "pushes on the robot", [&](Fields& e) {
+    ScenarioPush push;
+    push_fields(e, push, problems);
+    if (e.reading()) scenario.pushes.push_back(std::move(push));
+  });
+}
+
+void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig& scenario, Problems& problems) {
+  f.string("name", robot.name, "the robot's name: its signals are NAME.plant.base.height_m and the like",
+           Need::required);
+  robot.plant_place = f.place("name");
+  if (std::ranges::count(scenario.robots, robot.name, &ScenarioConfig::name) > 0)
+    problems.add(robot.plant_place, "another robot has the name " + in_quotes(robot.name));
+  if (robot.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+    problems.add(robot.plant_place,
+                 "name " + in_quotes(robot.name) + " must consist of small letters, digits and underscores");
+  robot.file = scenario.file;
+  robot.plant = scenario.plant;
+  robot.robot = scenario.robot;
+  std::string file;
+  if (f.string("robot", file, "its configuration, from the project root; else that of the first robot"))
+    robot.robot = resolve_file(file, f.place("robot"), "robot", problems).string();
+  variant_fields(f, robot, problems);
+  play_fields(f, robot, problems);
 }
 
 void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
@@ -226,22 +269,11 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
             "seed of all random numbers of the run");
   suite_fields(f, scenario, problems);
   variant_fields(f, scenario, problems);
-  std::vector<PlacedName> lists;
-  f.strings("behaviors", lists, {0, 100}, "what to play, one after the other: files, or \"squat{depth_m=0.08}, wave\"");
-  const PlayFolders folders = folders_of(scenario);
-  for (const PlacedName& list : lists) {
-    const TextPlace start{list.place.line, list.place.column + 1};  // behind the quote
-    std::ranges::move(read_play_items(list.name, start, folders, problems), std::back_inserter(scenario.behaviors));
-  }
-  f.list("events", {0, 10'000}, "changes to the list of behaviors, each at its time", [&](Fields& e) {
-    ScenarioEvent event;
-    event_fields(e, event, folders, problems);
-    if (e.reading()) scenario.events.push_back(std::move(event));
-  });
-  f.list("pushes", {0, 1000}, "pushes on the robot", [&](Fields& e) {
-    ScenarioPush push;
-    push_fields(e, push, problems);
-    if (e.reading()) scenario.pushes.push_back(std::move(push));
+  play_fields(f, scenario, problems);
+  f.list("robots", {0, further_robots_max}, "further robots in the same world and time", [&](Fields& e) {
+    ScenarioConfig robot;
+    further_robot_fields(e, robot, scenario, problems);
+    if (e.reading()) scenario.robots.push_back(std::move(robot));
   });
   f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {
     ScenarioFault fault;

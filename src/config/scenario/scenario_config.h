@@ -1,4 +1,4 @@
-// A scenario in one JSON file: a robot, a plant, the behaviors that play, what happens, and the checks that must hold.
+// A scenario in one JSON file: robots, a plant, the behaviors that play, what happens, and the checks that must hold.
 #pragma once
 
 #include <cstdint>
@@ -90,6 +90,7 @@ void push_fields(Fields& f, ScenarioPush& push, Problems& problems);
 
 // A scenario in one JSON file: a robot, a plant, the behaviors that play, and the checks that must hold.
 inline constexpr double scenario_duration_max_s = 1e6;  // of simulated time
+inline constexpr std::size_t further_robots_max = 7;
 
 // A recording of a joystick that is played back.
 struct ScenarioJoystick {
@@ -134,6 +135,9 @@ struct ScenarioConfig {
   std::string joystick_device;  // not in the file: device of a run on the wall clock
   bool on_wall_clock = false;   // not in the file: time goes on while a behavior is slow
   std::vector<ScenarioCheck> checks;
+  // Further robots in the same world and time. Of each only name, robot, quantities, behaviors, events and pushes are
+  // its own; plant_place is that of its name.
+  std::vector<ScenarioConfig> robots;
   PluginGate plugins;  // not in the file
 };
 

@@ -37,7 +37,7 @@ void Disturbances::apply(Lockstep& lockstep, WorldRobot& robot) {
     }
     happened_[i] = true;
   }
-  lockstep.silence_behaviors(silent);
+  if (!faults_.empty()) lockstep.silence_behaviors(silent);
   pushes_.apply(robot, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
 }
 

@@ -310,13 +310,14 @@ class PlantFaults {
 }  // namespace
 
 std::unique_ptr<FaultyPlant> make_faulty_plant(const ScenarioConfig& scenario, const PlantVariant& variant,
-                                               const EngineSettings& engine, std::uint64_t seed, World& world) {
+                                               const EngineSettings& engine, std::uint64_t seed, World& world,
+                                               std::size_t robot) {
   const double late_ticks = std::round(variant.actuation_delay_s / engine.control_period_s);
   const auto of_plant = [](const ScenarioFault& fault) {
     return fault.of_sensor() || fault.of_drive() || fault.of_supply();
   };
   if (late_ticks == 0 && std::ranges::none_of(scenario.faults, of_plant)) return nullptr;
-  auto faulty = std::make_unique<FaultyPlant>(world, seed);
+  auto faulty = std::make_unique<FaultyPlant>(world, seed, robot);
   Problems problems(scenario.file);
   PlantFaults faults(variant, *faulty, problems);
   if (late_ticks > 0) faults.delay_all(late_ticks);

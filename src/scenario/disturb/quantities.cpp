@@ -73,6 +73,8 @@ void Quantities::add_scale(std::string name, double& value) {
 }
 
 void Quantities::add_start(PlantSettings& plant) {
+  add_value("start.x_m", {-100, 100, "m"}, plant.base.position_m[0]);
+  add_value("start.y_m", {-100, 100, "m"}, plant.base.position_m[1]);
   constexpr std::array<const char*, 3> names{"start.roll_rad", "start.pitch_rad", "start.yaw_rad"};
   for (std::size_t axis = 0; axis < names.size(); ++axis) {
     add(names[axis], {-4, 4, "rad"}, [this, &plant, axis, start = plant.base.orientation](double angle_rad) {

@@ -3,7 +3,8 @@
 //
 //   ground.friction                      joint.<joint>.torque_scale, damping_scale, coulomb_scale, spring_scale
 //   link.<link>.mass_scale, friction     joint.<joint>.start_rad (added), encoder_noise_rad
-//   start.roll_rad, pitch_rad, yaw_rad   imu.gyro_noise_rad_s, gyro_bias_rad_s, accelerometer_noise_m_s2, ...
+//   start.x_m, y_m, roll_rad, pitch_rad, yaw_rad
+//                                        imu.gyro_noise_rad_s, gyro_bias_rad_s, accelerometer_noise_m_s2, ...
 //   sensor.<name>.value, noise
 //   foot.<link>.noise_N                  control.<object>.<parameter>, and <parameter>_scale
 //   actuation.delay_s                    delay from the control engine's write to the drives' reaction

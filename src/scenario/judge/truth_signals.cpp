@@ -14,7 +14,7 @@ double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[
 }  // namespace
 
 TruthSignals::TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
-                           const WorldSettings& world)
+                           const WorldSettings& world, bool several)
     : plant_(plant), model_(*catalog.model), settle_s_(settle_s), kinematics_(*catalog.model) {
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const std::string& joint = model_.joints[i].name;
@@ -34,7 +34,7 @@ TruthSignals::TruthSignals(const TruthSource& plant, Catalog& catalog, const std
   declare(catalog.signals, feet);
   std::vector<std::size_t> links;
   for (const FootState& foot : feet_) links.push_back(foot.link);
-  world_.emplace(catalog.signals, world, links);
+  world_.emplace(catalog.signals, world, links, several);
 }
 
 void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
@@ -196,11 +196,16 @@ void GazeTruth::update(std::span<const double> row) noexcept {
   worst_rad_ = std::max(error_rad_[0], error_rad_[1]);
 }
 
-WorldSignals::WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet)
+WorldSignals::WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet,
+                           bool several)
     : objects_(world.objects.size()) {
   for (const std::size_t link : feet) feet_.set(link);
   table.add({"plant.contact.other_links", "", "Links other than feet that press on the ground or an object."},
             &other_links_);
+  if (several) {
+    table.add({"plant.contact.robot_links", "", "Links that press on another robot."}, &robot_links_);
+    table.add({"plant.contact.robots_force_N", "N", "Force from other robots."}, &robots_force_N_);
+  }
   table.add({"plant.self_penetration_m", "m", "Largest overlap of two links of the robot."}, &self_penetration_m_);
   for (std::size_t i = 0; i < objects_.size(); ++i) declare(table, world.objects[i], objects_[i]);
 }
@@ -222,6 +227,8 @@ void WorldSignals::declare(SignalTable& table, const WorldObject& object, State&
 
 void WorldSignals::update(const PlantTruth& truth) noexcept {
   other_links_ = static_cast<double>((truth.touching_links & ~feet_).count());
+  robot_links_ = static_cast<double>(truth.robot_links.count());
+  robots_force_N_ = length(truth.robots_force_N);
   self_penetration_m_ = truth.self_penetration_m;
   const std::size_t count = std::min<std::size_t>(objects_.size(), truth.object_count);
   for (std::size_t i = 0; i < count; ++i) {

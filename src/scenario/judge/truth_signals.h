@@ -62,15 +62,17 @@ class GazeTruth {
 
 // Contacts and the positions of the world's objects, as signals:
 //
-//   plant.contact.other_links      links of the robot, other than feet, that press on the ground or an object
+//   plant.contact.other_links      links of the robot, other than feet, that press on the ground, an object or a robot
+//   plant.contact.robot_links      in a world of several robots: links that press on another robot
+//   plant.contact.robots_force_N   likewise: size of the force from other robots
 //   plant.self_penetration_m       largest overlap of two links of the robot
 //   world.<name>.force_N, links    force of the robot on the object, and number of its links that press
 //   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    position, velocity and tilt of an object that can
 //   move
 class WorldSignals {
  public:
-  // Declares the signals. `feet` are the indices of the foot links.
-  WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet);
+  // Declares the signals. `feet` are the indices of the foot links. `several`: there is more than one robot.
+  WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet, bool several);
 
   void update(const PlantTruth& truth) noexcept;
 
@@ -83,7 +85,7 @@ class WorldSignals {
   void declare(SignalTable& table, const WorldObject& object, State& state);
 
   LinkSet feet_;
-  double other_links_ = 0, self_penetration_m_ = 0;
+  double other_links_ = 0, robot_links_ = 0, robots_force_N_ = 0, self_penetration_m_ = 0;
   std::vector<State> objects_;
 };
 
@@ -91,13 +93,13 @@ class TruthSignals {
  public:
   // The constructor declares the signals in the catalog and keeps references to plant, model and catalog. `feet` are
   // the foot links of the plant's settings, each with the points of its sole that touch the ground. Slip is measured
-  // from settle_s on.
+  // from settle_s on. `several`: the plant's world has more than one robot.
   struct Foot {
     std::string link;
     std::vector<Vec3> sole_m;  // in the link's frame
   };
   TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
-               const WorldSettings& world = {});
+               const WorldSettings& world = {}, bool several = false);
 
   // Call before the run.
   void watch(Catalog& catalog, const GazeTruth::Eyes& eyes);

@@ -1,0 +1,94 @@
+// A scenario with several robots.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "app/assembly.h"
+
+using namespace kadans;
+
+namespace {
+
+ScenarioConfig squat() { return read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json"); }
+
+NumberEntry at_y(double y_m) { return {.key = "start.y_m", .value = y_m}; }
+
+// The squat, and another TULip that squats `y_m` to the left.
+ScenarioConfig with_left(double y_m) {
+  ScenarioConfig scenario = squat();
+  ScenarioConfig left = scenario;
+  left.name = "left";
+  left.set = {at_y(y_m)};
+  scenario.robots.push_back(left);
+  return scenario;
+}
+
+double value(Assembly& robot, const std::string& signal) {
+  return robot.control().row()[robot.catalog().signals.find(signal).value()];
+}
+
+struct Played {
+  explicit Played(const ScenarioConfig& scenario) : robot(scenario, 3, log) {}
+  RunResult run(double duration_s) {
+    Checks none(robot.catalog().signals, {});
+    return run_scenario(robot.parts(), duration_s, none, {});
+  }
+  RunLog log;
+  Assembly robot;
+};
+
+}  // namespace
+
+TEST_CASE("A robot's signals are the same, bit for bit, when another one plays far away in its world") {
+  const ScenarioConfig one = squat(), two = with_left(20);
+  Played alone(one), together(two);
+  CHECK(alone.run(1.5).passed);
+  CHECK(together.run(1.5).passed);
+  const SignalTable& signals = alone.robot.catalog().signals;
+  std::size_t compared = 0;
+  for (const std::string& name : signals.names()) {
+    if (name.starts_with("behavior")) continue;  // of the interpreter: memory and the like
+    CAPTURE(name);
+    const double a = value(alone.robot, name), b = value(together.robot, name);
+    CHECK((a == b || (std::isnan(a) && std::isnan(b))));
+    ++compared;
+  }
+  CHECK(compared > 300);
+}
+
+TEST_CASE("Each robot plays its own behaviors; what the others do is among the first one's signals, of the same tick") {
+  ScenarioConfig scenario = with_left(1.5);
+  scenario.behaviors.clear();
+  scenario.robots[0].pushes = {{.link = {"torso", {}}, .at_s = 0.5, .duration_s = 0.1, .impulse_Ns = {0.5, 0, 0}}};
+  Played played(scenario);
+  CHECK(played.run(2.5).passed);
+  Assembly& left = *played.robot.others().at(0);
+  for (const char* signal : {"plant.base.height_m", "plant.base.y_m", "joint.l_knee.position_rad", "safety.faults"}) {
+    CAPTURE(signal);
+    CHECK(value(played.robot, std::string("left.") + signal) == value(left, signal));
+  }
+  CHECK(value(left, "plant.base.y_m") == doctest::Approx(1.5).epsilon(0.01));
+  CHECK(value(left, "plant.base.height_m") < value(played.robot, "plant.base.height_m") - 0.01);
+  CHECK_FALSE(played.log.transitions().empty());
+  for (const Transition& transition : played.log.transitions()) CHECK(transition.behavior.starts_with("left."));
+}
+
+TEST_CASE("A check may look at another robot, and a robot that is pushed falls against it") {
+  ScenarioConfig scenario = with_left(0.6);
+  scenario.pushes = {{.link = {"torso", {}}, .at_s = 0.5, .duration_s = 0.2, .impulse_Ns = {0, 20, 0}}};
+  Played played(scenario);
+  Checks checks(played.robot.catalog().signals, {{.name = "left feels it",
+                                                  .kind = CheckKind::eventually,
+                                                  .signal = "left.plant.contact.robots_force_N",
+                                                  .min = 20}});
+  const RunResult result = run_scenario(played.robot.parts(), 2, checks, {});
+  CHECK(result.checks.at(0).passed);
+}
+
+TEST_CASE("Robots need a world that they can share, and one clock") {
+  RunLog log;
+  PlantExchange link;
+  const ScenarioConfig two = with_left(1);
+  CHECK_THROWS_WITH_AS(Assembly(two, 1, log, &link), doctest::Contains("a run on the wall clock has one robot"),
+                       InputError);
+}
