@@ -73,8 +73,8 @@ ParameterEdit edit_of(const ParameterChange& change, const Catalog& catalog, con
   if (owner == nullptr)
     throw InputError({.message = change.name + " belongs to no control object, so it has no place in the file; 'kadans "
                                                "ctl undo' takes the change back"});
-  const std::string own = change.name.substr(owner->name.size() + 1);
-  return {.object = owner->name, .pattern = own, .matched = {own}, .value = change.now, .preset = preset};
+  const std::string pattern = change.name.substr(owner->name.size() + 1);
+  return {.object = owner->name, .pattern = pattern, .matched = {pattern}, .value = change.now, .preset = preset};
 }
 
 // The presets of a parameter's object that set it, with their values.
