@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string quoted(const std::string& text) { return json_text(text); }
+std::string csv_quoted(const std::string& text) { return json_text(text); }
 
 void append_json_number(std::string& text, double value) {
   if (std::isfinite(value))
@@ -32,7 +32,7 @@ void append_json_number(std::string& text, double value) {
 void append_fields(std::string& line, std::string_view text) {
   std::optional<Json> json = read_foreign_json(text);
   if (!json || !json->is_object()) {
-    line += ",\"message\":" + quoted(std::string(text));
+    line += ",\"message\":" + csv_quoted(std::string(text));
     return;
   }
   json->erase("timestamp");
@@ -101,7 +101,7 @@ bool JsonLines::next(std::string& line) {
 const std::vector<std::string>& JsonLines::keys() {
   const auto [known, added] = keys_.try_emplace(rows_.channel());
   if (!added) return known->second;
-  for (const Signal& signal : rows_.topic().signals) known->second.push_back("," + quoted(signal.name) + ":");
+  for (const Signal& signal : rows_.topic().signals) known->second.push_back("," + csv_quoted(signal.name) + ":");
   return known->second;
 }
 
@@ -109,7 +109,7 @@ void JsonLines::write(std::string& line) {
   const RecordTopic& topic = rows_.topic();
   line += "{\"time_s\":";
   append_seconds(line, rows_.time_ns());
-  line += ",\"topic\":" + quoted(topic.name);
+  line += ",\"topic\":" + csv_quoted(topic.name);
   if (!rows_.values().empty()) {
     line += ",\"tick\":" + std::to_string(rows_.tick());
     const std::vector<std::string>& names = keys();
@@ -120,7 +120,7 @@ void JsonLines::write(std::string& line) {
   } else if (topic.is_json()) {
     append_fields(line, rows_.text());
   } else if (const std::optional<std::string> text = string_in(rows_)) {
-    line += ",\"data\":" + quoted(*text);
+    line += ",\"data\":" + csv_quoted(*text);
   } else {
     line += ",\"bytes\":" + std::to_string(rows_.payload().size());
   }
