@@ -185,7 +185,7 @@ TEST_CASE("Robots that stand on one moving box of the world are both carried") {
   }
 }
 
-TEST_CASE("Two TULips stand side by side; one falls onto the other, and both feel it") {
+TEST_CASE("Two TULips stand side by side, one falls onto the other, and both feel it") {
   Pair pair(0.6);
   for (int i = 0; i < 1000; ++i) pair.tick();
   for (std::size_t i = 0; i < 2; ++i) {
