@@ -130,6 +130,7 @@ void Assembly::begin_others() {
     refuse(scenario_.file, scenario_.robots.front().plant_place, "robots: a run on the wall clock has one robot");
   further_ = scenario_.robots;
   for (ScenarioConfig& robot : further_) {
+    robot.plant = scenario_.plant;
     robot.world = scenario_.world;
     robot.world.settings.payloads.clear();  // the first robot's
     robot.world.payload_links.clear();

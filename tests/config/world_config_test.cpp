@@ -145,7 +145,7 @@ TEST_CASE("Further robots of a scenario have names of their own, and take the fi
           ":1:98: key 'name' is missing in robots[0]: the robot's name: its signals are "
           "NAME.plant.base.height_m and the like");
   refused(text(R"({"name": "b"})", "ideal"),
-          ":1:95: robots: only the bullet plant has one, this scenario's plant is ideal");
+          ":1:96: robots: only the bullet plant has one, this scenario's plant is ideal");
 }
 
 TEST_CASE("A scenario on the ideal plant has no world") {

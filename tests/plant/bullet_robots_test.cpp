@@ -133,6 +133,18 @@ TEST_CASE("A robot that stands on another presses on it with its weight") {
   CHECK(std::abs(above.base.position_m[2] - 0.3) < 1e-4);
 }
 
+TEST_CASE("A tower of three robots stands, whatever their order") {
+  const Robot low = box_at(3, {0, 0, 0.1}), top = box_at(1, {0.01, 0, 0.5}), middle = box_at(2, {0, 0.01, 0.3});
+  const std::array<WorldSite, 3> tower{
+      {{low.model, low.settings, 1}, {top.model, top.settings, 2}, {middle.model, middle.settings, 3}}};
+  BulletWorld world(tower);
+  run(world, 1000);
+  CHECK(world.robot(0).truth().robots_force_N[2] == doctest::Approx(-3 * g).epsilon(1e-3));
+  CHECK(world.robot(1).truth().robots_force_N[2] == doctest::Approx(1 * g).epsilon(1e-3));
+  CHECK(world.robot(2).truth().robots_force_N[2] == doctest::Approx(2 * g).epsilon(1e-3));
+  CHECK(std::abs(world.robot(1).truth().base.position_m[2] - 0.5) < 1e-4);
+}
+
 TEST_CASE("Either robot kicks the ball of the world, and only the one that kicks is told so") {
   for (const std::size_t kicks : {std::size_t{0}, std::size_t{1}}) {
     CAPTURE(kicks);
@@ -173,7 +185,7 @@ TEST_CASE("Robots that stand on one moving box of the world are both carried") {
   }
 }
 
-TEST_CASE("Two TULips stand side by side; one falls onto the other, and both feel it") {
+TEST_CASE("Two TULips stand side by side, one falls onto the other, and both feel it") {
   Pair pair(0.6);
   for (int i = 0; i < 1000; ++i) pair.tick();
   for (std::size_t i = 0; i < 2; ++i) {

@@ -71,7 +71,7 @@ struct SupplyFault {
 
 class FaultyPlant final : public OneRobotWorld {
  public:
-  // Keeps a reference to `world`. `seed` is the seed of the run. `robot` is the number of the robot that has the faults.
+  // Keeps a reference to `world`. `seed` is that of the run, `robot` the number of the robot that has the faults.
   FaultyPlant(World& world, std::uint64_t seed, std::size_t robot = 0) noexcept
       : world_(world), robot_(world.robot(robot)), random_(seed, "sensor faults") {}
 

@@ -9,21 +9,37 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
  public:
   using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
 
-  void internalSingleStepSimulation(btScalar dt_s) override {
-    begin(dt_s);
-    solve();
-    end(dt_s);
-  }
-
-  // What stepSimulation does before a step, and the step's part before the solver.
-  void begin_alone(btScalar dt_s) {
+  // begin, solve and end are stepSimulation and internalSingleStepSimulation of one step.
+  void begin(btScalar dt_s) {
     saveKinematicState(dt_s);
     applyGravity();
-    begin(dt_s);
+    for (const Driven& driven : driven_) driven.body->setLinearVelocity(driven.velocity_m_s);
+    // Rigid bodies alone: the multibody world's own versions would move the robot too, a second time.
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
+    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
+    getDispatchInfo().m_timeStep = dt_s;
+    performDiscreteCollisionDetection();
+    getSolverInfo().m_timeStep = dt_s;
+    if (!own_solver()) accelerate(dt_s);
+    getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
   }
 
-  void end_alone(btScalar dt_s) {
-    end(dt_s);
+  void solve() {
+    btPersistentManifold** manifolds = getDispatcher()->getInternalManifoldPointer();
+    const int manifold_count = getDispatcher()->getNumManifolds();
+    btMultiBodyConstraint** rows = m_multiBodyConstraints.size() > 0 ? &m_multiBodyConstraints[0] : nullptr;
+    m_multiBodyConstraintSolver->solveMultiBodyGroup(&m_collisionObjects[0], m_collisionObjects.size(), manifolds,
+                                                     manifold_count, nullptr, 0, rows, m_multiBodyConstraints.size(),
+                                                     getSolverInfo(), nullptr, getDispatcher());
+    if (own_solver()) return;
+    for (int i = 0; i < m_multiBodies.size(); ++i) m_multiBodies[i]->processDeltaVeeMultiDof2();
+  }
+
+  void end(btScalar dt_s) {
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
+    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
+    move(dt_s);
+    move_driven(dt_s);
     synchronizeMotionStates();
     clearForces();
   }
@@ -46,25 +62,6 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   }
 
  private:
-  void begin(btScalar dt_s) {
-    for (const Driven& driven : driven_) driven.body->setLinearVelocity(driven.velocity_m_s);
-    // Rigid bodies alone: the multibody world's own versions would move the robot too, a second time.
-    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
-    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
-    getDispatchInfo().m_timeStep = dt_s;
-    performDiscreteCollisionDetection();
-    getSolverInfo().m_timeStep = dt_s;
-    if (!own_solver()) accelerate(dt_s);
-    getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
-  }
-
-  void end(btScalar dt_s) {
-    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
-    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
-    move(dt_s);
-    move_driven(dt_s);
-  }
-
   // Which takes the free motion along with the contacts.
   bool own_solver() const { return tree_solver_ != nullptr && tree_solver_->covers(); }
 
@@ -78,17 +75,6 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
       m_multiBodies[i]->computeAccelerationsArticulatedBodyAlgorithmMultiDof(dt_s, m_scratch_r, m_scratch_v,
                                                                              m_scratch_m, false, false, false);
     }
-  }
-
-  void solve() {
-    btPersistentManifold** manifolds = getDispatcher()->getInternalManifoldPointer();
-    const int manifold_count = getDispatcher()->getNumManifolds();
-    btMultiBodyConstraint** rows = m_multiBodyConstraints.size() > 0 ? &m_multiBodyConstraints[0] : nullptr;
-    m_multiBodyConstraintSolver->solveMultiBodyGroup(&m_collisionObjects[0], m_collisionObjects.size(), manifolds,
-                                                     manifold_count, nullptr, 0, rows, m_multiBodyConstraints.size(),
-                                                     getSolverInfo(), nullptr, getDispatcher());
-    if (own_solver()) return;
-    for (int i = 0; i < m_multiBodies.size(); ++i) m_multiBodies[i]->processDeltaVeeMultiDof2();
   }
 
   void move(double dt_s) {
@@ -221,12 +207,16 @@ void ContactWorld::drive_ground(const btVector3& velocity_m_s) {
   world_->drive(ground_, velocity_m_s, false);
 }
 
-void ContactWorld::step(double dt_s) { world_->stepSimulation(dt_s, 0); }
+void ContactWorld::step(double dt_s) {
+  begin_step(dt_s);
+  world_->solve();
+  end_step(dt_s);
+}
 
 void ContactWorld::begin_step(double dt_s) {
   crossing_.clear();
   solved_crossing_.clear();
-  world_->begin_alone(dt_s);
+  world_->begin(dt_s);
 }
 
 TreeSolver::Group ContactWorld::group() {
@@ -237,7 +227,7 @@ TreeSolver::Group ContactWorld::group() {
       .info = &world_->getSolverInfo()};
 }
 
-void ContactWorld::end_step(double dt_s) { world_->end_alone(dt_s); }
+void ContactWorld::end_step(double dt_s) { world_->end(dt_s); }
 
 void ContactWorld::cross(btPersistentManifold& manifold, bool solved_here) {
   crossing_.push_back(&manifold);
