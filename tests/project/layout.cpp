@@ -22,6 +22,7 @@ const std::vector<Fence>& fences() {
       {"Lua", {"lua.h", "lauxlib.h", "lualib.h", "luajit.h", "lua.hpp", "luajit-2.1/"}, {"script/"}},
       {"Bullet", {"bt", "Bullet", "LinearMath/", "bullet/"}, {"plant/bullet/", "model/"}},
       {"KDL", {"kdl/"}, {"model/"}},
+      {"spdlog", {"spdlog/"}, {"engine/behavior_log.cpp"}},
       {"JSON", {"nlohmann/"}, {"config/", "telemetry/", "scenario/", "campaign/", "remote/", "app/"}},
   };
   return all;

@@ -216,6 +216,7 @@ TEST_CASE("the checker finds a library outside its fence") {
   CHECK(check_includes("engine/tick.cpp", "#include <BulletDynamics/Featherstone/btMultiBody.h>\n", abc).size() == 1);
   CHECK(check_includes("script/state.cpp", "#include <nlohmann/json.hpp>\n", abc).size() == 1);
   CHECK(check_includes("control/arm.cpp", "#include <kdl/tree.hpp>\n", abc).size() == 1);
+  CHECK(check_includes("engine/behavior_log.h", "#include <spdlog/logger.h>\n", abc).size() == 1);
 }
 
 TEST_CASE("the checker finds files and headers of no layer and paths that climb") {

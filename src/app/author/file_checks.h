@@ -13,8 +13,6 @@
 
 namespace kadans {
 
-// Chooses the files that `kadans check` checks.
-
 struct CheckedFile {
   std::filesystem::path file;
   bool found = false;  // found in a folder: a file there that is not ours is passed over

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "config/scenario/scenario_config.h"
+
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;
 }
