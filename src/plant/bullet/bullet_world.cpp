@@ -6,7 +6,7 @@
 
 #include "convert.h"
 #include "kadans/plant/modelled_drives.h"
-#include "plant/bullet/joint/joint_rows.h"
+#include "plant/bullet/joint/drives.h"
 #include "plant_settings_check.h"
 #include "sensors.h"
 
@@ -41,6 +41,7 @@ class BulletWorld::Inside {
         joint_names_(model.joint_names()),
         mask_(make_pair_mask(model, settings)),
         body_(model, settings),
+        drives_(model, settings, body_.multibody()),
         electronics_(settings.drives, model.joints.size()),
         sensors_(model, settings, seed),
         truth_(body_, model.joints.size()),
@@ -49,7 +50,7 @@ class BulletWorld::Inside {
     body_.place(settings_);
     body_.add_to(world_);
     objects_.add_to(world_);
-    add_drives(model);
+    drives_.add_to(world_);
     for (const FootSettings& foot : settings_.feet) {
       feet_.emplace_back();
       feet_.back().link = *model.find_link(foot.link);
@@ -58,33 +59,25 @@ class BulletWorld::Inside {
   }
 
   void write(const ActuationFrame& actuation) noexcept {
-    electronics_.write(actuation);
+    copy_used(actuation, asked_);
     for (std::size_t i = 0; i < drives_.size(); ++i) {
-      const bool usable = i < actuation.joint_count && is_finite(actuation.joints[i]);
-      drives_[i].ask(usable ? actuation.joints[i] : JointActuation{});
+      if (i >= actuation.joint_count || !is_finite(asked_.joints[i])) asked_.joints[i] = {};
     }
+    drives_.map(asked_);
+    electronics_.write(asked_);
+    for (std::size_t i = 0; i < drives_.size(); ++i) drives_.ask(i, asked_.joints[i]);
   }
 
   void step(std::int64_t dt_ns) {
     if (dt_ns <= 0) return;
     const double dt_s = static_cast<double>(dt_ns) * 1e-9;
-    btMultiBody& multibody = body_.multibody();
     electronics_.step(dt_ns);
-    for (std::size_t i = 0; i < drives_.size(); ++i) {
-      const int joint = static_cast<int>(i);
-      if (!electronics_.enabled(i)) drives_[i].ask({});
-      drives_[i].brake(electronics_.braked(i));
-      multibody.addJointTorque(joint,
-                               drives_[i].begin_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s));
-    }
+    drives_.begin_step(electronics_, dt_s);
     body_.load(settings_.world.payloads, time_s());
     objects_.begin_step(world_, time_s());
     world_.step(dt_s);
     check_finite();
-    for (std::size_t i = 0; i < drives_.size(); ++i) {
-      const int joint = static_cast<int>(i);
-      drives_[i].end_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s);
-    }
+    drives_.end_step(dt_s);
     time_ns_ += dt_ns;
     objects_.end_step(world_, time_s());
     read_feet(world_, body_, settings_.feet, dt_s, feet_);
@@ -106,7 +99,7 @@ class BulletWorld::Inside {
     for (int i = 0; i < 4; ++i) hash.add(multibody.getWorldToBaseRot()[i]);
     for (int i = 0; i < 6 + multibody.getNumDofs(); ++i) hash.add(multibody.getVelocityVector()[i]);
     for (std::size_t i = 0; i < drives_.size(); ++i) hash.add(multibody.getJointPos(static_cast<int>(i)));
-    for (const Drive& drive : drives_) drive.hash(hash);
+    drives_.hash(hash);
     electronics_.hash(hash);
     objects_.hash(hash);
     hash_contacts(hash);
@@ -120,20 +113,6 @@ class BulletWorld::Inside {
   const PlantTruth& truth() const noexcept { return truth_.truth(); }
 
  private:
-  void add_drives(const RobotModel& model) {
-    drives_.reserve(model.joints.size());
-    for (std::size_t i = 0; i < model.joints.size(); ++i) {
-      const Joint& joint = model.joints[i];
-      const bool limited = joint.type != JointType::continuous;
-      const double infinite = std::numeric_limits<double>::infinity();
-      rows_.push_back(std::make_unique<JointRows>(body_.multibody(), static_cast<int>(i),
-                                                  limited ? joint.lower_rad : -infinite,
-                                                  limited ? joint.upper_rad : infinite));
-      world_.add(*rows_.back());
-      drives_.emplace_back(settings_.drives[i], joint, *rows_.back(), settings_.position_rad[i]);
-    }
-  }
-
   double time_s() const { return static_cast<double>(time_ns_) * 1e-9; }
 
   void sample(double dt_s) {
@@ -191,9 +170,9 @@ class BulletWorld::Inside {
   std::vector<std::string> joint_names_;
   PairMask mask_;
   Body body_;
-  std::vector<std::unique_ptr<JointRows>> rows_;
-  std::vector<Drive> drives_;
+  Drives drives_;
   ModelledDrives electronics_;
+  ActuationFrame asked_;  // of the drives
   std::vector<FootLoad> feet_;
   Sensors sensors_;
   TruthReader truth_;
