@@ -140,7 +140,7 @@ FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actu
       raise(fault);
     }
     all |= found;
-    lost_ += joint.ladder.level() >= SafetyLevel::damp ? 1 : 0;
+    lost_ += ladder_level(i) >= SafetyLevel::damp ? 1 : 0;
   }
   return all;
 }
@@ -188,29 +188,47 @@ void Safety::go_down(FaultMask faults, double dt_s) noexcept {
   }
 }
 
+// What a limit cut: a fault each time that it begins.
+void Safety::raise_cut(const SafetyInput& in, std::size_t index, FaultMask cut, auto&& describe) noexcept {
+  JointGuard& joint = joints_[index];
+  joint.cut |= cut;
+  cut_ |= cut;
+  FaultMask fresh = joint.ladder.update(joint.cut, 0, settings_.reactions, &Reaction::joint) & cut;
+  for (; fresh != 0; fresh &= fresh - 1) {
+    Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(index), .tick = in.tick};
+    describe(fault);
+    raise(fault);
+  }
+}
+
+void Safety::cut_coupling(const SafetyInput& in, CouplingLimiter& coupling, ActuationFrame& actuation) noexcept {
+  JointGuard &first = joints_[coupling.joint(0)], &second = joints_[coupling.joint(1)];
+  first.driven = second.driven = first.driven || second.driven;  // each drive works for both
+  const FaultMask cut = coupling.limit(in.joints, actuation);
+  if (cut == 0) return;
+  first.last_Nm = actuation.joints[coupling.joint(0)].effort_Nm;
+  second.last_Nm = actuation.joints[coupling.joint(1)].effort_Nm;
+  if (first.gave_way || second.gave_way) return;  // damping is nobody's wish
+  raise_cut(in, coupling.cutting_joint(), cut, [&](Fault& fault) { coupling.describe(fault); });
+}
+
 void Safety::cut_joint(const SafetyInput& in, std::size_t index, JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
   actuation.effort_Nm *= fall_.share();
   const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), joint.authority, joint.last_Nm,
                                    change_s_};
-  joint.cut = joint.limiter.limit(limits, actuation);
-  if (joint.cut == 0) return;
-  cut_ |= joint.cut;
-  FaultMask fresh = joint.ladder.update(joint.cut, 0, settings_.reactions, &Reaction::joint);
-  for (; fresh != 0; fresh &= fresh - 1) {
-    Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(index), .tick = in.tick};
-    joint.limiter.describe(limits, fault);
-    raise(fault);
-  }
+  const FaultMask cut = joint.limiter.limit(limits, actuation);
+  if (cut != 0) raise_cut(in, index, cut, [&](Fault& fault) { joint.limiter.describe(limits, fault); });
 }
 
 // The usual case in a few comparisons: nothing is wrong with joint or robot, and what is asked is well within the
 // limits.
 bool Safety::passes(const SafetyInput& in, std::size_t index, const JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
-  const bool calm = joint.ladder.idle() && robot_.level() == SafetyLevel::normal && joint.finite &&
-                    joint.authority == 1 && joint.cut == 0 && !joint.gave_way && fall_.share() == 1 &&
-                    actuation.mode == ActuationMode::effort;
+  const JointGuard& partner = joints_[joint.partner];
+  const bool calm = joint.ladder.idle() && partner.ladder.idle() && partner.finite &&
+                    robot_.level() == SafetyLevel::normal && joint.finite && joint.authority == 1 && joint.cut == 0 &&
+                    !joint.gave_way && fall_.share() == 1 && actuation.mode == ActuationMode::effort;
   const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, change_s_};
   if (!calm || joint.limiter.passive() || !joint.limiter.free(limits, actuation.effort_Nm)) return false;
   joint.last_Nm = actuation.effort_Nm;
@@ -226,7 +244,8 @@ bool Safety::gives_way(std::size_t index, double dt_s, const JointActuation& act
   const SafetyLevel level = joint_level(index);
   // The drive makes the torque in its own modes: on the way down it cannot be softened.
   const bool by_drive = actuation.mode != ActuationMode::effort && actuation.mode != ActuationMode::off;
-  const bool must = level >= SafetyLevel::damp || !joint.finite || (by_drive && fall_.share() < 1);
+  const bool must =
+      level >= SafetyLevel::damp || !joint.finite || !joints_[joint.partner].finite || (by_drive && fall_.share() < 1);
   if (level >= SafetyLevel::damp) {
     joint.authority = 0;
   } else if (joint.authority < 1) {
@@ -283,6 +302,10 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
     limit_joint(in, i, dt_s, actuation.joints[i]);
     worst = std::max(worst, joint_level(i));
   }
+  for (CouplingLimiter& coupling : couplings_) {
+    cut_coupling(in, coupling, actuation);
+    worst = std::max(worst, joint_level(coupling.joint(0)));
+  }
   pending_ = 0;
   if (lift) {  // what is written in this tick is still what the latches allow
     const bool came_back = came_back_;
@@ -317,6 +340,15 @@ Safety::Safety(const SafetySettings& settings, const RobotModel& model)
     check_limits(settings_.joints[i], model.joints[i]);
     joints_[i].watch = JointWatch(settings_, settings_.joints[i]);
     joints_[i].limiter = JointLimiter(settings_, settings_.joints[i]);
+    joints_[i].partner = i;
+  }
+  for (const Transmission& transmission : model.transmissions) {
+    if (!transmission.coupled()) continue;
+    const std::size_t first = transmission.joints()[0], second = transmission.joints()[1];
+    require(first < joint_count_ && second < joint_count_, "a coupling of joints that the robot does not have");
+    joints_[first].partner = second;
+    joints_[second].partner = first;
+    couplings_.emplace_back(settings_, transmission);
   }
   feet_.fill(FootWatch(settings_));
   require(settings_.channels.size() <= max_channels, "at most " + std::to_string(max_channels) + " sensors");

@@ -4,8 +4,9 @@
 //
 // Watches find faults (joint_watch.h, body_watch.h); detection.h says how soon. Reactions say which rung follows,
 // ladders keep the rung until it may be left (ladder.h). An emergency stop also brings the robot down
-// (emergency_stop.h). What is asked of a joint that still works is cut to its limits (joint_limiter.h). An actuation
-// that is not finite is never written, whatever the configuration says.
+// (emergency_stop.h). What is asked of a joint that still works is cut to its limits (joint_limiter.h), and of coupled
+// joints to their drives' (coupling_limiter.h); coupled joints go down the ladder together, for each of their drives
+// moves both. An actuation that is not finite is never written, whatever the configuration says.
 //
 // A joint that comes back from damp or off, by itself or because faults were cleared, gets its torque back over
 // recover_s. came_back() says so in that tick: the control objects then start anew from the measured state, as at a
@@ -17,8 +18,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "body_watch.h"
+#include "coupling_limiter.h"
 #include "emergency_stop.h"
 #include "estimate/sensor_health.h"
 #include "joint_limiter.h"
@@ -80,7 +83,7 @@ class Safety {
   // The worse of the joint's own rung and the robot's; limited while its torque comes back.
   SafetyLevel joint_level(std::size_t joint) const noexcept {
     const SafetyLevel recovering = joints_[joint].authority < 1 ? SafetyLevel::limited : SafetyLevel::normal;
-    return std::max({joints_[joint].ladder.level(), robot_.level(), recovering});
+    return std::max({ladder_level(joint), robot_.level(), recovering});
   }
   double temperature_C(std::size_t joint) const noexcept { return joints_[joint].watch.thermal().temperature_C(); }
   FallWatch::Phase fall_phase() const noexcept { return fall_.phase(); }
@@ -91,15 +94,20 @@ class Safety {
     DriveWatch drive;
     JointLimiter limiter;
     Ladder ladder;
-    bool finite = true;     // what was asked for in this tick
-    FaultMask cut = 0;      // by the limiter, in the last tick
-    double authority = 1;   // share of the torque limit; grows after damp and off
-    bool gave_way = false;  // in the last tick it damped or was off, whatever was asked
-    double last_Nm = 0;     // written in the last tick
-    bool driven = false;    // in the last tick something but off was written
+    std::size_t partner = 0;  // the joint that it is coupled with, else itself
+    bool finite = true;       // what was asked for in this tick
+    FaultMask cut = 0;        // by the limiter, in the last tick
+    double authority = 1;     // share of the torque limit; grows after damp and off
+    bool gave_way = false;    // in the last tick it damped or was off, whatever was asked
+    double last_Nm = 0;       // written in the last tick
+    bool driven = false;      // in the last tick something but off was written
     std::uint32_t level_number = 0;
   };
 
+  // Of the joint and the one that it is coupled with.
+  SafetyLevel ladder_level(std::size_t joint) const noexcept {
+    return std::max(joints_[joint].ladder.level(), joints_[joints_[joint].partner].ladder.level());
+  }
   FaultMask watch_body(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_feet(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_channels(const SafetyInput& input, double dt_s) noexcept;
@@ -110,11 +118,14 @@ class Safety {
   bool passes(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept;
   bool gives_way(std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
   void limit_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
+  void cut_coupling(const SafetyInput& input, CouplingLimiter& coupling, ActuationFrame& actuation) noexcept;
+  void raise_cut(const SafetyInput& input, std::size_t joint, FaultMask cut, auto&& describe) noexcept;
   void cut_joint(const SafetyInput& input, std::size_t joint, JointActuation& actuation) noexcept;
 
   SafetySettings settings_;
   std::size_t joint_count_;
   std::array<JointGuard, max_joints> joints_{};
+  std::vector<CouplingLimiter> couplings_;
   std::array<FootWatch, max_feet> feet_{};
   std::array<Ladder, max_feet> foot_ladders_{};  // only to report each foot's faults once
   std::array<ChannelWatch, max_channels> channels_{};

@@ -107,6 +107,8 @@ TEST_CASE("Coupled drives have names for their settings, and by default give bot
   CHECK(config.plant.drives[roll].torque_max_Nm == (12 + 25) / 2.0);
   CHECK(config.plant.drives[yaw].velocity_max_rad_s == 2 * (6 + 6));
   CHECK(config.plant.drives[roll].rotor_inertia_kg_m2 == 0.02);  // "*" is all drives
+  CHECK(config.safety.joints[yaw].drive_effort_max_Nm == (12 + 25) / 4.0);
+  CHECK(config.safety.joints[yaw].drive_velocity_max_rad_s == 2 * (6 + 6));
   const RobotConfig named =
       read(replaced(text, "\"*_ankle_roll\": {", "\"aft\": { \"torque_max_Nm\": 5 }, \"*_ankle_roll\": {"));
   CHECK(named.plant.drives[roll].torque_max_Nm == 5);

@@ -72,7 +72,7 @@ Robot neck() {
   Robot robot = pendulum(1, 0, 0.05);
   Link head;
   head.name = "head";
-  head.inertia = {.mass_kg = 1, .xx = 0.01, .yy = 0.03, .zz = 0.02};
+  head.inertia = {.mass_kg = 1, .xx = 0.03, .yy = 0.03, .zz = 0.02};
   robot.model.links.push_back(head);
   robot.model.joints[0].name = "tilt";
   Joint pan;

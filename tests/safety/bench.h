@@ -46,7 +46,8 @@ struct Bench {
   double place_rad = 0;
   std::vector<Fault> faults{};
 
-  explicit Bench(const SafetySettings& with = settings()) : safety(std::make_unique<Safety>(with, robot())) {
+  explicit Bench(const SafetySettings& with = settings(), const RobotModel& model = robot())
+      : safety(std::make_unique<Safety>(with, model)) {
     joints.count = asked.joint_count = sensors.joint_count = health.joint_count = 2;
     sensors.foot_count = health.foot_count = 1;
     sensors.imu.acceleration_m_s2 = {0, 0, 9.81};

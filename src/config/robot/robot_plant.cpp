@@ -241,6 +241,13 @@ void RobotReader::plant(Fields& f) {
     config_.estimate.spring_Nm_per_rad[i] = config_.safety.joints[i].spring_Nm_per_rad =
         plant.drives[i].spring_Nm_per_rad;
   }
+  for (const Transmission& transmission : config_.model.transmissions) {
+    if (!transmission.coupled()) continue;
+    for (const std::size_t i : transmission.joints()) {
+      config_.safety.joints[i].drive_effort_max_Nm = plant.drives[i].torque_max_Nm;
+      config_.safety.joints[i].drive_velocity_max_rad_s = plant.drives[i].velocity_max_rad_s;
+    }
+  }
 }
 
 // By its name, which is a field in Lua and a part of a signal's name.

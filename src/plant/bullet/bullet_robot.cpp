@@ -1,7 +1,6 @@
 #include "bullet_robot.h"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "convert.h"
@@ -29,6 +28,7 @@ BulletRobot::BulletRobot(const WorldSite& site, const PlantSettings& settings, F
       objects_(objects),
       mask_(make_pair_mask(site.model, settings)),
       body_(site.model, settings),
+      drives_(site.model, settings, body_.multibody()),
       electronics_(settings.drives, site.model.joints.size()),
       sensors_(site.model, settings, site.seed),
       truth_(body_, site.model.joints.size()),
@@ -36,26 +36,12 @@ BulletRobot::BulletRobot(const WorldSite& site, const PlantSettings& settings, F
   body_.place(settings_);
   body_.add_to(world_);
   if (first) objects.add_to(world_);
-  add_drives(site.model);
+  drives_.add_to(world_);
   for (const FootSettings& foot : settings_.feet) {
     feet_.emplace_back();
     feet_.back().link = *site.model.find_link(foot.link);
   }
   read_state(0);
-}
-
-void BulletRobot::add_drives(const RobotModel& model) {
-  drives_.reserve(model.joints.size());
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    const Joint& joint = model.joints[i];
-    const bool limited = joint.type != JointType::continuous;
-    const double infinite = std::numeric_limits<double>::infinity();
-    rows_.push_back(std::make_unique<JointRows>(body_.multibody(), static_cast<int>(i),
-                                                limited ? joint.lower_rad : -infinite,
-                                                limited ? joint.upper_rad : infinite));
-    world_.add(*rows_.back());
-    drives_.emplace_back(settings_.drives[i], joint, *rows_.back(), settings_.position_rad[i]);
-  }
 }
 
 void BulletRobot::read(SensorFrame& sensors) noexcept {
@@ -64,11 +50,13 @@ void BulletRobot::read(SensorFrame& sensors) noexcept {
 }
 
 void BulletRobot::write(const ActuationFrame& actuation) noexcept {
-  electronics_.write(actuation);
+  copy_used(actuation, asked_);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const bool usable = i < actuation.joint_count && is_finite(actuation.joints[i]);
-    drives_[i].ask(usable ? actuation.joints[i] : JointActuation{});
+    if (i >= actuation.joint_count || !is_finite(asked_.joints[i])) asked_.joints[i] = {};
   }
+  drives_.map(asked_);
+  electronics_.write(asked_);
+  for (std::size_t i = 0; i < drives_.size(); ++i) drives_.ask(i, asked_.joints[i]);
 }
 
 void BulletRobot::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
@@ -80,26 +68,14 @@ void BulletRobot::push(std::size_t link, const Vec3& force_N, const Vec3& point_
 }
 
 void BulletRobot::begin_step(std::int64_t dt_ns) {
-  const double dt_s = static_cast<double>(dt_ns) * 1e-9;
-  btMultiBody& multibody = body_.multibody();
   electronics_.step(dt_ns);
-  for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const int joint = static_cast<int>(i);
-    if (!electronics_.enabled(i)) drives_[i].ask({});
-    drives_[i].brake(electronics_.braked(i));
-    multibody.addJointTorque(joint,
-                             drives_[i].begin_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s));
-  }
+  drives_.begin_step(electronics_, static_cast<double>(dt_ns) * 1e-9);
   body_.load(settings_.world.payloads, static_cast<double>(time_ns_) * 1e-9);
 }
 
 void BulletRobot::end_step(double dt_s) {
   check_finite();
-  const btMultiBody& multibody = body_.multibody();
-  for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const int joint = static_cast<int>(i);
-    drives_[i].end_step(multibody.getJointPos(joint), multibody.getJointVel(joint), dt_s);
-  }
+  drives_.end_step(dt_s);
 }
 
 void BulletRobot::sample(std::int64_t dt_ns) {
@@ -137,7 +113,7 @@ void BulletRobot::hash_body(StateHash& hash) const noexcept {
   for (int i = 0; i < 4; ++i) hash.add(multibody.getWorldToBaseRot()[i]);
   for (int i = 0; i < 6 + multibody.getNumDofs(); ++i) hash.add(multibody.getVelocityVector()[i]);
   for (std::size_t i = 0; i < drives_.size(); ++i) hash.add(multibody.getJointPos(static_cast<int>(i)));
-  for (const Drive& drive : drives_) drive.hash(hash);
+  drives_.hash(hash);
   electronics_.hash(hash);
 }
 

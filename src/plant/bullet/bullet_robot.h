@@ -1,12 +1,12 @@
 // One robot of a Bullet world: body, drives, electronics and sensors, in a contact world of its own.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "body.h"
 #include "kadans/plant/modelled_drives.h"
+#include "plant/bullet/joint/drives.h"
 #include "sensors.h"
 
 namespace kadans::bullet {
@@ -33,7 +33,6 @@ class BulletRobot final : public WorldRobot {
   void hash_sensors(StateHash& hash) const noexcept;  // carries the random streams' effect
 
  private:
-  void add_drives(const RobotModel& model);
   void read_state(double dt_s);
   void check_finite() const;
 
@@ -42,9 +41,9 @@ class BulletRobot final : public WorldRobot {
   const WorldObjects& objects_;
   PairMask mask_;
   Body body_;
-  std::vector<std::unique_ptr<JointRows>> rows_;
-  std::vector<Drive> drives_;
+  Drives drives_;
   ModelledDrives electronics_;
+  ActuationFrame asked_;  // of the drives
   std::vector<FootLoad> feet_;
   Sensors sensors_;
   TruthReader truth_;

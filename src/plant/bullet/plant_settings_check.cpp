@@ -44,6 +44,15 @@ void check_drive(const std::string& joint, const DriveSettings& drive) {
   }
 }
 
+void check_coupling(const std::vector<DriveSettings>& drives, const Transmission& transmission) {
+  for (const std::size_t i : transmission.joints()) {
+    if (i >= drives.size()) refuse("transmission of joint number", static_cast<double>(i), "one of the robot's");
+    const DriveSettings& d = drives[i];
+    const double springs = d.spring_Nm_per_rad + d.parallel_spring_Nm_per_rad + d.parallel_damping_Nms_per_rad;
+    if (transmission.coupled() && springs > 0) refuse("springs and dampers of a coupled drive", springs, "0");
+  }
+}
+
 void require_link(const RobotModel& model, const std::string& what, const std::string& link) {
   if (!model.find_link(link)) throw std::invalid_argument(what + ": the robot has no link '" + link + "'");
 }
@@ -172,6 +181,7 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
       refuse("position_rad of '" + name + "'", settings.position_rad[i], "finite");
     if (model.joints[i].mimic) throw std::invalid_argument("joint '" + name + "': mimic joints cannot be simulated");
   }
+  for (const Transmission& transmission : model.transmissions) check_coupling(settings.drives, transmission);
   for (const FootSettings& foot : settings.feet) require_link(model, "foot", foot.link);
   for (const SurfaceSettings& surface : settings.surfaces) {
     require_link(model, "surface", surface.link);

@@ -40,24 +40,24 @@ Sensors::Sensors(const RobotModel& model, const PlantSettings& settings, std::ui
   frame_.foot_count = static_cast<std::uint32_t>(feet_.size());
 }
 
-void Sensors::sample(std::int64_t time_ns, double dt_s, const std::vector<Drive>& drives, const btMultiBody& multibody,
+void Sensors::sample(std::int64_t time_ns, double dt_s, const Drives& drives, const btMultiBody& multibody,
                      const ImuInput& imu, const std::vector<FootLoad>& feet) {
   frame_.time_ns = time_ns;
   for (std::size_t i = 0; i < drives.size(); ++i) {
-    sample_joint(i, drives[i], multibody.getJointPos(static_cast<int>(i)));
+    sample_joint(i, drives.state(i), multibody.getJointPos(static_cast<int>(i)));
   }
+  drives.map(frame_);
   sample_imu(dt_s, imu);
   for (std::size_t i = 0; i < feet.size(); ++i) sample_foot(i, feet[i]);
   channels_.sample(time_ns);
   channels_.fill(frame_);
 }
 
-void Sensors::sample_joint(std::size_t index, const Drive& drive, double position_rad) {
+void Sensors::sample_joint(std::size_t index, const Drive::State& drive, double position_rad) {
   JointSample& sample = frame_.joints[index];
-  const double motor_rad = drive.elastic() ? drive.state().rotor_rad : position_rad;
   sample.position_rad = read_encoder(encoders_[index], joint_noise_[index], position_rad);
-  sample.motor_position_rad = read_encoder(encoders_[index], joint_noise_[index], motor_rad);
-  sample.motor_effort_Nm = drive.state().motor_torque_Nm;
+  sample.motor_position_rad = read_encoder(encoders_[index], joint_noise_[index], drive.rotor_rad);
+  sample.motor_effort_Nm = drive.motor_torque_Nm;
   ++sample.sequence;
 }
 

@@ -33,12 +33,12 @@ class Sensors {
     btMatrix3x3 base_to_world;
   };
   // Before the first step dt_s is 0, and the IMU counts as at rest.
-  void sample(std::int64_t time_ns, double dt_s, const std::vector<Drive>& drives, const btMultiBody& multibody,
+  void sample(std::int64_t time_ns, double dt_s, const Drives& drives, const btMultiBody& multibody,
               const ImuInput& imu, const std::vector<FootLoad>& feet);
   const SensorFrame& frame() const noexcept { return frame_; }
 
  private:
-  void sample_joint(std::size_t index, const Drive& drive, double position_rad);
+  void sample_joint(std::size_t index, const Drive::State& drive, double position_rad);
   void sample_imu(double dt_s, const ImuInput& imu);
   void sample_foot(std::size_t index, const FootLoad& load);
 

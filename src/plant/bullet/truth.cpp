@@ -31,7 +31,7 @@ void TruthReader::read_com() {
   truth_.com_velocity_m_s = from_bullet(momentum / mass_kg);
 }
 
-void TruthReader::read(const std::vector<Drive>& drives, const std::vector<FootLoad>& feet) {
+void TruthReader::read(const Drives& drives, const std::vector<FootLoad>& feet) {
   const btMultiBody& multibody = body_->multibody();
   truth_.base = from_bullet(body_->link_frame(0));
   truth_.base_velocity_m_s = from_bullet(base_point_velocity_m_s(btVector3(0, 0, 0)));
@@ -39,9 +39,9 @@ void TruthReader::read(const std::vector<Drive>& drives, const std::vector<FootL
   for (std::size_t i = 0; i < drives.size(); ++i) {
     truth_.position_rad[i] = multibody.getJointPos(static_cast<int>(i));
     truth_.velocity_rad_s[i] = multibody.getJointVel(static_cast<int>(i));
-    truth_.drive_torque_Nm[i] = drives[i].state().joint_torque_Nm;
-    truth_.motor_torque_Nm[i] = drives[i].state().motor_torque_Nm;
-    truth_.motor_torque_max_Nm[i] = drives[i].state().motor_torque_max_Nm;
+    truth_.drive_torque_Nm[i] = drives.joint_torque_Nm(i);
+    truth_.motor_torque_Nm[i] = drives.state(i).motor_torque_Nm;
+    truth_.motor_torque_max_Nm[i] = drives.state(i).motor_torque_max_Nm;
   }
   truth_.foot_count = static_cast<std::uint32_t>(feet.size());
   for (std::size_t i = 0; i < feet.size(); ++i) {

@@ -5,7 +5,7 @@
 
 #include "body.h"
 #include "kadans/plant/world.h"
-#include "plant/bullet/joint/drive.h"
+#include "plant/bullet/joint/drives.h"
 #include "world_objects.h"
 
 namespace kadans::bullet {
@@ -21,7 +21,7 @@ class TruthReader {
  public:
   TruthReader(const Body& body, std::size_t joints);
 
-  void read(const std::vector<Drive>& drives, const std::vector<FootLoad>& feet);
+  void read(const Drives& drives, const std::vector<FootLoad>& feet);
   // After a step of dt_s, or before the first with 0.
   void read_world(const ContactWorld& world, const WorldObjects& objects, double dt_s);
   const PlantTruth& truth() const noexcept { return truth_; }

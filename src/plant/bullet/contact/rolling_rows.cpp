@@ -15,7 +15,7 @@ void RollingRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMulti
     internalSetAppliedImpulse(axis, 0);  // starts from nothing: rolling and lying still are far apart
     if (!(limit_Nms_ > 0)) continue;
     double response = 0;
-    btMultiBodySolverConstraint row = coordinate_row(*m_bodyA, -1, axis, data, response);
+    btMultiBodySolverConstraint row = coordinate_row(*m_bodyA, -1, {.joint = axis}, data, response);
     row.m_jacDiagABInv = 1 / response;
     row.m_rhs = -m_bodyA->getVelocityVector()[axis] / response;
     row.m_cfm = 0;

@@ -3,11 +3,13 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>
 
+#include "plant/bullet/solver/joint_law.h"
+
 namespace kadans::bullet {
 
-// `coordinate`: 0..5 of the base, then those of the joints. `link`: the link that the coordinate belongs to, -1 for the
-// base. `response`: the change of the coordinate's velocity by a unit impulse along it.
-btMultiBodySolverConstraint coordinate_row(btMultiBody& body, int link, int coordinate, btMultiBodyJacobianData& data,
-                                           double& response);
+// The coordinate counts 0..5 for the base, then the joints. `link`: the link that it belongs to, -1 for the base.
+// `response`: the change of the coordinate's velocity by a unit impulse along it.
+btMultiBodySolverConstraint coordinate_row(btMultiBody& body, int link, const Coordinate& coordinate,
+                                           btMultiBodyJacobianData& data, double& response);
 
 }  // namespace kadans::bullet

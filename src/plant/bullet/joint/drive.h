@@ -31,7 +31,7 @@ struct TorqueLaw {
 class Drive {
  public:
   struct State {
-    double rotor_rad = 0, rotor_velocity_rad_s = 0;  // of a series elastic drive
+    double rotor_rad = 0, rotor_velocity_rad_s = 0;  // of a rigid drive those of its coordinate
     double motor_torque_Nm = 0;                      // electrical: before rotor inertia and friction
     double motor_torque_max_Nm = 0;                  // the most that it could give at its speed, in that direction
     double joint_torque_Nm = 0;                      // what the drive put on the joint in the last step

@@ -16,8 +16,9 @@ constexpr double limit_margin_rad = 0.05;  // nearer than this, or than a few st
 
 }  // namespace
 
-JointRows::JointRows(btMultiBody& body, int link, double lower_rad, double upper_rad)
-    : btMultiBodyConstraint(&body, nullptr, link, -1, 4, false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR),
+JointRows::JointRows(btMultiBody& body, const Coordinate& coordinate, double lower_rad, double upper_rad)
+    : btMultiBodyConstraint(&body, nullptr, coordinate.joint, -1, 4, false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR),
+      coordinate_(coordinate),
       lower_rad_(lower_rad),
       upper_rad_(upper_rad) {
   allocateJacobiansMultiDof();
@@ -65,14 +66,19 @@ void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBo
   double response = 0;
   btMultiBodySolverConstraint row;
   bool made = false;
-  const int coordinate = 6 + m_bodyA->getLink(m_linkA).m_dofOffset;
-  const double velocity = m_bodyA->getVelocityVector()[coordinate];
+  Coordinate along = coordinate_;
+  along.joint = 6 + m_bodyA->getLink(m_linkA).m_dofOffset;
+  double velocity = along.share * m_bodyA->getVelocityVector()[along.joint];
+  if (along.carrier >= 0) {
+    along.carrier = 6 + m_bodyA->getLink(along.carrier).m_dofOffset;
+    velocity += along.carrier_share * m_bodyA->getVelocityVector()[along.carrier];
+  }
   for (const Kind kind : {linear, servo, friction, limit}) {
     if (!active_[kind]) {
       internalSetAppliedImpulse(kind, 0);
       continue;
     }
-    if (!made) row = coordinate_row(*m_bodyA, m_linkA, coordinate, data, response);
+    if (!made) row = coordinate_row(*m_bodyA, m_linkA, along, data, response);
     made = true;
     const JointLaw& law = laws_[kind];
     if (law.stiff) {

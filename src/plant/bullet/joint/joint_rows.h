@@ -1,5 +1,6 @@
-// What acts on one joint and must be implicit or one-sided, so that the solver has to do it. Bullet's core has no
-// armature, no joint damping and no usable joint limit.
+// What acts on one joint, or on two joints along the coordinate of a drive that moves both, and must be implicit or
+// one-sided, so that the solver has to do it. Bullet's core has no armature, no joint damping and no usable joint
+// limit.
 //
 // A row is a law for the impulse p on the joint over a step, as a function of the joint velocity v at the step's end:
 //     p = clamp(a - b v, lower, upper)
@@ -35,7 +36,7 @@ class JointRows final : public btMultiBodyConstraint {
  public:
   enum Kind : std::uint8_t { linear, servo, friction, limit };
 
-  JointRows(btMultiBody& body, int link, double lower_rad, double upper_rad);
+  JointRows(btMultiBody& body, const Coordinate& coordinate, double lower_rad, double upper_rad);
 
   // Each holds for the next step only; call clear() first.
   void clear() { active_.fill(false); }
@@ -46,7 +47,7 @@ class JointRows final : public btMultiBodyConstraint {
   // The laws of this step, for a solver of our own. begin_step decides about the joint's limit.
   void begin_step(double dt_s) { activate_limit(dt_s); }
   btMultiBody& body() { return *m_bodyA; }
-  int link() const { return m_linkA; }
+  const Coordinate& coordinate() const { return coordinate_; }  // of links
   bool active(Kind kind) const { return active_[kind]; }
   const JointLaw& law(Kind kind) const { return laws_[kind]; }
   double last_impulse(Kind kind) const { return impulses_at(kind); }
@@ -74,7 +75,8 @@ class JointRows final : public btMultiBodyConstraint {
   double below_upper_rad() const { return upper_rad_ - m_bodyA->getJointPos(m_linkA); }
   void activate_limit(double dt_s);
 
-  double lower_rad_, upper_rad_;
+  Coordinate coordinate_;
+  double lower_rad_, upper_rad_;  // infinite for the coordinate of two joints
   std::array<bool, 4> active_{};
   std::array<JointLaw, 4> laws_{};
   bool servo_at_limit_ = false;

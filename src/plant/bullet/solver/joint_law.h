@@ -1,8 +1,15 @@
-// What acts on one joint in a step: the impulse p as a function of the joint's velocity v at the step's end
+// What acts along one coordinate in a step: the impulse p as a function of its velocity v at the step's end
 // (joint_rows.h).
 #pragma once
 
 namespace kadans::bullet {
+
+// A joint's own coordinate q, or that of a drive that moves two joints: share q + carrier_share q_carrier.
+struct Coordinate {
+  int joint = 0;     // of links in Bullet, of degrees of freedom in a Tree
+  int carrier = -1;  // a joint that carries this one; -1: the coordinate is the joint's own
+  double share = 1, carrier_share = 0;
+};
 
 struct JointLaw {
   double at_rest = 0, slope = 0;  // p = clamp(at_rest - slope v, lower, upper); or, when it is stiff,

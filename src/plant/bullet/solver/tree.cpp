@@ -109,9 +109,17 @@ void Tree::fill_base_rows() {
   }
 }
 
-void Tree::add_implicit(int dof, btScalar at_rest, btScalar slope) {
-  factor_.row(dof)[shape_.path(dof).length - 1] += slope;
-  z_[static_cast<std::size_t>(dof)] += at_rest - slope * velocity(dof);
+void Tree::add_implicit(const Coordinate& along, btScalar at_rest, btScalar slope) {
+  const int last = shape_.path(along.joint).length - 1;
+  const btScalar impulse = at_rest - slope * velocity(along);
+  btScalar* const row = factor_.row(along.joint);
+  row[last] += slope * along.share * along.share;
+  z_[static_cast<std::size_t>(along.joint)] += along.share * impulse;
+  if (along.carrier < 0) return;
+  const int carrier = shape_.path(along.carrier).length - 1;  // there it stands on the joint's path, too
+  row[carrier] += slope * along.share * along.carrier_share;
+  factor_.row(along.carrier)[carrier] += slope * along.carrier_share * along.carrier_share;
+  z_[static_cast<std::size_t>(along.carrier)] += along.carrier_share * impulse;
 }
 
 void Tree::factorise() {
@@ -147,11 +155,12 @@ void Tree::response(int link, const std::array<Wrench, 3>& wrenches, std::array<
   factor_.first_half(path.dofs[path.length - 1], y);
 }
 
-void Tree::response(int dof, btScalar* y) const {
-  const int last = shape_.path(dof).length - 1;
+void Tree::response(const Coordinate& along, btScalar* y) const {
+  const int last = shape_.path(along.joint).length - 1;
   for (int p = 0; p < last; ++p) y[p] = 0;
-  y[last] = 1;
-  factor_.first_half(dof, y);
+  y[last] = along.share;
+  if (along.carrier >= 0) y[shape_.path(along.carrier).length - 1] = along.carrier_share;
+  factor_.first_half(along.joint, y);
 }
 
 TreeFactor::TreeFactor(const TreeShape& shape)

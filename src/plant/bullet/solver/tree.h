@@ -6,8 +6,9 @@
 // M is the joint-space inertia by the composite rigid body method (RBDA table 6.2). tau are the joints' torques. h are
 // the forces of gravity, pushes, centrifugal and Coriolis terms, by a recursive Newton-Euler pass with zero
 // acceleration (RBDA table 5.1). a - B u_new are the implicit laws of the joints (damping, rotor inertia, springs,
-// drives; joint_rows.h): B is diagonal and is simply added to M. J^T p are the impulses of contacts and other rows.
-// With M + B = L^T D L and G from tree_factor.h, the unknown is z = G (M + B) (u_new - u): it begins as G (dt (tau - h)
+// drives; joint_rows.h): B is diagonal, but where a drive moves two joints, and is simply added to M. J^T p are the
+// impulses of contacts and other rows. With M + B = L^T D L and G from tree_factor.h, the unknown is z = G (M + B)
+// (u_new - u): it begins as G (dt (tau - h)
 // + a - B u), each row adds y p, and u_new = u + G^T z.
 //
 // Calls in a step: begin_step, add_implicit for each joint with implicit laws, factorise, rows, accelerate, end_step.
@@ -16,6 +17,7 @@
 #include <array>
 #include <vector>
 
+#include "joint_law.h"
 #include "spatial.h"
 #include "tree_factor.h"
 
@@ -31,20 +33,28 @@ class Tree {
   const TreeShape& shape() const { return shape_; }
 
   void begin_step(btScalar dt_s);
-  // An impulse at_rest - slope * velocity_new on the joint of this degree of freedom.
-  void add_implicit(int dof, btScalar at_rest, btScalar slope);
+  // An impulse at_rest - slope * velocity_new along a coordinate of degrees of freedom.
+  void add_implicit(const Coordinate& along, btScalar at_rest, btScalar slope);
   void factorise();
   void accelerate();  // after the last row; from here on new_velocity() is known
-  btScalar new_velocity(int dof) const { return velocity(dof) + z_[static_cast<std::size_t>(dof)]; }
+  btScalar new_velocity(const Coordinate& along) const {
+    const auto one = [&](int dof) { return velocity(dof) + z_[static_cast<std::size_t>(dof)]; };
+    return along.carrier < 0 ? one(along.joint)
+                             : along.share * one(along.joint) + along.carrier_share * one(along.carrier);
+  }
   void end_step();  // gives the new velocities to the body
 
   // How fast a point of the link on this wrench's line moves along the line, at the beginning of the step.
   btScalar velocity_along(int link, const Wrench& wrench) const { return dot(state(link).velocity, wrench); }
   btScalar velocity(int dof) const { return body_->getVelocityVector()[dof]; }
+  btScalar velocity(const Coordinate& along) const {
+    return along.carrier < 0 ? velocity(along.joint)
+                             : along.share * velocity(along.joint) + along.carrier_share * velocity(along.carrier);
+  }
   // y = G J^T along the link's path, J of three wrenches on the link; a fourth column is 0.
   void response(int link, const std::array<Wrench, 3>& wrenches, std::array<btScalar, 4>* y) const;
-  // The same for an impulse on a degree of freedom, along its path.
-  void response(int dof, btScalar* y) const;
+  // The same for an impulse along a coordinate, on the path of its joint.
+  void response(const Coordinate& along, btScalar* y) const;
 
   btScalar* z() { return z_.data(); }
   const btVector3& origin_m() const { return origin_m_; }

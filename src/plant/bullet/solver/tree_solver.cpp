@@ -41,7 +41,10 @@ void TreeSolver::add(JointRows& rows) {
     covers_ = false;
     return;
   }
-  joints_.push_back({&rows, tree, tree->shape().dof(rows.link())});
+  Coordinate along = rows.coordinate();
+  along.joint = tree->shape().dof(along.joint);
+  if (along.carrier >= 0) along.carrier = tree->shape().dof(along.carrier);
+  joints_.push_back({&rows, tree, along});
   joint_rows_.reserve(3 * joints_.size() + 3 * rollings_.size());
 }
 
@@ -114,18 +117,18 @@ void TreeSolver::add_linear_laws(Joint& joint, bool servo_rows) {
   const JointRows& rows = *joint.rows;
   if (rows.active(JointRows::linear)) {
     const JointLaw& law = rows.law(JointRows::linear);
-    joint.tree->add_implicit(joint.dof, law.at_rest, law.slope);
+    joint.tree->add_implicit(joint.along, law.at_rest, law.slope);
   }
   const JointLaw& servo = rows.law(JointRows::servo);
   joint.servo_is_linear = rows.active(JointRows::servo) && !servo_rows && !rows.servo_at_limit();
-  if (joint.servo_is_linear) joint.tree->add_implicit(joint.dof, servo.at_rest, servo.slope);
+  if (joint.servo_is_linear) joint.tree->add_implicit(joint.along, servo.at_rest, servo.slope);
 }
 
 void TreeSolver::add_joint_rows(Joint& joint) {
   joint.first_row = joint_rows_.size();
   for (const auto kind : {JointRows::servo, JointRows::friction, JointRows::limit}) {
     if (!joint.rows->active(kind) || (kind == JointRows::servo && joint.servo_is_linear)) continue;
-    joint_rows_.emplace_back(*joint.tree, joint.dof, joint.rows->law(kind), joint.rows->last_impulse(kind), memory_);
+    joint_rows_.emplace_back(*joint.tree, joint.along, joint.rows->law(kind), joint.rows->last_impulse(kind), memory_);
   }
 }
 
@@ -134,8 +137,8 @@ void TreeSolver::add_rolling_rows() {
     const btScalar limit = rolling.rows->limit_Nms();
     if (!(limit > 0)) continue;
     for (int axis = 0; axis < 3; ++axis) {
-      joint_rows_.emplace_back(*rolling.tree, axis, JointLaw{.lower = -limit, .upper = limit, .stiff = true}, 0.0,
-                               memory_);
+      joint_rows_.emplace_back(*rolling.tree, Coordinate{.joint = axis},
+                               JointLaw{.lower = -limit, .upper = limit, .stiff = true}, 0.0, memory_);
     }
   }
 }
@@ -170,7 +173,7 @@ bool TreeSolver::servo_beyond_limit() const {
   return std::any_of(joints_.begin(), joints_.end(), [](const Joint& joint) {
     if (!joint.servo_is_linear) return false;
     const JointLaw& servo = joint.rows->law(JointRows::servo);
-    const btScalar impulse = servo.at_rest - servo.slope * joint.tree->new_velocity(joint.dof);
+    const btScalar impulse = servo.at_rest - servo.slope * joint.tree->new_velocity(joint.along);
     return impulse < servo.lower || impulse > servo.upper;
   });
 }
@@ -183,7 +186,7 @@ void TreeSolver::finish() {
 
 void TreeSolver::finish_joint(Joint& joint) {
   JointRows& rows = *joint.rows;
-  const btScalar velocity = joint.tree->new_velocity(joint.dof);
+  const btScalar velocity = joint.tree->new_velocity(joint.along);
   std::size_t row = joint.first_row;
   for (const auto kind : {JointRows::linear, JointRows::servo, JointRows::friction, JointRows::limit}) {
     const JointLaw& law = rows.law(kind);
@@ -197,18 +200,18 @@ void TreeSolver::finish_joint(Joint& joint) {
   rows.set_servo_at_limit(limited);
 }
 
-JointRow::JointRow(Tree& tree, int dof, const JointLaw& law, btScalar impulse, RowMemory& memory)
+JointRow::JointRow(Tree& tree, const Coordinate& along, const JointLaw& law, btScalar impulse, RowMemory& memory)
     : tree_(&tree),
-      path_(tree.shape().path(dof)),
+      path_(tree.shape().path(along.joint)),
       y_(memory.take(static_cast<std::size_t>(path_.length))),
       lower_(law.lower),
       upper_(law.upper) {
-  tree.response(dof, y_);
+  tree.response(along, y_);
   for (int p = 0; p < path_.length; ++p) response_ += y_[p] * y_[p];
   if (!(response_ > 0)) return;
   gain_ = law.stiff ? 1 / response_ : law.slope / (1 + law.slope * response_);
   leak_ = law.stiff ? 0 : 1 / (1 + law.slope * response_);
-  offset_ = (law.stiff ? law.wanted_rad_s * gain_ : law.at_rest * leak_) - gain_ * tree.velocity(dof);
+  offset_ = (law.stiff ? law.wanted_rad_s * gain_ : law.at_rest * leak_) - gain_ * tree.velocity(along);
   apply(std::clamp(impulse, lower_, upper_));
 }
 

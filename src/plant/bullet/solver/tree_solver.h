@@ -31,7 +31,8 @@
 
 namespace kadans::bullet {
 
-// A law of one joint that is not linear, or one of a free body's axes: a row of one number in the solver's iteration.
+// A law of one joint or coupled drive that is not linear, or one of a free body's axes: a row of one number in the
+// solver's iteration.
 //
 // The law is that of joint_rows.h: p = clamp(a - b v, lower, upper), or v = wanted within the limits of p when it is
 // stiff. With y of the degree of freedom (tree_factor.h) and d = y . y, an iteration sets p so that the law is
@@ -39,7 +40,7 @@ namespace kadans::bullet {
 class JointRow {
  public:
   // Starts from `impulse`. The memory lives as long as the row.
-  JointRow(Tree& tree, int dof, const JointLaw& law, btScalar impulse, RowMemory& memory);
+  JointRow(Tree& tree, const Coordinate& along, const JointLaw& law, btScalar impulse, RowMemory& memory);
 
   // Returns how much it changed its velocity.
   btScalar iterate();
@@ -97,7 +98,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   struct Joint {
     JointRows* rows;
     Tree* tree;
-    int dof;
+    Coordinate along;             // of degrees of freedom
     std::size_t first_row = 0;    // of this step, in joint_rows_; in the order of the kinds
     bool servo_is_linear = true;  // in this step
   };

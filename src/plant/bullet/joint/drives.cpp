@@ -1,0 +1,136 @@
+#include "drives.h"
+
+#include <limits>
+#include <stdexcept>
+
+#include "plant/bullet/contact/contact_world.h"
+
+namespace kadans::bullet {
+namespace {
+
+// Replaces the two values of coupled joints by what `map` makes of them.
+template <typename Values, typename Map>
+void map_pair(const Transmission& transmission, Values& values, Map&& map) {
+  double &first = values[transmission.joints()[0]], &second = values[transmission.joints()[1]];
+  const Transmission::Pair mapped = map(Transmission::Pair{first, second});
+  first = mapped[0];
+  second = mapped[1];
+}
+
+}  // namespace
+
+Drives::Drives(const RobotModel& model, const PlantSettings& settings, btMultiBody& body) : body_(&body) {
+  const std::size_t joints = model.joints.size();
+  for (std::vector<double>* each : {&position_rad_, &velocity_rad_s_, &torque_Nm_, &joint_torque_Nm_})
+    each->resize(joints);
+  for (std::size_t i = 0; i < joints; ++i) {
+    JointRows& rows = add_rows({.joint = static_cast<int>(i)}, model.joints[i]);
+    drives_.emplace_back(settings.drives[i], model.joints[i], rows, settings.position_rad[i]);
+  }
+  for (const Transmission& transmission : model.transmissions) {
+    if (transmission.coupled()) add_coupling(model, settings, transmission);
+  }
+}
+
+JointRows& Drives::add_rows(const Coordinate& along, const Joint& joint) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const bool limited = joint.type != JointType::continuous;
+  rows_.push_back(std::make_unique<JointRows>(*body_, along, limited ? joint.lower_rad : -infinite,
+                                              limited ? joint.upper_rad : infinite));
+  return *rows_.back();
+}
+
+void Drives::add_coupling(const RobotModel& model, const PlantSettings& settings, const Transmission& transmission) {
+  const std::size_t first = transmission.joints()[0], second = transmission.joints()[1];
+  if (!model.on_one_path(first, second)) {
+    throw std::invalid_argument("joints '" + model.joints[first].name + "' and '" + model.joints[second].name +
+                                "' are coupled, but none of them carries the other");
+  }
+  const std::vector<double>& start_rad = settings.position_rad;
+  const auto own = [&](std::size_t joint) { return Drive({}, model.joints[joint], *rows_[joint], start_rad[joint]); };
+  couplings_.push_back({transmission, {own(first), own(second)}});
+  const Transmission::Pair drive_rad = transmission.drive_position_rad({start_rad[first], start_rad[second]});
+  const std::size_t carried = first < second ? 1 : 0, carrier = 1 - carried;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::size_t slot = transmission.joints()[i];
+    const Coordinate along{.joint = static_cast<int>(transmission.joints()[carried]),
+                           .carrier = static_cast<int>(transmission.joints()[carrier]),
+                           .share = transmission.drive_per_joint(i, carried),
+                           .carrier_share = transmission.drive_per_joint(i, carrier)};
+    const Joint free{.type = JointType::continuous};
+    drives_[slot] = Drive(settings.drives[slot], free, add_rows(along, free), drive_rad[i]);
+  }
+}
+
+void Drives::add_to(ContactWorld& world) {
+  for (auto& rows : rows_) world.add(*rows);
+}
+
+void Drives::map(ActuationFrame& frame) const noexcept {
+  for (const Coupling& coupling : couplings_) coupling.transmission.to_drives(frame);
+}
+
+void Drives::map(SensorFrame& frame) const noexcept {
+  for (const auto& [transmission, own] : couplings_) {
+    JointSample &first = frame.joints[transmission.joints()[0]], &second = frame.joints[transmission.joints()[1]];
+    const auto position = transmission.joint_position_rad({first.motor_position_rad, second.motor_position_rad});
+    const auto effort = transmission.joint_effort_Nm({first.motor_effort_Nm, second.motor_effort_Nm});
+    first.motor_position_rad = position[0];
+    second.motor_position_rad = position[1];
+    first.motor_effort_Nm = effort[0];
+    second.motor_effort_Nm = effort[1];
+  }
+}
+
+void Drives::read_motion() {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    position_rad_[i] = body_->getJointPos(static_cast<int>(i));
+    velocity_rad_s_[i] = body_->getJointVel(static_cast<int>(i));
+  }
+  for (const auto& [t, own] : couplings_) {
+    map_pair(t, position_rad_, [&](const auto& joints) { return t.drive_position_rad(joints); });
+    map_pair(t, velocity_rad_s_, [&](const auto& joints) { return t.drive_velocity_rad_s(joints); });
+  }
+}
+
+void Drives::begin_step(const ModelledDrives& electronics, double dt_s) {
+  read_motion();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (!electronics.enabled(i)) drives_[i].ask({});
+    drives_[i].brake(electronics.braked(i));
+    torque_Nm_[i] = drives_[i].begin_step(position_rad_[i], velocity_rad_s_[i], dt_s);
+  }
+  for (auto& [t, own] : couplings_) {
+    map_pair(t, torque_Nm_, [&](const auto& drives) { return t.joint_effort_Nm(drives); });
+    for (std::size_t i = 0; i < 2; ++i) {
+      const int joint = static_cast<int>(t.joints()[i]);
+      own[i].begin_step(body_->getJointPos(joint), body_->getJointVel(joint), dt_s);
+    }
+  }
+  for (std::size_t i = 0; i < drives_.size(); ++i) body_->addJointTorque(static_cast<int>(i), torque_Nm_[i]);
+}
+
+void Drives::end_step(double dt_s) {
+  read_motion();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    drives_[i].end_step(position_rad_[i], velocity_rad_s_[i], dt_s);
+    joint_torque_Nm_[i] = drives_[i].state().joint_torque_Nm;
+  }
+  for (auto& [t, own] : couplings_) {
+    map_pair(t, joint_torque_Nm_, [&](const auto& drives) { return t.joint_effort_Nm(drives); });
+    for (std::size_t i = 0; i < 2; ++i) {
+      const int joint = static_cast<int>(t.joints()[i]);
+      own[i].end_step(body_->getJointPos(joint), body_->getJointVel(joint), dt_s);
+      joint_torque_Nm_[t.joints()[i]] += own[i].state().joint_torque_Nm;
+    }
+  }
+}
+
+void Drives::hash(StateHash& hash) const noexcept {
+  for (const Drive& drive : drives_) drive.hash(hash);
+  for (const Coupling& coupling : couplings_) {
+    for (const Drive& own : coupling.own) own.hash(hash);
+  }
+}
+
+}  // namespace kadans::bullet
