@@ -8,7 +8,7 @@
 // One owner, the control thread; nothing here allocates or throws after the construction.
 #pragma once
 
-#include "fault_mask.h"
+#include "ladder.h"
 #include "kadans/model/transmission.h"
 #include "settings.h"
 

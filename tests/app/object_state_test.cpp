@@ -13,7 +13,7 @@
 #include "control/joint/trajectory_list.h"
 #include "control/leg_robot.h"
 #include "kadans/testing/allocation_count.h"
-#include "shipped_types.h"
+#include "assembly.h"
 
 using namespace kadans;
 
