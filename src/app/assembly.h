@@ -24,6 +24,8 @@
 
 namespace kadans {
 
+void add_shipped_types(ControlObjectTypes& types);
+
 // A robot as its files describe it, and the known types of control objects.
 struct Robot {
   ControlObjectTypes types;  // shipped types, types registered by this program, types of the robot's plug-ins
