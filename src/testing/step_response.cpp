@@ -11,7 +11,7 @@
 namespace kadans::testing {
 namespace {
 
-constexpr double never = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_reached = std::numeric_limits<double>::quiet_NaN();
 constexpr double settled_share = 0.02;
 
 // When the share of the way first reaches `level`, between ticks by a straight line.
@@ -22,14 +22,14 @@ double crossing_s(const StepResponse& r, double level) {
     const double before = direction * (r.values[i - 1] - threshold), after = direction * (r.values[i] - threshold);
     if (after >= 0) return r.dt_s * (static_cast<double>(i) - (after > before ? after / (after - before) : 0));
   }
-  return never;
+  return not_reached;
 }
 
 double settling_s(const StepResponse& r) {
   const double band = settled_share * std::abs(r.to - r.from);
   std::size_t settled = r.values.size();
   while (settled > 0 && std::abs(r.values[settled - 1] - r.to) <= band) --settled;
-  return settled == r.values.size() ? never : r.dt_s * static_cast<double>(settled);
+  return settled == r.values.size() ? not_reached : r.dt_s * static_cast<double>(settled);
 }
 
 double mean_of_last_tenth(std::span<const double> values) {
@@ -51,7 +51,7 @@ StepResponse measure_step(std::span<const double> values, double dt_s, double fr
   const auto peak = std::ranges::max_element(r.values, {}, passed);
   r.peak_time_s = dt_s * static_cast<double>(peak - r.values.begin());
   const bool finite = std::ranges::all_of(r.values, [](double value) { return std::isfinite(value); });
-  r.overshoot_percent = finite ? 100 * std::max(0.0, passed(*peak)) : never;
+  r.overshoot_percent = finite ? 100 * std::max(0.0, passed(*peak)) : not_reached;
   r.settling_time_s = settling_s(r);
   r.steady_state_error = to - mean_of_last_tenth(r.values);
   return r;
