@@ -16,7 +16,7 @@ namespace {
 // The number of the one name that is `wanted` or ends in "." + wanted, and begins with `prefix`. Throws
 // std::invalid_argument when there is none, with the nearest, or more than one.
 std::size_t find_by_ending(std::string_view what, std::string_view wanted, const std::vector<std::string>& names,
-                           std::string_view prefix) {
+                           std::string_view prefix = "") {
   const std::string ending = "." + std::string(wanted);
   std::vector<std::size_t> found;
   std::vector<std::string> short_names;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t period_ns = 1'000'000;
 
-struct Task {
+struct FakeTask {
   FakeWait wait;
   Periodic periodic{wait, period_ns, 5'000'000};
 
@@ -24,7 +24,7 @@ struct Task {
 }  // namespace
 
 TEST_CASE("Beats come on the grid from the first on") {
-  Task task;
+  FakeTask task;
   for (std::uint64_t i = 0; i < 5; ++i) {
     const Beat beat = task.beat();
     CHECK(beat.number == i);
@@ -37,7 +37,7 @@ TEST_CASE("Beats come on the grid from the first on") {
 }
 
 TEST_CASE("A wake-up that is late within its period is handed on as it is and leaves the grid where it was") {
-  Task task;
+  FakeTask task;
   (void)task.beat();
   task.wait.late_ns = 300'000;
   const Beat late = task.beat();
@@ -52,7 +52,7 @@ TEST_CASE("A wake-up that is late within its period is handed on as it is and le
 }
 
 TEST_CASE("After a wake-up late by more than half a period the next grid point is too close and left out") {
-  Task task;
+  FakeTask task;
   (void)task.beat();
   task.wait.late_ns = 600'000;
   CHECK(task.beat().missed == 0);
@@ -63,7 +63,7 @@ TEST_CASE("After a wake-up late by more than half a period the next grid point i
 }
 
 TEST_CASE("Work longer than the period costs the beats it covers, and there is a wait before the next") {
-  Task task;
+  FakeTask task;
   (void)task.beat(2'400'000);  // over the points 1 and 2
   const Beat next = task.beat();
   CHECK(next.number == 3);
@@ -76,7 +76,7 @@ TEST_CASE("Work longer than the period costs the beats it covers, and there is a
 }
 
 TEST_CASE("A task that is always too slow never beats twice in a period") {
-  Task task;
+  FakeTask task;
   std::int64_t last_ns = 0;
   for (int i = 0; i < 20; ++i) {
     const Beat beat = task.beat(1'100'000);
@@ -86,7 +86,7 @@ TEST_CASE("A task that is always too slow never beats twice in a period") {
 }
 
 TEST_CASE("Waking whole periods late leaves them out, and no burst follows") {
-  Task task;
+  FakeTask task;
   (void)task.beat();
   task.wait.late_ns = 4'300'000;
   const Beat late = task.beat();
@@ -102,7 +102,7 @@ TEST_CASE("Waking whole periods late leaves them out, and no burst follows") {
 }
 
 TEST_CASE("While the clock stands still there is nothing to do, and what was missed is told when it goes on") {
-  Task task;
+  FakeTask task;
   (void)task.beat(1'200'000);
   task.wait.frozen = true;
   for (int i = 0; i < 3; ++i) CHECK(task.beat(0).stands);
