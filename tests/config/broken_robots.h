@@ -89,8 +89,9 @@ inline constexpr Broken broken_robots[] = {
     {"\"upper_rad\": 2.0", "\"lower_rad\": 2.2, \"upper_rad\": 2.0",
      "39:60: safety.limits['*_knee']: lower_rad 2.2 is above upper_rad 2 for joint 'l_knee'"},
     {"\"hold_s\": 1", "\"hold_s\": 1e9, \"damp_s\": -1",
-     "40:15: safety.hold_s is 1e9, must be 0..60 s: after a lost heartbeat: hold this long, then damp\n40:30: "
-     "safety.damp_s is -1, must be 0..60 s: damp this long, then off"},
+     "40:15: safety.hold_s is 1e9, must be 0..60 s: time for which the robot holds before it damps, when a fault "
+     "escalates\n40:30: "
+     "safety.damp_s is -1, must be 0..60 s: time for which it damps before it is off"},
     {"\"hold_s\": 1", "\"reactions\": { \"sensor_junp\": { \"joint\": \"off\" } }",
      "40:20: unknown fault 'sensor_junp', did you mean 'sensor_jump'?"},
     {"\"hold_s\": 1", "\"reactions\": { \"fall\": { \"robot\": \"dampen\" } }",
