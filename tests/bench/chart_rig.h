@@ -12,7 +12,7 @@
 
 namespace kadans::bench {
 
-class Count final : public LineSink {
+class TransitionCount final : public LineSink {
  public:
   void tell(const Line& line) override {
     transitions += line.transition != nullptr ? 1 : 0;
@@ -61,7 +61,7 @@ struct Played {
   std::filesystem::path folder;
   RobotModel model;
   Catalog catalog;
-  Count count;
+  TransitionCount count;
   BehaviorLog log{&count};
   CommandQueue queue;
   CommandSender sender{queue};

@@ -59,14 +59,14 @@ inline constexpr Broken broken_robots[] = {
     {"\"behavior_period_s\": 0.01", "\"behavior_period_s\": 0.0015",
      "6:26: engine.behavior_period_s is 0.0015, must be a whole multiple of control_period_s, 0.001 s"},
     {"\"commands_per_tick_max\": 300", "\"commands_per_tick_max\": 300.5",
-     "7:30: engine.commands_per_tick_max is 300.5, must be 255..1024, a whole number: commands applied in one control "
-     "tick at most; the largest transaction must pass"},
+     "7:30: engine.commands_per_tick_max is 300.5, must be 255..1024, a whole number: largest number of commands "
+     "applied in one control tick; the largest transaction must pass"},
     {"\"commands_per_tick_max\": 300", "\"commands_per_tick_max\": 64",
-     "7:30: engine.commands_per_tick_max is 64, must be 255..1024: commands applied in one control tick at most; the "
-     "largest transaction must pass"},
+     "7:30: engine.commands_per_tick_max is 64, must be 255..1024: largest number of commands applied in one control "
+     "tick; the largest transaction must pass"},
     {"\"commands_per_tick_max\": 300", "\"commands_per_tick_max\": null",
-     "7:30: engine.commands_per_tick_max must be a whole number, not null: commands applied in one control tick at "
-     "most; the largest transaction must pass"},
+     "7:30: engine.commands_per_tick_max must be a whole number, not null: largest number of commands applied in one "
+     "control tick; the largest transaction must pass"},
     {"\"*_knee\": 0.3", "\"*_kne\": 0.3", "10:16: unknown joint '*_kne', did you mean 'l_knee'?"},
     {"\"*_knee\": 0.3", "\"*_knee\": 3", "10:26: poses.stand['*_knee'] is 3, joint 'l_knee' reaches 0..2.35 rad"},
     {"\"*_knee\": 0.3", "\"*_knee\": \"0.3\"",
@@ -87,11 +87,11 @@ inline constexpr Broken broken_robots[] = {
     {"\"encoders\": { \"*\": { \"noise_rad\": 1e-5 } }", "\"encoders\": [0.1]",
      "17:17: plant.encoders must be an object, not an array: joint encoders by joint pattern"},
     {"[0, 0, 0.1]", "[0, 0]",
-     "18:28: plant.imu.position_m must be an array of 3 numbers in m, it has 2: where it sits, in the base frame"},
+     "18:28: plant.imu.position_m must be an array of 3 numbers in m, it has 2: position of the IMU in the base frame"},
     {"[0, 0, 0.1]", "[0, 0, true]",
-     "18:35: plant.imu.position_m[2] must be a number in m, not true: where it sits, in the base frame"},
+     "18:35: plant.imu.position_m[2] must be a number in m, not true: position of the IMU in the base frame"},
     {"[0, 0, 0.1]", "[0, 0, 1e6]",
-     "18:35: plant.imu.position_m[2] is 1e6, must be -10..10 m: where it sits, in the base frame"},
+     "18:35: plant.imu.position_m[2] is 1e6, must be -10..10 m: position of the IMU in the base frame"},
     {"\"link\": \"l_ankle_roll_link\"", "\"link\": \"l_ankle_rol_link\"",
      "21:17: unknown link 'l_ankle_rol_link', did you mean 'l_ankle_roll_link'?"},
     {"\"toe_outer_m\": [0.14, 0.05, -0.06]", "\"toe_outer\": [0.14, 0.05, -0.06]",
@@ -109,16 +109,17 @@ inline constexpr Broken broken_robots[] = {
     {"\"contact_off_N\": 4", "\"contact_off_N\": 9",
      "35:22: estimate.contact_off_N is 9, must be at most contact_on_N, 8"},
     {"\"sample_divisor\": 10", "\"sample_divisor\": 0",
-     "36:57: estimate.joints['*_shoulder_pitch'].sample_divisor is 0, must be 1..1000: sampled every n-th control "
-     "tick"},
+     "36:57: estimate.joints['*_shoulder_pitch'].sample_divisor is 0, must be 1..1000: the joint is sampled every n-th "
+     "control tick"},
     {"\"upper_rad\": 2.0", "\"upper_rad\": 3.0",
      "39:42: safety.limits['*_knee'].upper_rad goes beyond the URDF's 2.35 of joint 'l_knee'; limits may only be "
      "narrowed"},
     {"\"upper_rad\": 2.0", "\"lower_rad\": 2.2, \"upper_rad\": 2.0",
      "39:60: safety.limits['*_knee']: lower_rad 2.2 is above upper_rad 2 for joint 'l_knee'"},
     {"\"hold_s\": 1", "\"hold_s\": 1e9, \"damp_s\": -1",
-     "40:15: safety.hold_s is 1e9, must be 0..60 s: after a lost heartbeat: hold this long, then damp\n40:30: "
-     "safety.damp_s is -1, must be 0..60 s: damp this long, then off"},
+     "40:15: safety.hold_s is 1e9, must be 0..60 s: time for which the robot holds before it damps, when a fault "
+     "escalates\n40:30: "
+     "safety.damp_s is -1, must be 0..60 s: time for which it damps before it is off"},
     {"\"hold_s\": 1", "\"reactions\": { \"sensor_junp\": { \"joint\": \"off\" } }",
      "40:20: unknown fault 'sensor_junp', did you mean 'sensor_jump'?"},
     {"\"hold_s\": 1", "\"reactions\": { \"fall\": { \"robot\": \"dampen\" } }",

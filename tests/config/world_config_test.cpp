@@ -82,15 +82,16 @@ TEST_CASE("A world of every kind is read as it is written") {
 TEST_CASE("Every wrong entry of a world is refused with its place and what was meant") {
   const Wrong table[] = {
       {R"({"kind": "boxx", "name": "a"})", "file:1:21: world[0].kind: unknown value 'boxx', did you mean 'box'?"},
-      {R"({"name": "a"})", "file:1:12: key 'kind' is missing in world[0]: what it is"},
+      {R"({"name": "a"})", "file:1:12: key 'kind' is missing in world[0]: kind of object"},
       {box + R"(, "radius_m": 1})",
        "file:1:87: unknown key 'radius_m' in world[0] (known: kind, name, position_m, roll_pitch_yaw_rad, friction, "
        "size_m, "
        "mass_kg, velocity_m_s, motion)"},
       {R"({"kind": "ball", "name": "a", "mass_kg": 1, "position_m": [0, 0, 0]})",
-       "file:1:12: key 'radius_m' is missing in world[0]: of the ball or bob"},
+       "file:1:12: key 'radius_m' is missing in world[0]: radius of the ball or bob"},
       {box + R"(, "friction": -1})",
-       "file:1:99: world[0].friction is -1, must be 0..10: of its surface; a contact's friction is the product"},
+       "file:1:99: world[0].friction is -1, must be 0..10: coefficient of friction of its surface; a contact's "
+       "coefficient is the product of those of both surfaces"},
       {box + R"(, "mass_kg": 1, "motion": {"profile": [{"time_s": 0, "velocity_m_s": [0, 0, 0]}]}})",
        "file:1:111: world[0].motion: a box with a mass moves freely and cannot be driven"},
       {box + R"(, "velocity_m_s": [1, 0, 0]})",

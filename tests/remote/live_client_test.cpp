@@ -130,7 +130,7 @@ TEST_CASE("events wait for a slow client of the live server, beyond what is kept
     Event event;
     event.kind = Event::Kind::transition;
     event.transition.to = "s" + std::to_string(i);
-    viewer.live.instance.tell(event);
+    viewer.live.instance.tell(event.line());
     viewer.hub.beat();
   }
   const std::vector<LiveClient::Outgoing> got = all_of(slow);

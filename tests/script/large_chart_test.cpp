@@ -24,7 +24,7 @@ std::string large() {
   return text + "} }\n";
 }
 
-class Count final : public LineSink {
+class TransitionCount final : public LineSink {
  public:
   void tell(const Line& line) override { transitions += line.transition != nullptr ? 1 : 0; }
   std::uint64_t transitions = 0;
@@ -35,7 +35,7 @@ class Count final : public LineSink {
 TEST_CASE("a chart of 200 states and 8 regions ticks without allocation, in C++ and in Lua") {
   Scripts scripts;
   Robot robot;
-  Count count;
+  TransitionCount count;
   BehaviorLog log{&count};
   CommandQueue queue;
   CommandSender sender(queue);

@@ -247,21 +247,21 @@ TEST_CASE("run is left with its state, wherever it waits: nothing of it runs aga
 }
 
 TEST_CASE("a transition is logged with the time of its tick, between behaviors too") {
-  struct Times final : BehaviorLog {
-    void transition(const Transition& made) override {
-      told += made.behavior + std::to_string(made.time_ns) + made.why;
+  struct Times final : LineSink {
+    void tell(const Line& line) override {
+      if (const Transition* made = line.transition; made != nullptr)
+        told += made->behavior + std::to_string(made->time_ns) + made->why;
     }
-    void message(std::int64_t /*time_ns*/, Severity /*severity*/, const std::string& /*behavior*/,
-                 const std::string& /*text*/) override {}
     std::string told;
   };
   Stage stage(on_enter(""));
   Times times;
+  BehaviorLog log{&times};
   const auto file = stage.scripts.write(
       "behaviors/timed.lua", head +
                                  "return k.behavior 't' { initial = 'a', k.state 'a' { { after = 0.03, to = 'b' } }, "
                                  "k.state 'b' { endless = true } }");
-  Behavior behavior({.root = stage.scripts.root, .file = file}, stage.robot.catalog, times);
+  Behavior behavior({.root = stage.scripts.root, .file = file}, stage.robot.catalog, log);
   for (; stage.snapshot.time_ns < 60'000'000; stage.snapshot.time_ns += 10'000'000) {
     (void)behavior.tick(stage.snapshot, stage.sender);
   }
