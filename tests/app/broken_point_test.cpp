@@ -31,7 +31,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 57> breakages = {{
+constexpr std::array<Breakage, 58> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -77,6 +77,7 @@ constexpr std::array<Breakage, 57> breakages = {{
     {"reload_while_down", "", "\"at_s\": 2.2", "\"at_s\": 8", "reloaded once"},
     {"shaken_floor", stand, stiff, soft, "sways ever less, upright"},
     {"shaken_floor", "", "[-0.06, 0, 0]", "[-0.6, 0, 0]", "stays up"},
+    {"side_by_side", "", "\"start.y_m\": 0.6", "\"start.y_m\": 6", "the other feels it, N"},
     {"slippery_floor", "", "0.1 }", "0.8 }", "slides"},
     {"slope_across", "", "0.035", "0.25", "stays up"},
     {"slope_up", "", "0.035", "0.25", "stays up"},

@@ -233,7 +233,7 @@ TEST_CASE("A plug-in brings types of plants beside control objects, each robot h
   const RobotModel model = two_joint_robot();
   PlantSettings settings;
   settings.position_rad.resize(3);
-  CHECK(type->make_world({model, settings})->truth().base.position_m[2] == 1);
+  CHECK(type->make_world({model, settings})->robot(0).truth().base.position_m[2] == 1);
   CHECK_THROWS_AS((void)type->make_plant({}), std::logic_error);
 }
 
