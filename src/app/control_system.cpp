@@ -85,6 +85,22 @@ void declare(const RobotConfig& config, const ObjectConfig& object, ControlObjec
   }
 }
 
+// Seen from a coupled joint both of its drives act; what the other joint's error does to it is left out.
+void add_both_drives(const Transmission& transmission, const std::vector<DriveSettings>& drives,
+                     std::vector<DriveLaw>& laws) {
+  for (std::size_t j = 0; j < 2; ++j) {
+    DriveLaw& law = laws[transmission.joints()[j]];
+    law.position_gain_Nm_per_rad = law.velocity_gain_Nms_per_rad = law.rotor_inertia_kg_m2 = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const DriveSettings& drive = drives[transmission.joints()[i]];
+      const double share = transmission.drive_per_joint(i, j) * transmission.drive_per_joint(i, j);
+      law.position_gain_Nm_per_rad += share * drive.position_gain_Nm_per_rad;
+      law.velocity_gain_Nms_per_rad += share * drive.velocity_gain_Nms_per_rad;
+      law.rotor_inertia_kg_m2 += share * drive.rotor_inertia_kg_m2;
+    }
+  }
+}
+
 std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
   const EstimateSettings& estimate = config.estimate;
   std::vector<DriveLaw> laws;
@@ -100,6 +116,9 @@ std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
                                                       .dt_s = divisor * config.engine.control_period_s}),
          .spring_Nm_per_rad = drive.spring_Nm_per_rad,
          .rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2});
+  }
+  for (const Transmission& transmission : config.model.transmissions) {
+    if (transmission.coupled()) add_both_drives(transmission, config.plant.drives, laws);
   }
   return laws;
 }
