@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/motion/setpoint_motions.h"
 #include "signal/nearest_name.h"
 
 namespace kadans::testing {
@@ -93,6 +94,10 @@ JointBench::JointBench(const JointBenchConfig& config, const std::vector<BenchOb
   add_objects(objects);
 }
 
+JointBench::~JointBench() = default;
+
+double JointBench::motion_remaining_s() const noexcept { return motions_->remaining_s(active_object()); }
+
 void JointBench::add_objects(const std::vector<BenchObject>& objects) {
   catalog_.model = &model_;
   catalog_.drives = {{.effort_max_Nm = effort_max_Nm(),
@@ -111,6 +116,7 @@ void JointBench::add_objects(const std::vector<BenchObject>& objects) {
     catalog_.sets.push_back({.name = object.name, .objects = {index}});
   }
   sets_ = std::make_unique<ControlSets>(catalog_, std::move(made));
+  motions_ = std::make_unique<SetpointMotions>(catalog_, *sets_);
   row_.assign(catalog_.signals.size(), 0.0);
 }
 
@@ -152,13 +158,10 @@ void JointBench::set_point(std::string_view setpoint, double value, double durat
                                 std::to_string(info.max) + " " + info.unit);
   }
   if (tick_ == 0) tick();  // the object starts in its first tick
-  sets_->object(info.owner).set_point(info.channel, value, duration_s);
+  motions_->move(id, value, duration_s);
 }
 
-void JointBench::cancel_motion(std::string_view setpoint) {
-  const Setpoint& info = catalog_.setpoints[find_setpoint(setpoint)];
-  sets_->object(info.owner).cancel_motion(info.channel);
-}
+void JointBench::cancel_motion(std::string_view setpoint) { motions_->cancel(find_setpoint(setpoint)); }
 
 void JointBench::switch_to(std::string_view object) {
   sets_->switch_to(static_cast<std::uint32_t>(find_by_ending("object", object, names_of(catalog_.sets))));
@@ -204,6 +207,7 @@ void JointBench::tick() {
   asked.effort_Nm = std::clamp(asked.effort_Nm, -limit_Nm, limit_Nm);
   written_ = computed_;
   plant_.write(written_);
+  motions_->step(config_.dt_s);
   sets_->step(tick_, {joints_, status_, written_, sensors_.time_ns, config_.dt_s}, computed_);
   if (tick_ % behavior_divisor == 0) update_high_level();
   catalog_.signals.gather(row_);

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "app/assembly.h"
+#include "engine/transaction.h"
 #include "kadans/model/dynamics.h"
 #include "kadans/plant/bullet/bullet_world.h"
 
@@ -85,7 +86,12 @@ class Stand {
     const SetpointTable& table = system_->catalog.setpoints;
     for (const Swing& swing : swings) {
       const SetpointId id = table.find("posture." + std::string(swing.joint) + ".position_rad").value();
-      sets_.object(0).set_point(table[id].channel, there ? swing.to_rad : swing.from_rad, 1.0);
+      sender_.begin(control_.state().time_ns);
+      REQUIRE(sender_.add({.kind = CommandKind::set_point,
+                           .index = id,
+                           .value = there ? swing.to_rad : swing.from_rad,
+                           .duration_s = 1.0}));
+      REQUIRE(sender_.commit() > 0);
     }
   }
   // Sum of the squared errors of the swinging joints, reference minus true position.
@@ -111,6 +117,7 @@ class Stand {
   Estimator estimator_;
   Safety safety_;
   EngineExchange exchange_;
+  CommandSender sender_{exchange_.commands};
   ControlEngine control_;
   BehaviorEngine behaviors_;
   Lockstep lockstep_;

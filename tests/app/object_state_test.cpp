@@ -117,7 +117,9 @@ struct Played {
       for (SetpointId id = 0; id < catalog.setpoints.size(); ++id) {
         const Setpoint& setpoint = catalog.setpoints[id];
         const double most = std::min(setpoint.max, 0.4);
-        object->set_point(setpoint.channel, most * std::sin(0.1 * tick + id + 1), 0.06);
+        const double value = most * std::sin(0.1 * tick + id + 1);
+        object->set_point(setpoint.channel, value, 0.06);
+        if (!setpoint.own_motion) object->follow(setpoint.channel, {.value = value, .velocity = 0.1});
       }
     }
     if (tick == 120 && catalog.setpoints.size() > 0) object->cancel_motion(catalog.setpoints[0].channel);

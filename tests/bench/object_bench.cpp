@@ -34,7 +34,9 @@ double object_tick_ns(const Robot& robot) {
   for (int batch = 0; batch < batches; ++batch) {
     for (SetpointId id = 0; id < system->catalog.setpoints.size(); ++id) {
       const Setpoint& setpoint = system->catalog.setpoints[id];
-      object.set_point(setpoint.channel, std::clamp(batch % 2 == 0 ? 0.5 : -0.5, setpoint.min, setpoint.max), 1.0);
+      const double value = std::clamp(batch % 2 == 0 ? 0.5 : -0.5, setpoint.min, setpoint.max);
+      object.set_point(setpoint.channel, value, 1.0);
+      if (!setpoint.own_motion) object.follow(setpoint.channel, {.value = value});
     }
     const double began = now_ns();
     for (int i = 0; i < calls; ++i) {

@@ -48,10 +48,11 @@ class ArmBench : public TestedObject {
     declare(*object, 3);
   }
 
+  using TestedObject::set_point;
   void set_point(const std::string& name, double value, double duration_s) {
     const SetpointId id = catalog.setpoints.find("it." + name).value();
     REQUIRE(catalog.setpoints.accepts(id, value));
-    object->set_point(catalog.setpoints[id].channel, value, duration_s);
+    TestedObject::set_point(catalog.setpoints[id].channel, value, duration_s);
   }
 
   void place(double shoulder_rad, double elbow_rad) {

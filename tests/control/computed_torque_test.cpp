@@ -54,7 +54,7 @@ TEST_CASE("ComputedTorque follows a fast motion of both joints within three mill
   bench.run(300);
   bench.set_point("shoulder.position_rad", 1.4, 0.8);
   bench.set_point("elbow.position_rad", -1.2, 0.8);
-  CHECK(bench.object->motion_remaining_s() == 0.8);
+  CHECK(bench.motion_remaining_s() == 0.8);
   double worst_rad = 0;
   for (int i = 0; i < 1000; ++i) {
     bench.tick();
@@ -153,9 +153,8 @@ TEST_CASE("ComputedTorque allocates nothing in its low level, nor in its high le
   bench.start();
   bench.object->step(bench.input(), bench.computed);
   bench.update();
-  bench.object->set_point(0, 0.3, 0.2);
+  bench.object->follow(0, {.value = 0.3, .velocity = 0.2});
   bench.object->step(bench.input(), bench.computed);
-  bench.object->cancel_motion(0);
   const auto allocations = heap.count();
   CHECK(allocations == 0);
 }

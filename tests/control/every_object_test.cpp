@@ -116,7 +116,7 @@ TEST_CASE("Every object brings a joint that it takes over in motion to rest, and
     CAPTURE(type.name);
     CHECK(std::abs(bench.hip().velocity_rad_s) < 0.01);
     CHECK(bench.hip().effort_Nm == doctest::Approx(ObjectBench::load_Nm).epsilon(0.01));
-    CHECK(bench.object->motion_remaining_s() == 0);
+    CHECK(bench.motion_remaining_s() == 0);
     CHECK(bench.computed.joints[2].mode == ActuationMode::off);
   }
 }
@@ -174,12 +174,12 @@ TEST_CASE("Every object moves towards its set-point and says for how long") {
     bench.set_point(std::string("hip.") + type.setpoint, 0.5, 0.4);
     bench.tick();
     CAPTURE(type.name);
-    CHECK(bench.object->motion_remaining_s() == doctest::Approx(0.4).epsilon(0.01));
+    CHECK(bench.motion_remaining_s() == doctest::Approx(0.4).epsilon(0.01));
     bench.run(2000);
-    CHECK(bench.object->motion_remaining_s() == 0);
+    CHECK(bench.motion_remaining_s() == 0);
     bench.cancel(std::string("hip.") + type.setpoint);
     bench.run(1000);
-    CHECK(bench.object->motion_remaining_s() == 0);
+    CHECK(bench.motion_remaining_s() == 0);
     if (std::string(type.setpoint) == "position_rad")
       CHECK(bench.hip().position_rad == doctest::Approx(0.5).epsilon(0.02));
   }
@@ -194,13 +194,13 @@ TEST_CASE("No object allocates, locks or waits in the tick") {
       const kadans::testing::AllocationCount heap;
       bench.start();
       bench.run(10);
-      bench.object->set_point(0, 0.5, 0.05);
+      bench.set_point(0, 0.5, 0.05);
       bench.run(20);
-      bench.object->set_point(0, 0.1, 0);
+      bench.set_point(0, 0.1, 0);
       bench.run(20);
-      bench.object->cancel_motion(0);
+      bench.cancel_motion(0);
       bench.run(20);
-      (void)bench.object->motion_remaining_s();
+      (void)bench.motion_remaining_s();
       allocations = heap.count();
     }
     CAPTURE(type.name);

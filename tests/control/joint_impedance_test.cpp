@@ -28,7 +28,7 @@ TEST_CASE("JointImpedance gives way to a load as its spring does, and not at all
   CHECK(bench.hip().position_rad == doctest::Approx(-ObjectBench::load_Nm / 30));
   CHECK(bench.signal("hip.deflection_rad") == doctest::Approx(ObjectBench::load_Nm / 30));
   bench.set_point("hip.effort_Nm", ObjectBench::load_Nm, 0.2);
-  CHECK(bench.object->motion_remaining_s() == doctest::Approx(0.2));
+  CHECK(bench.motion_remaining_s() == doctest::Approx(0.2));
   bench.run(3000);
   CHECK(std::abs(bench.hip().position_rad) < 1e-4);
   CHECK(bench.signal("hip.reference_effort_Nm") == ObjectBench::load_Nm);
@@ -81,9 +81,9 @@ TEST_CASE("JointImpedance cancels position and torque each by itself") {
   bench.set_point("hip.effort_Nm", 3, 2.0);
   bench.run(500);
   bench.cancel("hip.effort_Nm");
-  CHECK(bench.object->motion_remaining_s() == doctest::Approx(0.5).epsilon(0.01));
+  CHECK(bench.motion_remaining_s() == doctest::Approx(0.5).epsilon(0.01));
   bench.cancel("hip.position_rad");
-  CHECK(bench.object->motion_remaining_s() <= 0.1);
+  CHECK(bench.motion_remaining_s() <= 0.1);
   bench.run(200);
   CHECK(bench.signal("hip.reference_rad") < 0.7);
   CHECK(bench.signal("hip.reference_effort_Nm") < 1.5);

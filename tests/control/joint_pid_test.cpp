@@ -49,10 +49,10 @@ TEST_CASE("JointPid's integral takes over what a drive in position or velocity m
 TEST_CASE("JointPid's longest motion is the one under way that ends last") {
   ObjectBench bench(make_joint_pid);
   bench.start();
-  CHECK(bench.object->motion_remaining_s() == 0);
+  CHECK(bench.motion_remaining_s() == 0);
   bench.set_point("hip.position_rad", 0.5, 0.4);
   bench.set_point("knee.position_rad", 0.5, 0.7);
-  CHECK(bench.object->motion_remaining_s() == doctest::Approx(0.7));
+  CHECK(bench.motion_remaining_s() == doctest::Approx(0.7));
   bench.cancel("knee.position_rad");
-  CHECK(bench.object->motion_remaining_s() == doctest::Approx(0.4));
+  CHECK(bench.motion_remaining_s() == doctest::Approx(0.4));
 }

@@ -16,7 +16,7 @@ TEST_CASE("JointVelocity ramps to its set-point in velocity mode, within the acc
   bench.run(100);
   CHECK(bench.computed.joints[0].mode == ActuationMode::velocity);
   CHECK(bench.computed.joints[0].velocity_rad_s == doctest::Approx(0.4));
-  CHECK(bench.object->motion_remaining_s() == doctest::Approx(0.15));
+  CHECK(bench.motion_remaining_s() == doctest::Approx(0.15));
   bench.run(300);
   CHECK(bench.computed.joints[0].velocity_rad_s == 1.0);
   bench.cancel("hip.velocity_rad_s");

@@ -28,12 +28,16 @@ class ObjectBench : public TestedObject {
   void set_if_there(const std::string& parameter, double value) {
     if (catalog.parameters.find("it." + parameter)) set(parameter, value);
   }
+  using TestedObject::set_point;
   void set_point(const std::string& name, double value, double duration_s) {
-    object->set_point(channel(name), value, duration_s);
+    TestedObject::set_point(channel(name), value, duration_s);
   }
-  void cancel(const std::string& name) { object->cancel_motion(channel(name)); }
+  void cancel(const std::string& name) { cancel_motion(channel(name)); }
   void start() const noexcept { object->start(input()); }
-  void compute() noexcept { object->step(input(), computed); }
+  void compute() noexcept {
+    lead();
+    object->step(input(), computed);
+  }
 
   // One tick of the engine and the plant.
   void tick() noexcept {

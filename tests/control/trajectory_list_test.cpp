@@ -50,7 +50,7 @@ TEST_CASE("TrajectoryList passes the points of a list in their times and rests a
   bench.set_point("hip.position_rad", 0.3, 0.2);
   bench.set_point("hip.position_rad", 0.5, 0.2);
   bench.set_point("hip.position_rad", 0.1, 0.4);
-  CHECK(bench.object->motion_remaining_s() == doctest::Approx(0.8));
+  CHECK(bench.motion_remaining_s() == doctest::Approx(0.8));
   bench.run(200);
   CHECK(bench.signal("hip.reference_rad") == doctest::Approx(0.3));
   CHECK(bench.signal("hip.reference_velocity_rad_s") == doctest::Approx(1.25));  // passed on the way
@@ -60,7 +60,7 @@ TEST_CASE("TrajectoryList passes the points of a list in their times and rests a
   CHECK(std::abs(bench.signal("hip.reference_velocity_rad_s")) < 1e-9);  // turns there
   bench.run(400);
   CHECK(bench.signal("hip.reference_rad") == doctest::Approx(0.1));
-  CHECK(bench.object->motion_remaining_s() == 0);
+  CHECK(bench.motion_remaining_s() == 0);
   CHECK(bench.signal("hip.underruns") == 0);
   CHECK(bench.computed.joints[0].mode == ActuationMode::effort);
 }
@@ -89,7 +89,7 @@ TEST_CASE("TrajectoryList without append replaces what is left of the list, no d
   const double there = bench.signal("hip.reference_rad");
   bench.set("hip.append", 0);
   bench.set_point("hip.position_rad", -0.2, 0.3);
-  CHECK(bench.object->motion_remaining_s() == doctest::Approx(0.3));
+  CHECK(bench.motion_remaining_s() == doctest::Approx(0.3));
   bench.run(1);
   CHECK(bench.signal("hip.reference_rad") > there);  // goes on with the velocity that it had
   bench.run(299);
@@ -165,5 +165,5 @@ TEST_CASE("TrajectoryList refuses what it cannot follow and counts what does not
   CHECK(bench.signal("hip.waiting") == 2 * TrajectoryLaw::capacity - 1);
   bench.cancel("hip.position_rad");
   bench.run(150);
-  CHECK(bench.object->motion_remaining_s() == 0);
+  CHECK(bench.motion_remaining_s() == 0);
 }

@@ -43,10 +43,11 @@ struct Inbox : bench::Robot {
 
 TEST_CASE("A transaction is applied whole, in one tick") {
   Inbox bench;
+  bench.sets.start_newcomers(bench.at(0));
   bench.send(0, bench.set_kp(77), bench.move_hip(0.5, 1.0));
   bench.inbox.apply(1, bench.at(1'000'000), bench.safety);
   CHECK(bench.kp() == 77);
-  CHECK(bench.sets.object(0).motion_remaining_s() == 1.0);
+  CHECK(bench.inbox.motions().remaining_s(0) == 1.0);
   CHECK(bench.inbox.state().last_transaction == 1);
   CHECK(bench.inbox.state().applied == 2);
   CHECK(bench.inbox.state().refused == 0);
@@ -58,9 +59,10 @@ TEST_CASE("A set-point behind a switch in the same transaction counts for the ob
   bench.send(0, Command{.kind = CommandKind::switch_set, .index = 1},
              Command{.kind = CommandKind::set_point, .index = knee, .value = 0.5, .duration_s = 1.0});
   bench.inbox.apply(1, bench.at(0), bench.safety);
+  bench.inbox.motions().step(0.001);
   bench.sets.step(1, bench.at(0), bench.computed);
   CHECK(bench.sets.active() == 0b10);
-  CHECK(bench.sets.object(1).motion_remaining_s() == 1.0);  // the tick of the start passes no time
+  CHECK(bench.inbox.motions().remaining_s(1) == 1.0);  // the tick of the start passes no time
 }
 
 TEST_CASE("One bad command refuses its whole transaction, and the next one is applied") {

@@ -18,29 +18,35 @@ namespace {
 
 constexpr double dt_s = 0.001;
 
-// One set-point with a minimum-jerk motion of its own.
+// One set-point, which goes where it is led.
 class Led final : public ControlObject {
  public:
   void declare(Declaration& declaration) override {
     declaration.setpoint({.name = "hip.position_rad", .unit = "rad", .min = -2, .max = 2});
   }
-  void start(const ControlInput&) noexcept override { reference.reset(0); }
-  void step(const ControlInput& input, ActuationFrame&) noexcept override { now = reference.step(input.dt_s); }
-  void set_point(std::uint32_t, double value, double duration_s) noexcept override {
-    reference.move(value, duration_s);
-  }
-  void cancel_motion(std::uint32_t) noexcept override { reference.stop(0.1); }
-  bool setpoint_state(std::uint32_t, SetpointState& state) const noexcept override {
-    const MinimumJerk::State& s = reference.state();
-    return state = {s.position, s.velocity, s.acceleration}, true;
-  }
-  void follow(std::uint32_t, const SetpointState& state) noexcept override {
-    reference.follow({state.value, state.velocity, state.acceleration});
-  }
-  double motion_remaining_s() const noexcept override { return reference.remaining_s(); }
+  void start(const ControlInput&) noexcept override { reference = {}; }
+  void step(const ControlInput&, ActuationFrame&) noexcept override { now = reference; }
+  bool setpoint_state(std::uint32_t, SetpointState& state) const noexcept override { return state = reference, true; }
+  void follow(std::uint32_t, const SetpointState& state) noexcept override { reference = state; }
 
-  MinimumJerk reference;
-  MinimumJerk::State now;
+  SetpointState reference, now;
+};
+
+// The same, but it plans the way to a plain set-point itself.
+class Planner final : public ControlObject {
+ public:
+  void declare(Declaration& declaration) override {
+    declaration.setpoint({.name = "hip.position_rad", .unit = "rad", .min = -2, .max = 2, .own_motion = true});
+  }
+  void start(const ControlInput&) noexcept override {}
+  void step(const ControlInput&, ActuationFrame&) noexcept override {}
+  void set_point(std::uint32_t, double value, double duration_s) noexcept override { asked = {value, duration_s, 0}; }
+  void cancel_motion(std::uint32_t) noexcept override { ++cancelled; }
+  bool setpoint_state(std::uint32_t, SetpointState& state) const noexcept override { return state = told, true; }
+  void follow(std::uint32_t, const SetpointState& state) noexcept override { told = state; }
+
+  SetpointState asked, told;  // asked: value and duration
+  int cancelled = 0;
 };
 
 // Two such objects, each in a set of its own, behind a queue.
@@ -133,10 +139,10 @@ struct Course {
 Course run(Stand& stand, int ticks) {
   Course course;
   for (int i = 0; i < ticks; ++i) {
-    const MinimumJerk::State before = stand.led->now;
+    const SetpointState before = stand.led->now;
     stand.tick();
-    const MinimumJerk::State& now = stand.led->now;
-    const double went_per_s = (now.position - before.position) / dt_s;
+    const SetpointState& now = stand.led->now;
+    const double went_per_s = (now.value - before.value) / dt_s;
     course.peak_per_s = std::max(course.peak_per_s, std::abs(went_per_s));
     course.acceleration_per_s2 = std::max(course.acceleration_per_s2, std::abs(now.velocity - before.velocity) / dt_s);
     course.told_wrong = std::max(course.told_wrong, std::abs(went_per_s - 0.5 * (now.velocity + before.velocity)));
@@ -155,13 +161,13 @@ TEST_CASE("every kind of motion ends at rest at its target in its time, with the
     CHECK(stand.remaining_s() == doctest::Approx(kind.duration_s - dt_s).epsilon(0.003));
     const Course course = run(stand, static_cast<int>(std::lround(kind.duration_s / dt_s)) + 1);
     CHECK(stand.remaining_s() == 0);
-    CHECK(stand.led->now.position == doctest::Approx(1).epsilon(1e-12));
+    CHECK(stand.led->now.value == doctest::Approx(1).epsilon(1e-12));
     CHECK(stand.led->now.velocity == 0);
     CHECK(course.peak_per_s == doctest::Approx(kind.peak_per_s).epsilon(0.01));
     CHECK(course.acceleration_per_s2 == doctest::Approx(kind.acceleration_per_s2).epsilon(0.02));
     CHECK(course.told_wrong < 0.002);
     run(stand, 10);
-    CHECK(stand.led->now.position == doctest::Approx(1).epsilon(1e-12));
+    CHECK(stand.led->now.value == doctest::Approx(1).epsilon(1e-12));
   }
 }
 
@@ -171,7 +177,7 @@ TEST_CASE("a motion cancelled on its way comes to rest close by, without a jump 
     Stand stand;
     stand.send(kind.commands);
     run(stand, static_cast<int>(std::lround(kind.duration_s / dt_s / 2)));
-    const MinimumJerk::State before = stand.led->now;
+    const SetpointState before = stand.led->now;
     REQUIRE(before.velocity > 1);
     stand.send({{.kind = CommandKind::cancel_motion}});
     const Course course = run(stand, 100);
@@ -179,7 +185,7 @@ TEST_CASE("a motion cancelled on its way comes to rest close by, without a jump 
     CHECK(course.acceleration_per_s2 < 60);  // of the stop itself: 2 m/s to 0 in 0.1 s
     CHECK(course.told_wrong < 0.02);
     CHECK(stand.led->now.velocity == 0);
-    CHECK(stand.led->now.position == doctest::Approx(before.position + 0.05 * before.velocity).epsilon(0.02));
+    CHECK(stand.led->now.value == doctest::Approx(before.value + 0.05 * before.velocity).epsilon(0.02));
     CHECK(stand.remaining_s() == 0);
   }
 }
@@ -198,10 +204,59 @@ TEST_CASE("every kind of motion takes over every other one without a jump") {
       CHECK(std::abs(stand.led->now.velocity - velocity) < 0.05);
       const Course course = run(stand, 2000);
       CHECK(course.told_wrong < 0.02);
-      CHECK(stand.led->now.position == doctest::Approx(1).epsilon(1e-12));
+      CHECK(stand.led->now.value == doctest::Approx(1).epsilon(1e-12));
       CHECK(stand.remaining_s() == 0);
     }
   }
+}
+
+TEST_CASE("an object that plans its way itself gets plain set-points and cancellations, trapezoids lead it") {
+  Catalog catalog;
+  const RobotModel model = bench::robot();
+  catalog.model = &model;
+  std::vector<std::unique_ptr<ControlObject>> objects;
+  objects.push_back(std::make_unique<Planner>());
+  auto& planner = static_cast<Planner&>(*objects.front());
+  Declaration declaration("planner", 0, catalog.parameters, catalog.setpoints, catalog.signals);
+  planner.declare(declaration);
+  catalog.objects = {{.name = "planner", .type = "test", .joints = {0}}};
+  catalog.sets = {{"planner", {0}}};
+  ControlSets sets(catalog, std::move(objects));
+  SetpointMotions motions(catalog, sets);
+  const JointStates joints;
+  const RobotStatus status;
+  ActuationFrame actuation;
+  const auto tick = [&] {
+    motions.step(dt_s);
+    sets.step(0, {joints, status, actuation, 0, dt_s}, actuation);
+  };
+  tick();
+  motions.move(0, 0.5, 2);
+  tick();
+  CHECK(planner.asked.value == 0.5);
+  CHECK(planner.asked.velocity == 2);
+  CHECK(planner.told.value == 0);
+  motions.begin(trapezoid(1, 2, 10, 0));
+  tick();
+  CHECK(planner.told.value > 0);
+  const double led_to = planner.told.value;
+  motions.cancel(0);
+  tick();
+  CHECK(planner.cancelled == 1);
+  CHECK(planner.told.value == led_to);
+}
+
+TEST_CASE("a plain set-point without a duration acts in its tick, and ends a motion") {
+  Stand stand;
+  stand.send({{.kind = CommandKind::set_point, .value = 1, .duration_s = 1}});
+  run(stand, 300);
+  stand.send({{.kind = CommandKind::set_point, .value = -0.5}});
+  stand.tick();
+  CHECK(stand.led->now.value == -0.5);
+  CHECK(stand.led->now.velocity == 0);
+  CHECK(stand.remaining_s() == 0);
+  run(stand, 100);
+  CHECK(stand.led->now.value == -0.5);
 }
 
 TEST_CASE("a trapezoid follows a target that moves, within its limits") {
@@ -214,7 +269,7 @@ TEST_CASE("a trapezoid follows a target that moves, within its limits") {
     const Course course = run(stand, 10);
     all.peak_per_s = std::max(all.peak_per_s, course.peak_per_s);
     all.acceleration_per_s2 = std::max(all.acceleration_per_s2, course.acceleration_per_s2);
-    if (i > 50) farthest = std::max(farthest, std::abs(0.5 * std::sin(2 * time_s) - stand.led->now.position));
+    if (i > 50) farthest = std::max(farthest, std::abs(0.5 * std::sin(2 * time_s) - stand.led->now.value));
   }
   CHECK(all.peak_per_s < 1.5 + 1e-6);
   CHECK(all.acceleration_per_s2 < 8.01);
@@ -230,7 +285,7 @@ TEST_CASE("a motion of an object that leaves the active set is dropped: back aga
   CHECK(std::isnan(stand.snapshot.setpoints[0].value));
   stand.send({{.kind = CommandKind::switch_set, .index = 0}});
   run(stand, 500);
-  CHECK(stand.led->now.position == 0);
+  CHECK(stand.led->now.value == 0);
   CHECK(stand.snapshot.setpoints[0].value == 0);
 }
 
@@ -238,9 +293,9 @@ TEST_CASE("a motion of an object that starts anew on its way is dropped: it stay
   Stand stand;
   stand.send({trapezoid(1, 2, 10, 0)});
   run(stand, 200);
-  stand.led->reference.reset(0.05);
+  stand.led->reference = {.value = 0.05};
   run(stand, 500);
-  CHECK(stand.led->now.position == 0.05);
+  CHECK(stand.led->now.value == 0.05);
   CHECK(stand.remaining_s() == 0);
 }
 
@@ -248,7 +303,7 @@ TEST_CASE("the snapshot tells where a set-point is and how fast it moves") {
   Stand stand;
   stand.send({trapezoid(1, 2, 10, 0)});
   run(stand, 350);
-  CHECK(stand.snapshot.setpoints[0].value == stand.led->now.position);
+  CHECK(stand.snapshot.setpoints[0].value == stand.led->now.value);
   CHECK(stand.snapshot.setpoints[0].velocity == doctest::Approx(2));
 }
 
@@ -262,7 +317,7 @@ TEST_CASE("a motion whose numbers are not acceptable is refused whole") {
     stand.send({bad});
     run(stand, 5);
     CHECK(stand.inbox->state().refused == 1);
-    CHECK(stand.led->now.position == 0);
+    CHECK(stand.led->now.value == 0);
   }
 }
 

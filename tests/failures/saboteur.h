@@ -32,8 +32,13 @@ class Saboteur final : public ControlObject {
     object_->set_point(channel, value, duration_s);
   }
   void cancel_motion(std::uint32_t channel) noexcept override { object_->cancel_motion(channel); }
+  bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept override {
+    return object_->setpoint_state(channel, state);
+  }
+  void follow(std::uint32_t channel, const SetpointState& state) noexcept override { object_->follow(channel, state); }
   double motion_remaining_s() const noexcept override { return object_->motion_remaining_s(); }
   void parameters_changed() noexcept override { object_->parameters_changed(); }
+  void pass_state(StateBytes& bytes) noexcept override { object_->pass_state(bytes); }
   void update(const Snapshot& snapshot) override { object_->update(snapshot); }
 
  private:

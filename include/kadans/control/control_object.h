@@ -87,22 +87,25 @@ class ControlObject {
   // its code and its memory are in the caches. Changes nothing; an object may leave it out. For an actuator-level
   // object input.last holds what was last wanted of the joints.
   virtual void rehearse(const ControlInput& input) const noexcept { (void)input; }
-  // Control thread. The caller has checked that the value is in the set-point's range and duration_s >= 0. A duration
-  // of 0 acts at once.
-  virtual void set_point(std::uint32_t channel, double value, double duration_s) noexcept = 0;
-  // Control thread: comes to rest where its motion is now.
-  virtual void cancel_motion(std::uint32_t channel) noexcept = 0;
   // Control thread: where the set-point is on its way. False: this object cannot be led along a motion that the engine
-  // plans (setpoint_motions.h).
+  // plans (src/engine/motion/setpoint_motions.h).
   virtual bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
     (void)channel, (void)state;
     return false;
   }
-  // Control thread, before each step of such a motion: where the set-point is in this tick. This takes the place of the
-  // object's own motion. After the last call, or a cancel_motion, the object goes on by itself.
+  // Control thread, before each step of such a motion, and once for a set-point that acts at once: where the set-point
+  // is in this tick. After the last call it stays there.
   virtual void follow(std::uint32_t channel, const SetpointState& state) noexcept { (void)channel, (void)state; }
-  // Control thread: the time until the last motion under way has arrived; 0 when all are at rest.
-  virtual double motion_remaining_s() const noexcept = 0;
+  // Control thread: the way to a set-point that the object plans itself (Setpoint::own_motion, or it cannot be led).
+  // The caller has checked that the value is in the set-point's range and duration_s >= 0. A duration of 0 acts at
+  // once.
+  virtual void set_point(std::uint32_t channel, double value, double duration_s) noexcept {
+    (void)channel, (void)value, (void)duration_s;
+  }
+  // Control thread: such a motion comes to rest where it is now.
+  virtual void cancel_motion(std::uint32_t channel) noexcept { (void)channel; }
+  // Control thread: the time until the last motion of its own has arrived; 0 when all are at rest.
+  virtual double motion_remaining_s() const noexcept { return 0; }
   // Control thread: one or more of its parameters have new values.
   virtual void parameters_changed() noexcept {}
   // Between ticks: saves or restores all that changes from tick to tick (state_bytes.h). An object without such state

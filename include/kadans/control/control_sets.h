@@ -60,6 +60,8 @@ class ControlSets {
   SetMask active() const noexcept { return active_; }
   const SetPartition& partition() const noexcept { return partition_; }
   bool runs(std::uint32_t object) const noexcept { return ((running_ | at_drives_) >> object & 1U) != 0; }
+  // Control thread: whether the object started since the last step.
+  bool fresh(std::uint32_t object) const noexcept { return (fresh_ >> object & 1U) != 0; }
   std::size_t size() const noexcept { return objects_.size(); }
 
  private:

@@ -31,13 +31,14 @@ class AxisTables {
 
   void tunable(const char* name, const char* unit, double min, double max, double initial, double* value,
                const char* doc);
-  void setpoint(const char* name, const char* unit, double min, double max, const char* doc, std::uint32_t which);
+  void setpoint(const char* name, const char* unit, double min, double max, const char* doc, std::uint32_t which,
+                bool own_motion = false);
   template <typename T>
   void signal(const char* name, const char* unit, const char* doc, const T* source) {
     declaration_.signal({axis_.name + "." + name, unit, doc}, source);
   }
   // The set-point position_rad, within the joint's limits.
-  void position_setpoint(std::uint32_t which);
+  void position_setpoint(std::uint32_t which, bool own_motion = false);
   // Pid::Config as parameters, Pid::State as signals.
   void pid(Pid& pid);
 

@@ -6,8 +6,6 @@
 //   void declare(AxisTables& tables);
 //   void start(const Handover& handover) noexcept;                         // takes over from the measured state
 //   JointActuation step(const JointState& state, double dt_s) noexcept;
-//   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
-//   void cancel(std::uint32_t which) noexcept;
 //   double remaining_s() const noexcept;
 //   void pass_state(StateBytes& bytes) noexcept;                           // all that changes (state_bytes.h)
 //
@@ -15,6 +13,11 @@
 //
 //   bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept;
 //   void follow(std::uint32_t which, const SetpointState& state) noexcept;
+//
+// One that plans the way to its set-point itself has:
+//
+//   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
+//   void cancel(std::uint32_t which) noexcept;
 //
 // A law that can be rehearsed (control_object.h) also has:
 //
@@ -82,10 +85,10 @@ class Jointwise : public ControlObject {
   }
 
   void set_point(std::uint32_t channel, double value, double duration_s) noexcept override {
-    parts_[channel / Law::channels].law.set_point(channel % Law::channels, value, duration_s);
+    if constexpr (plans) parts_[channel / Law::channels].law.set_point(channel % Law::channels, value, duration_s);
   }
   void cancel_motion(std::uint32_t channel) noexcept override {
-    parts_[channel / Law::channels].law.cancel(channel % Law::channels);
+    if constexpr (plans) parts_[channel / Law::channels].law.cancel(channel % Law::channels);
   }
   bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept override {
     if constexpr (led) {
@@ -113,6 +116,7 @@ class Jointwise : public ControlObject {
 
  private:
   static constexpr bool led = requires(const Law& law, SetpointState& state) { law.setpoint_state(0U, state); };
+  static constexpr bool plans = requires(Law & law) { law.set_point(0U, 0.0, 0.0); };
   static constexpr bool rehearsed = requires(const Law& law, const JointState& state) { law.rehearse(state, 0.0); };
   struct Part {
     JointAxis axis;

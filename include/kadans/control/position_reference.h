@@ -1,5 +1,5 @@
-// The common part of the laws that lead a joint to one set-point along a minimum-jerk motion: the joint, the motion and
-// the channel of the set-point.
+// The common part of the laws that lead a joint by one set-point: the joint, where the set-point is, and the motion in
+// which a joint that is taken over comes to rest.
 #pragma once
 
 #include "kadans/control/handover.h"
@@ -12,8 +12,6 @@ class PositionReference {
  public:
   static constexpr std::uint32_t channels = 1;
 
-  void set_point(std::uint32_t, double value, double duration_s) noexcept { reference_.move(value, duration_s); }
-  void cancel(std::uint32_t) noexcept { reference_.stop(cancel_time_s); }
   double remaining_s() const noexcept { return reference_.remaining_s(); }
   bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept {
     const MinimumJerk::State& now = reference_.state();

@@ -24,6 +24,7 @@ struct Setpoint {
   std::uint32_t owner = 0;    // the control object's index
   std::uint32_t channel = 0;  // the object's own number for it
   std::uint32_t joint = 0;    // the joint it moves, or no_joint
+  bool own_motion = false;    // its object plans the way to a plain set-point; else the engine does
   bool follows = false;       // its object can be led along a motion that the engine plans
 };
 

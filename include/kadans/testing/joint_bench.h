@@ -29,6 +29,10 @@
 #include "kadans/estimate/velocity_filter.h"
 #include "kadans/testing/one_joint_plant.h"
 
+namespace kadans {
+class SetpointMotions;
+}
+
 namespace kadans::testing {
 
 // Where the measured velocity comes from, before its low pass: from the encoder, as on the robot, or from the joint
@@ -54,6 +58,7 @@ class JointBench {
   // Throws std::invalid_argument as the objects and the plant do.
   JointBench(const JointBenchConfig& config, MakeControlObject make);  // one object, named "object"
   JointBench(const JointBenchConfig& config, const std::vector<BenchObject>& objects);
+  ~JointBench();
 
   // All throw std::invalid_argument for a name that is unknown (the message has the nearest one) or ambiguous, and for
   // a value out of range.
@@ -72,7 +77,7 @@ class JointBench {
   double position_rad() const noexcept { return plant_.state().position_rad; }  // true, now
   double velocity_rad_s() const noexcept { return plant_.state().velocity_rad_s; }
   double torque_Nm() const noexcept { return plant_.state().torque_Nm; }  // of the drive, in the last tick
-  double motion_remaining_s() const noexcept { return sets_->object(active_object()).motion_remaining_s(); }
+  double motion_remaining_s() const noexcept;
   std::uint64_t limited_ticks() const noexcept { return limited_ticks_; }
   std::uint64_t not_finite_ticks() const noexcept { return not_finite_ticks_; }
 
@@ -96,6 +101,7 @@ class JointBench {
   OneJointPlant plant_;
   Catalog catalog_;
   std::unique_ptr<ControlSets> sets_;
+  std::unique_ptr<SetpointMotions> motions_;
   VelocityFilter filter_;
   double filter_position_rad_ = 0;  // what the filter differentiates
   SensorFrame sensors_;

@@ -11,7 +11,7 @@ inline constexpr std::string_view header_template =
 //
 //   torque = stiffness (reference - position) - damping velocity
 //
-// Set-points  <joint>.position_rad, reached by a minimum-jerk motion in the time given.
+// Set-points  <joint>.position_rad
 // Parameters  <joint>.stiffness_Nm_per_rad, <joint>.damping_Nms_per_rad
 // Signals     <joint>.reference_rad, <joint>.effort_Nm
 #pragma once
@@ -21,7 +21,6 @@ inline constexpr std::string_view header_template =
 #include <vector>
 
 #include "kadans/control/control_object.h"
-#include "kadans/control/minimum_jerk.h"
 
 class @Class@ final : public kadans::ControlObject {
  public:
@@ -31,9 +30,8 @@ class @Class@ final : public kadans::ControlObject {
   void declare(kadans::Declaration& declaration) override;
   void start(const kadans::ControlInput& input) noexcept override;
   void step(const kadans::ControlInput& input, kadans::ActuationFrame& actuation) noexcept override;
-  void set_point(std::uint32_t channel, double value, double duration_s) noexcept override;
-  void cancel_motion(std::uint32_t channel) noexcept override;
-  double motion_remaining_s() const noexcept override;
+  bool setpoint_state(std::uint32_t channel, kadans::SetpointState& state) const noexcept override;
+  void follow(std::uint32_t channel, const kadans::SetpointState& state) noexcept override;
   void pass_state(kadans::StateBytes& bytes) noexcept override;
 
  private:
@@ -42,8 +40,8 @@ class @Class@ final : public kadans::ControlObject {
     std::string name;
     double lower_rad, upper_rad;
     double stiffness_Nm_per_rad = 0, damping_Nms_per_rad = 0;
-    kadans::MinimumJerk reference{};
-    double reference_rad = 0, effort_Nm = 0;
+    kadans::SetpointState reference{};
+    double effort_Nm = 0;
   };
   std::vector<Axis> axes_;
 };
@@ -57,12 +55,6 @@ inline constexpr std::string_view source_template = R"(#include "@type@.h"
 #include <stdexcept>
 
 using namespace kadans;
-
-namespace {
-
-constexpr double cancel_time_s = 0.1;
-
-}  // namespace
 
 @Class@::@Class@(const ObjectSetup& setup) {
   for (const std::size_t index : setup.joints) {
@@ -84,7 +76,7 @@ void @Class@::declare(Declaration& declaration) {
     declaration.setpoint({.name = axis.name + ".position_rad", .unit = "rad", .min = axis.lower_rad,
                           .max = axis.upper_rad, .doc = "Where the joint shall be.",
                           .channel = static_cast<std::uint32_t>(i), .joint = static_cast<std::uint32_t>(axis.joint)});
-    declaration.signal({axis.name + ".reference_rad", "rad", "Set-point of the position."}, &axis.reference_rad);
+    declaration.signal({axis.name + ".reference_rad", "rad", "Set-point of the position."}, &axis.reference.value);
     declaration.signal({axis.name + ".effort_Nm", "Nm", "Torque computed."}, &axis.effort_Nm);
   }
 }
@@ -92,7 +84,7 @@ void @Class@::declare(Declaration& declaration) {
 // Takes over where the joint is; what is left of a step in torque the framework fades out.
 void @Class@::start(const ControlInput& input) noexcept {
   for (Axis& axis : axes_) {
-    axis.reference.reset(std::clamp(input.joints.joints[axis.joint].position_rad, axis.lower_rad, axis.upper_rad));
+    axis.reference = {.value = std::clamp(input.joints.joints[axis.joint].position_rad, axis.lower_rad, axis.upper_rad)};
   }
 }
 
@@ -100,28 +92,22 @@ void @Class@::start(const ControlInput& input) noexcept {
 void @Class@::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   for (Axis& axis : axes_) {
     const JointState& joint = input.joints.joints[axis.joint];
-    axis.reference_rad = axis.reference.step(input.dt_s).position;
-    axis.effort_Nm = axis.stiffness_Nm_per_rad * (axis.reference_rad - joint.position_rad) -
+    axis.effort_Nm = axis.stiffness_Nm_per_rad * (axis.reference.value - joint.position_rad) -
                      axis.damping_Nms_per_rad * joint.velocity_rad_s;
     actuation.joints[axis.joint] = {.effort_Nm = axis.effort_Nm, .mode = ActuationMode::effort};
   }
 }
 
-void @Class@::set_point(std::uint32_t channel, double value, double duration_s) noexcept {
-  axes_[channel].reference.move(value, duration_s);
+// The engine plans how the set-point gets to where it shall be, and leads the object along.
+bool @Class@::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+  return state = axes_[channel].reference, true;
 }
 
-void @Class@::cancel_motion(std::uint32_t channel) noexcept { axes_[channel].reference.stop(cancel_time_s); }
-
-double @Class@::motion_remaining_s() const noexcept {
-  double remaining_s = 0;
-  for (const Axis& axis : axes_) remaining_s = std::max(remaining_s, axis.reference.remaining_s());
-  return remaining_s;
-}
+void @Class@::follow(std::uint32_t channel, const SetpointState& state) noexcept { axes_[channel].reference = state; }
 
 // All that changes from tick to tick, to save and restore it.
 void @Class@::pass_state(StateBytes& bytes) noexcept {
-  for (Axis& axis : axes_) bytes(axis.reference, axis.reference_rad, axis.effort_Nm);
+  for (Axis& axis : axes_) bytes(axis.reference, axis.effort_Nm);
 }
 
 std::unique_ptr<ControlObject> make_@type@(const ObjectSetup& setup) { return std::make_unique<@Class@>(setup); }

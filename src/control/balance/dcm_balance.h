@@ -56,9 +56,6 @@ class DcmBalance final : public ControlObject {
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void set_point(std::uint32_t, double, double) noexcept override {}  // has none
-  void cancel_motion(std::uint32_t) noexcept override {}
-  double motion_remaining_s() const noexcept override { return 0; }
   void pass_state(StateBytes& bytes) noexcept override {
     for (Part& part : parts_) bytes(part.effort_Nm);
     bytes(state_);

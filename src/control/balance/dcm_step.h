@@ -64,9 +64,6 @@ class DcmStep final : public ControlObject {
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void set_point(std::uint32_t, double, double) noexcept override {}  // has none
-  void cancel_motion(std::uint32_t) noexcept override {}
-  double motion_remaining_s() const noexcept override { return 0; }
   void pass_state(StateBytes& bytes) noexcept override;
 
   const StepPlan& plan() const noexcept { return plan_; }

@@ -98,9 +98,6 @@ class SpringTorque final : public ControlObject {
   // `actuation` holds the wanted joint torques; for its own joints they are replaced by motor torques.
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
   void rehearse(const ControlInput& input) const noexcept override;
-  void set_point(std::uint32_t, double, double) noexcept override {}  // has none
-  void cancel_motion(std::uint32_t) noexcept override {}
-  double motion_remaining_s() const noexcept override { return 0; }
   void parameters_changed() noexcept override;
   void pass_state(StateBytes& bytes) noexcept override {
     for (Part& part : parts_) bytes(part.loop);

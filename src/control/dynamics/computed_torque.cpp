@@ -145,12 +145,6 @@ void ComputedTorque::step(const ControlInput& input, ActuationFrame& actuation) 
   }
 }
 
-void ComputedTorque::set_point(std::uint32_t channel, double value, double duration_s) noexcept {
-  parts_[channel].reference.move(value, duration_s);
-}
-
-void ComputedTorque::cancel_motion(std::uint32_t channel) noexcept { parts_[channel].reference.stop(cancel_time_s); }
-
 bool ComputedTorque::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
   const MinimumJerk::State& now = parts_[channel].reference.state();
   return state = {now.position, now.velocity, now.acceleration}, true;

@@ -67,8 +67,6 @@ class ComputedTorque final : public ControlObject {
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void set_point(std::uint32_t channel, double value, double duration_s) noexcept override;
-  void cancel_motion(std::uint32_t channel) noexcept override;
   bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept override;
   void follow(std::uint32_t channel, const SetpointState& state) noexcept override;
   double motion_remaining_s() const noexcept override;

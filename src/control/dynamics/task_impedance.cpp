@@ -87,7 +87,7 @@ bool TaskImpedance::measured(const JointStates& joints) const noexcept {
 
 void TaskImpedance::take_over_point(const JointStates& joints) noexcept {
   const Vec3 at = chain_.update(joints, point_in_link_m_);
-  for (std::size_t i = 0; i < 3; ++i) directions_[i].reference.reset(at[i]);
+  for (std::size_t i = 0; i < 3; ++i) directions_[i].reference = {.value = at[i]};
   point_started_m_ = point_in_link_m_;
   for (Part& part : parts_) part.posture_rad = joints.joints[part.axis.joint].position_rad;
   located_ = true;
@@ -108,7 +108,7 @@ void TaskImpedance::parameters_changed() noexcept {
 }
 
 // The force at the point, in each direction.
-void TaskImpedance::pull(const JointStates& joints, double dt_s) noexcept {
+void TaskImpedance::pull(const JointStates& joints) noexcept {
   const Vec3 at = chain_.update(joints, point_in_link_m_);
   Vec3 velocity_m_s{};
   for (const LimbChain::Segment& segment : chain_.segments()) {
@@ -120,10 +120,10 @@ void TaskImpedance::pull(const JointStates& joints, double dt_s) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     State& s = directions_[i].state;
     const Config& c = directions_[i].config;
-    const MinimumJerk::State& reference = directions_[i].reference.step(dt_s);
-    s.reference_m = reference.position;
+    const SetpointState& reference = directions_[i].reference;
+    s.reference_m = reference.value;
     s.position_m = at[i];
-    s.error_m = reference.position - at[i];
+    s.error_m = reference.value - at[i];
     s.force_N = c.stiffness_N_per_m * s.error_m + c.damping_Ns_per_m * (reference.velocity - velocity_m_s[i]);
     length2_N2 += s.force_N * s.force_N;
   }
@@ -144,46 +144,30 @@ double TaskImpedance::law_Nm(const Part& part, const JointState& joint) const no
 
 void TaskImpedance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const JointStates& joints = input.joints;
-  const double dt_s = input.dt_s;
   if (!measured(joints)) {
     located_ = false;
     for (Direction& direction : directions_) direction.state.force_N = 0;
   } else {
     if (!located_) take_over_point(joints);
-    pull(joints, dt_s);
+    pull(joints);
   }
   for (Part& part : parts_) {
     const JointState& joint = joints.joints[part.axis.joint];
     const double law = law_Nm(part, joint);
     double integral_Nm = 0;  // there is none
-    const double unlimited_Nm = law + part.takeover.step(law, true, dt_s, integral_Nm, 0);
+    const double unlimited_Nm = law + part.takeover.step(law, true, input.dt_s, integral_Nm, 0);
     part.output.effort_Nm = std::clamp(unlimited_Nm, -part.config.effort_max_Nm, part.config.effort_max_Nm);
     part.output.saturated = part.output.effort_Nm != unlimited_Nm;
     actuation.joints[part.axis.joint] = {.effort_Nm = part.output.effort_Nm, .mode = ActuationMode::effort};
   }
 }
 
-void TaskImpedance::set_point(std::uint32_t channel, double value, double duration_s) noexcept {
-  directions_[channel].reference.move(value, duration_s);
-}
-
-void TaskImpedance::cancel_motion(std::uint32_t channel) noexcept {
-  directions_[channel].reference.stop(cancel_time_s);
-}
-
 bool TaskImpedance::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
-  const MinimumJerk::State& now = directions_[channel].reference.state();
-  return state = {now.position, now.velocity, now.acceleration}, true;
+  return state = directions_[channel].reference, true;
 }
 
 void TaskImpedance::follow(std::uint32_t channel, const SetpointState& state) noexcept {
-  directions_[channel].reference.follow({state.value, state.velocity, state.acceleration});
-}
-
-double TaskImpedance::motion_remaining_s() const noexcept {
-  double remaining_s = 0;
-  for (const Direction& direction : directions_) remaining_s = std::max(remaining_s, direction.reference.remaining_s());
-  return remaining_s;
+  directions_[channel].reference = state;
 }
 
 void TaskImpedance::pass_state(StateBytes& bytes) noexcept {

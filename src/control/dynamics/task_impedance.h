@@ -30,7 +30,6 @@
 #include "kadans/control/effort_takeover.h"
 #include "kadans/control/joint_axis.h"
 #include "kadans/control/limb_chain.h"
-#include "kadans/control/minimum_jerk.h"
 
 namespace kadans {
 
@@ -62,11 +61,8 @@ class TaskImpedance final : public ControlObject {
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void set_point(std::uint32_t channel, double value, double duration_s) noexcept override;
-  void cancel_motion(std::uint32_t channel) noexcept override;
   bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept override;
   void follow(std::uint32_t channel, const SetpointState& state) noexcept override;
-  double motion_remaining_s() const noexcept override;
   void parameters_changed() noexcept override;
   void pass_state(StateBytes& bytes) noexcept override;
 
@@ -74,7 +70,7 @@ class TaskImpedance final : public ControlObject {
   struct Direction {
     Config config;
     State state;
-    MinimumJerk reference;
+    SetpointState reference;
   };
   struct Part {
     JointAxis axis;
@@ -88,7 +84,7 @@ class TaskImpedance final : public ControlObject {
   void declare_joint(Declaration& declaration, Part& part);
   bool measured(const JointStates& joints) const noexcept;
   void take_over_point(const JointStates& joints) noexcept;
-  void pull(const JointStates& joints, double dt_s) noexcept;
+  void pull(const JointStates& joints) noexcept;
   double law_Nm(const Part& part, const JointState& joint) const noexcept;
 
   LimbChain chain_;

@@ -82,7 +82,8 @@ void Gaze::declare_target(Declaration& declaration) {
                           .max = far_m,
                           .doc = "Where the eyes shall look, in the base frame.",
                           .channel = static_cast<std::uint32_t>(i),
-                          .joint = no_joint});
+                          .joint = no_joint,
+                          .own_motion = true});
     declaration.signal({"target_" + name + "_m", "m", "Where the target is, in the base frame."},
                        &aimed_.target.point_m[i]);
     declaration.signal({"target_" + name + "_m_s", "m/s", "How fast the target moves."},

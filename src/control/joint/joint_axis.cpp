@@ -33,18 +33,19 @@ void AxisTables::tunable(const char* name, const char* unit, double min, double 
 }
 
 void AxisTables::setpoint(const char* name, const char* unit, double min, double max, const char* doc,
-                          std::uint32_t which) {
+                          std::uint32_t which, bool own_motion) {
   declaration_.setpoint({.name = axis_.name + "." + name,
                          .unit = unit,
                          .min = min,
                          .max = max,
                          .doc = doc,
                          .channel = first_channel_ + which,
-                         .joint = static_cast<std::uint32_t>(axis_.joint)});
+                         .joint = static_cast<std::uint32_t>(axis_.joint),
+                         .own_motion = own_motion});
 }
 
-void AxisTables::position_setpoint(std::uint32_t which) {
-  setpoint("position_rad", "rad", axis_.lower_rad, axis_.upper_rad, "Where the joint shall be.", which);
+void AxisTables::position_setpoint(std::uint32_t which, bool own_motion) {
+  setpoint("position_rad", "rad", axis_.lower_rad, axis_.upper_rad, "Where the joint shall be.", which, own_motion);
 }
 
 void AxisTables::pid(Pid& pid) {

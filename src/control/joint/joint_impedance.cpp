@@ -1,6 +1,5 @@
 #include "joint_impedance.h"
 
-#include <algorithm>
 #include <string>
 
 #include "kadans/control/jointwise.h"
@@ -12,28 +11,29 @@ void ImpedanceLaw::declare(AxisTables& tables) {
   law_.declare(tables, {"stiffness_Nm_per_rad", "damping_Nms_per_rad", "deflection_rad"});
   tables.position_setpoint(0);
   tables.setpoint("effort_Nm", "Nm", -most, most, "Torque beside spring and damper.", 1);
-  tables.signal("reference_effort_Nm", "Nm", "Torque beside spring and damper.", &effort_.state().position);
+  tables.signal("reference_effort_Nm", "Nm", "Torque beside spring and damper.", &effort_.value);
 }
 
 void ImpedanceLaw::start(const Handover& handover) noexcept {
   const double effort_Nm = effort_before_Nm(handover);
   take_over(handover);
   law_.start(effort_Nm);
-  effort_.reset(effort_Nm);
+  effort_ = {.value = effort_Nm};
 }
 
 JointActuation ImpedanceLaw::step(const JointState& joint, double dt_s) noexcept {
   const MinimumJerk::State& reference = reference_.step(dt_s);
-  return law_.step(reference.position, reference.velocity, effort_.step(dt_s).position, joint);
+  return law_.step(reference.position, reference.velocity, effort_.value, joint);
 }
 
-void ImpedanceLaw::set_point(std::uint32_t which, double value, double duration_s) noexcept {
-  (which == 0 ? reference_ : effort_).move(value, duration_s);
+bool ImpedanceLaw::setpoint_state(std::uint32_t which, SetpointState& state) const noexcept {
+  return which == 0 ? PositionReference::setpoint_state(which, state) : (state = effort_, true);
 }
 
-void ImpedanceLaw::cancel(std::uint32_t which) noexcept { (which == 0 ? reference_ : effort_).stop(cancel_time_s); }
-
-double ImpedanceLaw::remaining_s() const noexcept { return std::max(reference_.remaining_s(), effort_.remaining_s()); }
+void ImpedanceLaw::follow(std::uint32_t which, const SetpointState& state) noexcept {
+  if (which == 0) return PositionReference::follow(which, state);
+  effort_ = state;
+}
 
 namespace {
 

@@ -27,9 +27,8 @@ class ImpedanceLaw : public PositionReference {
   void compute_in_drive(bool in_drive) noexcept { law_.compute_in_drive(in_drive); }
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
-  void set_point(std::uint32_t which, double value, double duration_s) noexcept;
-  void cancel(std::uint32_t which) noexcept;
-  double remaining_s() const noexcept;
+  bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept;
+  void follow(std::uint32_t which, const SetpointState& state) noexcept;
   void pass_state(StateBytes& bytes) noexcept {
     PositionReference::pass_state(bytes);
     bytes(law_, effort_);
@@ -37,7 +36,7 @@ class ImpedanceLaw : public PositionReference {
 
  private:
   SpringDamper law_;
-  MinimumJerk effort_;
+  SetpointState effort_;
 };
 
 std::unique_ptr<ControlObject> make_joint_impedance(const ObjectSetup& setup);

@@ -20,7 +20,7 @@ void ProfileLaw::declare(AxisTables& tables) {
   tables.tunable("acceleration_max_rad_s2", "rad/s2", 0.01, 10000, 10, &c.acceleration_max_rad_s2,
                  "Bound of its acceleration.");
   tables.tunable("jerk_max_rad_s3", "rad/s3", 0.1, 1e6, 200, &c.jerk_max_rad_s3, "Bound of its jerk.");
-  tables.position_setpoint(0);
+  tables.position_setpoint(0, true);
   tables.signal("target_rad", "rad", "Where the motion ends.", &s.target_rad);
   tables.signal("reference_rad", "rad", "Where the joint shall be now.", &s.reference_rad);
   tables.signal("reference_velocity_rad_s", "rad/s", "Its velocity.", &s.reference_velocity_rad_s);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kadans/control/handover.h"
+
 namespace kadans {
 
 SetpointMotions::SetpointMotions(Catalog& catalog, ControlSets& sets)
@@ -35,13 +37,51 @@ MotionProfile SetpointMotions::profile(const SetpointState& from, double target,
   return profile;
 }
 
-void SetpointMotions::begin(const Command& command) noexcept {
-  if (!sets_.runs(setpoints_[command.index].owner)) return;  // it will start where its joints are
-  Motion& motion = motions_[command.index];
+SetpointMotions::Motion& SetpointMotions::activate(SetpointId id) noexcept {
+  Motion& motion = motions_[id];
   if (motion.kind == Motion::Kind::none) {
-    active_.push_back(command.index);
+    active_.push_back(id);
     motion.led = false;
   }
+  return motion;
+}
+
+void SetpointMotions::lead(SetpointId id) noexcept {
+  const SetpointState from = now(id);
+  Motion& motion = activate(id);
+  motion.kind = Motion::Kind::minimum_jerk;
+  motion.minimum_jerk.follow({from.value, from.velocity, from.acceleration});
+  motion.led = true;
+  motion.told = from;
+}
+
+void SetpointMotions::move(SetpointId id, double value, double duration_s) noexcept {
+  const Setpoint& setpoint = setpoints_[id];
+  if (!setpoint.follows || setpoint.own_motion || !(duration_s > 0)) {
+    drop(id);
+    if (setpoint.follows && !setpoint.own_motion) return object(id).follow(setpoint.channel, {.value = value});
+    return object(id).set_point(setpoint.channel, value, duration_s);
+  }
+  if (!sets_.runs(setpoint.owner)) return;  // it will start where its joints are
+  lead(id);
+  motions_[id].minimum_jerk.move(value, duration_s);
+}
+
+void SetpointMotions::cancel(SetpointId id) noexcept {
+  const Setpoint& setpoint = setpoints_[id];
+  if (!setpoint.follows || setpoint.own_motion) {
+    drop(id);
+    return object(id).cancel_motion(setpoint.channel);
+  }
+  const double velocity = now(id).velocity;
+  if (!sets_.runs(setpoint.owner) || (motions_[id].kind == Motion::Kind::none && velocity == 0)) return;
+  lead(id);
+  motions_[id].minimum_jerk.move(now(id).value + 0.5 * cancel_time_s * velocity, cancel_time_s);
+}
+
+void SetpointMotions::begin(const Command& command) noexcept {
+  if (!sets_.runs(setpoints_[command.index].owner)) return;  // it will start where its joints are
+  Motion& motion = activate(command.index);
   if (command.kind == CommandKind::trapezoid) {
     motion.kind = Motion::Kind::trapezoid;
     motion.trapezoid =
@@ -72,6 +112,10 @@ bool SetpointMotions::still_led(SetpointId id) const noexcept {
 }
 
 SetpointState SetpointMotions::advance(Motion& motion, double dt_s) noexcept {
+  if (motion.kind == Motion::Kind::minimum_jerk) {
+    const MinimumJerk::State& state = motion.minimum_jerk.step(dt_s);
+    return {state.position, state.velocity, state.acceleration};
+  }
   if (motion.kind == Motion::Kind::trapezoid) {
     const MotionProfile::State& state = motion.trapezoid.step(dt_s);
     return {state.position, state.velocity, state.acceleration};
@@ -83,6 +127,7 @@ SetpointState SetpointMotions::advance(Motion& motion, double dt_s) noexcept {
 }
 
 double SetpointMotions::remaining_s(const Motion& motion) noexcept {
+  if (motion.kind == Motion::Kind::minimum_jerk) return motion.minimum_jerk.remaining_s();
   if (motion.kind == Motion::Kind::trapezoid) return motion.trapezoid.remaining_s();
   return std::max(0.0, motion.spline.duration_s() - motion.time_s);
 }
@@ -90,6 +135,8 @@ double SetpointMotions::remaining_s(const Motion& motion) noexcept {
 void SetpointMotions::step(double dt_s) noexcept {
   std::erase_if(active_, [&](SetpointId id) {
     Motion& motion = motions_[id];
+    // In the tick of its start an object passes no time.
+    if (motion.kind == Motion::Kind::minimum_jerk && sets_.fresh(setpoints_[id].owner)) return false;
     bool over = !still_led(id);
     if (!over) {
       motion.led = true;
@@ -100,6 +147,14 @@ void SetpointMotions::step(double dt_s) noexcept {
     if (over) motion.kind = Motion::Kind::none;
     return over;
   });
+}
+
+double SetpointMotions::remaining_s(std::uint32_t owner) const noexcept {
+  double left_s = sets_.object(owner).motion_remaining_s();
+  for (const SetpointId id : active_) {
+    if (setpoints_[id].owner == owner) left_s = std::max(left_s, remaining_s(motions_[id]));
+  }
+  return left_s;
 }
 
 void SetpointMotions::fill(Snapshot& snapshot) const noexcept {

@@ -1,14 +1,16 @@
 // Plans motions of set-points above the control objects, so that every object has them: each tick the object is told
-// where its set-point is. (The minimum-jerk motion of a plain set-point is the object's own.)
+// where its set-point is. Some objects plan the way to a plain set-point themselves, because it is their law
+// (Setpoint::own_motion, and those that cannot be led).
 //
-//   trapezoid  speeds up, cruises and slows down within limits of velocity and acceleration (motion_profile.h). The
-//              corners are rounded over corner_s, so that no torque steps. The target may change while it runs.
-//   spline     a curve through points at given times (cubic_spline.h)
+//   minimum jerk  of a plain set-point: to rest at the target in the time given (minimum_jerk.h)
+//   trapezoid     speeds up, cruises and slows down within limits of velocity and acceleration (motion_profile.h). The
+//                 corners are rounded over corner_s, so that no torque steps. The target may change while it runs.
+//   spline        a curve through points at given times (cubic_spline.h)
 //
 // A motion begins with the present position and velocity of the set-point, so it replaces another motion without a
-// jump. A plain set-point or a cancellation ends a motion; the object then goes on from where it was led. A motion is
-// also dropped when its object leaves the control set, or when the object has started anew and its set-point is no
-// longer where it was led.
+// jump. A motion that is cancelled comes to rest in cancel_time_s, after half the way that it would go at its present
+// velocity. A motion is dropped when its object leaves the control set, or when the object has started anew and its
+// set-point is no longer where it was led.
 //
 // One owner, the control thread; nothing here allocates after construction, locks or throws.
 #pragma once
@@ -19,6 +21,7 @@
 #include "cubic_spline.h"
 #include "kadans/control/catalog.h"
 #include "kadans/control/control_sets.h"
+#include "kadans/control/minimum_jerk.h"
 #include "kadans/control/motion_profile.h"
 #include "kadans/signal/command.h"
 
@@ -32,11 +35,15 @@ class SetpointMotions {
   // Whether a command may be given to begin: a known set-point that can be led, limits and durations in their ranges.
   static bool acceptable(const Command& command, const SetpointTable& setpoints) noexcept;
   void begin(const Command& command) noexcept;  // trapezoid or via_point
-  void drop(SetpointId id) noexcept;            // the object goes on by itself
+  // A plain set-point, in its range; a duration of 0 acts at once.
+  void move(SetpointId id, double value, double duration_s) noexcept;
+  void cancel(SetpointId id) noexcept;
   // Each tick, after the commands and before the objects.
   void step(double dt_s) noexcept;
   // Writes into the snapshot where all set-points are, and how long their objects still move.
   void fill(Snapshot& snapshot) const noexcept;
+  // Until the last set-point of the object is reached, motions of its own among them.
+  double remaining_s(std::uint32_t object) const noexcept;
 
   // The motion of a trapezoid with these limits; a duration of 0 is as fast as they allow.
   static MotionProfile profile(const SetpointState& from, double target, double velocity_max, double acceleration_max,
@@ -45,17 +52,21 @@ class SetpointMotions {
 
  private:
   struct Motion {
-    enum class Kind : std::uint8_t { none, trapezoid, spline };
+    enum class Kind : std::uint8_t { none, minimum_jerk, trapezoid, spline };
     Kind kind = Kind::none;
     bool led = false;      // the object has been led in an earlier tick
     SetpointState told;    // where it was led to
     bool planned = false;  // of a spline: plan() was called after its last point
     double time_s = 0;     // of a spline
+    MinimumJerk minimum_jerk;
     MotionProfile trapezoid;
     CubicSpline spline;
   };
   ControlObject& object(SetpointId id) const noexcept { return sets_.object(setpoints_[id].owner); }
   SetpointState now(SetpointId id) const noexcept;
+  Motion& activate(SetpointId id) noexcept;
+  void lead(SetpointId id) noexcept;  // minimum_jerk from now on
+  void drop(SetpointId id) noexcept;
   bool still_led(SetpointId id) const noexcept;
   static SetpointState advance(Motion& motion, double dt_s) noexcept;
   static double remaining_s(const Motion& motion) noexcept;

@@ -148,18 +148,12 @@ void CommandInbox::execute(const Command& command, const ControlInput& input, Sa
       if (catalog_.parameters.set(command.index, command.value))
         retuned_[catalog_.parameters.owner(command.index)] = true;
       break;
-    case CommandKind::set_point: {
-      const Setpoint& setpoint = catalog_.setpoints[command.index];
-      motions_.drop(command.index);
-      sets_.object(setpoint.owner).set_point(setpoint.channel, command.value, command.duration_s);
+    case CommandKind::set_point:
+      motions_.move(command.index, command.value, command.duration_s);
       break;
-    }
-    case CommandKind::cancel_motion: {
-      const Setpoint& setpoint = catalog_.setpoints[command.index];
-      motions_.drop(command.index);
-      sets_.object(setpoint.owner).cancel_motion(setpoint.channel);
+    case CommandKind::cancel_motion:
+      motions_.cancel(command.index);
       break;
-    }
     case CommandKind::switch_set:
       notify_owners();  // an object starts with the parameters set before it
       sets_.switch_to(command.index);
