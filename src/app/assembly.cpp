@@ -51,19 +51,24 @@ bool has_joystick(const ScenarioConfig& scenario, const RobotConfig& robot) {
 }
 
 // Says which robot a behavior plays on.
-class NamedLog final : public BehaviorLog {
+class NamedLog final : public BehaviorLog, private LineSink {
  public:
-  NamedLog(const std::string& robot, BehaviorLog& log) : prefix_(robot + "."), log_(log) {}
-  void transition(const Transition& transition) override {
-    Transition named = transition;
-    named.behavior.insert(0, prefix_);
-    log_.transition(named);
-  }
-  void message(std::int64_t time_ns, Severity severity, const std::string& behavior, const std::string& text) override {
-    log_.message(time_ns, severity, prefix_ + behavior, text);
-  }
+  NamedLog(const std::string& robot, BehaviorLog& log) : prefix_(robot + "."), log_(log) { add(*this); }
 
  private:
+  void tell(const Line& line) override {
+    const std::string behavior = prefix_ + std::string(line.behavior);
+    Line named = line;
+    named.behavior = behavior;
+    Transition transition;
+    if (line.transition != nullptr) {
+      transition = *line.transition;
+      transition.behavior = behavior;
+      named.transition = &transition;
+    }
+    log_.say(named);
+  }
+
   std::string prefix_;
   BehaviorLog& log_;
 };

@@ -29,10 +29,6 @@ void check_near(const Vec3& a, const Vec3& b, double tolerance = 1e-12) {
 std::size_t joint(const char* name) { return *tulip().find_joint(name); }
 std::size_t link(const char* name) { return *tulip().find_link(name); }
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 }  // namespace
 
 TEST_CASE("At zero pose every link's frame is parallel to the base and lies where the table says") {
