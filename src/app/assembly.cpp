@@ -116,7 +116,7 @@ Assembly::Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, Ru
       seed_(seed),
       number_(number),
       log_(log),
-      named_log_(number == 0 ? nullptr : std::make_unique<NamedLog>(scenario.name, log)),
+      named_log_(number == 0 ? nullptr : std::make_shared<NamedLog>(scenario.name, log)),
       link_(link),
       outside_(outside),
       robot_(read_robot(scenario.robot, scenario.plugins)) {

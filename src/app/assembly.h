@@ -115,7 +115,7 @@ class Assembly {
   std::uint64_t seed_;
   std::size_t number_;  // in the world
   RunLog& log_;
-  std::unique_ptr<BehaviorLog> named_log_;  // of a further robot
+  std::shared_ptr<BehaviorLog> named_log_;  // of a further robot
   PlantExchange* link_;
   ProcessHost* outside_;
   Robot robot_;
