@@ -136,7 +136,7 @@ TEST_CASE(
   CHECK(topics_of(project / "run.mcap").count("/base") == 0);
 }
 
-TEST_CASE("A record does not take what is printed when the standard output is closed; that fails") {
+TEST_CASE("A record does not take what is printed when the standard output is closed, and that fails") {
   const fs::path project = project_copy("record_closed_output");
   const std::string command = "cd '" + project.string() + "' && exec '" KADANS_BINARY_DIR "/kadans' " + squat +
                               " --json <&- >&- 2>&-";

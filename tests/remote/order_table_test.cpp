@@ -102,7 +102,7 @@ TEST_CASE("What the table says of an order and its arguments is held") {
   CHECK(brief_refusal({{"verb", "speed"}, {"value", 2}}, true).empty());
   CHECK(brief_refusal({{"verb", "line"}, {"text", "os.exit()"}}).starts_with("'line' is no order"));
   // Without its joints such an order would be about all of them.
-  CHECK(brief_refusal({{"verb", "drive_disable"}, {"joints", "hip"}}).starts_with("unknown field 'joints'"));
+  CHECK(brief_refusal({{"verb", "disable_drives"}, {"joints", "hip"}}).starts_with("unknown field 'joints'"));
   CHECK(brief_refusal({{"verb", "pause"}, {"text", "nod"}}) == "pause takes no \"text\"");
   CHECK(brief_refusal({{"verb", "pause"}, {"text", ""}, {"value", 3}}) == "pause takes no \"value\"");
   CHECK(brief_refusal(Json::array({1})) == "a request needs \"verb\", a string");

@@ -51,6 +51,7 @@ void SetpointMotions::lead(SetpointId id) noexcept {
   Motion& motion = activate(id);
   motion.kind = Motion::Kind::minimum_jerk;
   motion.minimum_jerk.follow({from.value, from.velocity, from.acceleration});
+  object(id).follow(setpoints_[id].channel, from);  // ends the motion by which it comes to rest after its start
   motion.led = true;
   motion.told = from;
 }
