@@ -171,8 +171,8 @@ int run(int argc, char** argv) {
   return app.got_subcommand("sim") ? run_sim(line.sim) : run_check(line.check);
 }
 
-// Else the first files that are opened would get the numbers of those that are closed, and a record what is printed. What
-// is done with them still fails.
+// Else the first files that are opened would get the numbers of those that are closed, and a record what is printed.
+// What is done with them still fails.
 void keep_standard_numbers() {
   for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(number, F_GETFD) < 0) (void)open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);

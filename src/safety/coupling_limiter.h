@@ -8,8 +8,8 @@
 // One owner, the control thread; nothing here allocates or throws after the construction.
 #pragma once
 
-#include "ladder.h"
 #include "kadans/model/transmission.h"
+#include "ladder.h"
 #include "settings.h"
 
 namespace kadans {

@@ -9,11 +9,11 @@
 
 #include <doctest/doctest.h>
 
+#include "assembly.h"
 #include "control/gaze_bench.h"
 #include "control/joint/trajectory_list.h"
 #include "control/leg_robot.h"
 #include "kadans/testing/allocation_count.h"
-#include "assembly.h"
 
 using namespace kadans;
 

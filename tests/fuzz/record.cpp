@@ -1,6 +1,6 @@
-// Records that somebody sends, read in every way that `kadans log` has: as messages and JSON lines; then, in turn by the
-// size of the input, compared, cut, or as tables and pictures. Each line is JSON, what is cut is a whole record, and a
-// record is as itself.
+// Records that somebody sends, read in every way that `kadans log` has: as messages and JSON lines; then, in turn by
+// the size of the input, compared, cut, or as tables and pictures. Each line is JSON, what is cut is a whole record,
+// and a record is as itself.
 #include <nlohmann/json.hpp>
 
 #include "fuzz_input.h"

@@ -86,7 +86,8 @@ TEST_CASE("what is stopped takes those of its group with it") {
 TEST_CASE("what ends takes with it those of its group that it leaves behind") {
   int ends[2];
   REQUIRE(pipe2(ends, O_CLOEXEC) == 0);
-  ChildProcess process({.words = {"sh", "-c", "sleep 1000 & exit 4"}, .files = {no_file, ends[1], no_file}, .own_group = true});
+  ChildProcess process(
+      {.words = {"sh", "-c", "sleep 1000 & exit 4"}, .files = {no_file, ends[1], no_file}, .own_group = true});
   close(ends[1]);
   process.wait();
   CHECK(process.exit_code() == 4);

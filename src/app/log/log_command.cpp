@@ -15,7 +15,6 @@
 #include "signal/number_text.h"
 #include "telemetry/plot/signal_plot.h"
 #include "telemetry/reading/record_export.h"
-#include "telemetry/reading/record_export.h"
 
 namespace kadans {
 

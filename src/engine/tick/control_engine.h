@@ -23,8 +23,9 @@
 namespace kadans {
 
 // What a rehearsal of the tick works on. Between two ticks the CPU works for others, and afterwards the tick's code and
-// memory are no longer in its caches: a tick of one microsecond takes five. Therefore, in the last part of its wait, the
-// control thread goes through the tick beforehand: it calls the same functions, on copies of what they would change.
+// memory are no longer in its caches: a tick of one microsecond takes five. Therefore, in the last part of its wait,
+// the control thread goes through the tick beforehand: it calls the same functions, on copies of what they would
+// change.
 //
 // A rehearsal changes nothing that counts. It reads and writes no plant, takes no command and publishes nothing. So a
 // run with rehearsals computes the same as a run without (tests/engine/rehearsal_test.cpp). It allocates nothing and
