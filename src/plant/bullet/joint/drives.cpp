@@ -87,7 +87,8 @@ void Drives::read_motion() {
     position_rad_[i] = body_->getJointPos(static_cast<int>(i));
     velocity_rad_s_[i] = body_->getJointVel(static_cast<int>(i));
   }
-  for (const auto& [t, own] : couplings_) {
+  for (const Coupling& coupling : couplings_) {
+    const Transmission& t = coupling.transmission;
     map_pair(t, position_rad_, [&](const auto& joints) { return t.drive_position_rad(joints); });
     map_pair(t, velocity_rad_s_, [&](const auto& joints) { return t.drive_velocity_rad_s(joints); });
   }
@@ -100,11 +101,12 @@ void Drives::begin_step(const ModelledDrives& electronics, double dt_s) {
     drives_[i].brake(electronics.braked(i));
     torque_Nm_[i] = drives_[i].begin_step(position_rad_[i], velocity_rad_s_[i], dt_s);
   }
-  for (auto& [t, own] : couplings_) {
+  for (Coupling& coupling : couplings_) {
+    const Transmission& t = coupling.transmission;
     map_pair(t, torque_Nm_, [&](const auto& drives) { return t.joint_effort_Nm(drives); });
     for (std::size_t i = 0; i < 2; ++i) {
       const int joint = static_cast<int>(t.joints()[i]);
-      own[i].begin_step(body_->getJointPos(joint), body_->getJointVel(joint), dt_s);
+      coupling.own[i].begin_step(body_->getJointPos(joint), body_->getJointVel(joint), dt_s);
     }
   }
   for (std::size_t i = 0; i < drives_.size(); ++i) body_->addJointTorque(static_cast<int>(i), torque_Nm_[i]);
@@ -116,12 +118,13 @@ void Drives::end_step(double dt_s) {
     drives_[i].end_step(position_rad_[i], velocity_rad_s_[i], dt_s);
     joint_torque_Nm_[i] = drives_[i].state().joint_torque_Nm;
   }
-  for (auto& [t, own] : couplings_) {
+  for (Coupling& coupling : couplings_) {
+    const Transmission& t = coupling.transmission;
     map_pair(t, joint_torque_Nm_, [&](const auto& drives) { return t.joint_effort_Nm(drives); });
     for (std::size_t i = 0; i < 2; ++i) {
       const int joint = static_cast<int>(t.joints()[i]);
-      own[i].end_step(body_->getJointPos(joint), body_->getJointVel(joint), dt_s);
-      joint_torque_Nm_[t.joints()[i]] += own[i].state().joint_torque_Nm;
+      coupling.own[i].end_step(body_->getJointPos(joint), body_->getJointVel(joint), dt_s);
+      joint_torque_Nm_[t.joints()[i]] += coupling.own[i].state().joint_torque_Nm;
     }
   }
 }
