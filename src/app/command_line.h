@@ -7,15 +7,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/author/behavior_command.h"
-#include "app/author/repl_command.h"
-#include "app/author/stubs_command.h"
-#include "app/ctl/ctl_command.h"
-#include "app/live/page_commands.h"
-#include "app/log/log_command.h"
-#include "app/sim/replay_command.h"
-#include "app/sweep/sweep_command.h"
-#include "app/sweep/tune_command.h"
 #include "commands.h"
 
 namespace kadans {

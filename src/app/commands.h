@@ -2,15 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "app/ctl/ctl_service.h"
-#include "app/live/live_service.h"
-#include "app/ros2/ros2_service.h"
 #include "app/run/run_request.h"
+#include "assembly.h"
+#include "campaign/sweep/tuning_score.h"
+#include "config/scenario/scenario_config.h"
 #include "record_options.h"
+#include "services.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;
@@ -142,5 +145,172 @@ struct NewControlObjectOptions {
 };
 void add_new(CLI::App& app, NewControlObjectOptions& options);
 int run_new_control_object(const NewControlObjectOptions& options);
+
+// `kadans replay`: runs a record again, with the files on the disk or with those inside the record, and compares every
+// recorded signal in every tick, bit for bit. It prints that everything is the same, or where the runs differ and which
+// inputs changed. With the record's own files, only a change of the program or of its libraries can make a difference.
+struct ReplayOptions {
+  std::string record;
+  bool from_record = false;  // use its files instead of those on the disk
+  bool allow_plugins = false;
+  bool json = false;
+};
+
+void add_replay(CLI::App& app, ReplayOptions& options);
+// Returns 0 when everything is the same, else 1. Throws InputError when the record cannot be run again.
+int run_replay(const ReplayOptions& options);
+
+// `kadans sweep` runs the cases of a plan, each in a process of its own. `kadans merge` makes one table of the results
+// of several sweeps of the same plan.
+struct SweepOptions {
+  std::string plan;
+  std::optional<std::uint32_t> cases;
+  std::optional<std::uint64_t> seed;
+  unsigned jobs = 0;  // 0: one for each core
+  std::string shard;  // "0/4"; "": the shard of a Slurm array, else all cases
+  std::string out;    // "": sweeps/NAME-HASH in the working directory
+  bool json = false;
+};
+void add_sweep(CLI::App& app, SweepOptions& options);
+int run_sweep(const SweepOptions& options);
+
+struct MergeOptions {
+  std::vector<std::string> folders;
+  std::string sqlite, csv, heat_map;  // files, or ""
+  std::string x, y, metric;           // of the heat map; "": the plan's
+  bool json = false;
+};
+void add_merge(CLI::App& app, MergeOptions& options);
+int run_merge(const MergeOptions& options);
+
+// Checks a plan beyond its fields: patterns, ranges, signals. Throws InputError with all mistakes. Returns a
+// description of the plan.
+std::string check_sweep_plan(const std::string& file, const PluginGate& gate);
+
+// `kadans tune`: searches the parameters with which the scenarios have the best score. The search is a separate
+// program, kadans-tune, beside this one, because its library takes longer to load than a short run takes.
+struct TuneOptions {
+  std::string plan;
+  std::optional<std::uint64_t> seed;
+  std::optional<std::uint32_t> generations, runs;
+  unsigned jobs = 0;
+  std::string shard;
+  double wait_s = 600;  // time to wait for the other shards' part of a generation
+  std::string out;      // folder; "": tunings/NAME-HASH
+  std::string write;    // file; "": robot.json in that folder
+  bool overwrite = false;
+  bool json = false;
+};
+void add_tune(CLI::App& app, TuneOptions& options);
+
+// Replaces this process by kadans-tune with the same arguments. Throws InputError when that fails.
+int start_tune_program(char** argv);
+
+// The robot of all scenarios of the plan. Throws InputError when they have different robots.
+Robot tuned_robot(const TunePlan& plan, const PluginGate& gate = {});
+// The parameters of the robot that the plan tunes. Throws InputError for a pattern that chooses nothing, for a range
+// outside a parameter's range, and for a start outside the range.
+std::vector<TunedAxis> tuned_axes(const TunePlan& plan, const Robot& robot);
+
+// Checks a plan beyond its fields. Throws InputError with all mistakes. Returns a description of the plan.
+std::string check_tune_plan(const std::string& file, const PluginGate& gate);
+
+// `kadans behavior check | graph | test`: commands for the author of a behavior, before it moves a robot.
+struct BehaviorOptions {
+  std::vector<std::string> files;
+  std::string robot;               // configuration; "": the one for the behavior's folder
+  std::string format = "mermaid";  // format of the graph: mermaid, dot or svg
+  std::string only;                // run only tests whose names contain this
+  std::string junit;
+  bool json = false;
+  bool plugins = false;  // check loads plug-ins
+};
+
+void add_behavior(CLI::App& app, BehaviorOptions& options);
+// After parsing. Returns the program's exit code.
+int run_behavior(const CLI::App& app, const BehaviorOptions& options);
+int run_behavior_test(const BehaviorOptions& options);
+
+// `kadans repl`: a console in a simulation. On a terminal the simulation runs at the pace of the wall clock meanwhile.
+// From a pipe time passes only by `:run`, so the output is repeatable.
+struct ReplOptions {
+  std::string scenario;  // "": the project's only robot, and nothing plays
+  std::string play;      // replaces the scenario's list
+  std::optional<std::uint64_t> seed;
+  double speed = 1;  // on a terminal: simulated seconds per second; 0: time passes only by :run
+};
+
+void add_repl(CLI::App& app, ReplOptions& options);
+// After parsing. Returns the program's exit code.
+int run_repl(const ReplOptions& options);
+
+// `kadans lua-stubs` and `kadans params`: show the tables of a robot and of a behavior, for editors and for people.
+struct StubsOptions {
+  std::string robot, output = ".";
+  bool markdown = false;
+};
+void add_stubs(CLI::App& app, StubsOptions& options);
+int run_stubs(const StubsOptions& options);
+
+struct ParamsOptions {
+  std::string file, robot;
+  bool json = false;
+};
+void add_params(CLI::App& app, ParamsOptions& options);
+int run_params(const ParamsOptions& options);
+
+// `kadans ctl`: talks to a running instance.
+struct CtlOptions {
+  std::string socket;  // "": the usual places
+  bool json = false;
+  bool names = false;                                                               // list only the names
+  std::optional<long> count;                                                        // of samples; nullopt: until Ctrl-C
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
+};
+
+void add_ctl(CLI::App& app, CtlOptions& options);
+// After parsing. Returns the program's exit code.
+int run_ctl(const CLI::App& app, const CtlOptions& options);
+
+struct CompletionOptions {
+  std::string shell;  // "bash" or "zsh"
+};
+void add_completion(CLI::App& app, CompletionOptions& options);
+// Prints the completion script.
+int run_completion(const CLI::App& app, const CompletionOptions& options);
+
+// `kadans view` shows a record in the web page; `kadans render` makes pictures of it.
+struct ViewOptions {
+  std::string record;
+  LiveServiceOptions live;
+};
+void add_view(CLI::App& app, ViewOptions& options);
+// Serves the record until SIGINT or SIGTERM.
+int run_view(const ViewOptions& options);
+
+struct RenderOptions {
+  std::string record;
+  std::optional<double> at_s, every_s;
+  bool film = false;
+  int frames_per_s = 20;
+  std::string out;  // file, or a folder with every_s; "": named as the record, in the working directory
+  std::string theme = "light", size = "960x720";
+};
+void add_render(CLI::App& app, RenderOptions& options);
+int run_render(const RenderOptions& options);
+
+// `kadans log`: shows what is in a record, without running anything.
+struct LogOptions {
+  std::string file, other;           // other: the second record of diff
+  std::vector<std::string> signals;  // names or patterns
+  std::vector<std::string> topics;
+  std::optional<double> from_s, to_s, every_s;
+  std::string out;
+  double tolerance = 0;
+  bool json = false;
+  bool force = false;  // replaces an existing output file
+};
+void add_log(CLI::App& app, LogOptions& options);
+int run_log(const CLI::App& app, const LogOptions& options);
 
 }  // namespace kadans

@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/live/live_service.h"
 #include "option_checks.h"
+#include "services.h"
 
 namespace kadans {
 

@@ -10,7 +10,7 @@
 #include "control/balance/dcm_balance.h"
 #include "control/balance/dcm_step.h"
 #include "control/balance/stance.h"
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 
 namespace kadans {
 

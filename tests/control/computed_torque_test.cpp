@@ -1,5 +1,3 @@
-#include "control/dynamics/computed_torque.h"
-
 #include <cmath>
 #include <limits>
 
@@ -7,6 +5,7 @@
 
 #include "arm_bench.h"
 #include "kadans/testing/allocation_count.h"
+#include "made_objects.h"
 
 using namespace kadans;
 using kadans::test::ArmBench;
@@ -142,7 +141,7 @@ TEST_CASE("ComputedTorque does not hide a joint that is not measured, nor let it
 
 TEST_CASE("ComputedTorque refuses a passive joint") {
   const RobotModel model = kadans::test::arm();
-  CHECK_THROWS_WITH_AS(ComputedTorque({model, {2}}), "joint spin is passive: it has no motor to control",
+  CHECK_THROWS_WITH_AS(make_computed_torque({model, {2}}), "joint spin is passive: it has no motor to control",
                        std::invalid_argument);
 }
 

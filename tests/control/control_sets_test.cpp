@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "control/joint/joint_pid.h"
+#include "made_objects.h"
 #include "two_joint_robot.h"
 
 using namespace kadans;

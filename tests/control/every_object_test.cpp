@@ -5,16 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "control/joint/feedforward_player.h"
-#include "control/joint/joint_cascade.h"
-#include "control/joint/joint_impedance.h"
-#include "control/joint/joint_integrator.h"
-#include "control/joint/joint_pid.h"
-#include "control/joint/joint_velocity.h"
-#include "control/joint/profile_position.h"
 #include "control/joint/trajectory_list.h"
 #include "kadans/testing/allocation_count.h"
 #include "kadans/testing/real_time_guard.h"
+#include "made_objects.h"
 #include "object_bench.h"
 
 using namespace kadans;

@@ -5,17 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "control/dynamics/computed_torque.h"
-#include "control/dynamics/gravity_compensation.h"
-#include "control/joint/feedforward_player.h"
-#include "control/joint/joint_cascade.h"
-#include "control/joint/joint_impedance.h"
-#include "control/joint/joint_integrator.h"
-#include "control/joint/joint_pid.h"
-#include "control/joint/joint_velocity.h"
-#include "control/joint/profile_position.h"
 #include "control/joint/trajectory_list.h"
 #include "kadans/testing/doctest.h"
+#include "made_objects.h"
 
 using namespace kadans;
 using namespace kadans::testing;

@@ -1,11 +1,10 @@
-#include "control/joint/feedforward_player.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <doctest/doctest.h>
 
+#include "made_objects.h"
 #include "object_bench.h"
 
 using namespace kadans;

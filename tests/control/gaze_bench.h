@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "control/gaze/gaze.h"
+#include "made_objects.h"
 #include "tested_object.h"
 
 namespace kadans::test {

@@ -1,5 +1,3 @@
-#include "control/gaze/gaze.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,7 +23,7 @@ Vec3 aside(double angle_deg) {
 
 std::string refusal(const RobotModel& model, std::vector<std::size_t> joints, ObjectOptions options) {
   try {
-    const Gaze object({model, std::move(joints), std::move(options)});
+    (void)make_gaze({model, std::move(joints), std::move(options)});
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

@@ -1,5 +1,3 @@
-#include "control/dynamics/gravity_compensation.h"
-
 #include <cmath>
 #include <limits>
 
@@ -7,6 +5,7 @@
 
 #include "arm_bench.h"
 #include "kadans/testing/allocation_count.h"
+#include "made_objects.h"
 
 using namespace kadans;
 using kadans::test::ArmBench;

@@ -1,9 +1,8 @@
-#include "control/joint/joint_cascade.h"
-
 #include <algorithm>
 
 #include <doctest/doctest.h>
 
+#include "made_objects.h"
 #include "object_bench.h"
 
 using namespace kadans;

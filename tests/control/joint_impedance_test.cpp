@@ -1,10 +1,9 @@
-#include "control/joint/joint_impedance.h"
-
 #include <map>
 #include <string>
 
 #include <doctest/doctest.h>
 
+#include "made_objects.h"
 #include "object_bench.h"
 
 using namespace kadans;

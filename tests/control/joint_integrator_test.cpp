@@ -1,10 +1,9 @@
-#include "control/joint/joint_integrator.h"
-
 #include <algorithm>
 
 #include <doctest/doctest.h>
 
 #include "kadans/signal/random.h"
+#include "made_objects.h"
 #include "object_bench.h"
 
 using namespace kadans;

@@ -1,8 +1,7 @@
 // What JointPid adds to pid_test.cpp and every_object_test.cpp.
-#include "control/joint/joint_pid.h"
-
 #include <doctest/doctest.h>
 
+#include "made_objects.h"
 #include "object_bench.h"
 
 using namespace kadans;

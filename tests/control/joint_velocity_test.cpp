@@ -1,7 +1,6 @@
-#include "control/joint/joint_velocity.h"
-
 #include <doctest/doctest.h>
 
+#include "made_objects.h"
 #include "object_bench.h"
 
 using namespace kadans;

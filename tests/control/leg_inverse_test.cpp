@@ -1,10 +1,9 @@
-#include "control/balance/leg_inverse.h"
-
 #include <cmath>
 #include <stdexcept>
 
 #include <doctest/doctest.h>
 
+#include "control/balance/dcm_step.h"
 #include "kadans/model/kinematics.h"
 #include "leg_robot.h"
 

@@ -1,10 +1,9 @@
-#include "control/balance/leg_load.h"
-
 #include <array>
 
 #include <doctest/doctest.h>
 
 #include "biped.h"
+#include "control/balance/stance.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;

@@ -1,9 +1,9 @@
 // Several control sets at once: those that share no joint go on side by side.
 #include <doctest/doctest.h>
 
-#include "control/joint/joint_pid.h"
 #include "kadans/control/control_sets.h"
 #include "kadans/testing/allocation_count.h"
+#include "made_objects.h"
 #include "two_joint_robot.h"
 
 using namespace kadans;
@@ -37,7 +37,7 @@ struct Bench {
   void make(const std::vector<std::pair<std::string, std::vector<std::size_t>>>& wanted) {
     std::vector<std::unique_ptr<ControlObject>> objects;
     for (const auto& [name, driven] : wanted) {
-      objects.push_back(std::make_unique<JointPid>(ObjectSetup{model, driven}));
+      objects.push_back(make_joint_pid(ObjectSetup{model, driven}));
       Declaration declaration(name, static_cast<std::uint32_t>(objects.size() - 1), catalog.parameters,
                               catalog.setpoints, catalog.signals);
       objects.back()->declare(declaration);

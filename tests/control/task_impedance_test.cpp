@@ -1,5 +1,3 @@
-#include "control/dynamics/task_impedance.h"
-
 #include <cmath>
 #include <limits>
 
@@ -7,6 +5,7 @@
 
 #include "arm_bench.h"
 #include "kadans/testing/allocation_count.h"
+#include "made_objects.h"
 
 using namespace kadans;
 using kadans::test::ArmBench;
@@ -27,7 +26,7 @@ ArmBench tuned() {
 std::string refusal(ObjectOptions options, std::vector<std::size_t> joints) {
   const RobotModel model = kadans::test::arm();
   try {
-    const TaskImpedance object({model, std::move(joints), std::move(options)});
+    (void)make_task_impedance({model, std::move(joints), std::move(options)});
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

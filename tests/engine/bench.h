@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 #include "engine/behavior_engine.h"
 #include "engine/lockstep.h"
 #include "engine/tick/control_engine.h"
@@ -57,7 +57,7 @@ inline std::vector<std::unique_ptr<ControlObject>> posture(Catalog& catalog, con
     objects.push_back(std::move(object));
     catalog.objects.push_back({.name = name, .joints = {0, 1}});
   };
-  for (const char* name : {"posture", "spare"}) add(name, std::make_unique<JointPid>(ObjectSetup{model, {0, 1}}));
+  for (const char* name : {"posture", "spare"}) add(name, make_joint_pid(ObjectSetup{model, {0, 1}}));
   if (at_drives) {
     add("drives", std::move(at_drives));
     catalog.at_drives = {2};

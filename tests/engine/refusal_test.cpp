@@ -16,7 +16,7 @@ std::vector<std::unique_ptr<ControlObject>> single_joints(Catalog& catalog, cons
   auto objects = bench::posture(catalog, model);
   for (std::size_t joint = 0; joint < 2; ++joint) {
     const std::string name = model.joints[joint].name + "_alone";
-    objects.push_back(std::make_unique<JointPid>(ObjectSetup{model, {joint}}));
+    objects.push_back(make_joint_pid(ObjectSetup{model, {joint}}));
     const auto index = static_cast<std::uint32_t>(objects.size() - 1);
     Declaration declaration(name, index, catalog.parameters, catalog.setpoints, catalog.signals);
     objects.back()->declare(declaration);

@@ -13,7 +13,7 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
 #include "live_program.h"
-#include "script/process/catalog_fingerprint.h"
+#include "script/process/behavior_link.h"
 #include "script/process/process_host.h"
 
 using namespace kadans;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 
 namespace kadans::failures {
 namespace {

@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include "kadans/signal/random.h"
-#include "plant/udp/arrivals.h"
 #include "plant/udp/wire.h"
 #include "signal/crc32.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 #include "kadans/testing/doctest.h"
 
 using namespace kadans;

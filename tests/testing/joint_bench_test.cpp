@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 #include "kadans/testing/allocation_count.h"
 
 using namespace kadans;

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 #include "kadans/testing/doctest.h"
 
 using namespace kadans;

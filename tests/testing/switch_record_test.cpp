@@ -1,6 +1,6 @@
 #include "kadans/testing/switch_record.h"
 
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 #include "kadans/testing/doctest.h"
 
 using namespace kadans;

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 #include "kadans/testing/doctest.h"
 
 using namespace kadans;

@@ -1,7 +1,7 @@
 // All control objects, and the control sets in which they work together. Sets are built and checked before the loop.
 // The active sets have no joint in common (set_partition.h). The objects of an active set compute in the order of the
 // set; their proposals for a joint are composed (composition.h). A joint that no active set holds does what the
-// configuration says (unheld_joints.h). A change of the active sets makes no step in torque (switchover.h) and concerns
+// configuration says (set_partition.h). A change of the active sets makes no step in torque (switchover.h) and concerns
 // only the joints of the sets that come or leave. It costs the start of the objects that come in, whatever the number
 // of sets.
 //
@@ -22,7 +22,7 @@
 #include "kadans/control/control_object.h"
 #include "kadans/control/set_partition.h"
 #include "kadans/control/switchover.h"
-#include "kadans/control/unheld_joints.h"
+#include "set_partition.h"
 
 namespace kadans {
 

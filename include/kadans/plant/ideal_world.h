@@ -3,10 +3,10 @@
 // integrators themselves, and the joints follow them.
 #pragma once
 
-#include "kadans/plant/modelled_channels.h"
 #include "kadans/plant/modelled_drives.h"
 #include "kadans/plant/settings.h"
 #include "kadans/plant/world.h"
+#include "modelled_drives.h"
 
 namespace kadans {
 

@@ -1,5 +1,3 @@
-#include "behavior_command.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -11,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/assembly.h"
+#include "app/commands.h"
 #include "app/terminal.h"
 #include "behavior_stage.h"
 #include "campaign/suite/suite_report.h"

@@ -8,9 +8,8 @@
 
 #include <glob.h>
 
+#include "app/commands.h"
 #include "app/sim/played_behaviors.h"
-#include "app/sweep/sweep_command.h"
-#include "app/sweep/tune_command.h"
 #include "behavior_stage.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"

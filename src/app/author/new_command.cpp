@@ -1,17 +1,296 @@
+// `kadans new`: writes the files of a new control object. In the templates @type@ and @Class@ stand for its names.
+// Their control law is a spring and a damper: a working example that the author replaces.
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "campaign/work/durable_file.h"
-#include "control_object_project.h"
 #include "kadans/signal/input_error.h"
 #include "signal/shell_word.h"
 
 namespace kadans {
+
+inline constexpr std::string_view header_template =
+    R"(// Control object "@type@": what it does in one sentence, and where its law comes from.
+//
+//   torque = stiffness (reference - position) - damping velocity
+//
+// Set-points  <joint>.position_rad
+// Parameters  <joint>.stiffness_Nm_per_rad, <joint>.damping_Nms_per_rad
+// Signals     <joint>.reference_rad, <joint>.effort_Nm
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kadans/control/control_object.h"
+
+class @Class@ final : public kadans::ControlObject {
+ public:
+  // Throws std::invalid_argument for a joint without a motor.
+  explicit @Class@(const kadans::ObjectSetup& setup);
+
+  void declare(kadans::Declaration& declaration) override;
+  void start(const kadans::ControlInput& input) noexcept override;
+  void step(const kadans::ControlInput& input, kadans::ActuationFrame& actuation) noexcept override;
+  bool setpoint_state(std::uint32_t channel, kadans::SetpointState& state) const noexcept override;
+  void follow(std::uint32_t channel, const kadans::SetpointState& state) noexcept override;
+  void pass_state(kadans::StateBytes& bytes) noexcept override;
+
+ private:
+  struct Axis {  // one joint: its tunables, and its state, which is recorded
+    std::size_t joint;
+    std::string name;
+    double lower_rad, upper_rad;
+    double stiffness_Nm_per_rad = 0, damping_Nms_per_rad = 0;
+    kadans::SetpointState reference{};
+    double effort_Nm = 0;
+  };
+  std::vector<Axis> axes_;
+};
+
+std::unique_ptr<kadans::ControlObject> make_@type@(const kadans::ObjectSetup& setup);
+)";
+
+inline constexpr std::string_view source_template = R"(#include "@type@.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+using namespace kadans;
+
+@Class@::@Class@(const ObjectSetup& setup) {
+  for (const std::size_t index : setup.joints) {
+    const Joint& joint = setup.model.joints.at(index);
+    if (joint.passive()) throw std::invalid_argument("joint " + joint.name + " has no motor");
+    axes_.push_back({index, joint.name, std::max(joint.lower_rad, -1e6), std::min(joint.upper_rad, 1e6)});
+  }
+}
+
+void @Class@::declare(Declaration& declaration) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    Axis& axis = axes_[i];
+    declaration.parameter({.name = axis.name + ".stiffness_Nm_per_rad", .unit = "Nm/rad", .min = 0, .max = 1000,
+                           .initial = 50, .doc = "Torque per position error."},
+                          &axis.stiffness_Nm_per_rad);
+    declaration.parameter({.name = axis.name + ".damping_Nms_per_rad", .unit = "Nm s/rad", .min = 0, .max = 100,
+                           .initial = 2, .doc = "Torque against the velocity."},
+                          &axis.damping_Nms_per_rad);
+    declaration.setpoint({.name = axis.name + ".position_rad", .unit = "rad", .min = axis.lower_rad,
+                          .max = axis.upper_rad, .doc = "Where the joint shall be.",
+                          .channel = static_cast<std::uint32_t>(i), .joint = static_cast<std::uint32_t>(axis.joint)});
+    declaration.signal({axis.name + ".reference_rad", "rad", "Set-point of the position."}, &axis.reference.value);
+    declaration.signal({axis.name + ".effort_Nm", "Nm", "Torque computed."}, &axis.effort_Nm);
+  }
+}
+
+// Takes over where the joint is; what is left of a step in torque the framework fades out.
+void @Class@::start(const ControlInput& input) noexcept {
+  for (Axis& axis : axes_) {
+    axis.reference = {.value = std::clamp(input.joints.joints[axis.joint].position_rad, axis.lower_rad, axis.upper_rad)};
+  }
+}
+
+// Each tick: no allocation, no lock, no exception, no clock.
+void @Class@::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
+  for (Axis& axis : axes_) {
+    const JointState& joint = input.joints.joints[axis.joint];
+    axis.effort_Nm = axis.stiffness_Nm_per_rad * (axis.reference.value - joint.position_rad) -
+                     axis.damping_Nms_per_rad * joint.velocity_rad_s;
+    actuation.joints[axis.joint] = {.effort_Nm = axis.effort_Nm, .mode = ActuationMode::effort};
+  }
+}
+
+// The engine plans how the set-point gets to where it shall be, and leads the object along.
+bool @Class@::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+  return state = axes_[channel].reference, true;
+}
+
+void @Class@::follow(std::uint32_t channel, const SetpointState& state) noexcept { axes_[channel].reference = state; }
+
+// All that changes from tick to tick, to save and restore it.
+void @Class@::pass_state(StateBytes& bytes) noexcept {
+  for (Axis& axis : axes_) bytes(axis.reference, axis.effort_Nm);
+}
+
+std::unique_ptr<ControlObject> make_@type@(const ObjectSetup& setup) { return std::make_unique<@Class@>(setup); }
+)";
+
+inline constexpr std::string_view test_template = R"(#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include "@type@.h"
+
+#include <kadans/testing/doctest.h>
+
+using namespace kadans;
+using namespace kadans::testing;
+
+namespace {
+
+// A joint like a knee: a light leg, the rotor, some friction.
+JointBenchConfig knee() {
+  return {.plant = {.inertia_kg_m2 = 0.05, .rotor_inertia_kg_m2 = 0.02, .viscous_Nms_per_rad = 0.2, .torque_max_Nm = 50}};
+}
+
+}  // namespace
+
+TEST_CASE("@Class@ reaches its set-point without much overshoot") {
+  JointBench bench(knee(), make_@type@);
+  CHECK(step_response(bench, {.to = 0.3}) <= StepLimits{.rise_time_s = 0.15, .overshoot_percent = 15, .settling_time_s = 0.6});
+}
+
+TEST_CASE("@Class@ keeps a margin for delay") {
+  JointBench bench(knee(), make_@type@);
+  const LoopMargins found = margins(measure_loop(bench, {}));
+  INFO(found);
+  CHECK(found.phase_margin_deg > 30);
+}
+
+TEST_CASE("@Class@ takes over from itself without a step") {
+  JointBench bench(knee(), {{"before", make_@type@}, {"after", make_@type@}});
+  bench.set_point(0.4, 0.5);
+  bench.run(1.0);
+  CHECK(record_switch(bench, "after") <= SwitchLimits{});
+}
+
+TEST_CASE("@Class@ holds still where it begins") {
+  JointBench bench(knee(), make_@type@);
+  bench.run(0.01);
+  CHECK(bench.not_finite_ticks() == 0);
+  CHECK(bench.signal("effort_Nm") == doctest::Approx(0));
+}
+
+TEST_CASE("@Class@ steps without allocating") {
+  JointBench bench(knee(), make_@type@);
+  bench.set_point(0.2, 0.1);
+  const AllocationCount heap;
+  for (int i = 0; i < 200; ++i) bench.tick();
+  const long allocations = heap.count();
+  CHECK(allocations == 0);
+}
+)";
+
+inline constexpr std::string_view program_template =
+    R"(// kadans, with "@type@" among the types of control objects: sim, check and all the rest.
+#include <kadans/app/program.h>
+#include <kadans/control/control_object_types.h>
+
+#include "@type@.h"
+
+KADANS_REGISTER_CONTROL_OBJECT("@type@", make_@type@);
+
+int main(int argc, char** argv) { return kadans::run_program(argc, argv); }
+)";
+
+inline constexpr std::string_view plugin_template =
+    R"(// "@type@" as a plug-in: name @type@.so under "plugins" in the robot's configuration.
+#include <kadans/control/plugin.h>
+
+#include "@type@.h"
+
+KADANS_PLUGIN(kadans::plugin_type<make_@type@>("@type@"))
+)";
+
+inline constexpr std::string_view cmake_template = R"(cmake_minimum_required(VERSION 3.25)
+project(@type@ LANGUAGES CXX)
+if(NOT TARGET kadans::kadans)
+  find_package(kadans 0.1 REQUIRED)
+endif()
+enable_testing()
+
+add_executable(@type@_test @type@.cpp @type@_test.cpp)
+target_link_libraries(@type@_test PRIVATE kadans::testing kadans::control)
+add_test(NAME @type@ COMMAND @type@_test)
+)";
+
+inline constexpr std::string_view cmake_program_template = R"(
+# The program with the new type in it: build/kadans_@type@ sim SCENARIO
+add_executable(kadans_@type@ main.cpp @type@.cpp)
+target_link_libraries(kadans_@type@ PRIVATE kadans::kadans)
+)";
+
+inline constexpr std::string_view cmake_plugin_template = R"(
+# The plug-in: build/@type@.so
+kadans_plugin(@type@ SOURCES plugin.cpp @type@.cpp)
+)";
+
+// The files that `kadans new control-object` writes: a folder with a control object, its test, and a program or a
+// plug-in that contains it. The folder builds and its test passes without changes, on its own (find_package(kadans))
+// and as a subdirectory of a project that already contains Kadans.
+struct ProjectFile {
+  std::string name;
+  std::string text;
+};
+
+struct ControlObjectNames {
+  std::string type;        // "knee_damper": the name of the type, the folder and the files
+  std::string class_name;  // "KneeDamper"
+};
+
+namespace {
+
+constexpr std::size_t name_max = 48;
+
+// Replaces every "@type@" and "@Class@" in a template.
+std::string filled(std::string_view text, const ControlObjectNames& names) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    if (text.substr(i).starts_with("@type@")) {
+      result += names.type;
+      i += 6;
+    } else if (text.substr(i).starts_with("@Class@")) {
+      result += names.class_name;
+      i += 7;
+    } else {
+      result += text[i++];
+    }
+  }
+  return result;
+}
+
+bool good(const std::string& type) {
+  if (type.empty() || type.size() > name_max || type.back() == '_' || type.find("__") != std::string::npos)
+    return false;
+  if (!(type[0] >= 'a' && type[0] <= 'z')) return false;
+  return std::ranges::all_of(type, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+}  // namespace
+
+// Throws std::invalid_argument unless the name consists of words of a-z and 0-9 that begin with a letter and are joined
+// by _.
+ControlObjectNames control_object_names(const std::string& type) {
+  if (!good(type)) {
+    throw std::invalid_argument("a control object's name is words of a-z and 0-9 joined by _, at most " +
+                                std::to_string(name_max) + " letters, for example knee_damper");
+  }
+  ControlObjectNames names{type, {}};
+  bool begins = true;
+  for (const char c : type) {
+    if (c != '_') names.class_name += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    begins = c == '_';
+  }
+  return names;
+}
+
+std::vector<ProjectFile> control_object_project(const ControlObjectNames& names, bool plugin) {
+  std::vector<ProjectFile> files{{names.type + ".h", filled(header_template, names)},
+                                 {names.type + ".cpp", filled(source_template, names)},
+                                 {names.type + "_test.cpp", filled(test_template, names)}};
+  files.push_back({plugin ? "plugin.cpp" : "main.cpp", filled(plugin ? plugin_template : program_template, names)});
+  files.push_back({"CMakeLists.txt", filled(cmake_template, names) +
+                                         filled(plugin ? cmake_plugin_template : cmake_program_template, names)});
+  return files;
+}
 
 namespace fs = std::filesystem;
 

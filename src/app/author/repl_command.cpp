@@ -1,5 +1,3 @@
-#include "repl_command.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,6 +8,7 @@
 #include <unistd.h>
 
 #include "app/assembly.h"
+#include "app/commands.h"
 #include "app/line_editor.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"

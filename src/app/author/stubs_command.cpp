@@ -1,5 +1,3 @@
-#include "stubs_command.h"
-
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/assembly.h"
+#include "app/commands.h"
 #include "app/terminal.h"
 #include "behavior_stage.h"
 #include "campaign/work/durable_file.h"

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "ctl_command.h"
+#include "app/commands.h"
 #include "remote/order/order.h"
 
 namespace kadans {

@@ -5,9 +5,7 @@
 #include <optional>
 
 #include "app/assembly.h"
-#include "app/live/live_service.h"
-#include "app/ros2/ros2_service.h"
-#include "ctl_service.h"
+#include "app/services.h"
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"

@@ -14,9 +14,9 @@
 
 #include <unistd.h>
 
+#include "app/services.h"
 #include "app/terminal.h"
 #include "config/json/fields.h"
-#include "live_service.h"
 #include "realtime/machine/child_process.h"
 #include "remote/page/page_files.h"
 #include "telemetry/mcap/mcap_reader.h"

@@ -5,9 +5,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "page_commands.h"
 #include "remote/page/page_files.h"
 #include "signal/input_file.h"
 

@@ -1,5 +1,3 @@
-#include "log_command.h"
-
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -8,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "campaign/work/durable_file.h"

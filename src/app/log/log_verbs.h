@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "log_command.h"
+#include "app/commands.h"
 #include "telemetry/reading/record_rows.h"
 
 namespace kadans {

@@ -1,6 +1,8 @@
 // `kadans run`: runs the engines on real threads, and the supervisor that starts, watches and ends them.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -8,6 +10,7 @@
 #include <iterator>
 #include <memory>
 #include <sstream>
+#include <string>
 
 #include <unistd.h>
 
@@ -19,20 +22,99 @@
 #include "app/timing/run_report.h"
 #include "behavior_process.h"
 #include "config/robot/project_root.h"
-#include "joystick_task.h"
+#include "config/scenario/play_item.h"
+#include "engine/behavior_engine.h"
+#include "engine/behavior_log.h"
+#include "engine/tick/control_engine.h"
+#include "kadans/signal/input_error.h"
 #include "last_resort.h"
-#include "leaving.h"
+#include "plant/joystick/joystick_device.h"
 #include "real_time_start.h"
+#include "realtime/engine_tasks.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/placement.h"
 #include "realtime/machine/service_notifier.h"
+#include "realtime/task_thread.h"
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"
 #include "run_threads.h"
+#include "script/host/safe_posture.h"
 #include "version.h"
 
 namespace kadans {
+
+// The joystick of a live run. A task reads it a hundred times a second, so the engines never wait for it. It also
+// reports when the joystick is unplugged.
+class JoystickTask final : public Task {
+ public:
+  // `path` is a device or a recording; "": the one in the settings. Throws InputError when it cannot be read.
+  JoystickTask(const JoystickSettings& settings, const std::string& path, JoystickStorage& storage)
+      : storage_(storage), source_(make_joystick(settings, path.empty() ? settings.device : path)) {}
+
+  bool beat(const Beat& beat) override {
+    storage_.publish(source_->at(beat.due_ns));
+    return true;
+  }
+
+  // Supervisor: says that the joystick was plugged in or unplugged since the last call.
+  void tell_news(const Snapshot& snapshot, BehaviorLog& log) {
+    if (snapshot.tick == 0 || snapshot.joystick.connected == connected_) return;
+    connected_ = snapshot.joystick.connected;
+    log.message(snapshot.time_ns, connected_ ? BehaviorLog::Severity::info : BehaviorLog::Severity::error, "joystick",
+                connected_ ? "is there" : "is gone; it reads as centred until it is plugged in again");
+  }
+
+ private:
+  JoystickStorage& storage_;
+  std::unique_ptr<JoystickSource> source_;
+  bool connected_ = false;
+};
+
+// Prepares a robot for being switched off: the playing behaviors leave their states, then the robot moves to the safe
+// posture of its configuration. It runs on the behavior thread after the supervisor has called ask().
+class Leaving final : public BesideTick {
+ public:
+  // Throws InputError on an unknown pose.
+  Leaving(const SafePosture::Settings& posture, const Catalog& catalog, OrderTaker& host, BehaviorEngine& behaviors,
+          EngineExchange& exchange)
+      : posture_({.pose = posture.pose, .after_s = 0, .time_s = posture.time_s}, catalog),
+        host_(host),
+        behaviors_(behaviors),
+        exchange_(exchange) {}
+
+  void ask() noexcept { asked_.store(true, std::memory_order_relaxed); }  // supervisor
+  void beside_tick(std::int64_t time_ns) override;
+
+ private:
+  enum class Step : std::uint8_t { play, leave, move };
+
+  SafePosture posture_;
+  OrderTaker& host_;
+  BehaviorEngine& behaviors_;
+  EngineExchange& exchange_;
+  std::atomic<bool> asked_{false};
+  Step step_ = Step::play;
+};
+
+void Leaving::beside_tick(std::int64_t time_ns) {
+  if (!asked_.load(std::memory_order_relaxed)) return;
+  if (step_ == Step::play) {
+    try {
+      host_.order({.kind = PlayOrder::Kind::stop});  // carried out in the tick that follows
+    } catch (const InputError&) {                    // the process of the behaviors is down
+    }
+    step_ = Step::leave;
+    return;
+  }
+  if (step_ == Step::leave) posture_.failed(time_ns, ~ObjectMask{0});
+  step_ = Step::move;
+  if (posture_.due(time_ns)) {
+    const auto snapshot = exchange_.snapshot.read(0);
+    posture_.move(*snapshot, behaviors_.sender(), 0);
+  }
+}
+
 namespace {
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;

@@ -1,5 +1,3 @@
-#include "replay_command.h"
-
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/assembly.h"
+#include "app/commands.h"
 #include "app/run/observers.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "app/live/live_pace.h"
-#include "app/live/live_service.h"
 #include "app/report/run_page.h"
+#include "app/run/observers.h"
+#include "app/services.h"
 #include "app/terminal.h"
 #include "config/plan/experiment_plans.h"
 #include "input_files.h"

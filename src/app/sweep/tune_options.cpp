@@ -6,10 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
+#include "app/commands.h"
 #include "app/option_checks.h"
 #include "signal/nearest_name.h"
 #include "sweep_subjects.h"
-#include "tune_command.h"
 
 namespace kadans {
 namespace {

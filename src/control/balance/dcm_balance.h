@@ -1,6 +1,6 @@
 // Keeps a standing robot's balance, in effort mode: type "dcm_balance". Meant to be composed onto a posture ("sum").
 //
-// xi is the divergent component of motion (standing.h). Forward and backward the robot is balanced as people do it
+// xi is the divergent component of motion (dcm_measure.h). Forward and backward the robot is balanced as people do it
 // (Horak and Nashner 1986, J. Neurophysiology 55(6)): hips and arms take what the ankles cannot hold.
 //
 //   ankles  tau = m g k_ankle e / 2 each, e = xi_x - offset_x; at most ankle_max, what the sole's length gives
@@ -22,9 +22,9 @@
 #include <memory>
 #include <vector>
 
+#include "dcm_measure.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/joint_axis.h"
-#include "standing.h"
 
 namespace kadans {
 

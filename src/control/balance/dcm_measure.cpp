@@ -3,8 +3,59 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+
+#include "signal/nearest_name.h"
 
 namespace kadans {
+namespace {
+
+std::size_t foot_of(const ObjectSetup& setup, const char* option) {
+  const std::string* const name = setup.options.find(option);
+  if (name == nullptr) throw OptionError(option, "it needs the option '" + std::string(option) + "': a foot's link");
+  const auto link = setup.model.find_link(*name);
+  if (!link)
+    throw OptionError(option, "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
+  return *link;
+}
+
+}  // namespace
+
+BodyAhead::BodyAhead(const ObjectSetup& setup)
+    : feet_{foot_of(setup, "left_foot"), foot_of(setup, "right_foot")},
+      kinematics_(setup.model),
+      joint_count_(setup.model.joints.size()) {}
+
+void BodyAhead::update(const ControlInput& input, const Quat& upright, double ahead_s) noexcept {
+  std::array<double, max_joints> position_rad{};
+  for (std::size_t i = 0; i < joint_count_; ++i) {
+    const JointState& joint = input.joints.joints[i];
+    position_rad[i] = joint.position_rad + ahead_s * joint.velocity_rad_s;
+  }
+  const Vec3& w = input.status.base.angular_velocity_rad_s;
+  const Quat turn = normalized({1, 0.5 * ahead_s * w[0], 0.5 * ahead_s * w[1], 0.5 * ahead_s * w[2]});
+  kinematics_.update({position_rad.data(), joint_count_}, {{}, multiply(upright, turn)});
+}
+
+Vec3 Standing::com_over_feet(const ControlInput& input, double ahead_s) noexcept {
+  const BaseStatus& base = input.status.base;
+  body_.update(input, from_roll_pitch_yaw(base.roll_rad, base.pitch_rad, 0), ahead_s);
+  const Vec3 com = body_.kinematics().com_m();
+  const Vec3& left = body_.foot(0).position_m;
+  const Vec3& right = body_.foot(1).position_m;
+  return {com[0] - (left[0] + right[0]) / 2, com[1] - (left[1] + right[1]) / 2, com[2] - (left[2] + right[2]) / 2};
+}
+
+bool Standing::update(const ControlInput& input) noexcept {
+  const Vec3 next = com_over_feet(input, moment_s);
+  com_m_ = com_over_feet(input, 0);
+  for (std::size_t k = 0; k < 3; ++k) velocity_m_s_[k] = (next[k] - com_m_[k]) / moment_s;
+  const double time_s = std::sqrt(std::max(com_m_[2], lowest_com_m) / gravity_of_balance_m_s2);
+  dcm_x_m_ = com_m_[0] + time_s * velocity_m_s_[0];
+  dcm_y_m_ = com_m_[1] + time_s * velocity_m_s_[1];
+  return com_m_[2] > lowest_com_m && std::isfinite(dcm_x_m_) && std::isfinite(dcm_y_m_);
+}
+
 namespace {
 
 Vec3 difference(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }

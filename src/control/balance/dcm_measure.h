@@ -1,12 +1,11 @@
-// Position and velocity of the centre of mass relative to each foot: the measurements that balance laws use.
-//
-// Everything is in the heading frame: x points forward along the ground, y left, z up. Forward is where the base points
-// now, or where it pointed at keep_heading(). The origin is that of the base frame. The velocity is a difference over a
-// millisecond (body_ahead.h). A velocity relative to a foot is a velocity over the ground as long as that foot stands.
+// Where the centre of mass of a robot on two feet is and where it is going: the measurements that balance laws use.
 //
 // The divergent component of motion is where the robot's pendulum is going (Hof 2008, Human Movement Science 27(1);
 // Englsberger et al. 2015, IEEE T-RO 31(2)): xi = c + v / w0, w0 = sqrt(g / c_z). c is the centre of mass, v its
-// velocity.
+// velocity. The robot stays up while xi can be kept over the soles. To push xi back, the centre of pressure has to lie
+// beyond xi.
+//
+// Everything is in the heading frame: x points forward along the ground, y left, z up.
 //
 // One owner, the control thread. Only the constructor allocates or throws.
 #pragma once
@@ -14,10 +13,69 @@
 #include <array>
 #include <cstddef>
 
-#include "body_ahead.h"
+#include "kadans/control/control_object.h"
+#include "kadans/model/kinematics.h"
 
 namespace kadans {
 
+inline constexpr double gravity_of_balance_m_s2 = 9.81;
+inline constexpr double lowest_com_m = 0.1;  // over the feet's frames; a robot does not stand below this
+inline constexpr double moment_s = 0.001;    // how far ahead velocities are computed
+
+// The kinematics, now or a moment ahead. The state a moment ahead is the measured state, moved on with the filtered
+// joint velocities and the gyro. So the velocity of any point is the difference between the two, and no measured
+// position is differentiated.
+class BodyAhead {
+ public:
+  // The feet are the links that the options left_foot and right_foot name. Throws OptionError. Keeps a reference to the
+  // model.
+  explicit BodyAhead(const ObjectSetup& setup);
+
+  // Puts the base's origin at 0 and turns the base by `upright` and by its rotation in ahead_s.
+  void update(const ControlInput& input, const Quat& upright, double ahead_s) noexcept;
+
+  const Kinematics& kinematics() const noexcept { return kinematics_; }      // as of the last update
+  const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }  // links, left and right
+  const Pose& foot(std::size_t foot) const noexcept { return kinematics_.link(feet_[foot]); }
+
+ private:
+  std::array<std::size_t, 2> feet_{};
+  Kinematics kinematics_;
+  std::size_t joint_count_;
+};
+
+inline constexpr double standing_share_per_s = 5;  // how fast a balance object's share of torque may change
+
+// The centre of mass relative to the middle between the feet's frames; forward is where the base points now. The feet
+// are assumed to stand flat.
+class Standing {
+ public:
+  // The feet are the links that the options left_foot and right_foot name. Throws OptionError. Keeps a reference to the
+  // model.
+  explicit Standing(const ObjectSetup& setup) : body_(setup) {}
+
+  // False when the robot does not stand, or a measurement is not finite.
+  bool update(const ControlInput& input) noexcept;
+
+  const Vec3& com_m() const noexcept { return com_m_; }
+  const Vec3& velocity_m_s() const noexcept { return velocity_m_s_; }  // of the centre of mass
+  double dcm_x_m() const noexcept { return dcm_x_m_; }
+  double dcm_y_m() const noexcept { return dcm_y_m_; }
+  const std::array<std::size_t, 2>& feet() const noexcept { return body_.feet(); }  // links, left and right
+  // As of the last update, the base's origin at 0.
+  const Kinematics& kinematics() const noexcept { return body_.kinematics(); }
+
+ private:
+  Vec3 com_over_feet(const ControlInput& input, double ahead_s) noexcept;
+
+  BodyAhead body_;
+  Vec3 com_m_{}, velocity_m_s_{};
+  double dcm_x_m_ = 0, dcm_y_m_ = 0;
+};
+
+// The centre of mass relative to each foot. Forward is where the base points now, or where it pointed at
+// keep_heading(); the origin is that of the base frame. A velocity relative to a foot is one over the ground as long as
+// that foot stands.
 class DcmMeasure {
  public:
   struct OverFoot {

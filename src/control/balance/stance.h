@@ -2,7 +2,7 @@
 // be composed onto a soft posture ("sum").
 //
 // Four steps lead from the motion of the robot to the torque of each joint. xi is the divergent component of motion
-// (standing.h), c the centre of mass, p the centre of pressure, L the moment that turns the robot about c.
+// (dcm_measure.h), c the centre of mass, p the centre of pressure, L the moment that turns the robot about c.
 //
 // clang-format off
 //   pressure  d xi / dt = w0 (xi - p - L / (m g)). p and L have the same effect on xi, so the law is
@@ -16,7 +16,7 @@
 //   forces    F_x = (F_z (c_x - p_x) - L_y) / c_z, F_y = (F_z (c_y - p_y) + L_x) / c_z: a force through p with the
 //             moment L. Friction bounds F_x and F_y. F_z is the weight plus what lifts the robot to its height. The
 //             further p is from c, the harder the legs press: more load has the effect of longer soles.
-//   torques   Each leg bears its share of F at its own centre of pressure, and its own weight (leg_load.h). On a foot
+//   torques   Each leg bears its share of F at its own centre of pressure, and its own weight (LegLoad). On a foot
 //             that tips, the pressure moves back from the edge.
 // clang-format on
 //
@@ -32,15 +32,44 @@
 // Not finite  no torque at all: the posture goes on alone.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "dcm_measure.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/joint_axis.h"
-#include "leg_load.h"
-#include "standing.h"
+#include "kadans/model/kinematics.h"
+#include "kadans/model/robot_model.h"
 
 namespace kadans {
+
+// The joint torques of a leg that bears a load. They balance the force of the ground on the foot and the weight of the
+// leg's links (statics of an open chain: the transpose of the leg's Jacobian).
+//
+// One owner, the control thread. Only the constructor allocates or throws.
+
+class LegLoad {
+ public:
+  struct Bearing {
+    std::size_t joint = 0;  // index in the model
+    double effort_Nm = 0;
+  };
+
+  // The leg is the joints from the link `foot` up to the base. Keeps a reference to the model.
+  LegLoad(const RobotModel& model, std::size_t foot);
+
+  // force_N acts on the foot at point_m. Both are in the frame in which the kinematics have the base's pose; its z axis
+  // points up.
+  void update(const Kinematics& kinematics, const Vec3& force_N, const Vec3& point_m) noexcept;
+
+  std::span<const Bearing> bearings() const noexcept { return bearings_; }  // from the foot upwards
+
+ private:
+  const RobotModel* model_;
+  std::vector<Bearing> bearings_;
+};
 
 class Stance final : public ControlObject {
  public:

@@ -59,7 +59,7 @@ class GazeSolver {
   };
   struct Solution {
     std::array<double, gaze_joints_max> velocity_rad_s{};
-    // C of gaze.h, [eye joint][neck joint]: the velocity of the eye joint that keeps the gaze while the neck joint
+    // C of gaze.cpp, [eye joint][neck joint]: the velocity of the eye joint that keeps the gaze while the neck joint
     // moves with 1 rad/s.
     std::array<std::array<double, gaze_joints_max>, gaze_joints_max> counter{};
     double left_rad = 0, right_rad = 0;  // angle between eye and target

@@ -5,7 +5,7 @@
 //   minimum jerk  of a plain set-point: to rest at the target in the time given (minimum_jerk.h)
 //   trapezoid     speeds up, cruises and slows down within limits of velocity and acceleration (motion_profile.h). The
 //                 corners are rounded over corner_s, so that no torque steps. The target may change while it runs.
-//   spline        a curve through points at given times (cubic_spline.h)
+//   spline        a curve through points at given times (CubicSpline)
 //
 // A motion begins with the present position and velocity of the set-point, so it replaces another motion without a
 // jump. A motion that is cancelled comes to rest in cancel_time_s, after half the way that it would go at its present
@@ -15,17 +15,59 @@
 // One owner, the control thread; nothing here allocates after construction, locks or throws.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "cubic_spline.h"
 #include "kadans/control/catalog.h"
 #include "kadans/control/control_sets.h"
 #include "kadans/control/minimum_jerk.h"
 #include "kadans/control/motion_profile.h"
 #include "kadans/signal/command.h"
+#include "kadans/signal/setpoint.h"
 
 namespace kadans {
+
+// A curve through points at given times: cubic polynomials between them, with velocity and acceleration continuous at
+// every point, the velocity given at the start and 0 at the end (Biagiotti and Melchiorri, Trajectory Planning for
+// Automatic Machines and Robots, Springer 2008, sec. 4.4.1). The curve overshoots points where the direction turns;
+// range() says how far.
+//
+// A fixed number of points; nothing here allocates, locks or throws.
+class CubicSpline {
+ public:
+  static constexpr std::size_t points_max = 16;
+
+  void begin(double value, double velocity) noexcept;
+  // False, and nothing changes, when there are points_max points already, or duration_s is not > 0.
+  [[nodiscard]] bool add(double value, double duration_s) noexcept;
+  // After the last point: finds the velocities.
+  void plan() noexcept;
+
+  struct Point {
+    double value = 0, duration_s = 0;  // after the point before
+  };
+  Point point(std::size_t i) const noexcept { return {knots_[i + 1].value, knots_[i + 1].duration_s}; }
+  std::size_t size() const noexcept { return count_; }
+  double duration_s() const noexcept { return duration_s_; }
+  SetpointState at(double time_s) const noexcept;  // at rest at the last point from its time on
+  struct Range {
+    double lowest = 0, highest = 0;
+  };
+  Range range() const noexcept;
+
+ private:
+  struct Knot {
+    double value = 0, velocity = 0;
+    double duration_s = 0;  // after the knot before
+  };
+  SetpointState inside(std::size_t segment, double time_s) const noexcept;
+
+  std::array<Knot, points_max + 1> knots_{};  // the start first
+  std::size_t count_ = 0;                     // points, the start not among them
+  double duration_s_ = 0;
+};
 
 class SetpointMotions {
  public:

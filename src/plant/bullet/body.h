@@ -10,7 +10,6 @@
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/settings.h"
 #include "plant/bullet/contact/contact_world.h"
-#include "plant/bullet/contact/pair_mask.h"
 #include "plant/bullet/contact/shapes.h"
 
 namespace kadans::bullet {

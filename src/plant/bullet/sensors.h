@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "kadans/plant/modelled_channels.h"
+#include "kadans/plant/modelled_drives.h"
 #include "kadans/signal/random.h"
 #include "truth.h"
 

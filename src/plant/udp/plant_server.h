@@ -11,10 +11,8 @@
 
 #include <cstdint>
 
-#include "arrivals.h"
 #include "datagram_socket.h"
 #include "kadans/plant/plant_type.h"
-#include "settings.h"
 #include "wire.h"
 
 namespace kadans {

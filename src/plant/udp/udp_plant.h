@@ -14,10 +14,8 @@
 
 #include <cstdint>
 
-#include "arrivals.h"
 #include "datagram_socket.h"
 #include "kadans/plant/plant.h"
-#include "settings.h"
 #include "wire.h"
 
 namespace kadans {

@@ -99,14 +99,14 @@ struct Behavior::Past {
 // Reads the file, makes the chart and the bindings. `instructions` 0: the limit for loading. Throws InputError.
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
 
-// behavior_arguments.cpp. Sets the parameters of the behavior and of those that it calls to the values in the robot's
+// Sets the parameters of the behavior and of those that it calls to the values in the robot's
 // configuration. Throws InputError.
 void give_robot_values(Behavior::Parts& parts);
 
-// behavior_arguments.cpp. Gives the behavior the values of Settings::arguments. Throws InputError.
+// Gives the behavior the values of Settings::arguments. Throws InputError.
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
 
-// behavior_keeping.cpp. Writes what is carried over to another version, Lua state or process. Returns "", or what
+// Writes what is carried over to another version, Lua state or process. Returns "", or what
 // cannot be kept: vars hold something that is no plain data and no motion, or hold more than 256 kB.
 std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes);
 // Lets the newly loaded `parts` continue from bytes of keep_behavior(). Optionally tries the guards of all active

@@ -25,11 +25,12 @@ struct OptionTable {
   const char* argument;  // of which function
   const char* title;
 };
-constexpr OptionTable tables[] = {{MotionOption::move, "kadans.MoveOptions", "move", "move"},
-                                  {MotionOption::set, "kadans.SetOptions", "set", "set"},
-                                  {MotionOption::through, "kadans.ThroughOptions", "move_through", "move_through"},
-                                  {MotionOption::point, "kadans.Point", "", "a point of move_through"},
-                                  {MotionOption::follow, "kadans.FollowLimits", "follow", "follow"}};
+constexpr OptionTable option_tables[] = {
+    {MotionOption::move, "kadans.MoveOptions", "move", "move"},
+    {MotionOption::set, "kadans.SetOptions", "set", "set"},
+    {MotionOption::through, "kadans.ThroughOptions", "move_through", "move_through"},
+    {MotionOption::point, "kadans.Point", "", "a point of move_through"},
+    {MotionOption::follow, "kadans.FollowLimits", "follow", "follow"}};
 
 struct ArgumentType {
   const char* name;
@@ -69,7 +70,7 @@ std::string range(const MotionOption& option) {
 // The type of the argument `name` of a function, as ": kadans.MoveOptions"; "" when any value is allowed.
 std::string argument_type(std::string_view function, std::string_view name) {
   if (name == "options" || name == "limits") {
-    for (const OptionTable& table : tables) {
+    for (const OptionTable& table : option_tables) {
       const bool needed = table.method == MotionOption::move || table.method == MotionOption::follow;
       if (function == table.argument) return std::string(needed ? ": " : "?: ") + table.type;
     }
@@ -83,7 +84,7 @@ std::string argument_type(std::string_view function, std::string_view name) {
 
 std::string motion_option_stubs() {
   std::string text;
-  for (const OptionTable& table : tables) {
+  for (const OptionTable& table : option_tables) {
     text += "---@class " + std::string(table.type) + "\n";
     if (table.method == MotionOption::point) text += "---@field [1] kadans.pose|table<string, number>\n";
     for (const MotionOption& option : motion_options()) {
@@ -104,7 +105,7 @@ std::string motion_option_reference() {
       "|\n|---|---|---|---|\n";
   for (const MotionOption& option : motion_options()) {
     std::string where;
-    for (const OptionTable& table : tables) {
+    for (const OptionTable& table : option_tables) {
       if ((option.methods & table.method) != 0) where += (where.empty() ? "" : ", ") + std::string(table.title);
     }
     std::string value = range(option);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "script/chart/chart_nodes.h"
+#include "script/chart/chart_reader.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"

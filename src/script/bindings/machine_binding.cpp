@@ -7,7 +7,7 @@
 #include "machine_sets.h"
 #include "script/behavior/behavior_parts.h"
 #include "script/check/hint.h"
-#include "script/motion/motion_targets.h"
+#include "script/motion/motion_options.h"
 #include "script/sandbox/sandbox.h"
 
 namespace kadans {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "chart_nodes.h"
+#include "chart_reader.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/sandbox.h"
 

@@ -1,14 +1,37 @@
-// Makes a Chart from the author's tables.
+// The author's tables, and how a Chart is made from them.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <lua.hpp>
 
 #include "chart.h"
 #include "script/lua/lua_state.h"
+#include "script/lua/script_error.h"
 
 namespace kadans {
+
+// The nodes that the constructors of the `kadans` module make from an author's tables. A node is a table {kind, name,
+// chunk, line, body} with a metatable of its own, which distinguishes it from any other table.
+enum class NodeKind : int { behavior, state, parallel, region, final_state, history, call };
+const char* node_word(NodeKind kind) noexcept;  // "k.state"
+
+// True when the value at `index` is a node; then `kind` is set.
+bool is_node(lua_State* state, int index, NodeKind* kind);
+// The name, the place and the body of the node at `index`.
+const char* node_name(lua_State* state, int index);
+ScriptPlace node_place(lua_State* state, int index);
+void push_node_body(lua_State* state, int index);  // [-0 +1]
+
+// [-1 +1] Adds behavior, state, parallel, region, final, history and call to the module's table at the top of the
+// stack.
+void open_nodes(lua_State* state);
+
+// [-1 +1] Adds params to the module's table at the top of the stack.
+void open_parameters(lua_State* state);
+// True when the value at `index` is a parameter; then `number` is its index in LuaCore::parameters.
+bool is_parameter(lua_State* state, int index, std::size_t* number);
 
 // Reads the behavior at `index` of the stack and all behaviors that it calls into `chart`. Functions and tables get
 // registry references. Raises on anything that cannot be read; wrong names are found later by Chart::resolve().

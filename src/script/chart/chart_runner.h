@@ -132,14 +132,12 @@ class ChartRunner {
   void list_active() noexcept;
   void report(std::uint16_t transition) noexcept;
 
-  // chart_keeping.cpp
   void fill_gaps() noexcept;
   void fill(StateIndex around, StateIndex entered) noexcept;
   void keep_histories(ByteWriter& bytes) const;
   void restore_state(ByteReader& bytes);
   void restore_history(ByteReader& bytes);
 
-  // chart_calls.cpp
   void set_time(lua_State* state, StateIndex index);
   void call(lua_State* state, int function, StateIndex index);
   void start_run(lua_State* state, StateIndex index);

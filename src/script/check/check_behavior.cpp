@@ -8,7 +8,7 @@
 #include "hint.h"
 #include "known_names.h"
 #include "script/behavior/behavior_parts.h"
-#include "script/chart/chart_nodes.h"
+#include "script/chart/chart_reader.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/sandbox.h"
 #include "script/test/test_prelude.h"

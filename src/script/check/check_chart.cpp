@@ -5,7 +5,7 @@
 #include "hint.h"
 #include "kadans/signal/input_error.h"
 #include "script/behavior/behavior_parts.h"
-#include "script/chart/chart_nodes.h"
+#include "script/chart/chart_reader.h"
 #include "script/lua/lua_core.h"
 
 namespace kadans {

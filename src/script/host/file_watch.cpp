@@ -27,7 +27,7 @@ bool FileWatch::add(const std::filesystem::path& folder) {
 bool FileWatch::drain() const noexcept {
   bool any = false;
   alignas(inotify_event) char buffer[4096];
-  for (ssize_t got = read(fd_, buffer, sizeof buffer); got > 0; got = read(fd_, buffer, sizeof buffer)) {
+  for (ssize_t got = ::read(fd_, buffer, sizeof buffer); got > 0; got = ::read(fd_, buffer, sizeof buffer)) {
     for (ssize_t at = 0; at < got;) {
       const auto* event = reinterpret_cast<const inotify_event*>(buffer + at);
       const std::string_view name = event->len > 0 ? std::string_view(event->name) : std::string_view();

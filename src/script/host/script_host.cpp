@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "kadans/signal/input_error.h"
-#include "play_order_bytes.h"
+#include "play_list.h"
 #include "script/bindings/machine_sets.h"
 #include "signal/byte_order.h"
 

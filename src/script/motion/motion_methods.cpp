@@ -5,7 +5,6 @@
 
 #include "engine/motion/setpoint_motions.h"
 #include "motion_options.h"
-#include "motion_targets.h"
 #include "script/bindings/bindings.h"
 #include "script/lua/script_error.h"
 #include "script/sandbox/sandbox.h"

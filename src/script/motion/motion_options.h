@@ -1,5 +1,5 @@
-// The table of a motion's options. The bindings and `kadans behavior check` read it, and editor stubs and the reference
-// are made from it.
+// What a method that moves set-points is given: its options and its targets. The bindings and `kadans behavior check`
+// read it, and editor stubs and the reference are made from it.
 //
 //   minimum_jerk  the control object's own: from its present state to rest in time_s; peak 1.875 times the mean speed
 //   trapezoid     speeds up, cruises, slows down, as fast as the limits of velocity and acceleration allow; all joints
@@ -8,10 +8,13 @@
 //   follow        a trapezoid without an end: the target may change in every tick
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
 #include <lua.hpp>
+
+#include "kadans/control/catalog.h"
 
 namespace kadans {
 
@@ -51,5 +54,31 @@ struct MotionOptions {
 // together.
 MotionOptions read_motion_options(lua_State* state, int index, MotionOption::Method method, const char* called,
                                   const char* unit);
+
+// The set-points that a motion moves and their targets, read from a pose by name, a table joint = position, or one
+// set-point. All functions raise at the author's line and send nothing.
+struct MotionTarget {
+  SetpointId id = 0;
+  double value = 0;
+  SetpointState from;  // the present set-point; set by place_targets
+};
+
+struct MotionTargets {
+  std::array<MotionTarget, max_joints> all;
+  std::uint32_t count = 0;
+  const MotionTarget* begin() const noexcept { return all.data(); }
+  const MotionTarget* end() const noexcept { return all.data() + count; }
+};
+
+// Reads the pose at `index`: its name, or a table joint = rad. `called` is the method's name for messages.
+void read_pose(lua_State* state, int index, const ObjectInfo& object, const char* called, MotionTargets& targets);
+// The set-point that is named at `index`.
+SetpointId read_setpoint(lua_State* state, int index, const ObjectInfo& object);
+
+// The present set-point from the snapshot, or the position of its joint when its object is not active yet. Raises when
+// the control object does not report it.
+SetpointState present_setpoint(lua_State* state, SetpointId id);
+// Adds offsets, checks ranges, and finds the start of the motion if it is needed.
+void place_targets(lua_State* state, const MotionOptions& options, bool planned, MotionTargets& targets);
 
 }  // namespace kadans

@@ -5,7 +5,7 @@
 // writes its answer, writes the request's number into it last of all, and rings (exchange/turn.h). As long as both keep
 // the rules, nothing is written and read at the same time, and an unfinished answer does not count. The runtime does
 // not rely on the rules: it never reads back what it wrote itself, and it copies what the process wrote before it uses
-// it (child_answer.h). For this reason the snapshot goes through plain memory and not through Latest, whose writer
+// it (ChildAnswer). For this reason the snapshot goes through plain memory and not through Latest, whose writer
 // keeps the index of its slot beside the slots.
 //
 // Trivially copyable, without pointers. Both sides run the same program, so the layout is the same.
@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "kadans/control/catalog.h"
 #include "kadans/exchange/turn.h"
 #include "kadans/signal/command.h"
 #include "kadans/signal/status.h"
@@ -81,5 +82,10 @@ static_assert(std::is_trivially_copyable_v<BehaviorLink>);
 
 // The first byte of a line that is a transition; other lines have a severity of BehaviorLog there.
 inline constexpr std::uint8_t transition_line = 16;
+
+// A fingerprint by which two processes check that they use the same numbers for parameters, set-points, control sets
+// and objects. Each process reads the robot's files itself, and the files may have changed in between. Ranges and poses
+// are part of it, values of parameters are not.
+std::uint64_t fingerprint_of(const Catalog& catalog);
 
 }  // namespace kadans

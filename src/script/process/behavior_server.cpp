@@ -4,9 +4,9 @@
 #include <atomic>
 #include <cstring>
 
-#include "catalog_fingerprint.h"
+#include "behavior_link.h"
 #include "kadans/signal/input_error.h"
-#include "script/host/play_order_bytes.h"
+#include "script/host/play_list.h"
 
 namespace kadans {
 

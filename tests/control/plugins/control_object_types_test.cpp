@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "control/joint/joint_pid.h"
+#include "control/made_objects.h"
 #include "control/two_joint_robot.h"
 
 using namespace kadans;

@@ -9,9 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "control/drive/spring_torque.h"
-#include "control/joint/joint_impedance.h"
-#include "control/joint/joint_pid.h"
-#include "control/joint/profile_position.h"
+#include "control/made_objects.h"
 #include "control/two_joint_robot.h"
 #include "kadans/control/catalog.h"
 #include "kadans/control/plugin.h"

@@ -24,10 +24,10 @@
 #include "ground_contact.h"
 #include "kadans/plant/settings.h"
 #include "object_contact.h"
-#include "pair_mask.h"
 #include "plant/bullet/joint/joint_rows.h"
 #include "plant/bullet/solver/tree_solver.h"
 #include "rolling_rows.h"
+#include "shapes.h"
 
 namespace kadans::bullet {
 

@@ -11,7 +11,6 @@
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
-#include "contact_surface.h"
 #include "touch_points.h"
 
 namespace kadans::bullet {

@@ -8,7 +8,6 @@
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
-#include "contact_surface.h"
 #include "touch_points.h"
 
 namespace kadans::bullet {

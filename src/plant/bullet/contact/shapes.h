@@ -11,6 +11,24 @@
 
 namespace kadans::bullet {
 
+// Which links may collide with which. Parent and child never do, nor do pairs that touch when all joints are at 0
+// (links around one point, such as a hip's). Bullet's own parent flag is unreliable: this table alone decides.
+// The table is for the links of the robot; different bodies may always collide.
+class PairMask final : public btOverlapFilterCallback {
+ public:
+  explicit PairMask(std::size_t links) : links_(links), forbidden_(links * links, false) {}
+
+  void forbid(std::size_t a, std::size_t b) { forbidden_[a * links_ + b] = forbidden_[b * links_ + a] = true; }
+  void forbid_all() { forbidden_.assign(forbidden_.size(), true); }
+  bool allowed(std::size_t a, std::size_t b) const { return !forbidden_[a * links_ + b]; }
+
+  bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override;
+
+ private:
+  std::size_t links_;
+  std::vector<bool> forbidden_;
+};
+
 class LinkShapes {
  public:
   // `com_in_link` is the centre of mass frame that Bullet moves. Throws std::invalid_argument on a mesh, naming it.

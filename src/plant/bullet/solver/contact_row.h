@@ -1,7 +1,7 @@
 // One point of contact in the solver: an impulse along the normal that only pushes, and friction across it within a
 // cone.
 //
-// Each body in the contact that is a tree has y of the three directions, along its link's path (tree_factor.h). A
+// Each body in the contact that is a tree has y of the three directions, along its link's path (TreeFactor). A
 // static or driven body has no y and enters with its velocity. A = sum of y y^T, 3 x 3, says how an impulse changes the
 // contact's own velocity. The normal law is Bullet's: the velocity at the step's end is at least -distance / dt while
 // apart, and erp * depth / dt, or what the restitution asks for, when overlapping.
@@ -14,13 +14,41 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
 
 #include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
+#include <LinearMath/btScalar.h>
 
-#include "row_memory.h"
 #include "tree.h"
 
 namespace kadans::bullet {
+
+// Memory for the numbers of one step's rows. It is handed out in order and given back all at once. It grows when a step
+// needs more than any step before; memory that was handed out stays where it is.
+class RowMemory {
+ public:
+  btScalar* take(std::size_t count) {
+    if (blocks_.empty() || used_ + count > block_size) next_block();
+    btScalar* const taken = blocks_[block_].get() + used_;
+    used_ += count + count % 2;  // aligned for two numbers at a time
+    return taken;
+  }
+  void clear() { block_ = used_ = 0; }
+
+ private:
+  static constexpr std::size_t block_size = 16384;
+
+  void next_block() {
+    if (!blocks_.empty()) ++block_;
+    if (block_ == blocks_.size()) blocks_.push_back(std::make_unique<btScalar[]>(block_size));
+    used_ = 0;
+  }
+
+  std::vector<std::unique_ptr<btScalar[]>> blocks_;
+  std::size_t block_ = 0, used_ = 0;
+};
 
 // How friction is limited: a circle, or for comparison Bullet's square along the two friction directions.
 enum class FrictionLaw : std::uint8_t { cone, pyramid };

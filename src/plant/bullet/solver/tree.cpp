@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tree_factor.h"
-#include "tree_shape.h"
-
 namespace kadans::bullet {
 Tree::Tree(btMultiBody& body)
     : body_(&body),

@@ -2,7 +2,7 @@
 //
 // Bullet's multibody solver runs one articulated-body pass for each row of each contact to learn what the row moves,
 // and iterates over vectors of all joint velocities. Here each multibody's joint-space inertia is made and factorised
-// once a step (tree.h), a row's response is a dozen numbers along its path to the base (tree_factor.h), and joint laws
+// once a step (tree.h), a row's response is a dozen numbers along its path to the base (TreeFactor), and joint laws
 // that are linear never become rows: they add to the inertia's diagonal.
 //
 // A servo (position or velocity mode, limited to the drive's torque) is linear while it stays within its limits. It is
@@ -26,7 +26,6 @@
 
 #include "contact_row.h"
 #include "joint_law.h"
-#include "row_memory.h"
 #include "tree.h"
 
 namespace kadans::bullet {
@@ -35,7 +34,7 @@ namespace kadans::bullet {
 // solver's iteration.
 //
 // The law is that of joint_rows.h: p = clamp(a - b v, lower, upper), or v = wanted within the limits of p when it is
-// stiff. With y of the degree of freedom (tree_factor.h) and d = y . y, an iteration sets p so that the law is
+// stiff. With y of the degree of freedom (TreeFactor) and d = y . y, an iteration sets p so that the law is
 // fulfilled while all other impulses stay: p += (a - b v - p) / (1 + b d), or p += (wanted - v) / d, clamped.
 class JointRow {
  public:

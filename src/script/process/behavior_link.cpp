@@ -1,4 +1,4 @@
-#include "catalog_fingerprint.h"
+#include "behavior_link.h"
 
 #include "kadans/signal/state_hash.h"
 
