@@ -78,6 +78,7 @@ class Assembly {
   const ScenarioConfig& scenario() const noexcept { return scenario_; }
   const std::vector<std::unique_ptr<Assembly>>& others() const noexcept { return others_; }
   ControlEngine& control() noexcept { return *control_; }
+  ControlSets& sets() noexcept { return *sets_; }
   BehaviorEngine& behaviors() noexcept { return *behaviors_; }
   Plant& plant() noexcept;                                 // the plant that the engine sees; it is not open yet
   World* world() noexcept;                                 // with its faults; nullptr: there is none

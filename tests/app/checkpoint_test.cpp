@@ -133,6 +133,23 @@ TEST_CASE("A checkpoint that does not come out as it was left is refused, with t
   CHECK(has(outcome.err, "they part between 0.2 s and 0.3 s"));
 }
 
+TEST_CASE("A control object that comes to the checkpoint in another state is named, though all signals are the same") {
+  const fs::path folder = project("checkpoint_object");
+  REQUIRE(run(std::string(squat) + " --duration 0.4 --no-record --checkpoint 0.2=here.mcap", folder).exit_code == 0);
+  std::string bytes = read(folder / "here.mcap");
+  const std::size_t objects = bytes.find("control_objects");
+  const std::size_t posture = bytes.find("posture", objects);
+  REQUIRE(objects != std::string::npos);
+  REQUIRE(posture != std::string::npos);
+  char& digit = bytes[posture + 7 + 4];  // behind the name and the length of the hash
+  digit = digit == '1' ? '2' : '1';
+  write(folder / "here.mcap", bytes);
+  const Outcome outcome = run("sim --from here.mcap --no-record", folder);
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.out.empty());
+  CHECK(has(outcome.err, "the state of these control objects differs: posture\n"));
+}
+
 TEST_CASE("Wrong wishes for checkpoints and branches are refused before anything runs") {
   const fs::path folder = project("checkpoint_wrong");
   REQUIRE(run(std::string(squat) + " --duration 0.3 --no-record --checkpoint 0.2=here.mcap", folder).exit_code == 0);

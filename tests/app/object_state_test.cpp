@@ -151,6 +151,13 @@ std::vector<std::byte> saved(ControlObject& object) {
   return bytes;
 }
 
+std::uint64_t hashed(ControlObject& object) {
+  StateHash hash;
+  StateBytes bytes = StateBytes::hashing(hash);
+  object.pass_state(bytes);
+  return hash.value();
+}
+
 bool alike(double one, double other) { return std::memcmp(&one, &other, sizeof one) == 0; }
 
 // "", or what differs first.
@@ -197,6 +204,7 @@ TEST_CASE("each shipped control object continues bit for bit from the bytes of i
       StateBytes restore = StateBytes::restoring(bytes);
       second.object->pass_state(restore);
       CHECK(restore.ok());
+      CHECK(hashed(*second.object) == hashed(*first.object));
       second.actuation = first.actuation;
       std::string differs = difference(first, second);
       int tick = at + 1;
@@ -208,6 +216,75 @@ TEST_CASE("each shipped control object continues bit for bit from the bytes of i
       CHECK_MESSAGE(differs.empty(), differs, " differs after tick ", tick - 1);
     }
   }
+}
+
+TEST_CASE("the hash of an object's state changes with the state") {
+  ControlObjectTypes types;
+  add_shipped_types(types);
+  for (const Row& row : rows()) {
+    CAPTURE(row.type);
+    Played played(row, types);
+    played.start();
+    const std::uint64_t before = hashed(*played.object);
+    CHECK(hashed(*played.object) == before);
+    for (int tick = 0; tick < 120; ++tick) played.tick(tick);
+    CHECK(hashed(*played.object) != before);
+  }
+}
+
+namespace {
+
+struct Padded {
+  enum class Kind : std::uint8_t { one, two };
+  bool flag = false;
+  double value = 1;
+  Kind kind = Kind::two;
+  struct Inner {
+    std::uint16_t count = 3;
+    std::array<std::int64_t, 2> times{5, 6};
+  } inner;
+};
+
+struct Found {
+  std::vector<std::byte> bytes;
+  std::uint64_t hash;
+  bool operator==(const Found&) const = default;
+};
+
+// What StateBytes sees in a value that lies in memory of these bytes.
+template <typename Change>
+Found found_in(int memory, Change change) {
+  alignas(Padded) std::byte place[sizeof(Padded)];
+  std::memset(place, memory, sizeof place);
+  auto* const padded = new (place) Padded;
+  change(*padded);
+  Found found{std::vector<std::byte>(64), 0};
+  StateBytes save = StateBytes::saving(found.bytes);
+  save(*padded);
+  found.bytes.resize(save.size());
+  StateHash hash;
+  StateBytes::hashing(hash)(*padded);
+  found.hash = hash.value();
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("of a struct its members count, each of them, and no padding") {
+  const auto nothing = [](Padded&) {};
+  const Found plain = found_in(0, nothing);
+  CHECK(plain.bytes.size() == 1 + 8 + 1 + 2 + 16);
+  CHECK(found_in(0xff, nothing) == plain);
+  const auto differs = [&](auto change) {
+    const Found changed = found_in(0, change);
+    CHECK(changed.bytes != plain.bytes);
+    CHECK(changed.hash != plain.hash);
+  };
+  differs([](Padded& padded) { padded.flag = true; });
+  differs([](Padded& padded) { padded.value = 2; });
+  differs([](Padded& padded) { padded.kind = Padded::Kind::one; });
+  differs([](Padded& padded) { padded.inner.count = 4; });
+  differs([](Padded& padded) { padded.inner.times[1] = 7; });
 }
 
 TEST_CASE("bytes that are too few change nothing beyond them, and it is told") {

@@ -35,6 +35,7 @@ class EffortTakeover {
   }
   // Takes the final torque of this step, from which the offset is computed the next time.
   void leave(double effort_Nm) noexcept { effort_Nm_ = effort_Nm; }
+  void pass_state(auto& bytes) noexcept { bytes(offset_, effort_Nm_, pending_, known_); }
 
  private:
   FadingEffort offset_;

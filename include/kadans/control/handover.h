@@ -52,6 +52,8 @@ class FadingEffort {
   void start(double effort_Nm) noexcept;
   double step(double dt_s) noexcept { return effort_Nm_.step(dt_s).position; }
 
+  void pass_state(auto& bytes) noexcept { bytes(effort_Nm_); }
+
   static constexpr double fade_s = 0.2;
 
  private:

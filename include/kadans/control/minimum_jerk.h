@@ -26,6 +26,7 @@ class MinimumJerk {
   const State& state() const noexcept { return state_; }
   double target() const noexcept { return target_; }
   double remaining_s() const noexcept { return remaining_s_; }  // 0 at rest
+  void pass_state(auto& bytes) noexcept { bytes(state_, target_, remaining_s_); }
 
  private:
   State state_;

@@ -44,6 +44,10 @@ class MotionProfile {
   double target() const noexcept { return target_; }
   double remaining_s() const noexcept { return remaining_s_; }  // 0 at rest
 
+  void pass_state(auto& bytes) noexcept {
+    bytes(phases_, phase_, time_s_, phase_start_, state_, target_, remaining_s_);
+  }
+
   // Constant jerk for a time.
   struct Phase {
     double jerk = 0, duration_s = 0;

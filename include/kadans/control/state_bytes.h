@@ -10,9 +10,13 @@
 //     bytes.high_level(last_update_ns_);                            // what the behavior thread owns
 //   }
 //
-// A member with a pass_state of its own is asked for it; any other must be trivially copyable. The bytes are those of
-// this build and hold no pointer. How many there are follows from the setup: measure once, before the loop. Nothing
-// here allocates, locks or throws.
+// A member with a pass_state of its own is asked for it. Any other is a number, an enumeration, a std::array or an
+// aggregate, and passes by its members, so that padding is never among the bytes. They are those of this build and hold
+// no pointer. How many there are follows from the setup: measure once, before the loop. Nothing here allocates, locks
+// or throws.
+//
+// By the same function the state is hashed. Two objects with the same hash go on alike; so a state that comes from
+// outside, which must never be put into an object, can at least be compared.
 //
 // Threads: the control thread, between ticks. With Levels::both the behavior thread must stand still, too.
 #pragma once
@@ -23,6 +27,8 @@
 #include <type_traits>
 
 #include "kadans/exchange/latest.h"
+#include "kadans/signal/members.h"
+#include "kadans/signal/state_hash.h"
 
 namespace kadans {
 
@@ -31,6 +37,12 @@ class StateBytes {
   enum class Levels : bool { low, both };
 
   explicit StateBytes(Levels levels = Levels::both) noexcept : levels_(levels) {}  // measures: size() says how many
+  // `hash` must outlive this.
+  static StateBytes hashing(StateHash& hash, Levels levels = Levels::both) noexcept {
+    StateBytes made(levels);
+    made.hash_ = &hash;
+    return made;
+  }
   static StateBytes saving(std::span<std::byte> bytes, Levels levels = Levels::both) noexcept {
     StateBytes made(levels);
     made.to_ = bytes.data();
@@ -71,18 +83,35 @@ class StateBytes {
     if constexpr (requires { state.pass_state(*this); }) {
       state.pass_state(*this);
     } else {
-      static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "state is copied as bytes");
-      const std::size_t at = size_;
-      size_ += sizeof state;
-      if (!ok()) return;
-      if (to_ != nullptr) std::memcpy(to_ + at, &state, sizeof state);
-      if (from_ != nullptr) std::memcpy(static_cast<void*>(&state), from_ + at, sizeof state);
+      static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "state is copied, and by its value");
+      if constexpr (std::is_arithmetic_v<T>) {
+        number(state);
+      } else if constexpr (std::is_enum_v<T>) {
+        auto value = static_cast<std::underlying_type_t<T>>(state);
+        number(value);
+        state = static_cast<T>(value);
+      } else if constexpr (requires { state.begin(); }) {
+        for (auto& one : state) pass(one);
+      } else {
+        with_members(state, [this](auto&... members) { (this->pass(members), ...); });
+      }
     }
+  }
+
+  template <typename T>
+  void number(T& value) noexcept {
+    const std::size_t at = size_;
+    size_ += sizeof value;
+    if (hash_ != nullptr) hash_->add(value);
+    if (!ok()) return;
+    if (to_ != nullptr) std::memcpy(to_ + at, &value, sizeof value);
+    if (from_ != nullptr) std::memcpy(&value, from_ + at, sizeof value);
   }
 
   Levels levels_;
   std::byte* to_ = nullptr;
   const std::byte* from_ = nullptr;
+  StateHash* hash_ = nullptr;
   std::size_t room_ = 0, size_ = 0;
 };
 

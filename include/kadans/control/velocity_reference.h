@@ -28,6 +28,7 @@ class VelocityRamp {
   bool limited() const noexcept { return limited_; }  // brakes for the end of the way
   // Time until the set-point is reached; 0 while limited.
   double remaining_s() const noexcept { return remaining_s_; }
+  void pass_state(auto& bytes) noexcept { bytes(velocity_, goal_, asked_acceleration_, remaining_s_, limited_); }
 
  private:
   double velocity_ = 0;

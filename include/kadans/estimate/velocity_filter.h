@@ -40,6 +40,7 @@ class VelocityFilter {
 
   const Config& config() const noexcept { return config_; }
   const State& state() const noexcept { return state_; }
+  void pass_state(auto& bytes) noexcept { bytes(state_, step_s_, a1_, a2_, a3_, band_rad_s_, low_rad_s_, started_); }
 
  private:
   void prewarp() noexcept;  // for the cut-off

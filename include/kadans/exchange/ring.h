@@ -70,6 +70,9 @@ class Ring {
     return true;
   }
 
+  // While nobody pushes or pops: hands all that it holds to `bytes` (state_bytes.h).
+  void pass_state(auto& bytes) noexcept { bytes(head_, tail_, slots_); }
+
   static constexpr std::size_t capacity() noexcept { return Capacity; }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "app/assembly.h"
 #include "kadans/signal/input_error.h"
 #include "signal/number_text.h"
 
@@ -9,6 +10,7 @@ namespace kadans {
 namespace {
 
 constexpr const char* metadata_name = "checkpoint";
+constexpr const char* objects_name = "control_objects";
 
 template <typename Number>
 Number fact_of(const TextMap& facts, const char* name, int base, const std::string& file) {
@@ -26,8 +28,9 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::string& file) {
                       {"time_ns", std::to_string(checkpoint.at.time_ns)},
                       {"state_hash", hash_text(checkpoint.at.state_hash)},
                       {"hashes", marks_text(checkpoint.trail)}};
-  const bool written =
-      writer.open(file) && write_inputs(writer, checkpoint.inputs) && writer.add_metadata(metadata_name, facts);
+  const bool written = writer.open(file) && write_inputs(writer, checkpoint.inputs) &&
+                       writer.add_metadata(metadata_name, facts) &&
+                       writer.add_metadata(objects_name, checkpoint.objects);
   if (!writer.close() || !written) throw InputError({.message = writer.error()});
 }
 
@@ -48,7 +51,34 @@ Checkpoint read_checkpoint(const std::string& file) {
   checkpoint.at = {fact_of<std::uint64_t>(facts, "tick", 10, file), fact_of<std::int64_t>(facts, "time_ns", 10, file),
                    fact_of<std::uint64_t>(facts, "state_hash", 16, file)};
   if (const auto hashes = facts.find("hashes"); hashes != facts.end()) checkpoint.trail = marks_of(hashes->second);
+  if (const auto objects = reader.metadata().find(objects_name); objects != reader.metadata().end())
+    checkpoint.objects = objects->second;
   return checkpoint;
+}
+
+TextMap object_states(Assembly& assembly) {
+  TextMap states;
+  const std::vector<ObjectInfo>& objects = assembly.catalog().objects;
+  for (std::uint32_t i = 0; i < objects.size(); ++i) {
+    StateHash hash;
+    StateBytes hashing = StateBytes::hashing(hash);
+    assembly.sets().object(i).pass_state(hashing);
+    states[objects[i].name] = hash_text(hash.value());
+  }
+  for (const auto& other : assembly.others()) {
+    for (const auto& [name, hash] : object_states(*other)) states[other->scenario().name + "." + name] = hash;
+  }
+  return states;
+}
+
+std::string differing_objects(const TextMap& checkpoint, const TextMap& now) {
+  std::string names;
+  for (const auto& [name, hash] : now) {
+    const auto found = checkpoint.find(name);
+    if (checkpoint.empty() || (found != checkpoint.end() && found->second == hash)) continue;
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
 }
 
 CheckpointOrder parse_checkpoint(const std::string& text) {
@@ -64,7 +94,7 @@ void CheckpointWriter::between_ticks(const RunMark& mark) {
   trail_.between_ticks(mark);
   std::erase_if(orders_, [&](const CheckpointOrder& order) {
     if (mark.time_ns < std::llround(order.at_s * 1e9)) return false;
-    write_checkpoint({inputs_, mark, trail_.marks()}, order.file);
+    write_checkpoint({inputs_, mark, trail_.marks(), object_states(assembly_)}, order.file);
     return true;
   });
 }

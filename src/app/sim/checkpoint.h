@@ -6,7 +6,11 @@
 // program runs to that tick again, at full speed and without a record, compares the hash, and then goes on. At that
 // point one process may split into many (run_branches.h).
 //
-// The file is a record without messages: inputs as in run_inputs.h, metadata "checkpoint".
+// Of each control object a checkpoint holds the hash of its state (state_bytes.h), so that the object which came out
+// another way is named, also when no signal shows it yet. The state itself is not held: nothing from a file is put into
+// an object.
+//
+// The file is a record without messages: inputs as in run_inputs.h, metadata "checkpoint" and "control_objects".
 #pragma once
 
 #include <cstdint>
@@ -18,10 +22,13 @@
 
 namespace kadans {
 
+class Assembly;
+
 struct Checkpoint {
   RunInputs inputs;
   RunMark at;
   std::vector<HashMark> trail;  // hashes on the way to the tick
+  TextMap objects{};            // hash of the state of each control object, by its name; empty: the file has none
 };
 
 inline constexpr double checkpoint_trail_s = 0.1;
@@ -30,6 +37,12 @@ inline constexpr double checkpoint_trail_s = 0.1;
 void write_checkpoint(const Checkpoint& checkpoint, const std::string& file);
 // Throws InputError when the file is no checkpoint or is damaged.
 Checkpoint read_checkpoint(const std::string& file);
+
+// Between two ticks: the hash of the state of each control object, of further robots as ROBOT.OBJECT.
+TextMap object_states(Assembly& assembly);
+// The names of the objects in `now` whose state is another one in the checkpoint, "posture, gaze"; "" when there are
+// none, or when the checkpoint holds no states.
+std::string differing_objects(const TextMap& checkpoint, const TextMap& now);
 
 // A checkpoint to be written: "2.5=crouched.mcap". parse_checkpoint throws InputError.
 struct CheckpointOrder {
@@ -41,8 +54,8 @@ CheckpointOrder parse_checkpoint(const std::string& text);
 // Writes checkpoints while a run goes.
 class CheckpointWriter final : public RunObserver {
  public:
-  CheckpointWriter(RunInputs inputs, std::vector<CheckpointOrder> orders)
-      : inputs_(std::move(inputs)), orders_(std::move(orders)) {}
+  CheckpointWriter(RunInputs inputs, std::vector<CheckpointOrder> orders, Assembly& assembly)
+      : inputs_(std::move(inputs)), orders_(std::move(orders)), assembly_(assembly) {}
   void tick(double, std::span<const double>) override {}
   void between_ticks(const RunMark& mark) override;
 
@@ -51,6 +64,7 @@ class CheckpointWriter final : public RunObserver {
  private:
   RunInputs inputs_;
   std::vector<CheckpointOrder> orders_;
+  Assembly& assembly_;
   HashTrail trail_{checkpoint_trail_s};
 };
 

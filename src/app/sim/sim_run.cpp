@@ -76,7 +76,7 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
   if (!continuation_) make_reachable();
   if (options_.hash_every_s) trail_ = std::make_unique<HashTrail>(*options_.hash_every_s);
   if (!options_.checkpoints.empty())
-    checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_));
+    checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_), assembly_);
 }
 
 void SimRun::make_reachable() {
@@ -159,6 +159,8 @@ void SimRun::reach_branch(const RunMark& mark) {
   reached_ = true;
   const RunMark& wanted = continuation_->from.at;
   parted_ = mark.state_hash != wanted.state_hash || mark.time_ns != wanted.time_ns;
+  other_objects_ = differing_objects(continuation_->from.objects, object_states(assembly_));
+  parted_ = parted_ || !other_objects_.empty();
   if (parted_) return;
   const std::size_t count = continuation_->branches.size();
   for (std::size_t i = 0; count > 1 && i < count; ++i) {
@@ -185,6 +187,7 @@ int SimRun::tell_parting() const {
   const std::string what = change_text(changed_program(from.inputs));
   print_error(options_.from + ": this run is not the one of the checkpoint: they part " +
               (where.empty() ? "after its last hash" : where));
+  if (!other_objects_.empty()) print_error("the state of these control objects differs: " + other_objects_);
   print_error(what.empty() ? "neither the program nor its libraries changed since" : "since it was left: " + what);
   return exit_failed;
 }

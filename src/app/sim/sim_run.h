@@ -86,7 +86,8 @@ class SimRun final : public RunObserver {
   RunBranch branch_;                    // the branch that this process takes
   const BranchActions* taken_ = nullptr;
   bool reached_ = false, parted_ = false;
-  bool split_ = false;  // this process has split into the branches and is done
+  std::string other_objects_;  // control objects whose state is not the checkpoint's
+  bool split_ = false;         // this process has split into the branches and is done
   ProcessSplit processes_;
   std::unique_ptr<SimRemote> remote_;
   HashTrail way_{checkpoint_trail_s};

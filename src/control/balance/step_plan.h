@@ -104,6 +104,7 @@ class StepPlan {
   const State& state() const noexcept { return state_; }
   // Where the other foot's frame shall be, relative to the stance foot's frame.
   Vec3 other_foot(const Config& config) const noexcept;
+  void pass_state(auto& bytes) noexcept { bytes(state_, looked_); }
 
  private:
   GroundPoint foot(std::size_t foot) const noexcept;
