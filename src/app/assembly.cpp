@@ -142,6 +142,8 @@ void Assembly::begin_others() {
     robot.plugins = scenario_.plugins;
     const std::uint64_t seed = RandomStream(seed_, "robot " + robot.name).next();
     others_.emplace_back(new Assembly(Begun{}, robot, seed, log_, nullptr, nullptr, others_.size() + 1));
+    for (const QuantityValue& theirs : others_.back()->quantities_)
+      quantities_.push_back({robot.name + "." + theirs.name, theirs.value});
   }
 }
 
@@ -342,11 +344,13 @@ RunParts Assembly::parts_in(Lockstep& lockstep) {
                  .behaviors = *behaviors_,
                  .lockstep = lockstep,
                  .truth = *truth_,
+                 .model = robot_.config.model,
                  .log = log_,
                  .disturbances = disturbances_.get(),
                  .joystick = joystick_.get(),
                  .upkeep_first = static_cast<SignalId>(upkeep_first_),
-                 .upkeep_count = upkeep_count_};
+                 .upkeep_count = upkeep_count_,
+                 .name = number_ == 0 ? "" : scenario_.name};
   for (const auto& other : others_) parts.others.push_back(other->parts_in(lockstep));
   return parts;
 }

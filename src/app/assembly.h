@@ -83,7 +83,7 @@ class Assembly {
   Plant& plant() noexcept;                                 // the plant that the engine sees; it is not open yet
   World* world() noexcept;                                 // with its faults; nullptr: there is none
   TruthSignals* truth() noexcept { return truth_.get(); }  // nullptr: there is none
-  // The quantities that were set or drawn for this run.
+  // The quantities that were set or drawn for this run; further robots' as NAME.<quantity>.
   const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
 

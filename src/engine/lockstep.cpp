@@ -21,6 +21,12 @@ void Lockstep::add(const EngineSettings& settings, ControlEngine& control, Behav
   robots_.insert(robots_.begin(), {&control, &behaviors, behavior_period_ns});
 }
 
+void Lockstep::silence_behaviors(const BehaviorEngine& behaviors, bool silent) noexcept {
+  for (Engines& robot : robots_) {
+    if (robot.behaviors == &behaviors) robot.behaviors_silent = silent;
+  }
+}
+
 void Lockstep::pass_period() {
   world_.step(control_period_ns_);
   clock_.advance(control_period_ns_);
@@ -37,7 +43,7 @@ void Lockstep::step() {
   }
   for (Engines& robot : robots_) {
     if (now_ns < robot.behaviors_due_ns) continue;
-    if (!behaviors_silent_ || &robot != &robots_.back()) robot.behaviors->tick(now_ns);
+    if (!robot.behaviors_silent) robot.behaviors->tick(now_ns);
     robot.behaviors_due_ns = (now_ns / robot.behavior_period_ns + 1) * robot.behavior_period_ns;
   }
   pass_period();

@@ -29,9 +29,9 @@ class Lockstep {
   void step();
 
   // Faults for tests and scenarios. miss: skips this number of control ticks of all robots before the next one.
-  // silence_behaviors: no behavior tick of the first robot comes until it is called with false.
+  // silence_behaviors: no tick of these behaviors comes until it is called with false.
   void miss(std::uint32_t control_ticks) noexcept { missed_ = control_ticks; }
-  void silence_behaviors(bool silent) noexcept { behaviors_silent_ = silent; }
+  void silence_behaviors(const BehaviorEngine& behaviors, bool silent) noexcept;
 
   std::int64_t time_ns() const noexcept { return clock_.now_ns(); }
   std::int64_t control_period_ns() const noexcept { return control_period_ns_; }
@@ -44,6 +44,7 @@ class Lockstep {
     BehaviorEngine* behaviors;
     std::int64_t behavior_period_ns;
     std::int64_t behaviors_due_ns = 0;
+    bool behaviors_silent = false;
   };
 
   void pass_period();
@@ -55,7 +56,6 @@ class Lockstep {
   TickStatistics control_tick_cost_;
   std::int64_t control_period_ns_;
   std::uint32_t missed_ = 0;
-  bool behaviors_silent_ = false;
 };
 
 }  // namespace kadans

@@ -8,6 +8,7 @@
 //   motor_warm, motor_hot                              1, of the thermal model
 //   effort_limit, effort_rate_limit, power_limit       1, of the value that would have been written
 //   soft_stop, soft_speed, actuation_not_finite        1, of the value that would have been written
+//   modes_differ                                       1, of what would have been written
 //   sensor_not_finite, imu_not_finite, foot_not_finite 1
 //   sensor_jump, imu_jump, foot_jump                   1, of the reading
 //   sensor_silent                                      silent_ticks_max + 1, + period of a slow joint - 1

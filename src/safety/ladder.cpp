@@ -50,7 +50,8 @@ Reactions default_reactions() noexcept {
   for (const FaultCode code : {soft_stop, soft_speed, effort_limit, effort_rate_limit, power_limit, motor_warm}) {
     set(code, {.joint = limited});
   }
-  for (const FaultCode code : {position_limit, velocity_limit, actuation_not_finite, motor_hot, drive_hot}) {
+  for (const FaultCode code :
+       {position_limit, velocity_limit, actuation_not_finite, modes_differ, motor_hot, drive_hot}) {
     set(code, {.joint = damp, .latch = true});
   }
   for (const FaultCode code :

@@ -33,6 +33,15 @@ void check_settings(const SafetySettings& s) {
   require(s.fall.soft_share >= 0 && s.fall.soft_share <= 1, "fall.soft_share must be 0..1");
 }
 
+// "position, the coupled joint velocity"
+FaultWords words_of_modes(ActuationMode own, ActuationMode other) noexcept {
+  FaultWords words = fault_words(name(own));
+  char* at = std::ranges::find(words, '\0');
+  for (const std::string_view text : {std::string_view(", the coupled joint "), std::string_view(name(other))})
+    at = std::ranges::copy(text.substr(0, static_cast<std::size_t>(&words.back() - at)), at).out;
+  return words;
+}
+
 }  // namespace
 
 void Safety::raise(const Fault& fault) noexcept {
@@ -129,14 +138,18 @@ FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actu
                                  .follows = !joint.gave_way,
                                  .dt_s = dt_s};
     const DriveWatch::Input drive{look.sample, joint.driven, in.sensors.time_ns, dt_s};
-    const FaultMask found = joint.watch.look(look) | joint.drive.look(settings_.drives, drive);
-    joint.finite = (found & bit(FaultCode::actuation_not_finite)) == 0;
+    const bool differ = modes_differ(i, actuation);
+    const FaultMask found = joint.watch.look(look) | joint.drive.look(settings_.drives, drive) |
+                            bit_if(differ && i < joint.partner, FaultCode::modes_differ);
+    joint.writable = !differ && (found & bit(FaultCode::actuation_not_finite)) == 0;
     if ((found | joint.cut) == 0 && joint.ladder.idle()) continue;
     FaultMask fresh = joint.ladder.update(found | joint.cut, dt_s, settings_.reactions, &Reaction::joint) & found;
     for (; fresh != 0; fresh &= fresh - 1) {
       Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(i), .tick = in.tick};
       joint.watch.describe(look, fault);
       joint.drive.describe(settings_, drive, fault);
+      if (fault.code == FaultCode::modes_differ)
+        fault.words = words_of_modes(look.asked.mode, actuation.joints[joint.partner].mode);
       raise(fault);
     }
     all |= found;
@@ -226,8 +239,8 @@ void Safety::cut_joint(const SafetyInput& in, std::size_t index, JointActuation&
 bool Safety::passes(const SafetyInput& in, std::size_t index, const JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
   const JointGuard& partner = joints_[joint.partner];
-  const bool calm = joint.ladder.idle() && partner.ladder.idle() && partner.finite &&
-                    robot_.level() == SafetyLevel::normal && joint.finite && joint.authority == 1 && joint.cut == 0 &&
+  const bool calm = joint.ladder.idle() && partner.ladder.idle() && partner.writable &&
+                    robot_.level() == SafetyLevel::normal && joint.writable && joint.authority == 1 && joint.cut == 0 &&
                     !joint.gave_way && fall_.share() == 1 && actuation.mode == ActuationMode::effort;
   const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, change_s_};
   if (!calm || joint.limiter.passive() || !joint.limiter.free(limits, actuation.effort_Nm)) return false;
@@ -244,8 +257,8 @@ bool Safety::gives_way(std::size_t index, double dt_s, const JointActuation& act
   const SafetyLevel level = joint_level(index);
   // The drive makes the torque in its own modes: on the way down it cannot be softened.
   const bool by_drive = actuation.mode != ActuationMode::effort && actuation.mode != ActuationMode::off;
-  const bool must =
-      level >= SafetyLevel::damp || !joint.finite || !joints_[joint.partner].finite || (by_drive && fall_.share() < 1);
+  const bool must = level >= SafetyLevel::damp || !joint.writable || !joints_[joint.partner].writable ||
+                    (by_drive && fall_.share() < 1);
   if (level >= SafetyLevel::damp) {
     joint.authority = 0;
   } else if (joint.authority < 1) {

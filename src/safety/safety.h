@@ -6,7 +6,8 @@
 // ladders keep the rung until it may be left (ladder.h). An emergency stop also brings the robot down
 // (emergency_stop.h). What is asked of a joint that still works is cut to its limits (joint_limiter.h), and of coupled
 // joints to their drives' (coupling_limiter.h); coupled joints go down the ladder together, for each of their drives
-// moves both. An actuation that is not finite is never written, whatever the configuration says.
+// moves both. An actuation that is not finite, or that asks coupled joints for two modes, is never written, whatever
+// the configuration says.
 //
 // A joint that comes back from damp or off, by itself or because faults were cleared, gets its torque back over
 // recover_s. came_back() says so in that tick: the control objects then start anew from the measured state, as at a
@@ -95,7 +96,7 @@ class Safety {
     JointLimiter limiter;
     Ladder ladder;
     std::size_t partner = 0;  // the joint that it is coupled with, else itself
-    bool finite = true;       // what was asked for in this tick
+    bool writable = true;     // what was asked for in this tick: finite, and in one mode with its partner
     FaultMask cut = 0;        // by the limiter, in the last tick
     double authority = 1;     // share of the torque limit; grows after damp and off
     bool gave_way = false;    // in the last tick it damped or was off, whatever was asked
@@ -107,6 +108,11 @@ class Safety {
   // Of the joint and the one that it is coupled with.
   SafetyLevel ladder_level(std::size_t joint) const noexcept {
     return std::max(joints_[joint].ladder.level(), joints_[joints_[joint].partner].ladder.level());
+  }
+  // Whether the drives of coupled joints cannot do both: one mode at a time, effort with off as without torque.
+  bool modes_differ(std::size_t joint, const ActuationFrame& asked) const noexcept {
+    const ActuationMode own = asked.joints[joint].mode, other = asked.joints[joints_[joint].partner].mode;
+    return own != other && std::max(own, other) > ActuationMode::effort;
   }
   FaultMask watch_body(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_feet(const SafetyInput& input, double dt_s) noexcept;

@@ -77,10 +77,21 @@ class Run {
     for (RunObserver* observer : observers_) observer->tick(time_s, row);
     const RunMark mark{parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()};
     for (RunObserver* observer : observers_) observer->between_ticks(mark);
-    Fault fault;
-    while (parts_.control.safety().log().try_pop(fault)) {
-      result_.faults.push_back(fault);
-      for (RunObserver* observer : observers_) observer->fault(fault);
+    take_faults(parts_);
+    for (const RunParts& other : parts_.others) take_faults(other);
+  }
+
+  void take_faults(const RunParts& robot) {
+    const std::int64_t time_ns = robot.control.state().time_ns;
+    for (Fault fault; robot.control.safety().log().try_pop(fault);) {
+      ToldFault what = told(fault, robot.model, time_ns);
+      if (robot.name.empty()) {
+        for (RunObserver* observer : observers_) observer->fault(fault);
+      } else {
+        what.joint.insert(0, what.joint.empty() ? robot.name : robot.name + ".");
+        robot.log.message(time_ns, BehaviorLog::Severity::warning, robot.name, "fault " + fault_text(what));
+      }
+      result_.faults.push_back({fault, std::move(what)});
     }
   }
 
@@ -95,7 +106,7 @@ class Run {
 
 void RunParts::begin_step() const {
   truth.update(1e-9 * static_cast<double>(lockstep.time_ns()), control.row());
-  if (disturbances != nullptr) disturbances->apply(lockstep, robot);
+  if (disturbances != nullptr) disturbances->apply(lockstep, behaviors, robot);
   if (joystick != nullptr) control.exchange().joystick.publish(joystick->at(lockstep.time_ns()));
   for (const RunParts& other : others) other.begin_step();
 }

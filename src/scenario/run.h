@@ -53,6 +53,7 @@ struct RunParts {
   BehaviorEngine& behaviors;
   Lockstep& lockstep;
   TruthSignals& truth;
+  const RobotModel& model;
   RunLog& log;
   Disturbances* disturbances = nullptr;
   JoystickSource* joystick = nullptr;
@@ -60,6 +61,7 @@ struct RunParts {
   // because memory depends on the machine.
   SignalId upkeep_first = 0;
   std::size_t upkeep_count = 0;
+  std::string name{};              // of a further robot
   std::vector<RunParts> others{};  // of the world's further robots; their signals are among the first robot's
 
   // What comes before a step: the truth of each robot as signals, disturbances, the joystick.
@@ -78,7 +80,7 @@ class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void tick(double time_s, std::span<const double> row) = 0;
-  // Called for each fault that the safety layer found.
+  // Called for each fault that the first robot's safety layer found. Those of further robots are lines of the log.
   virtual void fault(const Fault& fault) { (void)fault; }
   // Called after each tick and its step of the plant. Changes that it makes take effect in the next tick.
   virtual void between_ticks(const RunMark& mark) { (void)mark; }
@@ -87,6 +89,10 @@ class RunObserver {
 
 struct TickCost {
   double median_ns = 0, p99_ns = 0, max_ns = 0;
+};
+
+struct RunFault : Fault {
+  ToldFault told;  // of a further robot with its name: "left.l_knee", or "left" alone
 };
 
 struct RunResult {
@@ -103,7 +109,7 @@ struct RunResult {
   std::uint64_t state_hash = 0;
   TickCost tick;
   std::uint64_t commands_sent = 0, commands_refused = 0;
-  std::vector<Fault> faults;  // in the order of time, at most fault_log_capacity in a tick
+  std::vector<RunFault> faults;  // of all robots, in the order of time, at most fault_log_capacity of each in a tick
 };
 
 // Runs for duration_s of simulated time. `observers` may be empty. When the plant throws, the run ends and the result

@@ -60,6 +60,7 @@ constexpr std::array<CodeText, fault_codes> texts{{
     {channel_silent, "channel_silent", "safety.silent_ticks_max"},
     {channel_range, "channel_range", "sensors"},
     {channel_not_finite, "channel_not_finite", "safety.reactions"},
+    {modes_differ, "modes_differ", "safety.reactions"},
 }};
 
 constexpr bool in_order() {
@@ -107,6 +108,10 @@ std::string fault_detail(const ToldFault& fault) {
 }
 
 std::string fault_text(const ToldFault& fault) { return fault_name(fault) + ": " + fault_detail(fault); }
+
+const char* name(ActuationMode mode) noexcept {
+  return named(std::array{"off", "effort", "position", "velocity", "impedance"}, static_cast<std::size_t>(mode));
+}
 
 const char* name(DriveState state) noexcept {
   return named(std::array{"off", "ready", "enabled", "homing", "fault"}, static_cast<std::size_t>(state));

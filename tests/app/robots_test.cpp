@@ -1,5 +1,8 @@
 // A scenario with several robots.
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -84,6 +87,34 @@ TEST_CASE("A check may look at another robot, and a robot that is pushed falls a
                                                   .min = 20}});
   const RunResult result = run_scenario(played.robot.parts(), 2, checks, {});
   CHECK(result.checks.at(0).passed);
+}
+
+TEST_CASE("A further robot's faults are its own, told with its name, and the first one goes on as without them") {
+  ScenarioConfig sound = with_left(20), faulty = with_left(20);
+  using Kind = ScenarioFault::Kind;
+  faulty.robots[0].faults = {{.kind = Kind::sensor_silent, .of = {"l_knee", {}}, .from_s = 0.2},
+                             {.kind = Kind::behaviors_silent, .from_s = 0.5}};
+  Played one(sound), two(faulty);
+  CHECK(one.run(1).faults.empty());
+  std::vector<std::string> told;
+  for (const RunFault& fault : two.run(1).faults) told.push_back(fault_name(fault.told));
+  CHECK(told == std::vector<std::string>{"sensor_silent of left.l_knee", "heartbeat_lost of left"});
+  for (const char* signal : {"safety.faults", "joint.l_knee.position_rad", "plant.base.height_m"}) {
+    CAPTURE(signal);
+    CHECK(value(one.robot, signal) == value(two.robot, signal));
+  }
+  REQUIRE(two.log.lines().size() >= 2);
+  const LogLine& last = two.log.lines().back();
+  CHECK(last.behavior == "left");
+  CHECK(last.text.starts_with("fault heartbeat_lost of left: "));
+}
+
+TEST_CASE("What is set for a further robot is among the quantities of the run") {
+  const ScenarioConfig scenario = with_left(1.5);
+  const Played played(scenario);
+  const auto left = std::ranges::find(played.robot.quantities(), "left.start.y_m", &QuantityValue::name);
+  REQUIRE(left != played.robot.quantities().end());
+  CHECK(left->value == 1.5);
 }
 
 TEST_CASE("Robots need a world that they can share, and one clock") {

@@ -130,18 +130,23 @@ TEST_CASE("Further robots of a scenario have names of their own, and take the fi
     return R"({"name": "a", "robot": "config/tulip/robot.json", "duration_s": 1, "plant": ")" + plant +
            R"(", "robots": [)" + robots + "]}";
   };
-  const ScenarioConfig read = read_scenario_config_text(
-      text(R"({"name": "left", "set": {"start.y_m": 0.6}, "behaviors": ["squat"]}, {"name": "b"})"), file);
+  const ScenarioConfig read =
+      read_scenario_config_text(text(R"({"name": "left", "set": {"start.y_m": 0.6}, "behaviors": ["squat"],
+               "faults": [{"kind": "drive_dead", "of": "l_knee"}]}, {"name": "b"})"),
+                                file);
   REQUIRE(read.robots.size() == 2);
   CHECK(read.robots[0].name == "left");
   CHECK(read.robots[0].robot == read.robot);
   CHECK(read.robots[0].set.at(0).value == 0.6);
   CHECK(read.robots[0].behaviors.size() == 1);
+  CHECK(read.robots[0].faults.at(0).of.name == "l_knee");
   const auto refused = [&](const std::string& wrong, const std::string& message) {
     CHECK_THROWS_WITH_AS(read_scenario_config_text(wrong, file), (file + message).c_str(), InputError);
   };
   refused(text(R"({"name": "b"}, {"name": "b"})"), ":1:122: another robot has the name 'b'");
   refused(text(R"({"name": "B 1"})"), ":1:107: name 'B 1' must consist of small letters, digits and underscores");
+  refused(text(R"({"name": "b", "faults": [{"kind": "clock_missed", "size": 2}]})"),
+          ":1:122: robots[0].faults: clock_missed is a fault of all robots: it belongs to the scenario's own faults");
   refused(text("{}"),
           ":1:98: key 'name' is missing in robots[0]: the robot's name: its signals are "
           "NAME.plant.base.height_m and the like");

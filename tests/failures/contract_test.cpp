@@ -297,6 +297,28 @@ TEST_CASE("never written, the joint damps, latched until cleared" * description(
   }
 }
 
+TEST_CASE("in that tick both damp, latched until cleared, and the fault says which modes; the other joints go on" *
+          description("two coupled joints are asked for different modes")) {
+  const Transmission ankle({.kind = Transmission::Kind::four_bar_linkage, .joints = {0, 1}, .drives = {"a", "b"}});
+  LightRobot robot(41, default_reactions(), {ankle});
+  robot.run(100);
+  const std::int64_t onset = robot.ticks() + 1;
+  robot.saboteur->arm(1, {.position_rad = 0.1, .mode = ActuationMode::position});
+  robot.run(300);
+  REQUIRE(robot.in_time(FaultCode::modes_differ, onset));
+  CHECK(fault_detail(told(robot.faults.front())) == "effort, the coupled joint position");
+  CHECK(robot.plant.written().joints[1].mode == ActuationMode::effort);
+  robot.saboteur->disarm();
+  robot.run(50);
+  for (const std::size_t joint : {0U, 1U}) CHECK(robot.safety.joint_level(joint) == SafetyLevel::damp);
+  CHECK(robot.safety.joint_level(2) == SafetyLevel::normal);
+  robot.clear_faults();
+  robot.run(2000);
+  CHECK(robot.safety.joint_level(0) == SafetyLevel::normal);
+  CHECK(robot.codes() == "modes_differ");
+  CHECK(robot.broken_promise().empty());
+}
+
 TEST_CASE("limited and flagged: torque within its limit, none into the soft stop or beyond the speed limit" *
           description("a joint passes its torque limit, a soft stop or its speed limit")) {
   LightRobot robot(9);

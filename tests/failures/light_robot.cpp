@@ -1,6 +1,7 @@
 #include "light_robot.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "control/made_objects.h"
 
@@ -9,8 +10,9 @@ namespace {
 
 constexpr double effort_max_Nm = 20;
 
-RobotModel make_model() {
+RobotModel make_model(std::vector<Transmission> transmissions) {
   RobotModel model;
+  model.transmissions = std::move(transmissions);
   model.name = "light";
   model.links.resize(joints + 1);
   const char* names[] = {"l_hip", "l_ankle", "r_hip", "r_ankle"};
@@ -103,7 +105,8 @@ void NoisyPlant::write(const ActuationFrame& actuation) noexcept {
   ideal_.write(torques);
 }
 
-LightParts::LightParts(std::uint64_t seed) : light_model(make_model()), sound(light_model, plant_settings(), seed) {}
+LightParts::LightParts(std::uint64_t seed, std::vector<Transmission> transmissions)
+    : light_model(make_model(std::move(transmissions))), sound(light_model, plant_settings(), seed) {}
 
 std::vector<std::unique_ptr<ControlObject>> LightParts::objects() {
   Catalog& catalog = light_catalog;
@@ -125,8 +128,8 @@ std::vector<std::unique_ptr<ControlObject>> LightParts::objects() {
   return all;
 }
 
-LightRobot::LightRobot(std::uint64_t seed, const Reactions& reactions)
-    : LightParts(seed),
+LightRobot::LightRobot(std::uint64_t seed, const Reactions& reactions, std::vector<Transmission> transmissions)
+    : LightParts(seed, std::move(transmissions)),
       Rig({.model = light_model,
            .plant = sound,
            .catalog = light_catalog,

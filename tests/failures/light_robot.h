@@ -33,7 +33,7 @@ class NoisyPlant final : public OneRobotWorld {
 
 // Poses "there" and "safe".
 struct LightParts {
-  LightParts(std::uint64_t seed);
+  LightParts(std::uint64_t seed, std::vector<Transmission> transmissions);
   RobotModel light_model;
   NoisyPlant sound;
   Catalog light_catalog;
@@ -42,7 +42,8 @@ struct LightParts {
 
 class LightRobot : private LightParts, public Rig {
  public:
-  explicit LightRobot(std::uint64_t seed, const Reactions& reactions = default_reactions());
+  explicit LightRobot(std::uint64_t seed, const Reactions& reactions = default_reactions(),
+                      std::vector<Transmission> transmissions = {});
 };
 
 }  // namespace kadans::failures

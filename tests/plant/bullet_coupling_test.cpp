@@ -160,3 +160,19 @@ TEST_CASE("A coupling of joints that do not carry each other is refused, and spr
   CHECK_THROWS_WITH(BulletWorld(fork.model, fork.settings, 1),
                     "joints 'tilt' and 'pan' are coupled, but none of them carries the other");
 }
+
+TEST_CASE("What is asked of coupled joints and what that means for their drives move them alike, to the bit") {
+  const Robot robot = driven_neck({.torque_max_Nm = 5, .rotor_inertia_kg_m2 = 0.03});
+  BulletWorld by_joints(robot.model, robot.settings, 1), by_drives(robot.model, robot.settings, 1);
+  ActuationFrame frame = both(torque(0.4), torque(-0.1));
+  by_joints.write(frame);
+  robot.model.transmissions.front().to_drives(frame);
+  by_drives.write_drives(frame);
+  StateHash joints, drives;
+  by_joints.step(ms);
+  by_drives.step(ms);
+  by_joints.hash(joints);
+  by_drives.hash(drives);
+  CHECK(by_joints.truth().velocity_rad_s[0] > 0);
+  CHECK(joints.value() == drives.value());
+}

@@ -10,10 +10,7 @@ using namespace kadans::safety_bench;
 namespace {
 
 // left = tilt + pan, right = tilt - pan: the left drive gives half of the sum of both torques.
-Bench neck() {
-  RobotModel model = robot();
-  model.transmissions.emplace_back(
-      Transmission::Settings{.kind = Transmission::Kind::differential, .joints = {0, 1}, .drives = {"left", "right"}});
+SafetySettings neck_settings() {
   SafetySettings with = settings();
   for (JointLimits& joint : with.joints) {
     joint = {.lower_rad = -2, .upper_rad = 2, .velocity_max_rad_s = 8, .effort_max_Nm = 25};
@@ -21,6 +18,13 @@ Bench neck() {
     joint.drive_velocity_max_rad_s = 6;
   }
   with.sensors.stuck_ticks = 100000;  // the pan's reading has no noise
+  return with;
+}
+
+Bench neck(const SafetySettings& with = neck_settings()) {
+  RobotModel model = robot();
+  model.transmissions.emplace_back(
+      Transmission::Settings{.kind = Transmission::Kind::differential, .joints = {0, 1}, .drives = {"left", "right"}});
   Bench bench(with, model);
   bench.faults.reserve(8);
   bench.place(0);
@@ -112,4 +116,47 @@ TEST_CASE("An actuation of one coupled joint that is not finite lets the other g
   bench.joints.joints[0].velocity_rad_s = 1;
   bench.check();
   CHECK(bench.written.joints[0].effort_Nm == doctest::Approx(-2.0));
+}
+
+TEST_CASE("Coupled joints that are asked for two modes damp in that tick, latched, and the fault says which modes") {
+  Bench bench = neck();
+  ask(bench, 5, 5);
+  bench.check_for(0.01);
+  bench.joints.joints[0].velocity_rad_s = bench.joints.joints[1].velocity_rad_s = 1;
+  bench.asked.joints[1] = {.effort_Nm = 5, .position_rad = 0.5, .mode = ActuationMode::position};
+  const testing::AllocationCount heap;
+  bench.check();
+  const long allocations = heap.count();
+  CHECK(allocations == 0);
+  for (int i = 0; i < 2; ++i) {
+    CHECK(bench.written.joints[i].mode == ActuationMode::effort);
+    CHECK(bench.written.joints[i].effort_Nm == doctest::Approx(-2.0));
+    CHECK(bench.safety->joint_level(i) == SafetyLevel::damp);
+  }
+  bench.check_for(0.1);
+  REQUIRE(bench.codes() == "modes_differ");
+  CHECK(fault_text(told(bench.faults[0], "tilt")) == "modes_differ of tilt: effort, the coupled joint position");
+  ask(bench, 5, 5);
+  bench.check_for(0.1);
+  CHECK(bench.safety->joint_level(1) == SafetyLevel::damp);
+  bench.joints.joints[0].velocity_rad_s = bench.joints.joints[1].velocity_rad_s = 0;
+  bench.safety->clear();
+  bench.check_for(1);
+  CHECK(bench.written.joints[1].effort_Nm == 5);
+}
+
+TEST_CASE(
+    "Two modes of coupled joints are not written whatever the configuration says, and off is effort without torque") {
+  SafetySettings with = neck_settings();
+  with.reactions[static_cast<std::size_t>(FaultCode::modes_differ)] = {};
+  Bench bench = neck(with);
+  bench.asked.joints[0] = {.effort_Nm = 5, .mode = ActuationMode::effort};
+  bench.asked.joints[1] = {};
+  bench.check_for(0.01);
+  CHECK(bench.codes().empty());
+  CHECK(bench.written.joints[0].effort_Nm == 5);
+  bench.asked.joints[0] = {.velocity_rad_s = 1, .mode = ActuationMode::velocity};
+  bench.check();
+  CHECK(bench.codes() == "modes_differ");
+  CHECK(bench.written.joints[0].mode == ActuationMode::effort);
 }

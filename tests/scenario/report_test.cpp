@@ -29,8 +29,9 @@ struct Subject {
     result.state_hash = 0x0123456789abcdefU;
     result.tick = {1200, 2000, 50000};
     result.commands_sent = 72;
-    result.faults = {{FaultCode::velocity_limit, 0, 1234, 13, 12},
-                     {FaultCode::heartbeat_lost, no_joint, 2000, 0.2, 0.1}};
+    for (const Fault& fault : {Fault{FaultCode::velocity_limit, 0, 1234, 13, 12},
+                               Fault{FaultCode::heartbeat_lost, no_joint, 2000, 0.2, 0.1}})
+      result.faults.push_back({fault, told(fault, model)});
     log.transition({1'500'000'000, "squat", "stand", "down", "after 1 s"});
     log.message(0, BehaviorLog::Severity::error, "squat", "squat.lua:12: attempt to call a nil value");
   }
@@ -45,8 +46,7 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 
 TEST_CASE("The JSON report is one line and one object with the promised keys") {
   const Subject subject;
-  const std::string text =
-      json_report(subject.result, {.log = subject.log, .model = subject.model, .record = "squat.mcap"});
+  const std::string text = json_report(subject.result, {.log = subject.log, .record = "squat.mcap"});
   CHECK(text.find('\n') == std::string::npos);
   const auto json = nlohmann::json::parse(text);
   CHECK(json["scenario"] == "squat");

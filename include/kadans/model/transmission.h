@@ -55,9 +55,10 @@ class Transmission {
   Pair joint_effort_Nm(const Pair& drive_Nm) const noexcept { return transposed_times(ratio_, drive_Nm); }
 
   // What is asked of the joints, as what is asked of their drives; the rest of the frame stays. Coupled drives run in
-  // one mode: when their joints ask for two, or one for nothing (off), in effort mode with the joints' effort alone. A
-  // drive knows only its own position, so in impedance mode it gets its diagonal entry of C^-T K C^-1. That is exact
-  // for a differential between joints of the same stiffness; joints of different stiffness get the mean of both.
+  // one mode. The safety layer lets no others pass than one mode for both joints, or effort for one and off for the
+  // other; of what comes past it all the same, the joints' effort alone counts. In impedance mode a drive knows only
+  // its own position, so in impedance mode it gets its diagonal entry of C^-T K C^-1. That is exact for a differential
+  // between joints of the same stiffness; joints of different stiffness get the mean of both.
   void to_drives(ActuationFrame& frame) const noexcept;
 
  private:

@@ -17,12 +17,14 @@ class IdealWorld final : public OneRobotWorld {
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
+  void write_drives(const ActuationFrame& drives) noexcept override;
   void step(std::int64_t dt_ns) override;
   const PlantTruth& truth() const noexcept override { return truth_; }
   void push(std::size_t, const Vec3&, const Vec3&) override {}
   void hash(StateHash& hash) const noexcept override;
 
  private:
+  void take(const ActuationFrame& actuation) noexcept;
   void move_drive(std::size_t drive, double dt_s) noexcept;
   void map_coupled(bool to_drives) noexcept;
 

@@ -64,6 +64,9 @@ class TruthSource {
 // One robot of a world.
 class WorldRobot : public Plant, public TruthSource {
  public:
+  // As write(), but with the actuation of the drives themselves, as Transmission::to_drives maps it: so that faults of
+  // drives can be simulated. The default is for models without couplings.
+  virtual void write_drives(const ActuationFrame& drives) noexcept { write(drives); }
   // A force in world axes at a point of a link, for the next step only. Throws std::invalid_argument when there is no
   // such link, or a number is not finite.
   virtual void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) = 0;

@@ -64,8 +64,10 @@ enum class FaultCode : std::uint16_t {
   channel_silent,
   channel_range,  // outside what it may read
   channel_not_finite,
+  // Of two coupled joints.
+  modes_differ,  // asked for two modes at once, which their drives cannot do: never written
 };
-inline constexpr std::size_t fault_codes = 43;
+inline constexpr std::size_t fault_codes = 44;
 
 const char* name(FaultCode code) noexcept;
 // The key of the robot's configuration that decides when this is a fault; "" for none.

@@ -96,6 +96,7 @@ struct alignas(8) JointStates {
 };
 
 enum class ActuationMode : std::uint8_t { off, effort, position, velocity, impedance };
+const char* name(ActuationMode mode) noexcept;
 inline constexpr ActuationMode last_actuation_mode = ActuationMode::impedance;
 // Modes in which position_rad counts: the drive leads the joint there itself.
 constexpr bool has_position(ActuationMode mode) noexcept {

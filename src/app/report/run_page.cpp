@@ -145,10 +145,10 @@ std::vector<PanelWish> wishes_of(const RecordOutline& record, const std::vector<
 void add_marks(const RunPage& page, SignalPlot& plot) {
   const RunResult& run = page.subject.result;
   plot.marks.clear();  // the faults are taken from the run, because the record may lack them
-  for (const Fault& fault : run.faults) {
+  for (const RunFault& fault : run.faults) {
     const double share =
         static_cast<double>(fault.tick) / static_cast<double>(std::max<std::uint64_t>(run.control_ticks, 1));
-    plot.marks.push_back({share * run.duration_s, fault_name(told(fault, page.subject.model))});
+    plot.marks.push_back({share * run.duration_s, fault_name(fault.told)});
   }
   for (const ScenarioPush& push : page.scenario.pushes)
     plot.marks.push_back({push.at_s, "push on " + push.link.name, false});

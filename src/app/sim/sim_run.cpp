@@ -321,7 +321,6 @@ void SimRun::write_page(const RunResult& result) {
 void SimRun::print(const RunResult& result) const {
   if (options_.json) {
     ReportContext context{.log = log_,
-                          .model = assembly_.robot().model,
                           .quantities = assembly_.quantities(),
                           .metrics = metrics_.values(),
                           .evidence = evidence_.around(result.checks),

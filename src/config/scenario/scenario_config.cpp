@@ -79,8 +79,8 @@ void verify(const Fields& f, const ScenarioFault& fault, Problems& problems) {
     problems.add(f.place("size"), f.path("size") + " means nothing to a fault" + kind);
   const bool wants_of = fault.of_sensor() || fault.of_drive();
   if (wants_of && fault.of.name.empty())
-    problems.add(f.place(), f.path() + " is" + kind + " and needs of: the joint" +
-                                (fault.of_sensor() ? ", the foot's link, a sensor, or imu" : ""));
+    problems.add(f.place(), f.path() + " is" + kind + " and needs of: the " +
+                                (fault.of_sensor() ? "joint, the foot's link, a sensor, or imu" : "drive"));
   if (!wants_of && f.has("of")) problems.add(f.place("of"), f.path("of") + " means nothing to a fault" + kind);
   if (!(fault.from_s < fault.until_s))
     problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(fault.until_s) +
@@ -118,7 +118,8 @@ void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
   constexpr NumberRange time{0, 1e6, "s"};
   f.choice("kind", fault.kind, names_of_kinds(), "kind of fault", Need::required);
   f.string("of", fault.of.name,
-           "where it happens; for sensors a joint, a foot's link, a sensor's name or imu, for drives a joint");
+           "where it happens; for sensors a joint, a foot's link, a sensor's name or imu, for drives a "
+           "drive as in plant.drives: of the joint's name, or a coupled drive's own");
   f.number("from_s", fault.from_s, time, "time at which the fault begins");
   f.number("until_s", fault.until_s, time, "time at which the fault ends (default: the end of the run)");
   f.number("size", fault.size, {-1e6, 1e6, ""}, "size of the fault; the kind says what it means");
@@ -201,7 +202,7 @@ void variant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   variation_fields(f, "randomise", scenario.randomise, problems);
 }
 
-// What plays on one robot, and what pushes it.
+// What plays on one robot, what pushes it, and what fails.
 void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   std::vector<PlacedName> lists;
   f.strings("behaviors", lists, {0, 100}, "what to play, one after the other: files, or \"squat{depth_m=0.08}, wave\"");
@@ -219,6 +220,11 @@ void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     ScenarioPush push;
     push_fields(e, push, problems);
     if (e.reading()) scenario.pushes.push_back(std::move(push));
+  });
+  f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {
+    ScenarioFault fault;
+    fault_fields(e, fault, problems);
+    if (e.reading()) scenario.faults.push_back(std::move(fault));
   });
 }
 
@@ -239,6 +245,9 @@ void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig
     robot.robot = resolve_file(file, f.place("robot"), "robot", problems).string();
   variant_fields(f, robot, problems);
   play_fields(f, robot, problems);
+  if (std::ranges::count(robot.faults, ScenarioFault::Kind::clock_missed, &ScenarioFault::kind) > 0)
+    problems.add(f.place("faults"),
+                 f.path("faults") + ": clock_missed is a fault of all robots: it belongs to the scenario's own faults");
 }
 
 void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
@@ -274,11 +283,6 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     ScenarioConfig robot;
     further_robot_fields(e, robot, scenario, problems);
     if (e.reading()) scenario.robots.push_back(std::move(robot));
-  });
-  f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {
-    ScenarioFault fault;
-    fault_fields(e, fault, problems);
-    if (e.reading()) scenario.faults.push_back(std::move(fault));
   });
   world_fields(f, scenario.world, problems);
   f.object("joystick", "a joystick that is played from a recording",

@@ -58,8 +58,8 @@ struct ScenarioFault {
     clock_missed,
   };
   Kind kind = Kind::sensor_silent;
-  // The name of a joint; for a sensor fault also of a foot's link or a sensor, or "imu"; "" for faults of the whole
-  // robot.
+  // For a drive fault the name of a drive, as plant.drives has it; for a sensor fault that of a joint, a foot's link or
+  // a sensor, or "imu"; "" for faults of the whole robot.
   PlacedName of;
   double from_s = 0;
   double until_s = std::numeric_limits<double>::infinity();  // not included
@@ -135,8 +135,8 @@ struct ScenarioConfig {
   std::string joystick_device;  // not in the file: device of a run on the wall clock
   bool on_wall_clock = false;   // not in the file: time goes on while a behavior is slow
   std::vector<ScenarioCheck> checks;
-  // Further robots in the same world and time. Of each only name, robot, quantities, behaviors, events and pushes are
-  // its own; plant_place is that of its name.
+  // Further robots in the same world and time. Of each only name, robot, quantities, behaviors, events, pushes and
+  // faults are its own; plant_place is that of its name.
   std::vector<ScenarioConfig> robots;
   PluginGate plugins;  // not in the file
 };

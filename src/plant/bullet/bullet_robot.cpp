@@ -49,14 +49,27 @@ void BulletRobot::read(SensorFrame& sensors) noexcept {
   electronics_.fill(sensors);
 }
 
-void BulletRobot::write(const ActuationFrame& actuation) noexcept {
+void BulletRobot::take(const ActuationFrame& actuation) noexcept {
   copy_used(actuation, asked_);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     if (i >= actuation.joint_count || !is_finite(asked_.joints[i])) asked_.joints[i] = {};
   }
-  drives_.map(asked_);
+}
+
+void BulletRobot::ask_drives() noexcept {
   electronics_.write(asked_);
   for (std::size_t i = 0; i < drives_.size(); ++i) drives_.ask(i, asked_.joints[i]);
+}
+
+void BulletRobot::write(const ActuationFrame& actuation) noexcept {
+  take(actuation);
+  drives_.map(asked_);
+  ask_drives();
+}
+
+void BulletRobot::write_drives(const ActuationFrame& drives) noexcept {
+  take(drives);
+  ask_drives();
 }
 
 void BulletRobot::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {

@@ -19,6 +19,7 @@ class BulletRobot final : public WorldRobot {
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
+  void write_drives(const ActuationFrame& drives) noexcept override;
   const PlantTruth& truth() const noexcept override { return truth_.truth(); }
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override;
 
@@ -33,6 +34,8 @@ class BulletRobot final : public WorldRobot {
   void hash_sensors(StateHash& hash) const noexcept;  // carries the random streams' effect
 
  private:
+  void take(const ActuationFrame& actuation) noexcept;
+  void ask_drives() noexcept;
   void read_state(double dt_s);
   void check_finite() const;
 

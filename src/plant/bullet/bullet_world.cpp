@@ -116,6 +116,8 @@ void BulletWorld::read(SensorFrame& sensors) noexcept { inside_->robot(0).read(s
 
 void BulletWorld::write(const ActuationFrame& actuation) noexcept { inside_->robot(0).write(actuation); }
 
+void BulletWorld::write_drives(const ActuationFrame& drives) noexcept { inside_->robot(0).write_drives(drives); }
+
 const PlantTruth& BulletWorld::truth() const noexcept { return inside_->robot(0).truth(); }
 
 void BulletWorld::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {

@@ -65,13 +65,22 @@ void IdealWorld::read(SensorFrame& sensors) noexcept {
   channels_.fill(sensors);
 }
 
-void IdealWorld::write(const ActuationFrame& actuation) noexcept {
+void IdealWorld::take(const ActuationFrame& actuation) noexcept {
   actuation_ = actuation;
   actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
     if (i >= actuation_.joint_count || !is_finite(actuation_.joints[i])) actuation_.joints[i] = {};
   }
+}
+
+void IdealWorld::write(const ActuationFrame& actuation) noexcept {
+  take(actuation);
   for (const Transmission& coupling : couplings_) coupling.to_drives(actuation_);
+  drives_.write(actuation_);
+}
+
+void IdealWorld::write_drives(const ActuationFrame& drives) noexcept {
+  take(drives);
   drives_.write(actuation_);
 }
 

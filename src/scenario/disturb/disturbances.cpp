@@ -24,7 +24,7 @@ Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& mod
   happened_.resize(faults_.size());
 }
 
-void Disturbances::apply(Lockstep& lockstep, WorldRobot& robot) {
+void Disturbances::apply(Lockstep& lockstep, const BehaviorEngine& behaviors, WorldRobot& robot) {
   const double time_s = 1e-9 * static_cast<double>(lockstep.time_ns());
   bool silent = false;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -37,7 +37,7 @@ void Disturbances::apply(Lockstep& lockstep, WorldRobot& robot) {
     }
     happened_[i] = true;
   }
-  if (!faults_.empty()) lockstep.silence_behaviors(silent);
+  if (!faults_.empty()) lockstep.silence_behaviors(behaviors, silent);
   pushes_.apply(robot, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
 }
 

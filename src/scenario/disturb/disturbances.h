@@ -35,7 +35,7 @@ class Disturbances {
   Disturbances(const ScenarioConfig& scenario, const RobotModel& model);
 
   // To be called before each step.
-  void apply(Lockstep& lockstep, WorldRobot& robot);
+  void apply(Lockstep& lockstep, const BehaviorEngine& behaviors, WorldRobot& robot);
 
  private:
   Pushes pushes_;

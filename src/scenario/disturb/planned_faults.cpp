@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace kadans {
@@ -61,6 +62,12 @@ void tell(const ActuatorFault& fault, std::int64_t time_ns, JointSample& sample)
 }
 
 }  // namespace
+
+FaultyPlant::FaultyPlant(World& world, std::uint64_t seed, std::size_t robot,
+                         std::span<const Transmission> transmissions)
+    : world_(world), robot_(world.robot(robot)), random_(seed, "sensor faults") {
+  std::ranges::copy_if(transmissions, std::back_inserter(couplings_), &Transmission::coupled);
+}
 
 void FaultyPlant::read(SensorFrame& sensors) noexcept {
   const SensorFrame before = sensors;  // a silent sensor repeats what it said last, sequence number included
@@ -158,16 +165,17 @@ void FaultyPlant::spoil(PlannedActuator& planned, JointActuation& actuation) con
 
 void FaultyPlant::write(const ActuationFrame& actuation) noexcept {
   ActuationFrame spoiled = actuation;
+  for (const Transmission& coupling : couplings_) coupling.to_drives(spoiled);
   if (!written_.empty()) {
     newest_ = (newest_ + 1) % written_.size();
-    written_[newest_] = actuation;
+    written_[newest_] = spoiled;
   }
   for (PlannedActuator& planned : actuator_faults_) {
     planned.heed(actuation.drives[planned.fault.joint], time_ns_);
     spoil(planned, spoiled.joints[planned.fault.joint]);
   }
   asked_ = actuation.drives;
-  robot_.write(spoiled);
+  robot_.write_drives(spoiled);
 }
 
 void FaultyPlant::hash(StateHash& hash) const noexcept {
@@ -234,7 +242,11 @@ std::int64_t in_ns(double time_s) {
 class PlantFaults {
  public:
   PlantFaults(const PlantVariant& variant, FaultyPlant& plant, Problems& problems)
-      : variant_(variant), plant_(plant), problems_(problems), joints_(variant.model.joint_names()) {}
+      : variant_(variant),
+        plant_(plant),
+        problems_(problems),
+        joints_(variant.model.joint_names()),
+        drives_(variant.model.drive_names()) {}
 
   void add(const ScenarioFault& fault) {
     if (fault.of_sensor()) add_sensor(fault);
@@ -255,11 +267,11 @@ class PlantFaults {
 
  private:
   void add_drive(const ScenarioFault& fault) {
-    const auto joint = std::ranges::find(joints_, fault.of.name);
-    if (joint == joints_.end()) return problems_.add_unknown(fault.of.place, "joint", fault.of.name, joints_);
+    const auto drive = std::ranges::find(drives_, fault.of.name);
+    if (drive == drives_.end()) return problems_.add_unknown(fault.of.place, "drive", fault.of.name, drives_);
     plant_.add(ActuatorFault{
         .kind = drive_kinds.at(static_cast<std::size_t>(fault.kind) - static_cast<std::size_t>(Kind::drive_dead)),
-        .joint = static_cast<std::size_t>(joint - joints_.begin()),
+        .joint = static_cast<std::size_t>(drive - drives_.begin()),
         .from_ns = in_ns(fault.from_s),
         .until_ns = in_ns(fault.until_s),
         .size = fault.size});
@@ -304,7 +316,7 @@ class PlantFaults {
   const PlantVariant& variant_;
   FaultyPlant& plant_;
   Problems& problems_;
-  std::vector<std::string> joints_;
+  std::vector<std::string> joints_, drives_;
 };
 
 }  // namespace
@@ -317,7 +329,7 @@ std::unique_ptr<FaultyPlant> make_faulty_plant(const ScenarioConfig& scenario, c
     return fault.of_sensor() || fault.of_drive() || fault.of_supply();
   };
   if (late_ticks == 0 && std::ranges::none_of(scenario.faults, of_plant)) return nullptr;
-  auto faulty = std::make_unique<FaultyPlant>(world, seed, robot);
+  auto faulty = std::make_unique<FaultyPlant>(world, seed, robot, variant.model.transmissions);
   Problems problems(scenario.file);
   PlantFaults faults(variant, *faulty, problems);
   if (late_ticks > 0) faults.delay_all(late_ticks);

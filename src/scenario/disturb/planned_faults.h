@@ -6,6 +6,7 @@
 #include <deque>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "config/scenario/scenario_config.h"
@@ -56,7 +57,7 @@ enum class ActuatorFaultKind : std::uint8_t {
 
 struct ActuatorFault {
   ActuatorFaultKind kind = ActuatorFaultKind::dead;
-  std::size_t joint = 0;
+  std::size_t joint = 0;  // the drive's place; of coupled drives, drive i stands where joint i does (transmission.h)
   std::int64_t from_ns = 0;
   std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
   double size = 0;
@@ -71,9 +72,10 @@ struct SupplyFault {
 
 class FaultyPlant final : public OneRobotWorld {
  public:
-  // Keeps a reference to `world`. `seed` is that of the run, `robot` the number of the robot that has the faults.
-  FaultyPlant(World& world, std::uint64_t seed, std::size_t robot = 0) noexcept
-      : world_(world), robot_(world.robot(robot)), random_(seed, "sensor faults") {}
+  // Keeps a reference to `world`. `seed` is that of the run, `robot` the number of the robot that has the faults,
+  // `transmissions` are that robot's.
+  FaultyPlant(World& world, std::uint64_t seed, std::size_t robot = 0,
+              std::span<const Transmission> transmissions = {});
 
   static constexpr std::size_t late_ticks_max = 255;
 
@@ -122,9 +124,10 @@ class FaultyPlant final : public OneRobotWorld {
   std::vector<Planned> faults_;
   std::vector<PlannedActuator> actuator_faults_;
   std::vector<SupplyFault> supply_faults_;
-  std::int64_t time_ns_ = 0;             // of the last read
-  DriveRequests asked_{};                // in the last write
-  std::vector<ActuationFrame> written_;  // ring of the last frames; empty when no drive is late
+  std::int64_t time_ns_ = 0;  // of the last read
+  DriveRequests asked_{};     // in the last write
+  std::vector<Transmission> couplings_;
+  std::vector<ActuationFrame> written_;  // to the drives: ring of the last frames; empty when no drive is late
   std::size_t newest_ = 0;
 };
 

@@ -236,10 +236,9 @@ class HtmlRun {
     title("Faults");
     if (run_.faults.empty()) return add("<p class=\"dim\">None.</p>\n");
     table({"time", "fault", "joint", "what", "set by"}, 1);
-    for (const Fault& fault : run_.faults) {
-      const ToldFault what = told(fault, report_.subject.model);
-      add("<tr>" + cell(printed("%.3f s", fault_s(fault)), number) + cell(what.name) + cell(what.joint) +
-          cell(fault_detail(what)) + cell(configuration_key(fault.code)) + "</tr>\n");
+    for (const RunFault& fault : run_.faults) {
+      add("<tr>" + cell(printed("%.3f s", fault_s(fault)), number) + cell(fault.told.name) + cell(fault.told.joint) +
+          cell(fault_detail(fault.told)) + cell(configuration_key(fault.code)) + "</tr>\n");
     }
     add("</table></div>\n");
   }

@@ -84,10 +84,9 @@ class TextReport {
     if (!result.error.empty()) text_ += "\n" + red("  the run ended early: ") + result.error + '\n';
     constexpr std::size_t shown = 5;
     for (std::size_t i = 0; i < std::min(result.faults.size(), shown); ++i) {
-      const Fault& fault = result.faults[i];
-      const ToldFault what = told(fault, subject_.model);
-      text_ += red("  fault: ") + fault_name(what) +
-               printed(" in tick %llu: ", static_cast<unsigned long long>(fault.tick)) + fault_detail(what) +
+      const RunFault& fault = result.faults[i];
+      text_ += red("  fault: ") + fault_name(fault.told) +
+               printed(" in tick %llu: ", static_cast<unsigned long long>(fault.tick)) + fault_detail(fault.told) +
                key(fault) + "\n";
     }
     if (result.faults.size() > shown) text_ += printed("  ... and %zu more faults\n", result.faults.size() - shown);
@@ -173,7 +172,7 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   json["tick_ns"] = {{"median", result.tick.median_ns}, {"p99", result.tick.p99_ns}, {"max", result.tick.max_ns}};
   json["queue"] = {{"sent", result.commands_sent}, {"refused", result.commands_refused}};
   json["faults"] = Json::array();
-  for (const Fault& fault : result.faults) json["faults"].push_back(fault_json(fault, context.model));
+  for (const RunFault& fault : result.faults) json["faults"].push_back(fault_json(fault, fault.told));
   json["errors"] = Json::array();
   if (!result.error.empty()) json["errors"].push_back(result.error);
   for (const LogLine& line : context.log.lines()) {

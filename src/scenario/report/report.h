@@ -14,7 +14,6 @@ namespace kadans {
 // What a report needs beside the result of the run.
 struct ReportContext {
   const RunLog& log;
-  const RobotModel& model;
   std::vector<QuantityValue> quantities;  // quantities that were set or drawn
   std::vector<MetricValue> metrics{};
   std::vector<EvidenceTrace> evidence;  // of the checks that failed

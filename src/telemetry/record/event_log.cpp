@@ -105,7 +105,10 @@ std::string json_of(const ToldFault& fault) {
 }
 
 nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model) {
-  const ToldFault what = told(fault, model);
+  return fault_json(fault, told(fault, model));
+}
+
+nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what) {
   nlohmann::ordered_json json{{"code", what.name}, {"tick", fault.tick}, {"text", fault_text(what)}};
   put_what(json, what);
   json["key"] = configuration_key(fault.code);

@@ -33,6 +33,7 @@ class BulletWorld final : public World, public WorldRobot {
 
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
+  void write_drives(const ActuationFrame& drives) noexcept override;
   const PlantTruth& truth() const noexcept override;
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override;
 
