@@ -65,18 +65,15 @@ class LineFormatter final : public spdlog::formatter {
       put(medium_ == Medium::colored_terminal ? "\033[31;1merror:\033[0m " : "error: ", text);
     }
     if (!line.behavior.empty()) {
-      put(line.behavior, text);
+      put_said(line.behavior, message.level, text);
       put(": ", text);
     }
     if (const Transition* t = line.transition; t != nullptr) {
       for (const std::string_view part : {std::string_view(t->from), std::string_view(" -> "), std::string_view(t->to),
                                           std::string_view(" ("), std::string_view(t->why), std::string_view(")")})
-        put(part, text);
+        put_said(part, message.level, text);
     }
-    for (const char c : line.text) {
-      text.push_back(c);
-      if (c == '\n') put_priority(message.level, text);
-    }
+    put_said(line.text, message.level, text);
     text.push_back('\n');
   }
   std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<LineFormatter>(medium_); }
@@ -84,6 +81,14 @@ class LineFormatter final : public spdlog::formatter {
  private:
   static void put(std::string_view part, spdlog::memory_buf_t& text) {
     text.append(part.data(), part.data() + part.size());
+  }
+  // What is said may come from a script: it must not steer the terminal.
+  void put_said(std::string_view part, spdlog::level::level_enum level, spdlog::memory_buf_t& text) const {
+    for (const char c : part) {
+      const bool shows = (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) || c == '\n' || c == '\t';
+      text.push_back(shows ? c : '?');
+      if (c == '\n') put_priority(level, text);
+    }
   }
   // As in sd-daemon(3): 3 error, 4 warning, 6 information, 7 debug.
   void put_priority(spdlog::level::level_enum level, spdlog::memory_buf_t& text) const {

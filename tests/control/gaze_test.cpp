@@ -42,6 +42,15 @@ TEST_CASE("Gaze fixes both eyes on a point 30 degrees aside within 0.35 s") {
   CHECK(bench.error_deg() < 0.5);
 }
 
+TEST_CASE("Gaze keeps a target that it gets between its start and its first step") {
+  GazeBench bench;
+  bench.look(aside(30));
+  bench.run(0.001);
+  CHECK(bench.signal("target_y_m") == aside(30)[1]);
+  bench.run(0.35);
+  CHECK(bench.error_deg() < 0.5);
+}
+
 TEST_CASE("Gaze lets the eyes go first, the neck follow, and the eyes turn back") {
   GazeBench bench;
   bench.run(0.1);

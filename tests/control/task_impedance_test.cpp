@@ -57,6 +57,23 @@ TEST_CASE("TaskImpedance's Jacobian is that of the whole robot's dynamics") {
   }
 }
 
+TEST_CASE("TaskImpedance keeps a set-point that it gets between its start and its first step") {
+  ArmBench bench = tuned();
+  bench.place(0.9, -1.4);
+  bench.start();
+  SetpointState at;
+  REQUIRE(bench.object->setpoint_state(0, at));
+  bench.set_point("x_m", at.value + 0.1, 0.5);
+  bench.run(1);
+  CHECK(bench.signal("x.reference_m") == doctest::Approx(bench.signal("x.position_m")).epsilon(1e-4));
+  bench.run(1500);
+  CHECK(bench.signal("x.reference_m") == doctest::Approx(at.value + 0.1));
+  bench.start();
+  bench.set_point("z_m", at.value, 0);
+  bench.run(1);
+  CHECK(bench.signal("z.reference_m") == at.value);
+}
+
 TEST_CASE("TaskImpedance gives way to a force as its springs say, and leads the point along its reference") {
   ArmBench bench = tuned();
   bench.place(0.9, -1.4);

@@ -1,9 +1,14 @@
 #include "engine/behavior_log.h"
 
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 using namespace kadans;
 
@@ -33,4 +38,19 @@ TEST_CASE("BehaviorLog hands each line with its facts to all of its sinks, also 
   CHECK(first.times_ns == std::vector<std::int64_t>{1'500'000'000, 2'000'000'000});
   CHECK(first.severities[0] == BehaviorLog::Severity::warning);
   CHECK(later.texts == std::vector<std::string>{"squat|stand>down"});
+}
+
+TEST_CASE("Text sinks write no control characters of what is said, but tabs and line ends") {
+  char file[] = "/tmp/kadans_linesXXXXXX";
+  REQUIRE(close(mkstemp(file)) == 0);
+  {
+    BehaviorLog log(file_sink(file));
+    constexpr std::string_view said("a\033[2Jb\r\0\177c\td\n\xc3\xa9", 15);
+    log.message(Line::no_time, BehaviorLog::Severity::info, "squat\a", said);
+    log.transition({0, "squat", "a\b", "b", "\033c"});
+  }
+  std::ifstream read(file);
+  CHECK(std::string(std::istreambuf_iterator<char>(read), {}) ==
+        "squat?: a?[2Jb???c\td\n\xc3\xa9\n     0.00 s  squat: a? -> b (?c)\n");
+  std::remove(file);
 }

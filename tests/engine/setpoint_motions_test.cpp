@@ -299,6 +299,27 @@ TEST_CASE("a motion of an object that starts anew on its way is dropped: it stay
   CHECK(stand.remaining_s() == 0);
 }
 
+TEST_CASE("a motion that begins in the tick in which its object starts anew is led, whatever moved the object before") {
+  for (const Kind& before : kinds) {
+    for (const Kind& kind : kinds) {
+      CAPTURE(before.name);
+      CAPTURE(kind.name);
+      Stand stand;
+      stand.send(before.commands);
+      run(stand, 200);
+      // Away and back in one tick: the object starts at 0.
+      stand.send({{.kind = CommandKind::switch_set, .index = 1}});
+      std::vector<Command> back{{.kind = CommandKind::switch_set, .index = 0}};
+      back.insert(back.end(), kind.commands.begin(), kind.commands.end());
+      stand.send(back);
+      run(stand, 1);
+      CHECK(stand.remaining_s() > 0.5);
+      run(stand, 1400);
+      CHECK(stand.led->now.value == doctest::Approx(1));
+    }
+  }
+}
+
 TEST_CASE("the snapshot tells where a set-point is and how fast it moves") {
   Stand stand;
   stand.send({trapezoid(1, 2, 10, 0)});

@@ -187,6 +187,7 @@ void TaskImpedance::take_over_point(const JointStates& joints) noexcept {
 
 void TaskImpedance::start(const ControlInput& input) noexcept {
   located_ = false;
+  if (measured(input.joints)) take_over_point(input.joints);
   for (Part& part : parts_) {
     const std::size_t joint = part.axis.joint;
     part.takeover.start(effort_before_Nm({input.joints.joints[joint], input.last.joints[joint], input.dt_s}));

@@ -258,6 +258,7 @@ void Gaze::start(const ControlInput& input) noexcept {
   fresh_ = true;
   ++aimed_.activation;
   parameters_changed();
+  look_ahead(input.joints);
   for (Part& part : parts_) take_over(part, input);
 }
 

@@ -103,10 +103,7 @@ MotionProfile SetpointMotions::profile(const SetpointState& from, double target,
 
 SetpointMotions::Motion& SetpointMotions::activate(SetpointId id) noexcept {
   Motion& motion = motions_[id];
-  if (motion.kind == Motion::Kind::none) {
-    active_.push_back(id);
-    motion.led = false;
-  }
+  if (motion.kind == Motion::Kind::none) active_.push_back(id);
   return motion;
 }
 
@@ -149,6 +146,7 @@ void SetpointMotions::begin(const Command& command) noexcept {
   Motion& motion = activate(command.index);
   if (command.kind == CommandKind::trapezoid) {
     motion.kind = Motion::Kind::trapezoid;
+    motion.led = false;
     motion.trapezoid =
         profile(now(command.index), command.value, command.velocity, command.acceleration, command.duration_s);
     return;
@@ -157,6 +155,7 @@ void SetpointMotions::begin(const Command& command) noexcept {
     const SetpointState from = now(command.index);
     motion.spline.begin(from.value, from.velocity);
     motion.time_s = 0;
+    motion.led = false;
   }
   motion.kind = Motion::Kind::spline;
   motion.planned = false;

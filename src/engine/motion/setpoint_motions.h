@@ -96,7 +96,7 @@ class SetpointMotions {
   struct Motion {
     enum class Kind : std::uint8_t { none, minimum_jerk, trapezoid, spline };
     Kind kind = Kind::none;
-    bool led = false;      // the object has been led in an earlier tick
+    bool led = false;      // the object has been led since the motion began
     SetpointState told;    // where it was led to
     bool planned = false;  // of a spline: plan() was called after its last point
     double time_s = 0;     // of a spline
