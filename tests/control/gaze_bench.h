@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kadans/model/kinematics.h"
 #include "made_objects.h"
 #include "tested_object.h"
 

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "control/gaze/gaze_solver.h"
 #include "gaze_bench.h"
 #include "kadans/testing/allocation_count.h"
 

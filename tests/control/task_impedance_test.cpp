@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "arm_bench.h"
+#include "kadans/control/limb_chain.h"
 #include "kadans/testing/allocation_count.h"
 #include "made_objects.h"
 

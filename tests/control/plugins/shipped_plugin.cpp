@@ -1,10 +1,10 @@
 // Shipped control objects as a plug-in, under other names: "plugged_joint_pid".
+#include "../made_objects.h"
 #include "control/balance/dcm_balance.h"
 #include "control/balance/dcm_step.h"
 #include "control/balance/stance.h"
 #include "control/drive/spring_torque.h"
 #include "control/joint/trajectory_list.h"
-#include "control/made_objects.h"
 #include "kadans/control/plugin.h"
 
 #define PLUGGED(type) kadans::plugin_type<kadans::make_##type>("plugged_" #type)
