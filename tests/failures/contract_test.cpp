@@ -297,7 +297,7 @@ TEST_CASE("never written, the joint damps, latched until cleared" * description(
   }
 }
 
-TEST_CASE("in that tick both damp, latched until cleared, and the fault says which modes; the other joints go on" *
+TEST_CASE("in that tick both damp, latched until cleared, and the fault says which modes, the other joints go on" *
           description("two coupled joints are asked for different modes")) {
   const Transmission ankle({.kind = Transmission::Kind::four_bar_linkage, .joints = {0, 1}, .drives = {"a", "b"}});
   LightRobot robot(41, default_reactions(), {ankle});
