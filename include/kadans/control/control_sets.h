@@ -22,7 +22,6 @@
 #include "kadans/control/control_object.h"
 #include "kadans/control/set_partition.h"
 #include "kadans/control/switchover.h"
-#include "set_partition.h"
 
 namespace kadans {
 

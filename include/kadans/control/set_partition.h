@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "catalog.h"
+#include "kadans/control/catalog.h"
 
 namespace kadans {
 

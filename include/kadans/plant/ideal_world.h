@@ -6,7 +6,6 @@
 #include "kadans/plant/modelled_drives.h"
 #include "kadans/plant/settings.h"
 #include "kadans/plant/world.h"
-#include "modelled_drives.h"
 
 namespace kadans {
 

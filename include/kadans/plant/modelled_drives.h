@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "kadans/plant/settings.h"
 #include "kadans/signal/frames.h"
 #include "kadans/signal/random.h"
 #include "kadans/signal/sensor_channel.h"
 #include "kadans/signal/state_hash.h"
-#include "settings.h"
 
 namespace kadans {
 

@@ -13,7 +13,7 @@ constexpr std::chrono::milliseconds look_again{5}, late_max{100};
 
 }  // namespace
 
-void LivePacer::hold() {
+void ViewerPacer::hold() {
   while (pace_.held.load(std::memory_order_relaxed) && !interrupted()) {
     std::uint32_t steps = pace_.steps.load();
     if (steps > 0 && pace_.steps.compare_exchange_strong(steps, steps - 1)) return;
@@ -22,7 +22,7 @@ void LivePacer::hold() {
   }
 }
 
-void LivePacer::tick(double time_s, std::span<const double>) {
+void ViewerPacer::tick(double time_s, std::span<const double>) {
   hold();
   const double speed = pace_.speed.load(std::memory_order_relaxed);
   const auto now = std::chrono::steady_clock::now();

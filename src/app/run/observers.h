@@ -13,9 +13,9 @@ namespace kadans {
 
 // Keeps a simulation at the pace that clients ask for: a multiple of the wall clock, which may change while it runs,
 // held, or tick by tick.
-class LivePacer final : public RunObserver {
+class ViewerPacer final : public RunObserver {
  public:
-  explicit LivePacer(LivePace& pace) noexcept : pace_(pace) {}
+  explicit ViewerPacer(LivePace& pace) noexcept : pace_(pace) {}
   void tick(double time_s, std::span<const double> row) override;
 
  private:

@@ -96,7 +96,7 @@ int SimRun::run() {
   ProgressBar progress(duration_s_, stderr_is_terminal() && !options_.json && alone);
   std::vector<RunObserver*> observers{&progress, &height_, &evidence_, &metrics_, this};
   Pace pace;
-  std::optional<LivePacer> pacer;
+  std::optional<ViewerPacer> pacer;
   if ((options_.live.wanted() || options_.ros2.wanted()) && remote_) {
     observers.push_back(&pacer.emplace(remote_->pace()));
   } else if (options_.realtime) {
