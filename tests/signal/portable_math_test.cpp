@@ -20,7 +20,7 @@
 namespace kadans {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 
 int samples() {
   return std::getenv("KADANS_SOAK") != nullptr ? 100'000 : 3'000;  // NOLINT(concurrency-mt-unsafe): one thread
@@ -48,9 +48,9 @@ class Exact {
   // The number is gone then.
   double units_to(double found, Width width) noexcept {
     const double rounded = width.digits == 53 ? mpfr_get_d(value_, MPFR_RNDN) : double{mpfr_get_flt(value_, MPFR_RNDN)};
-    if (std::isnan(rounded) || std::isnan(found)) return std::isnan(rounded) && std::isnan(found) ? 0 : infinity;
-    if (std::isinf(rounded) || std::isinf(found)) return rounded == found ? 0 : infinity;
-    if (rounded == 0 && found == 0) return std::signbit(rounded) == std::signbit(found) ? 0 : infinity;
+    if (std::isnan(rounded) || std::isnan(found)) return std::isnan(rounded) && std::isnan(found) ? 0 : infinite;
+    if (std::isinf(rounded) || std::isinf(found)) return rounded == found ? 0 : infinite;
+    if (rounded == 0 && found == 0) return std::signbit(rounded) == std::signbit(found) ? 0 : infinite;
     const int exponent = mpfr_zero_p(value_) != 0 ? width.least : static_cast<int>(mpfr_get_exp(value_));
     mpfr_sub_d(value_, value_, found, MPFR_RNDN);
     mpfr_mul_2si(value_, value_, -std::max(exponent - width.digits, width.least), MPFR_RNDN);
@@ -203,7 +203,7 @@ TEST_CASE("the angle of a point in any direction at any distance is exact to 0.6
 TEST_CASE("what is zero, infinite, no number or at the end of the numbers gives what the C standard asks for") {
   constexpr double largest = std::numeric_limits<double>::max(), smallest = std::numeric_limits<double>::denorm_min();
   constexpr std::array<double, 18> special{0.0,      -0.0,      1,   -1,  2,    -2,      3,        -3,       0.5,
-                                           infinity, -infinity, nan, 1e3, -1e3, largest, -largest, smallest, -smallest};
+                                           infinite, -infinite, nan, 1e3, -1e3, largest, -largest, smallest, -smallest};
   for (const OfOne& function : of_one) {
     if (is_gamma(function)) continue;
     for (const double x : special) {
