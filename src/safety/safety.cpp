@@ -239,7 +239,7 @@ void Safety::cut_joint(const SafetyInput& in, std::size_t index, JointActuation&
 bool Safety::passes(const SafetyInput& in, std::size_t index, const JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
   const JointGuard& partner = joints_[joint.partner];
-  const bool calm = joint.ladder.idle() && partner.ladder.idle() && partner.writable &&
+  const bool calm = joint.ladder.idle() && (joint.partner == index || (partner.ladder.idle() && partner.writable)) &&
                     robot_.level() == SafetyLevel::normal && joint.writable && joint.authority == 1 && joint.cut == 0 &&
                     !joint.gave_way && fall_.share() == 1 && actuation.mode == ActuationMode::effort;
   const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, change_s_};

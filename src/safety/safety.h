@@ -107,10 +107,13 @@ class Safety {
 
   // Of the joint and the one that it is coupled with.
   SafetyLevel ladder_level(std::size_t joint) const noexcept {
-    return std::max(joints_[joint].ladder.level(), joints_[joints_[joint].partner].ladder.level());
+    const JointGuard& own = joints_[joint];
+    return own.partner == joint ? own.ladder.level()
+                                : std::max(own.ladder.level(), joints_[own.partner].ladder.level());
   }
   // Whether the drives of coupled joints cannot do both: one mode at a time, effort with off as without torque.
   bool modes_differ(std::size_t joint, const ActuationFrame& asked) const noexcept {
+    if (joints_[joint].partner == joint) return false;
     const ActuationMode own = asked.joints[joint].mode, other = asked.joints[joints_[joint].partner].mode;
     return own != other && std::max(own, other) > ActuationMode::effort;
   }
