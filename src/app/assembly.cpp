@@ -205,7 +205,7 @@ void Assembly::vary() {
   variant_.plant.world = world_for(scenario_.world, config.model, scenario_.file);
   if (!scenario_.start_pose.name.empty()) start_in_pose();
   Problems problems(scenario_.file);
-  Quantities quantities(variant_, control_system_->catalog);
+  Quantities quantities(variant_, control_system_->catalog, number_ > 0);
   for (const NumberEntry& entry : scenario_.set) quantities.set(entry, quantities_, problems);
   for (const Variation& variation : scenario_.randomise) quantities.draw(variation, seed_, quantities_, problems);
   for (const NumberEntry& entry : scenario_.set_last) quantities.set(entry, quantities_, problems);

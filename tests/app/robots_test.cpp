@@ -42,6 +42,15 @@ struct Played {
 
 }  // namespace
 
+TEST_CASE("The ground is the first robot's: a further one has no quantity of it") {
+  ScenarioConfig scenario = with_left(20);
+  scenario.set = {{.key = "ground.friction", .value = 0.9}};
+  const Played played(scenario);
+  CHECK(played.robot.quantities().at(0).name == "ground.friction");
+  scenario.robots[0].set = {{.key = "ground.friction", .value = 0.1}};
+  CHECK_THROWS_WITH_AS(Played{scenario}, doctest::Contains("'ground.friction'"), InputError);
+}
+
 TEST_CASE("A robot's signals are the same, bit for bit, when another one plays far away in its world") {
   const ScenarioConfig one = squat(), two = with_left(20);
   Played alone(one), together(two);

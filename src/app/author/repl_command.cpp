@@ -150,7 +150,7 @@ class Repl {
 
   ScenarioConfig scenario_;
   Chatter chatter_;
-  RunLog log_{{&chatter_}};
+  RunLog log_{std::initializer_list<LineSink*>{&chatter_}};
   Assembly assembly_;
   RunParts parts_;
   Console console_;

@@ -66,7 +66,7 @@ class SimRun final : public RunObserver {
   std::uint64_t seed_;
   double duration_s_;
   LineEcho echo_;
-  RunLog log_{{&echo_}};
+  RunLog log_{std::initializer_list<LineSink*>{&echo_}};
   Assembly assembly_;
   Checks checks_;
   Metrics metrics_;

@@ -237,6 +237,8 @@ void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig
   if (robot.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
     problems.add(robot.plant_place,
                  "name " + in_quotes(robot.name) + " must consist of small letters, digits and underscores");
+  if (robot.name == "last")
+    problems.add(robot.plant_place, "name 'last': checks read last.SIGNAL as the signal's value one tick before");
   robot.file = scenario.file;
   robot.plant = scenario.plant;
   robot.robot = scenario.robot;

@@ -48,9 +48,9 @@ std::vector<std::pair<double*, double>> values_in_presets(Catalog& catalog, Para
 
 }  // namespace
 
-Quantities::Quantities(PlantVariant& variant, Catalog& catalog) {
+Quantities::Quantities(PlantVariant& variant, Catalog& catalog, bool further_robot) {
   PlantSettings& plant = variant.plant;
-  add_value("ground.friction", {0, 10, ""}, plant.ground_friction);
+  if (!further_robot) add_value("ground.friction", {0, 10, ""}, plant.ground_friction);
   add_value("actuation.delay_s", {0, 0.1, "s"}, variant.actuation_delay_s);
   add_start(plant);
   add_sensors(plant);

@@ -41,8 +41,8 @@ struct PlantVariant {
 class Quantities {
  public:
   // Keeps references. A quantity that is set again replaces the earlier value: a scale always multiplies the value that
-  // the constructor found.
-  Quantities(PlantVariant& variant, Catalog& catalog);
+  // the constructor found. The ground is the first robot's: a further robot of its world has no quantity of it.
+  Quantities(PlantVariant& variant, Catalog& catalog, bool further_robot = false);
   Quantities(const Quantities&) = delete;
   Quantities& operator=(const Quantities&) = delete;
 
