@@ -111,6 +111,7 @@ TEST_CASE("A fault that latches in a simulation leaves a flight record, with or 
     CHECK(topics["/joint"] < 3200);
     CHECK(topics["/joint_states"] > 80);
     CHECK(topics["/robot_description"] == 1);
+    CHECK(has(run("log info --json behaviors_stall.flight.mcap", project).out, "\"object posture\""));
     fs::remove(flight);
   }
 }
@@ -133,6 +134,7 @@ TEST_CASE(
   CHECK(topics["/base"] > 1000);
   const auto [fault_s, last_fault_s] = span_of(flights[0], "/faults");
   CHECK(span_of(flights[0], "/base").second >= fault_s + 1);
+  CHECK(has(run("log info --json " + flights[0].string(), project).out, "\"fault_state\""));
   CHECK(topics_of(project / "run.mcap").count("/base") == 0);
 }
 

@@ -1,11 +1,15 @@
 #include "engine/tick/control_engine.h"
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include "bench.h"
+#include "kadans/control/state_bytes.h"
 
 using namespace kadans;
 
@@ -59,6 +63,20 @@ struct Engine : bench::Robot {
   }
 };
 
+// As hexadecimal digits, what an object would go on from.
+std::string state_of(ControlObject& object) {
+  std::vector<std::byte> bytes(4096);
+  StateBytes save = StateBytes::saving(bytes, StateBytes::Levels::low);
+  object.pass_state(save);
+  std::string text;
+  for (std::size_t i = 0; i < save.size(); ++i) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", std::to_integer<unsigned>(bytes[i]));
+    text += digits;
+  }
+  return text;
+}
+
 }  // namespace
 
 TEST_CASE("A tick samples, then writes what the last tick computed") {
@@ -109,6 +127,28 @@ TEST_CASE("An actuation that is not finite is never written: the joint damps and
   }
   CHECK(bench.engine.state().status.safety.level >= SafetyLevel::damp);
   CHECK(bench.engine.state().status.safety.first_fault.joint == 0);
+}
+
+TEST_CASE("The state in which the tick of a fault found the objects is kept for the flight recorder") {
+  Engine bench;
+  double hip_rad = 0.1;
+  std::string found;
+  const auto tick = [&] {  // each tick changes the object's state
+    bench.command(bench.move_hip(hip_rad += 0.01));
+    found = state_of(bench.own_sets.object(0));
+    bench.tick();
+    REQUIRE(state_of(bench.own_sets.object(0)) != found);
+  };
+  for (int i = 0; i < 3; ++i) tick();
+  CHECK(bench.engine.fault_state().facts().empty());
+  bench.recorder.next.joints[1].position_rad = std::numeric_limits<double>::quiet_NaN();
+  while (bench.engine.state().status.safety.level < SafetyLevel::hold && bench.engine.ticks() < 20) tick();
+  const TextMap facts{{"tick", std::to_string(bench.engine.ticks() - 1)},
+                      {"object posture", found},
+                      {"object spare", state_of(bench.own_sets.object(1))}};
+  CHECK(bench.engine.fault_state().facts() == facts);
+  tick();
+  CHECK(bench.engine.fault_state().facts() == facts);
 }
 
 TEST_CASE("Switching sets by command makes the other object compute") {

@@ -218,6 +218,7 @@ class WallClockRun {
     RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
     const bool flies = plan.flight.kept_s > 0;
     plan.timing = {{"Control tick: takes", &control_.tick_cost()}};
+    plan.fault_state = &assembly_.control().fault_state();
     record_side_.record_as(std::move(plan));
     record_side_.begin();
     if (!options_.record.empty()) record_side_.start(options_.record);

@@ -85,8 +85,8 @@ void SimRun::make_reachable() {
   places.ctl.wanted = places.ctl.wanted && (paced || !options_.ctl.folder.empty());
   if (!places.ctl.wanted && !places.live.wanted() && !places.ros2.wanted()) return;
   inputs_.run["ctl"] = "yes";
-  remote_ =
-      std::make_unique<SimRemote>(places, scenario_, assembly_, RecordPlan{record_plan_.settings, {}, {}}, log_, echo_);
+  remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_,
+                                        RecordPlan{record_plan_.settings, {}, {}, nullptr}, log_, echo_);
   remote_->pace().speed = options_.speed;
 }
 
@@ -245,6 +245,7 @@ void SimRun::fly() {
   const std::string file = std::filesystem::path(record_name()).replace_extension(".flight.mcap").string();
   if (!flight.begin(file)) return tell_lost(flight.error());
   describe(flight.dump());
+  (void)flight.dump().describe("fault_state", assembly_.control().fault_state().facts());
 }
 
 void SimRun::finish_record(const RunResult& result) {

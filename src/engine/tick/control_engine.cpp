@@ -15,6 +15,7 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
       sets_(sets),
       exchange_(exchange),
       inbox_(exchange.commands, catalog, sets, settings.commands_per_tick_max, settings.command_age_max_ns()),
+      fault_state_(sets, catalog),
       signals_(catalog.signals),
       rehearsal_(settings.control_period_s, estimator, safety, *catalog.model) {
   actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
@@ -36,6 +37,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
                  .base = snapshot_.status.base,
                  .health = estimator_.health()},
                 actuation_, snapshot_.status.safety);
+  fault_state_.watch(tick_, snapshot_.status.safety.level);
   if (safety_.fall_phase() == FallWatch::Phase::falling && snapshot_.status.base.posture == Posture::upright)
     snapshot_.status.base.posture = Posture::falling;
   heed_stop();

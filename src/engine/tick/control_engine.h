@@ -11,6 +11,7 @@
 #include "command_inbox.h"
 #include "engine/settings.h"
 #include "estimate/estimator.h"
+#include "fault_state.h"
 #include "kadans/control/control_sets.h"
 #include "kadans/exchange/latest.h"
 #include "kadans/plant/plant.h"
@@ -83,6 +84,7 @@ class ControlEngine {
   const Snapshot& state() const noexcept { return snapshot_; }
   const ActuationFrame& actuation() const noexcept { return actuation_; }
   const CommandInbox& inbox() const noexcept { return inbox_; }
+  const FaultState& fault_state() const noexcept { return fault_state_; }
   Safety& safety() noexcept { return safety_; }
   EngineExchange& exchange() noexcept { return exchange_; }
 
@@ -100,6 +102,7 @@ class ControlEngine {
   ControlSets& sets_;
   EngineExchange& exchange_;
   CommandInbox inbox_;
+  FaultState fault_state_;
   const SignalTable& signals_;
   RecordSink* sink_ = nullptr;
 

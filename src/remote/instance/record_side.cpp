@@ -130,6 +130,7 @@ void RecordSide::fly(const fs::path& file) {
   FlightRecorder& flight = *recorder_->flight();
   if (!flight.begin(file.string())) return;
   describe(flight.dump(), 0);
+  if (plan_.fault_state != nullptr) (void)flight.dump().describe("fault_state", plan_.fault_state->facts());
 }
 
 void RecordSide::carry_out(OrderCase& order) {

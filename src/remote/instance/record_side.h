@@ -12,6 +12,7 @@
 #include <string>
 
 #include "control_side.h"
+#include "engine/tick/fault_state.h"
 #include "instance.h"
 #include "realtime/task_thread.h"
 #include "run_description.h"
@@ -23,7 +24,8 @@ namespace kadans {
 struct RecordPlan {
   RecorderSettings settings = {};
   FlightSettings flight = {};
-  std::vector<TimingSource> timing = {};  // must outlive the record
+  std::vector<TimingSource> timing = {};    // must outlive the record
+  const FaultState* fault_state = nullptr;  // for the dumps of the flight recorder; must outlive them
 };
 
 class RecordSide final : public Task, public LineSink {
