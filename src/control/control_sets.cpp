@@ -134,8 +134,8 @@ void ControlSets::restart(const ControlInput& input) noexcept {
 void ControlSets::compose_joints(const Member& member, Writers& writers, ActuationFrame& actuation) const noexcept {
   const ActuationFrame& proposal = *proposals_[member.object];
   const std::uint32_t bit = 1U << member.object;
+  const bool replaces = member.composition == Composition::set || member.composition == Composition::priority;
   for (const std::size_t joint : catalog_.objects[member.object].joints) {
-    const bool replaces = member.composition == Composition::set || member.composition == Composition::priority;
     if (!compose(member.composition, member.weight, proposal.joints[joint], actuation.joints[joint])) continue;
     writers[joint] = replaces ? bit : writers[joint] | bit;
   }

@@ -61,7 +61,7 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
                        RobotStatus& status) noexcept {
   if (!(dt_s > 0 && std::isfinite(dt_s))) dt_s = dt_s_;
   joints.count = health_.joint_count;
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
+  for (std::size_t i = 0; i < joints.count; ++i) {
     const std::uint32_t period_ticks = health_.joints[i].period_ticks;
     const bool due = period_ticks == 1 || !started_ || tick % period_ticks == 0;
     update_joint(i, sensors.joints[i], due && i < sensors.joint_count, dt_s);

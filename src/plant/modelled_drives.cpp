@@ -39,10 +39,12 @@ void ModelledDrives::Drive::carry_out(DriveOrder order) noexcept {
 }
 
 void ModelledDrives::write(const ActuationFrame& actuation) noexcept {
-  for (std::size_t i = 0; i < std::min<std::size_t>(drives_.size(), actuation.joint_count); ++i) {
+  const std::size_t count = std::min<std::size_t>(drives_.size(), actuation.joint_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Drive& drive = drives_[i];
     const DriveRequest& request = actuation.drives[i];
-    if (request.is_new(drives_[i].order_seen)) drives_[i].carry_out(request.order);
-    drives_[i].lets_go = actuation.joints[i].mode == ActuationMode::off;
+    if (request.is_new(drive.order_seen)) drive.carry_out(request.order);
+    drive.lets_go = actuation.joints[i].mode == ActuationMode::off;
   }
 }
 
@@ -55,9 +57,11 @@ void ModelledDrives::step(std::int64_t dt_ns) noexcept {
 }
 
 void ModelledDrives::fill(SensorFrame& frame) const noexcept {
-  for (std::size_t i = 0; i < drives_.size(); ++i) {
-    frame.joints[i].drive = drives_[i].state;
-    frame.joints[i].braked = braked(i);
+  JointSample* sample = frame.joints.data();
+  for (const Drive& drive : drives_) {
+    sample->drive = drive.state;
+    sample->braked = drive.braked();
+    ++sample;
   }
 }
 

@@ -5,7 +5,9 @@
 namespace kadans {
 FaultMask Ladder::update(FaultMask faults, double dt_s, const Reactions& reactions,
                          SafetyLevel Reaction::*rung) noexcept {
-  for (double& left_s : left_s_) left_s = std::max(0.0, left_s - dt_s);
+  for (double& left_s : left_s_) {
+    if (left_s > 0) left_s = std::max(0.0, left_s - dt_s);
+  }
   FaultMask fresh = 0;
   for (FaultMask rest = faults; rest != 0; rest &= rest - 1) {
     const FaultCode code = first_of(rest);
@@ -28,16 +30,18 @@ void Ladder::latch(SafetyLevel level) noexcept {
 }
 
 void Ladder::settle() noexcept {
-  level_ = latched_;
-  idle_ = latched_ == SafetyLevel::normal && latched_faults_ == 0;
+  SafetyLevel level = latched_;
+  bool idle = latched_ == SafetyLevel::normal && latched_faults_ == 0;
   for (std::size_t at = 0; at < left_s_.size(); ++at) {
     if (left_s_[at] > 0) {
-      level_ = std::max(level_, static_cast<SafetyLevel>(at));
-      idle_ = false;
+      level = std::max(level, static_cast<SafetyLevel>(at));
+      idle = false;
     } else {
       reported_[at] = 0;
     }
   }
+  level_ = level;
+  idle_ = idle;
 }
 
 Reactions default_reactions() noexcept {

@@ -276,16 +276,18 @@ void Safety::limit_joint(const SafetyInput& in, std::size_t index, double dt_s, 
   const bool passive = joint.limiter.passive();
   const bool damps = !passive && gives_way(index, dt_s, actuation);
   const bool nothing_asked = !damps && actuation.mode == ActuationMode::off;
-  if (passive || joint_level(index) == SafetyLevel::off || nothing_asked) {
+  SafetyLevel level = joint_level(index);
+  if (passive || level == SafetyLevel::off || nothing_asked) {
     actuation = {};
   } else if (damps) {
     actuation = joint.limiter.damp(in.joints.joints[index]);
   } else {
     cut_joint(in, index, actuation);
+    level = joint_level(index);  // a cut is a fault
   }
   joint.last_Nm = actuation.effort_Nm;
   joint.driven = actuation.mode != ActuationMode::off;
-  joint.level_number = static_cast<std::uint32_t>(joint_level(index));
+  joint.level_number = static_cast<std::uint32_t>(level);
 }
 
 void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatus& status) noexcept {
@@ -313,7 +315,7 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   for (std::size_t i = 0; i < joint_count_; ++i) {
     if (passes(in, i, actuation.joints[i])) continue;
     limit_joint(in, i, dt_s, actuation.joints[i]);
-    worst = std::max(worst, joint_level(i));
+    worst = std::max(worst, static_cast<SafetyLevel>(joints_[i].level_number));
   }
   for (CouplingLimiter& coupling : couplings_) {
     cut_coupling(in, coupling, actuation);

@@ -225,10 +225,12 @@ void SetpointMotions::fill(Snapshot& snapshot) const noexcept {
   const std::size_t shown = std::min(motions_.size(), max_setpoints_shown);
   snapshot.setpoint_count = static_cast<std::uint32_t>(shown);
   for (SetpointId id = 0; id < shown; ++id) {
+    const Setpoint& setpoint = setpoints_[id];
     SetpointStatus& status = snapshot.setpoints[id];
     status = {};
-    if (!setpoints_[id].follows || !sets_.runs(setpoints_[id].owner)) continue;
-    const SetpointState state = now(id);
+    if (!setpoint.follows || !sets_.runs(setpoint.owner)) continue;
+    SetpointState state;
+    (void)sets_.object(setpoint.owner).setpoint_state(setpoint.channel, state);
     status = {state.value, state.velocity};
   }
   for (const SetpointId id : active_) {

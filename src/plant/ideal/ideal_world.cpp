@@ -66,7 +66,7 @@ void IdealWorld::read(SensorFrame& sensors) noexcept {
 }
 
 void IdealWorld::take(const ActuationFrame& actuation) noexcept {
-  actuation_ = actuation;
+  copy_used(actuation, actuation_);
   actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
     if (i >= actuation_.joint_count || !is_finite(actuation_.joints[i])) actuation_.joints[i] = {};
