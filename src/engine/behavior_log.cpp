@@ -1,12 +1,16 @@
 #include "behavior_log.h"
 
+#include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
+#include <system_error>
 
+#include <spdlog/details/file_helper.h>
 #include <spdlog/formatter.h>
 #include <spdlog/logger.h>
-#include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -155,15 +159,54 @@ TextSink stderr_sink(Shown shown) {
   return sink;
 }
 
-TextSink file_sink(const std::string& file) {
-  try {
-    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file);
-    sink->set_formatter(std::make_unique<LineFormatter>(Medium::plain));
-    return sink;
-  } catch (const spdlog::spdlog_ex& error) {
-    throw InputError({.message = error.what()});
+class LogFile::Sink final : public spdlog::sinks::sink {
+ public:
+  // spdlog opens and closes the file. It is written here, because spdlog would report a failure in its own words.
+  explicit Sink(const std::string& file) : file_(noting(stream_)) { file_.open(file); }
+
+  void log(const spdlog::details::log_msg& message) override {
+    if (const std::string why = append(message); !why.empty()) {
+      program_log().message(Line::no_time, BehaviorLog::Severity::error, "",
+                            file_.filename() + ": not all lines of this run could be written: " + why);
+    }
   }
+  void flush() override {}
+  void set_pattern(const std::string& /*pattern*/) override {}
+  void set_formatter(std::unique_ptr<spdlog::formatter> /*formatter*/) override {}
+  bool failed() const noexcept { return failed_.load(std::memory_order_relaxed); }
+
+ private:
+  static spdlog::file_event_handlers noting(std::FILE*& stream) {
+    spdlog::file_event_handlers handlers;
+    handlers.after_open = [&stream](const spdlog::filename_t& /*file*/, std::FILE* opened) { stream = opened; };
+    return handlers;
+  }
+  // Returns why the line cannot be written; "": it is, or the file has failed before.
+  std::string append(const spdlog::details::log_msg& message) {
+    const std::lock_guard lock(mutex_);
+    if (failed()) return "";
+    text_.clear();
+    formatter_->format(message, text_);
+    if (std::fwrite(text_.data(), 1, text_.size(), stream_) == text_.size() && std::fflush(stream_) == 0) return "";
+    const int error = errno;
+    failed_.store(true, std::memory_order_relaxed);
+    return std::generic_category().message(error);
+  }
+
+  std::mutex mutex_;
+  std::unique_ptr<spdlog::formatter> formatter_ = std::make_unique<LineFormatter>(Medium::plain);
+  spdlog::memory_buf_t text_;
+  std::FILE* stream_ = nullptr;
+  std::atomic<bool> failed_{false};
+  spdlog::details::file_helper file_;
+};
+
+LogFile::LogFile(const std::string& file) try : sink_(std::make_shared<Sink>(file)) {
+} catch (const spdlog::spdlog_ex& error) {
+  throw InputError({.message = error.what()});
 }
+TextSink LogFile::sink() const { return sink_; }
+bool LogFile::failed() const noexcept { return sink_->failed(); }
 
 BehaviorLog& program_log() {
   static BehaviorLog log(stderr_sink(Shown::all));

@@ -75,8 +75,19 @@ class LineSink {
 enum class Shown : std::uint8_t { errors, messages, all };  // all: messages and transitions
 TextSink stderr_sink(Shown shown);
 bool stderr_is_journal();
-// Appends. Throws InputError when the file cannot be opened.
-TextSink file_sink(const std::string& file);
+
+// A file to which lines are appended. When one cannot be written (a full disk), program_log() tells it once, and no
+// further line is appended. Any thread that is not real-time.
+class LogFile {
+ public:
+  explicit LogFile(const std::string& file);  // throws InputError when the file cannot be opened
+  TextSink sink() const;
+  bool failed() const noexcept;
+
+ private:
+  class Sink;
+  std::shared_ptr<Sink> sink_;
+};
 
 // What the program says of itself, on stderr. Any thread that is not real-time; add() only before other threads start.
 BehaviorLog& program_log();

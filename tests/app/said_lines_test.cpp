@@ -27,6 +27,19 @@ TEST_CASE("run --log-file appends all lines, transitions and faults too, though 
   CHECK(has(nowhere.err, "error: Failed opening file lines.txt/none for writing"));
 }
 
+TEST_CASE("run --log-file says once that the file cannot be written, goes on, and fails at its end") {
+  const auto project = project_copy("full_log");
+  const Outcome full = run(
+      "run config/tulip/robot.json --play squat --threads-on-virtual-time --duration 2 --log-file /dev/full", project);
+  CHECK(full.exit_code == 1);
+  const std::string told = "error: /dev/full: not all lines of this run could be written: No space left on device\n";
+  const std::size_t at = full.err.find(told);
+  CHECK_MESSAGE(at != std::string::npos, full.err);
+  CHECK(full.err.find("/dev/full", at + told.size()) == std::string::npos);
+  CHECK_FALSE(has(full.err, "LOG ERROR"));
+  CHECK_MESSAGE(has(full.out, "duration over"), full.out);
+}
+
 TEST_CASE("Lines on systemd's journal begin with their priority, all others do not") {
   const auto folder = fresh_folder("journal");
   const std::string program = std::string(KADANS_BINARY_DIR) + "/kadans";

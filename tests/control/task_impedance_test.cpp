@@ -103,6 +103,21 @@ TEST_CASE("TaskImpedance takes over, and takes a new point, without a step in to
   }
 }
 
+TEST_CASE("TaskImpedance takes a point that is set between its start and its first step without a step in torque") {
+  ArmBench bench = tuned();
+  bench.place(0.9, -1.4);
+  bench.start();
+  bench.run(300);
+  bench.set("point_z_m", -0.25);
+  bench.run(300);
+  bench.place(0.4, -0.9);  // another object had the arm meanwhile
+  bench.start();
+  bench.set("point_z_m", -0.2);
+  CHECK(kadans::test::largest_step(bench, 1) < 0.02);
+  CHECK(bench.signal("z.error_m") == 0);
+  CHECK(kadans::test::largest_step(bench, 300) < 0.02);
+}
+
 TEST_CASE("TaskImpedance limits the force at the point and the torque of each joint, and says so") {
   ArmBench bench = tuned();
   bench.place(0.9, -1.4);

@@ -44,7 +44,7 @@ TEST_CASE("Text sinks write no control characters of what is said, but tabs and 
   char file[] = "/tmp/kadans_linesXXXXXX";
   REQUIRE(close(mkstemp(file)) == 0);
   {
-    BehaviorLog log(file_sink(file));
+    BehaviorLog log(LogFile(file).sink());
     constexpr std::string_view said("a\033[2Jb\r\0\177c\td\n\xc3\xa9", 15);
     log.message(Line::no_time, BehaviorLog::Severity::info, "squat\a", said);
     log.transition({0, "squat", "a\b", "b", "\033c"});

@@ -7,9 +7,12 @@
 #include <fstream>
 #include <optional>
 #include <system_error>
+#include <thread>
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
 #include <unistd.h>
 
 using namespace kadans;
@@ -93,6 +96,32 @@ TEST_CASE("what ends takes with it those of its group that it leaves behind") {
   CHECK(process.exit_code() == 4);
   char byte = 0;
   CHECK(read(ends[0], &byte, 1) == 0);  // the last that could write is gone
+  close(ends[0]);
+}
+
+TEST_CASE("a signal that interrupts the wait does not let those of its group live on") {
+  struct sigaction handled {
+  }, before{};
+  handled.sa_handler = [](int) {};  // without SA_RESTART: calls end with EINTR
+  REQUIRE(sigaction(SIGUSR1, &handled, &before) == 0);
+  int ends[2];
+  REQUIRE(pipe2(ends, O_CLOEXEC) == 0);
+  ChildProcess process({.words = {"sh", "-c", "sleep 1000 & sleep 0.3; exit 4"},
+                        .files = {no_file, ends[1], no_file},
+                        .own_group = true});
+  close(ends[1]);
+  std::thread interrupter([waiting = pthread_self()] {
+    usleep(100'000);
+    pthread_kill(waiting, SIGUSR1);
+  });
+  process.wait();
+  interrupter.join();
+  sigaction(SIGUSR1, &before, nullptr);
+  CHECK(process.exit_code() == 4);
+  pollfd gone{ends[0], POLLIN, 0};
+  CHECK(poll(&gone, 1, 5000) == 1);
+  char byte = 0;
+  if (gone.revents != 0) CHECK(read(ends[0], &byte, 1) == 0);  // the last that could write is gone
   close(ends[0]);
 }
 

@@ -4,6 +4,7 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
 #include "script/fixture.h"
+#include "script/process/behavior_server.h"
 #include "script/process/process_host.h"
 #include "signal/byte_order.h"
 
@@ -206,6 +207,48 @@ TEST_CASE("rubbish in place of what was kept is refused or played, and never har
       bytes[random.next() % bytes.size()] = std::byte(random.next() & 0xff);
     (void)attempt(bytes);
   }
+}
+
+TEST_CASE("what lists a state twice is refused: what is in it would be active without it") {
+  const auto nest = [](const std::string& name) {
+    return "k.region '" + name + "' { initial = 'q', k.state 'q' { initial = 'r', k.state 'r' { endless = true } } }";
+  };
+  Theatre theatre({"local k = require 'kadans'\nreturn k.behavior 'one' { initial = 'p', k.parallel 'p' { " +
+                   nest("x") + ", " + nest("y") + " } }"});
+  theatre.tick(2);
+  std::vector<std::byte> kept = kept_of(theatre);
+  ByteWriter listed;
+  listed.put_string("p.y.q");
+  const auto found = std::ranges::search(kept, listed.bytes());
+  REQUIRE_FALSE(found.empty());
+  *(found.end() - 3) = std::byte{'x'};  // p.x.q.r stands between the two
+  theatre.host.reset();
+  theatre.open({.kept = kept});
+  theatre.tick();
+  CHECK(theatre.host->lost() != "");
+}
+
+TEST_CASE("the count of lines that found no place stays until it is told") {
+  const auto link = std::make_unique<BehaviorLink>();
+  SpokenLines lines(*link);
+  BehaviorLog log{&lines};
+  const auto say = [&](std::size_t size) {
+    log.message(0, BehaviorLog::Severity::info, "one", std::string(size, 'x'));
+  };
+  const std::size_t free = link->lines.free();
+  say(0);
+  const std::size_t head = free - link->lines.free();  // of each line
+  say(link->lines.free() - 2 * head);
+  say(head);
+  say(head);  // dropped, as the one before
+  say(0);     // takes the last place, and none is left for the count
+  CHECK(link->lines.free() == 0);
+  say(0);
+  link->lines.drop(link->lines.size());
+  say(0);
+  std::string text;
+  for (std::size_t i = 0; i < link->lines.size(); ++i) text.push_back(static_cast<char>(link->lines.peek(i)));
+  CHECK_MESSAGE(text.ends_with("3 lines found no place"), text);
 }
 
 TEST_CASE("a process is replaced at once, then later and later, and not at all after too many deaths in a row") {

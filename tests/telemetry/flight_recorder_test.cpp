@@ -200,3 +200,28 @@ TEST_CASE("A record that is opened and closed meanwhile does not disturb the fli
   robot.flight().finish();
   CHECK(read_dump(flight.path()).knee.size() == 3000);
 }
+
+TEST_CASE("A dump tells how many rows did not fit into the memory, and holds those before and after") {
+  const ScratchFile file;
+  const SignalTable table = robot_table();
+  FlightRecorder flight(table, {.kept_s = 5, .bytes = 500}, {});
+  RandomStream random(1, "noise");
+  for (std::uint64_t tick = 0; tick < 430; ++tick) {
+    const bool loud = tick / 100 % 2 == 1;  // such a block is larger than the memory
+    flight.row(tick, static_cast<std::int64_t>(tick) * ms,
+               std::array{loud ? random.uniform() : 0.5, loud ? random.uniform() : 0.0});
+  }
+  REQUIRE(flight.begin(file.path()));
+  flight.finish();
+  CHECK(flight.error().empty());
+  const Dump dump = read_dump(file.path());
+  CHECK(dump.knee.contains(0));
+  CHECK(dump.knee.contains(429));
+  CHECK_FALSE(dump.knee.contains(150));
+  McapReader reader(file.path());
+  for (McapMessage message; reader.next(message);) {
+  }
+  const TextMap& told = reader.metadata().at("recorder");
+  CHECK(told.at("rows") == "230");
+  CHECK(told.at("dropped_rows") == "200");
+}

@@ -19,6 +19,9 @@ class EffortTakeover {
     known_ = false;
   }
 
+  // start() was called and no step since.
+  bool pending() const noexcept { return pending_; }
+
   // Returns what to add to the sum of the law's torque and the integral. When the offset is computed, the integral
   // takes what it can of it, within +-integral_max_Nm. `known`: the model's data are of this activation.
   double step(double law_Nm, bool known, double dt_s, double& integral_Nm, double integral_max_Nm) noexcept {

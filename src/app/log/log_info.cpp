@@ -106,7 +106,7 @@ std::string verdict_text(const RecordOutline& record) {
 std::string drops_text(const RecordOutline& record) {
   const std::string rows = record.fact("recorder", "dropped_rows"), events = record.fact("recorder", "dropped_events");
   if (rows.empty()) return record.complete ? "" : "; what was dropped is told at the end only";
-  return "; dropped: " + rows + " rows, " + events + " events";
+  return "; dropped: " + rows + " rows" + (events.empty() ? "" : ", " + events + " events");  // a dump has no count
 }
 
 std::string size_text(const RecordOutline& record) {

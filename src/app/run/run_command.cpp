@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -202,9 +203,9 @@ class WallClockRun {
     const Shown unasked = stderr_is_journal() ? Shown::messages : Shown::errors;  // readers of a journal choose
     said_.add(stderr_sink(options.verbose ? Shown::all : unasked));
     if (options.log_file.empty()) return;
-    const TextSink file = file_sink(options.log_file);
-    said_.add(file);
-    program_log().add(file);
+    log_file_.emplace(options.log_file);
+    said_.add(log_file_->sink());
+    program_log().add(log_file_->sink());
   }
 
   int run() {
@@ -257,7 +258,7 @@ class WallClockRun {
                            start_ms,
                            ended,
                            failed_};
-    result.failed = result.failed || log_.has_errors() || !hanging.empty();
+    result.failed = result.failed || log_.has_errors() || !hanging.empty() || (log_file_ && log_file_->failed());
     std::fputs((options_.json ? run_report_json(result) + "\n" : run_report_text(result)).c_str(), stdout);
     if (!hanging.empty()) leave_behind(hanging);
     return result.failed ? exit_failed : exit_passed;
@@ -424,6 +425,7 @@ class WallClockRun {
                           control_side_,
                           {{"robot", scenario_.robot}, {"seed", std::to_string(scenario_.seed)}, {"kadans", version}}};
   BehaviorLog said_{&instance_};  // supervisor
+  std::optional<LogFile> log_file_;
   BehaviorSide behavior_side_{{instance_, process_ ? nullptr : &assembly_.host(), process_.get(), parts_.behaviors,
                                parts_.control.exchange(), echo_, log_},
                               &leaving_};

@@ -197,7 +197,10 @@ void TaskImpedance::start(const ControlInput& input) noexcept {
 void TaskImpedance::parameters_changed() noexcept {
   if (point_in_link_m_ == point_started_m_ || !located_) return;
   located_ = false;
-  for (Part& part : parts_) part.takeover.start(part.output.effort_Nm);
+  // An object that has started in this tick goes on from the torque of its start: its own output is of an earlier time.
+  for (Part& part : parts_) {
+    if (!part.takeover.pending()) part.takeover.start(part.output.effort_Nm);
+  }
 }
 
 // The force at the point, in each direction.

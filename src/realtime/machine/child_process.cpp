@@ -29,6 +29,14 @@ constexpr timespec between_tries{0, 100'000};
   throw std::system_error(error, std::generic_category(), what);
 }
 
+// A signal that this process handles may interrupt the call; then it is made again.
+template <typename Call>
+auto uninterrupted(Call call) noexcept {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
+
 // What posix_spawn is told, freed at the end.
 class SpawnPlan {
  public:
@@ -139,12 +147,15 @@ void ChildProcess::forget() noexcept {
 bool ChildProcess::reap(bool waits) noexcept {
   if (!running_) return true;
   // Whoever it has started ends with it: its number is the group's until it is taken off the system's list.
+  const int moment = waits ? 0 : WNOHANG;
   siginfo_t end{};
-  if (own_group_ && waitid(P_PID, static_cast<id_t>(pid_), &end, WEXITED | WNOWAIT | (waits ? 0 : WNOHANG)) == 0 &&
-      end.si_pid == pid_)
+  const auto look = [&] { return waitid(P_PID, static_cast<id_t>(pid_), &end, WEXITED | WNOWAIT | moment); };
+  if (own_group_ && uninterrupted(look) == 0) {
+    if (end.si_pid != pid_) return false;  // it may end before the next call, which would take it off the list
     kill();
+  }
   int status = 0;
-  const pid_t got = waitpid(pid_, &status, waits ? 0 : WNOHANG);
+  const pid_t got = uninterrupted([&] { return waitpid(pid_, &status, moment); });
   if (got == pid_) status_ = status;
   if (got == pid_ || (got < 0 && errno == ECHILD)) forget();  // as when somebody set SIGCHLD to be ignored
   return !running_;
@@ -192,8 +203,7 @@ void die_with_parent() noexcept { (void)prctl(PR_SET_PDEATHSIG, SIGKILL); }
 MemoryFile::MemoryFile(std::string_view text) : descriptor_(memfd_create("kadans-text", MFD_CLOEXEC)) {
   if (descriptor_ < 0) fail(errno, "no file in memory");
   while (!text.empty()) {
-    const ssize_t written = write(descriptor_, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
+    const ssize_t written = uninterrupted([&] { return write(descriptor_, text.data(), text.size()); });
     if (written <= 0) {
       const int error = errno;
       close(descriptor_);
@@ -214,7 +224,8 @@ std::string MemoryFile::text() const {
   std::string text(static_cast<std::size_t>(file.st_size), '\0');
   std::size_t got = 0;
   for (ssize_t more = 1; more > 0; got += static_cast<std::size_t>(std::max<ssize_t>(more, 0)))
-    more = pread(descriptor_, text.data() + got, text.size() - got, static_cast<off_t>(got));
+    more = uninterrupted(
+        [&] { return pread(descriptor_, text.data() + got, text.size() - got, static_cast<off_t>(got)); });
   text.resize(got);
   return text;
 }

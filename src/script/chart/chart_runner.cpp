@@ -557,7 +557,10 @@ bool ChartRunner::restore(ByteReader& bytes) {
   finished_ = bytes.take<std::uint8_t>() != 0;
   filling_ = bytes.take<std::uint8_t>() != 0;
   unhandled_ = bytes.take<std::uint64_t>();
-  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_state(bytes);
+  std::vector<bool> listed(chart_.states.size(), false);
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
+    if (!restore_state(bytes, listed)) return false;
+  }
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
     const EventId event = chart_.find_event(text_of(bytes));
@@ -568,19 +571,22 @@ bool ChartRunner::restore(ByteReader& bytes) {
   return bytes.ok() && (active_.empty() == (!started_ || finished_));
 }
 
-// In the chart's order: what is around a state came before it.
-void ChartRunner::restore_state(ByteReader& bytes) {
+// In the chart's order: what is around a state came before it. False: the state was listed before. What is in it may be
+// active already and rely on it.
+bool ChartRunner::restore_state(ByteReader& bytes, std::vector<bool>& listed) {
   const StateIndex index = take_state(chart_, bytes);
   const auto bits = bytes.take<std::uint8_t>();
   const auto entered_ns = bytes.take<std::int64_t>();
   const EventId outcome = chart_.find_event(text_of(bytes));
-  if (index == no_state || !bytes.ok()) return;
+  if (index == no_state || !bytes.ok()) return true;
+  if (listed[index]) return false;
+  listed[index] = true;
   const Chart::State& state = chart_.states[index];
   StateRun& run = run_[index];
   run.outcome = outcome;
   run.run_done = (bits & bit_run_done) != 0;
   run.entered_ns = entered_ns;
-  if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return;
+  if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return true;
   const auto there = [&](StateIndex i) { return run_[i].active || run_[i].entering; };
   bool alone = true;
   for (StateIndex other = static_cast<StateIndex>(state.parent + 1);
@@ -592,6 +598,7 @@ void ChartRunner::restore_state(ByteReader& bytes) {
   run.active = fits && (bits & bit_active) != 0;
   run.entering = fits && !run.active;
   entering_ = entering_ || run.entering;
+  return true;
 }
 
 void ChartRunner::restore_history(ByteReader& bytes) {

@@ -135,7 +135,7 @@ class ChartRunner {
   void fill_gaps() noexcept;
   void fill(StateIndex around, StateIndex entered) noexcept;
   void keep_histories(ByteWriter& bytes) const;
-  void restore_state(ByteReader& bytes);
+  [[nodiscard]] bool restore_state(ByteReader& bytes, std::vector<bool>& listed);
   void restore_history(ByteReader& bytes);
 
   void set_time(lua_State* state, StateIndex index);

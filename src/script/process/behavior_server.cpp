@@ -22,15 +22,15 @@ bool SpokenLines::push(const Line& line) {
     line_.put_string(line.text);
   }
   line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
-  const bool fits = link_.lines.try_push(line_.bytes());
-  dropped_ += fits ? 0 : 1;
-  return fits;
+  return link_.lines.try_push(line_.bytes());
 }
 
 void SpokenLines::tell(const Line& line) {
-  if (!push(line) || dropped_ == 0) return;
-  const std::string text = std::to_string(std::exchange(dropped_, 0)) + " lines found no place";
-  (void)push({line.time_ns, BehaviorLog::Severity::warning, "supervisor", text});
+  const bool fits = push(line);
+  dropped_ += fits ? 0 : 1;
+  if (!fits || dropped_ == 0) return;
+  const std::string text = std::to_string(dropped_) + " lines found no place";
+  if (push({line.time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
 }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,

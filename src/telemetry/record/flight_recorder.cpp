@@ -84,19 +84,27 @@ void FlightMemory::seal() {
   ticks_.clear();
   times_.clear();
   values_.clear();
-  if (ZSTD_isError(packed) != 0 || packed > store_.size()) return;  // out of memory
   while (!blocks_.empty() && blocks_.front().last_ns < last_ns - kept_ns_) blocks_.pop_front();
+  ++end_;
+  if (ZSTD_isError(packed) != 0 || packed > store_.size()) {  // out of memory
+    blocks_.push_back({head_, 0, rows, last_ns});
+    return;
+  }
   make_room(packed);
   std::copy_n(packed_.begin(), packed, store_.begin() + static_cast<std::ptrdiff_t>(head_));
   blocks_.push_back({head_, packed, rows, last_ns});
   head_ += packed;
-  ++end_;
 }
 
-// The oldest stand behind the head, in their order, then those at the front of the store.
+// The oldest stand behind the head, in their order, then those at the front of the store. Lost blocks are in nobody's
+// way; they go with the next one that is.
 void FlightMemory::make_room(std::size_t size) {
   const auto drop_while = [&](auto in_the_way) {
-    while (!blocks_.empty() && in_the_way(blocks_.front())) blocks_.pop_front();
+    for (;;) {
+      const auto oldest = std::ranges::find_if(blocks_, [](const Block& block) { return block.size > 0; });
+      if (oldest == blocks_.end() || !in_the_way(*oldest)) return;
+      blocks_.erase(blocks_.begin(), oldest + 1);
+    }
   };
   if (store_.size() - head_ < size) {
     drop_while([&](const Block& block) { return block.offset >= head_; });
@@ -108,6 +116,7 @@ void FlightMemory::make_room(std::size_t size) {
 bool FlightMemory::read(std::uint64_t block, Rows& rows) const {
   if (block < first() || block >= end_) return false;
   const Block& found = blocks_[static_cast<std::size_t>(block - first())];
+  if (found.size == 0) return false;
   std::vector<std::byte> planes(planes_.size());
   const std::size_t size = ZSTD_decompress(planes.data(), planes.size(), store_.data() + found.offset, found.size);
   if (ZSTD_isError(size) != 0) return false;
@@ -125,6 +134,12 @@ bool FlightMemory::read(std::uint64_t block, Rows& rows) const {
     });
   }
   return true;
+}
+
+std::uint64_t FlightMemory::rows() const noexcept {
+  std::uint64_t rows = 0;
+  for (const Block& block : blocks_) rows += block.rows;
+  return rows;
 }
 
 std::size_t FlightMemory::packed_bytes() const noexcept {
@@ -199,6 +214,8 @@ bool FlightRecorder::begin(const std::string& file) {
   to_write_ = happenings_;
   next_block_ = memory_.first();
   end_block_ = memory_.end();
+  due_rows_ = memory_.rows();
+  written_rows_ = 0;
   return true;
 }
 
@@ -208,6 +225,7 @@ void FlightRecorder::step() {
     next_block_ = std::max(next_block_, memory_.first());
     if (!memory_.read(next_block_++, rows_)) continue;
     const std::size_t signals = signals_.size();
+    written_rows_ += rows_.ticks.size();
     for (std::size_t row = 0; row < rows_.ticks.size(); ++row) {
       write_happenings(rows_.times_ns[row]);
       (void)dump_->row(rows_.ticks[row], rows_.times_ns[row],
@@ -216,6 +234,8 @@ void FlightRecorder::step() {
   }
   if (next_block_ < end_block_) return;
   write_happenings(std::numeric_limits<std::int64_t>::max());
+  (void)dump_->describe("recorder", {{"rows", std::to_string(written_rows_)},
+                                     {"dropped_rows", std::to_string(due_rows_ - written_rows_)}});
   if (!dump_->close()) error_ = dump_->error();
   dump_.reset();
   rows_ = {};

@@ -52,14 +52,16 @@ class FlightMemory {
   // Blocks are numbered from 0; those in [first(), end()) are stored.
   std::uint64_t first() const noexcept { return end_ - blocks_.size(); }
   std::uint64_t end() const noexcept { return end_; }
-  // False when the block is no longer stored, or its memory is damaged.
+  // Of all blocks in [first(), end()), also of those that read() refuses.
+  std::uint64_t rows() const noexcept;
+  // False when the block is no longer stored, was too large for the memory, or its memory is damaged.
   [[nodiscard]] bool read(std::uint64_t block, Rows& rows) const;
   std::size_t packed_bytes() const noexcept;
 
  private:
   static constexpr std::size_t block_rows = 100;
   struct Block {
-    std::size_t offset, size, rows;
+    std::size_t offset, size, rows;  // size 0: its rows are lost, only their number is known
     std::int64_t last_ns;
   };
   struct ZstdDelete {
@@ -140,6 +142,7 @@ class FlightRecorder {
   std::unique_ptr<RecordWriter> dump_;
   std::deque<Happening> to_write_;
   std::uint64_t next_block_ = 0, end_block_ = 0;
+  std::uint64_t due_rows_ = 0, written_rows_ = 0;  // of the dump
   FlightMemory::Rows rows_;
   std::string file_, error_;
   std::uint32_t dumps_ = 0;
