@@ -1,8 +1,10 @@
 // The control engine on a chain of joints (chain_robot.h): a PID with gains on each, an ideal plant, all that a tick
-// needs.
+// needs. Step the plant after each tick: otherwise its sensors count as silent, and what is measured is a robot that
+// safety has switched off.
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 
 #include "chain_robot.h"
 #include "kadans/plant/ideal_world.h"
@@ -17,6 +19,12 @@ inline std::unique_ptr<ControlSystem> with_gains(std::unique_ptr<ControlSystem> 
     if (name.ends_with("kd_Nms_per_rad")) (void)parameters.set(id, 4);
   }
   return system;
+}
+
+// Throws when safety has stepped in: then not the usual tick was measured.
+inline void expect_normal(const ControlEngine& control) {
+  if (control.state().status.safety.level != SafetyLevel::normal)
+    throw std::runtime_error("the robot of a benchmark is not at its normal level");
 }
 
 struct ChainRig {

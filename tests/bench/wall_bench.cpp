@@ -104,6 +104,17 @@ class Counted final : public Task {
   ControlTask& task_;
 };
 
+// The plant's step, after each tick.
+class Steps final : public BesideTick {
+ public:
+  Steps(World& world, std::int64_t period_ns) : world_(world), period_ns_(period_ns) {}
+  void beside_tick(std::int64_t /*time_ns*/) override { world_.step(period_ns_); }
+
+ private:
+  World& world_;
+  std::int64_t period_ns_;
+};
+
 struct ChainRun {
   double allocations, page_faults, tick_us, prepare_us;
 };
@@ -115,7 +126,8 @@ ChainRun run_chain() {
   ChainRig rig(14, read_robot(KADANS_SOURCE_DIR "/config/tulip/robot.json").types);
   Recorder recorder(rig.catalog.signals);
   rig.control.record_to(&recorder);
-  ControlTask task(rig.control);
+  Steps steps(rig.plant, period_ns);
+  ControlTask task(rig.control, &steps);
   Counted counted(task);
   const std::int64_t origin_ns = PosixWait().now_ns() + period_ns;
   PosixWait wait(default_spin_ns, origin_ns), slow(0, origin_ns);
@@ -130,6 +142,7 @@ ChainRun run_chain() {
   }
   thread.stop();
   thread.join();
+  expect_normal(rig.control);
   return {static_cast<double>(counted.allocations), static_cast<double>(thread.page_faults()),
           1e-3 * task.tick_cost().percentile_ns(0.5), 1e-3 * thread.preparation().percentile_ns(0.5)};
 }

@@ -44,7 +44,9 @@ void control_ticks(int calls) {
   for (int i = 0; i < calls; ++i) {
     if (i % ticks_per_behavior_tick == 0) rig.behaviors.tick(i * period_ns);
     rig.control.tick(i * period_ns, 1e-9 * period_ns);
+    rig.plant.step(period_ns);
   }
+  expect_normal(rig.control);
 }
 
 void standing_steps(int calls) {
