@@ -179,6 +179,15 @@ TEST_CASE("docs/architecture.md lists the layers in the order in which they are 
   CHECK(read_table_layers(read(root / "docs/architecture.md")) == layers());
 }
 
+TEST_CASE("docs/architecture.md says of each folder what is in it") {
+  const std::string text = read(root / "docs/architecture.md");
+  for (const auto& found : fs::recursive_directory_iterator(root / "src")) {
+    const std::string folder = fs::relative(found.path(), root / "src").generic_string();
+    if (!found.is_directory() || folder.find('/') == std::string::npos) continue;
+    CHECK_MESSAGE(text.find("\n| " + folder + " | ") != std::string::npos, folder);
+  }
+}
+
 TEST_CASE("the checker reads the layers from CMake and from a table") {
   CHECK(read_layers("# order\nset(layers exchange signal\n           model)\n") ==
         std::vector<std::string>{"exchange", "signal", "model"});
