@@ -176,8 +176,10 @@ void Assembly::complete() {
   if (host_) host_->declare_signals(catalog.signals);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
   show_others();
-  control_ = std::make_unique<ControlEngine>(robot_.config.engine, plant(), *estimator_, *safety_, *sets_, catalog,
-                                             *exchange_);
+  if (linked_ || elsewhere_) last_word_ = std::make_unique<LastWord>(plant());
+  Plant& seen = last_word_ ? static_cast<Plant&>(*last_word_) : plant();
+  control_ =
+      std::make_unique<ControlEngine>(robot_.config.engine, seen, *estimator_, *safety_, *sets_, catalog, *exchange_);
   if (host_) faulty_host_ = make_faulty_host(scenario_, *host_);
   disturbances_ = std::make_unique<Disturbances>(scenario_, robot_.config.model);
   make_joystick_player();

@@ -14,6 +14,7 @@
 #include "kadans/plant/plant_type.h"
 #include "kadans/plant/world.h"
 #include "realtime/engine_tasks.h"
+#include "run/last_word.h"
 #include "scenario/disturb/disturbances.h"
 #include "scenario/disturb/planned_faults.h"
 #include "scenario/disturb/quantities.h"
@@ -80,7 +81,9 @@ class Assembly {
   ControlEngine& control() noexcept { return *control_; }
   ControlSets& sets() noexcept { return *sets_; }
   BehaviorEngine& behaviors() noexcept { return *behaviors_; }
-  Plant& plant() noexcept;                                 // the plant that the engine sees; it is not open yet
+  Plant& plant() noexcept;  // not open yet
+  // Through which the engine sees the plant when it has a thread of its own; else nullptr.
+  LastWord* last_word() noexcept { return last_word_.get(); }
   World* world() noexcept;                                 // with its faults; nullptr: there is none
   TruthSignals* truth() noexcept { return truth_.get(); }  // nullptr: there is none
   // The quantities that were set or drawn for this run; further robots' as NAME.<quantity>.
@@ -129,6 +132,7 @@ class Assembly {
   std::vector<std::unique_ptr<Assembly>> others_;
   std::unique_ptr<LinkedPlant> linked_;  // when the world is on another thread
   std::unique_ptr<Plant> elsewhere_;     // when there is no world
+  std::unique_ptr<LastWord> last_word_;
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;
   std::unique_ptr<Estimator> estimator_;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <unistd.h>
 
@@ -120,8 +121,8 @@ namespace {
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
-// Limits at the end of a run: for threads that were told to stop, for each other part, for a server, for a record on a
-// slow disk; and for virtual time that stands still.
+// Limits at the end of a run: for threads that were told to stop or stand still, for each other part, for a server, for
+// a record on a slow disk; and for virtual time that stands still.
 constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, service_ns = 5'000'000'000,
                        record_ns = 10'000'000'000, standing_ns = 2'000'000'000;
 
@@ -276,12 +277,17 @@ class WallClockRun {
     const auto hangs = [](const std::vector<std::string>& hanging, const char* name) {
       return std::ranges::find(hanging, name) != hanging.end();
     };
-    last_resort.expect("switching the drives off", 2 * joining_ns + stage_ns);
-    std::vector<std::string> hanging = threads.stop(joining_ns);
+    last_resort.expect("switching the drives off", 3 * joining_ns + stage_ns);
     ActuationFrame off;
     off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
-    if (!hangs(hanging, "control")) assembly_.plant().write(off);  // else the plant's own watchdog must switch them off
-    assembly_.plant().close();
+    // A control thread that stands still is not waited for.
+    if (stands_still_) (void)assembly_.last_word()->say(off, 0);
+    std::vector<std::string> hanging = threads.stop(joining_ns);
+    if (assembly_.last_word()->say(off, joining_ns)) {
+      assembly_.plant().close();
+    } else {
+      print_error("the plant hangs: its drives' own watchdog must switch them off");
+    }
     tell(threads.supervisor().now_ns());
     last_resort.expect("closing the record", record_ns);
     if (hangs(hanging, "record")) {
@@ -359,15 +365,16 @@ class WallClockRun {
     return snapshot->status.safety.level;
   }
 
-  // Lets `seconds` pass. It does not wait for virtual time that stands still, because then a thread hangs.
+  // Lets `seconds` pass. It does not wait for a control thread that stands still: then a thread hangs.
   void pass(RunThreads& threads, double seconds) {
     Wait& wait = threads.supervisor();
+    const std::int64_t patience_ns = options_.virtual_time ? standing_ns : joining_ns;
     const std::int64_t end_ns = wait.now_ns() + std::llround(seconds * 1e9);
     std::int64_t moved_ns = WallClock().now_ns();
-    while (wait.now_ns() < end_ns && WallClock().now_ns() < moved_ns + standing_ns) {
-      const std::int64_t before_ns = wait.now_ns();
-      wait.until(std::min(end_ns, before_ns + supervisor_period_ns));
-      if (wait.now_ns() > before_ns) moved_ns = WallClock().now_ns();
+    for (std::uint64_t ticks = control_.ticks(); !stands_still_ && wait.now_ns() < end_ns;) {
+      wait.until(std::min(end_ns, wait.now_ns() + supervisor_period_ns));
+      if (std::exchange(ticks, control_.ticks()) != control_.ticks()) moved_ns = WallClock().now_ns();
+      stands_still_ = WallClock().now_ns() >= moved_ns + patience_ns;
       notifier_.alive(control_.ticks());
       tell(wait.now_ns());
     }
@@ -436,6 +443,7 @@ class WallClockRun {
   ControlTask control_{parts_.control, truth_.get()};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;
+  bool stands_still_ = false;  // the control thread, at the end
   std::uint32_t told_flights_ = 0;
   bool failed_ = false;
 };
