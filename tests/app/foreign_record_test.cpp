@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "app/sim/input_files.h"
+#include "kadans/signal/input_error.h"
 #include "program.h"
 #include "telemetry/record/run_inputs.h"
 
@@ -69,14 +71,25 @@ struct Sent {
   }
 };
 
+// The working directory is this one, for a while.
+class Inside {
+ public:
+  explicit Inside(const fs::path& folder) { fs::current_path(folder); }
+  ~Inside() { fs::current_path(before_); }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+
+ private:
+  fs::path before_ = fs::current_path();
+};
+
 // Both ways to what a record holds.
 const std::vector<std::string> ways{"replay forged.mcap --from-record", "sim --from forged.mcap --no-record"};
 
 }  // namespace
 
-TEST_CASE("A record writes nothing outside of its folder, by no name and through no link") {
+TEST_CASE("A record writes nothing outside of its folder, whatever its files are called") {
   const Sent sent("foreign_paths");
-  write(sent.elsewhere / "victim.sh", "mine");
   fs::create_directories(sent.elsewhere / "scripts");
   for (const std::string name :
        {"scripts/./x.sh", "scripts//x.sh", "./x.sh", "../x.sh", "a/../../x.sh", "scripts/", "."}) {
@@ -90,13 +103,60 @@ TEST_CASE("A record writes nothing outside of its folder, by no name and through
       CHECK(has(outcome.err, "is no path inside a project"));
     }
   }
-  // A plug-in of the project is known by its name alone and becomes a link; a text of the same file must not follow it.
-  RunInputs inputs = sent.inputs();
-  inputs.files.push_back({"victim.sh", content_hash("mine"), std::nullopt});
-  inputs.files.push_back(input("victim.sh/x", "theirs"));
-  (void)sent.forged(inputs);
-  for (const std::string& way : ways) CHECK(run(way, sent.elsewhere).exit_code == 2);
-  CHECK(read(sent.elsewhere / "victim.sh") == "mine");
+}
+
+TEST_CASE("A record writes nothing through the link that a plug-in of this project becomes in its folder") {
+  const Sent sent("foreign_link", true);
+  const fs::path plugin = sent.project / "models/own.so";
+  const std::string bytes = read(plugin);
+  const auto told = [&](const RunInputs& inputs, const std::string& way) {
+    (void)sent.forged(inputs);
+    fs::copy_file(sent.elsewhere / "forged.mcap", sent.project / "forged.mcap", fs::copy_options::overwrite_existing);
+    fs::remove(sent.loaded);
+    return run(way, sent.project);
+  };
+  for (const std::string& way : ways) {
+    CAPTURE(way);
+    (void)told(sent.inputs(), way);
+    CHECK(fs::exists(sent.loaded));  // so the link is made, and the plug-in is loaded through it
+    for (const std::string through : {"models/own.so/x", "models/own.so/a/b"}) {
+      for (const InputFile& file : {input(through, "theirs"), InputFile{through, "", std::nullopt}}) {
+        CAPTURE(through);
+        RunInputs inputs = sent.inputs();
+        inputs.files.push_back(file);
+        const Outcome outcome = told(inputs, way);
+        CHECK(outcome.exit_code == 2);
+        CHECK_MESSAGE(has(outcome.err, "its files cannot be unpacked"), outcome.err);
+        CHECK_FALSE(fs::exists(sent.loaded));
+        CHECK(read(plugin) == bytes);
+      }
+    }
+  }
+}
+
+TEST_CASE("Unpacking refuses a file in the place of a plug-in's link, and a link in the place of a file") {
+  const fs::path project = project_copy("foreign_same");
+  write(project / "models/own.so", "mine");
+  const InputFile plugin{"models/own.so", content_hash("mine"), std::nullopt};
+  const InputFile text = input("models/own.so", "theirs"), scenario = input("config/s.json", "{}");
+  const auto refusal = [&](const std::vector<InputFile>& files) {
+    const Inside inside(project);
+    try {
+      const UnpackedInputs unpacked({.run = {{"scenario_input", scenario.path}}, .program = {}, .files = files},
+                                    "forged.mcap", false);
+      return fs::is_symlink(unpacked.scenario().parent_path().parent_path() / "models/own.so") ? std::string("linked")
+                                                                                               : std::string("a file");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  CHECK(refusal({scenario, plugin}) == "linked");
+  CHECK(refusal({scenario, text}) == "a file");
+  CHECK_MESSAGE(has(refusal({scenario, plugin, text}), "models/own.so: is there already"),
+                refusal({scenario, plugin, text}));
+  CHECK_MESSAGE(has(refusal({scenario, text, plugin}), "its files cannot be unpacked"),
+                refusal({scenario, text, plugin}));
+  CHECK(read(project / "models/own.so") == "mine");
 }
 
 TEST_CASE("Native code that a record brings is not loaded, whatever its robot lists") {
