@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A squat on the Bullet model with a record; what the program's last line says. `tracer` goes before the program.
+// A squat on the Bullet model with a record; what the program says on stdout. `tracer` goes before the program.
 nlohmann::json squat(const std::string& tracer, int duration_s, const fs::path& folder) {
   const std::string command =
       "cd " KADANS_SOURCE_DIR " && " + tracer +
@@ -36,9 +36,8 @@ nlohmann::json squat(const std::string& tracer, int duration_s, const fs::path& 
   if (!output) throw std::runtime_error("cannot start kadans");
   std::string text;
   for (int c = 0; (c = std::fgetc(output.get())) != EOF;) text += static_cast<char>(c);
-  const std::size_t start = text.rfind("\n{");
-  if (start == std::string::npos) throw std::runtime_error("no result of: " + command);
-  return nlohmann::json::parse(text.substr(start));
+  if (text.empty()) throw std::runtime_error("no result of: " + command);
+  return nlohmann::json::parse(text);
 }
 
 // What a call is named in a line "4711 clock_nanosleep(...": empty when the line tells of something else.
