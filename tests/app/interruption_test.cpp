@@ -1,13 +1,10 @@
 // SIGINT and SIGTERM reach a script that would go on: sim, test, behavior test and repl end, whatever it does.
 #include <array>
 #include <csignal>
-#include <cstdio>
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/inotify.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -51,61 +48,6 @@ int run_signalled(const ScenarioConfig& scenario, int number) {
   }
   return 1;
 }
-
-// The program, which runs beside the test; ends with it.
-class Running {
- public:
-  Running(const std::filesystem::path& folder, const std::string& arguments) {
-    std::array<int, 2> ends{};
-    REQUIRE(pipe2(ends.data(), O_CLOEXEC) == 0);
-    const std::string command =
-        "XDG_STATE_HOME=\"$PWD/state\" exec '" KADANS_BINARY_DIR "/kadans' </dev/null " + arguments;
-    pid_ = fork();
-    if (pid_ == 0) {
-      prctl(PR_SET_PDEATHSIG, SIGKILL);
-      dup2(ends[1], STDOUT_FILENO);
-      dup2(ends[1], STDERR_FILENO);
-      if (chdir(folder.c_str()) == 0) execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-      _exit(127);
-    }
-    close(ends[1]);
-    said_ = fdopen(ends[0], "r");
-  }
-  ~Running() {
-    if (!ended_) kill(pid_, SIGKILL);
-    if (!ended_) waitpid(pid_, nullptr, 0);
-    std::fclose(said_);
-  }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
-
-  // Reads on until a line on stdout or stderr holds the text. False: the program ended without it.
-  bool says(const std::string& text) {
-    std::array<char, 4096> line{};
-    while (std::fgets(line.data(), line.size(), said_) != nullptr) {
-      heard_ += line.data();
-      if (has(line.data(), text)) return true;
-    }
-    return false;
-  }
-  // Signals it and waits for its end. Its exit code, 128 + signal when that killed it.
-  int end(int number) {
-    kill(pid_, number);
-    (void)says("\n\n no line is like this");
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    ended_ = true;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-  int output() const { return fileno(said_); }
-  const std::string& heard() const noexcept { return heard_; }
-
- private:
-  pid_t pid_ = -1;
-  std::FILE* said_ = nullptr;
-  std::string heard_;
-  bool ended_ = false;
-};
 
 // Sees when a file is opened.
 class Opening {

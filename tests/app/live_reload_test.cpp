@@ -1,14 +1,9 @@
 // A changed file is taken while the robot moves: what the record shows of it, and the program at wall-clock pace.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "app/assembly.h"
 #include "program.h"
@@ -79,61 +74,6 @@ class Witness final : public RunObserver {
   Most near_, else_;
 };
 
-// The program, running; its messages are read as they come, so that nothing here waits for a clock.
-class Live {
- public:
-  Live(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
-    std::array<int, 2> pipe_ends{};
-    REQUIRE(pipe(pipe_ends.data()) == 0);
-    std::vector<char*> words;
-    std::string binary = KADANS_BINARY_DIR "/kadans";
-    words.push_back(binary.data());
-    std::vector<std::string> copies = arguments;
-    for (std::string& word : copies) words.push_back(word.data());
-    words.push_back(nullptr);
-    child_ = fork();
-    if (child_ == 0) {
-      dup2(pipe_ends[1], STDERR_FILENO);
-      dup2(open("/dev/null", O_WRONLY | O_CLOEXEC), STDOUT_FILENO);
-      if (chdir(folder.c_str()) == 0) execv(binary.c_str(), words.data());
-      _exit(127);
-    }
-    close(pipe_ends[1]);
-    messages_ = fdopen(pipe_ends[0], "r");
-  }
-  ~Live() {
-    kill(child_, SIGKILL);
-    std::fclose(messages_);
-    if (!ended_) waitpid(child_, nullptr, 0);
-  }
-  Live(const Live&) = delete;
-  Live& operator=(const Live&) = delete;
-
-  // Reads on until a message holds the text. False: the program ended without it.
-  bool says(const std::string& text) {
-    std::array<char, 4096> line{};
-    while (std::fgets(line.data(), line.size(), messages_) != nullptr) {
-      heard_ += line.data();
-      if (program::has(line.data(), text)) return true;
-    }
-    return false;
-  }
-  int interrupt() {
-    kill(child_, SIGINT);
-    int status = 0;
-    waitpid(child_, &status, 0);
-    ended_ = true;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  const std::string& heard() const { return heard_; }
-
- private:
-  pid_t child_ = -1;
-  std::FILE* messages_ = nullptr;
-  std::string heard_;
-  bool ended_ = false;
-};
-
 std::string says(const std::string& word) {
   return "local k = require 'kadans'\nreturn k.behavior 'squat' { controls = 'posture', vars = { said = '' },\n"
          "k.state 'a' { endless = true, enter = function(m) m.posture:set_gains 'stiff' end, during = function(m)\n"
@@ -176,8 +116,8 @@ TEST_CASE(
   const auto folder = program::project_copy("live_watch");
   const auto file = folder / "behaviors/tulip/squat.lua";
   program::write(file, says("first"));
-  Live live(folder,
-            {"sim", "config/scenarios/squat.json", "--realtime", "--watch", "--no-record", "--duration", "120"});
+  program::Running live(folder,
+                        "sim config/scenarios/squat.json --realtime --watch --no-record --duration 120 >/dev/null");
   CAPTURE(live.heard());
   REQUIRE(live.says("squat: first plays"));
   rename_over(file, says("second"));
@@ -188,5 +128,5 @@ TEST_CASE(
   program::write(file, says("fourth"));
   REQUIRE(live.says("squat: fourth plays"));
   CHECK_FALSE(program::has(live.heard(), "third plays"));
-  CHECK(live.interrupt() == 130);
+  CHECK(live.end(SIGINT) == 130);
 }

@@ -1,9 +1,13 @@
 #include "program.h"
 
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,15 +15,64 @@ namespace kadans::program {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// `how`: "exec " puts the program in the shell's place, so that signals reach it.
+std::string command_in(const fs::path& where, const std::string& how) {
+  return "cd '" + where.string() + "' && XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/session\" " + how +
+         "'" KADANS_BINARY_DIR "/kadans' </dev/null ";
+}
+
+int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
+}  // namespace
+
 Outcome run(const std::string& arguments, const fs::path& where) {
   const fs::path out = where / "stdout.txt", err = where / "stderr.txt";
-  const std::string command = "cd '" + where.string() +
-                              "' && XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/session\" '" KADANS_BINARY_DIR
-                              "/kadans' </dev/null " +
-                              arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
+  const std::string command = command_in(where, "") + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
   const int status = std::system(command.c_str());  // NOLINT: the shell is the point
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, read(out), read(err)};
+  return {exit_code(status), read(out), read(err)};
+}
+
+Running::Running(const fs::path& where, const std::string& arguments) {
+  std::array<int, 2> ends{};
+  REQUIRE(pipe2(ends.data(), O_CLOEXEC) == 0);
+  const std::string command = command_in(where, "exec ") + arguments;
+  pid_ = fork();
+  if (pid_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    dup2(ends[1], STDOUT_FILENO);
+    dup2(ends[1], STDERR_FILENO);
+    execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+    _exit(127);
+  }
+  close(ends[1]);
+  output_ = fdopen(ends[0], "r");
+}
+
+Running::~Running() {
+  if (!ended_) {
+    signal(SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  std::fclose(output_);
+}
+
+bool Running::says(const std::string& text) {
+  std::array<char, 4096> line{};
+  while (std::fgets(line.data(), line.size(), output_) != nullptr) {
+    heard_ += line.data();
+    if (has(line.data(), text)) return true;
+  }
+  return false;
+}
+
+int Running::end() {
+  (void)says("\n\n no line is like this");
+  int status = 0;
+  waitpid(pid_, &status, 0);
+  ended_ = true;
+  return exit_code(status);
 }
 
 namespace {

@@ -1,8 +1,12 @@
 // Runs the program as a person would, in a folder of the test's own.
 #pragma once
 
+#include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <string>
+
+#include <sys/types.h>
 
 namespace kadans::program {
 
@@ -13,6 +17,35 @@ struct Outcome {
 
 // `arguments` as typed in a shell, in folder `where`; "<file" among them is its input, else there is none.
 Outcome run(const std::string& arguments, const std::filesystem::path& where);
+
+// The program while it runs beside the test, and what it says. It does not outlive this object.
+class Running {
+ public:
+  // As for run(); "2>file" or ">file" among the arguments keeps that output from this object.
+  Running(const std::filesystem::path& where, const std::string& arguments);
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  // Reads on until a line of its output holds the text. False: the program ended without it.
+  bool says(const std::string& text);
+  void signal(int number) const { kill(pid_, number); }
+  // Reads to the end. The exit code, 128 + signal when that killed it.
+  int end();
+  int end(int number) {
+    signal(number);
+    return end();
+  }
+  pid_t pid() const noexcept { return pid_; }
+  int output() const { return fileno(output_); }  // a descriptor that can be read
+  const std::string& heard() const noexcept { return heard_; }
+
+ private:
+  pid_t pid_ = -1;
+  std::FILE* output_ = nullptr;
+  std::string heard_;
+  bool ended_ = false;
+};
 
 // A fresh folder below the build folder, emptied first, this process's own; gone when the process ends.
 std::filesystem::path fresh_folder(const std::string& name);

@@ -1,17 +1,12 @@
 #include "live_program.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <sstream>
 
-#include <doctest/doctest.h>
-#include <fcntl.h>
 #include <sched.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "telemetry/mcap/mcap_reader.h"
 #include "telemetry/record/signal_topics.h"
@@ -44,62 +39,27 @@ State state_of(pid_t pid) {
 
 }  // namespace
 
-LiveProgram::LiveProgram(const fs::path& folder, const std::string& arguments) : folder_(folder) {
-  std::array<int, 2> ends{};
-  REQUIRE(pipe2(ends.data(), O_CLOEXEC) == 0);
-  const std::string command =
-      "exec '" KADANS_BINARY_DIR "/kadans' run " + arguments + " -v --json --record out.mcap >out";
-  pid_ = fork();
-  if (pid_ == 0) {
-    dup2(ends[1], STDERR_FILENO);
-    if (chdir(folder.c_str()) == 0) execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-    _exit(127);
-  }
-  close(ends[1]);
-  messages_ = fdopen(ends[0], "r");
-}
-
-LiveProgram::~LiveProgram() {
-  if (exit_code_ < 0) {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
-  std::fclose(messages_);
-}
-
-bool LiveProgram::says(const std::string& text) {
-  std::array<char, 4096> line{};
-  while (std::fgets(line.data(), line.size(), messages_) != nullptr) {
-    heard_ += line.data();
-    if (std::string_view(line.data()).find(text) != std::string_view::npos) return true;
-  }
-  return false;
-}
+LiveProgram::LiveProgram(const fs::path& folder, const std::string& arguments)
+    : folder_(folder), running_(folder, "run " + arguments + " -v --json --record out.mcap >out") {}
 
 nlohmann::json LiveProgram::end() {
-  (void)says("\n\n no line is like this");
-  int status = 0;
-  waitpid(pid_, &status, 0);
-  exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  std::istringstream lines(text_of(folder_ / "out"));
-  std::string last;
-  for (std::string line; std::getline(lines, line);) last = line;
-  return nlohmann::json::parse(last, nullptr, false);
+  exit_code_ = running_.end();
+  return nlohmann::json::parse(program::last_line(text_of(folder_ / "out")), nullptr, false);
 }
 
 std::size_t LiveProgram::heard(const std::string& text) const {
   std::size_t count = 0;
-  for (auto at = heard_.find(text); at != std::string::npos; at = heard_.find(text, at + 1)) ++count;
+  for (auto at = heard().find(text); at != std::string::npos; at = heard().find(text, at + 1)) ++count;
   return count;
 }
 
 pid_t LiveProgram::behavior_process(pid_t other) const {
-  for (; state_of(pid_).lives(); sched_yield()) {
+  for (; state_of(running_.pid()).lives(); sched_yield()) {
     for (const auto& entry : fs::directory_iterator("/proc")) {
       const pid_t child = std::atoi(entry.path().filename().c_str());
       if (child <= 1 || child == other) continue;
       const State state = state_of(child);
-      if (state.parent == pid_ && state.lives()) return child;
+      if (state.parent == running_.pid() && state.lives()) return child;
     }
   }
   return -1;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -10,23 +9,22 @@
 #include <nlohmann/json.hpp>
 #include <sys/types.h>
 
+#include "app/program.h"
+
 namespace kadans::failures {
 
 class LiveProgram {
  public:
   // With its record, out.mcap, in that folder.
   LiveProgram(const std::filesystem::path& folder, const std::string& arguments);
-  ~LiveProgram();
-  LiveProgram(const LiveProgram&) = delete;
-  LiveProgram& operator=(const LiveProgram&) = delete;
 
   // Reads on until a line on standard error holds the text. False: the program ended without it.
-  bool says(const std::string& text);
+  bool says(const std::string& text) { return running_.says(text); }
   // Reads to the end; the JSON object that is the last line of the output, null when there is none.
   nlohmann::json end();
-  void signal(int number) const { kill(pid_, number); }
+  void signal(int number) const { running_.signal(number); }
   int exit_code() const noexcept { return exit_code_; }
-  const std::string& heard() const noexcept { return heard_; }
+  const std::string& heard() const noexcept { return running_.heard(); }
   std::size_t heard(const std::string& text) const;  // how often
 
   // Any thread. The process of the behaviors that is alive, other than `other`; waits for one. -1: the program ended.
@@ -44,9 +42,7 @@ class LiveProgram {
 
  private:
   std::filesystem::path folder_;
-  pid_t pid_ = -1;
-  std::FILE* messages_ = nullptr;
-  std::string heard_;
+  program::Running running_;
   int exit_code_ = -1;
 };
 
