@@ -2,14 +2,10 @@
 
 #include <cstdio>
 
+#include "signal/number_text.h"
+
 namespace kadans {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
 
 // What the command addresses; "" when there is no such thing.
 std::string target(const Refusal& refusal, const Catalog& catalog) {
@@ -31,16 +27,10 @@ std::string target(const Refusal& refusal, const Catalog& catalog) {
   }
 }
 
-std::string range(const Refusal& refusal, const Catalog& catalog) {
-  const auto text = [](double min, double max, const std::string& unit) {
-    return number(min) + ".." + number(max) + (unit.empty() ? "" : " ") + unit;
-  };
-  if (refusal.kind == CommandKind::set_parameter) {
-    const Parameter& parameter = catalog.parameters.info(refusal.index);
-    return text(parameter.min, parameter.max, parameter.unit);
-  }
-  const Setpoint& setpoint = catalog.setpoints[refusal.index];
-  return text(setpoint.min, setpoint.max, setpoint.unit);
+std::string out_of_range(const Refusal& refusal, const Catalog& catalog) {
+  const auto text = [&](const auto& of) { return outside_range(of.name, refusal.value, of.min, of.max, of.unit); };
+  return refusal.kind == CommandKind::set_parameter ? text(catalog.parameters.info(refusal.index))
+                                                    : text(catalog.setpoints[refusal.index]);
 }
 
 }  // namespace
@@ -56,7 +46,7 @@ std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
     case RefusalReason::unknown:
       return "number " + std::to_string(refusal.index) + " is unknown";
     case RefusalReason::out_of_range:
-      return name + " = " + number(refusal.value) + " is outside its range " + range(refusal, catalog);
+      return out_of_range(refusal, catalog);
     case RefusalReason::motion:
       return of + "it cannot be moved with this duration and these limits";
     case RefusalReason::too_old:

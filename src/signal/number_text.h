@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -21,6 +22,21 @@ std::string printed(const char* pattern, Values... values) {
   char text[512];
   const int length = std::snprintf(text, sizeof text, pattern, values...);
   return {text, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof text) - 1))};
+}
+
+// As few digits as name the number exactly; up to 1e9 an integer is written in full: 1000000, 1e-09.
+inline std::string number_text(double value) {
+  if (std::abs(value) < 1e9 && value == std::floor(value)) return std::to_string(static_cast<long>(value));
+  std::array<char, 32> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return error == std::errc{} ? std::string(buffer.data(), end) : std::string("?");
+}
+
+// "kp = 900 is outside its range 0..500 Nm/rad".
+inline std::string outside_range(const std::string& name, double value, double min, double max,
+                                 const std::string& unit) {
+  return name + " = " + number_text(value) + " is outside its range " + number_text(min) + ".." + number_text(max) +
+         (unit.empty() ? "" : " " + unit);
 }
 
 // A hash as 16 digits.

@@ -1,30 +1,19 @@
 // The tables of parameters, set-points and signals.
-#include <array>
 #include <cassert>
-#include <charconv>
 #include <stdexcept>
 #include <utility>
 
 #include "kadans/signal/parameter.h"
 #include "kadans/signal/setpoint.h"
 #include "kadans/signal/signal.h"
+#include "number_text.h"
 
 namespace kadans {
-namespace {
-
-// As few digits as name the number exactly: 1e-09, not 0.000000.
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
-}  // namespace
-
 ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_t owner) {
   if (!(parameter.min <= parameter.max)) throw std::invalid_argument("parameter " + parameter.name + ": empty range");
   if (!(std::isfinite(parameter.initial) && parameter.initial >= parameter.min && parameter.initial <= parameter.max)) {
-    throw std::invalid_argument("parameter " + parameter.name + ": initial value " + shortest(parameter.initial) +
-                                " is outside " + shortest(parameter.min) + ".." + shortest(parameter.max));
+    throw std::invalid_argument("parameter " + parameter.name + ": initial value " + number_text(parameter.initial) +
+                                " is outside " + number_text(parameter.min) + ".." + number_text(parameter.max));
   }
   const auto id = static_cast<ParameterId>(entries_.size());
   if (!ids_.emplace(parameter.name, id).second) {
@@ -36,11 +25,10 @@ ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_
   return id;
 }
 
-bool ParameterTable::set(ParameterId id, double value) noexcept {
-  if (!accepts(id, value)) return false;
+void ParameterTable::set(ParameterId id, double value) noexcept {
+  assert(accepts(id, value));
   *entries_[id].value = value;
   entries_[id].newest.set(value);
-  return true;
 }
 
 std::optional<ParameterId> ParameterTable::find(std::string_view name) const {

@@ -41,7 +41,7 @@ std::vector<double> there_and_back_reference(double from, double to, double dura
   motion.reset(from);
   motion.move(to, 0.5 * duration_s);
   return sampled(duration_s, dt_s, [&](double) {
-    const double now = motion.state().position;
+    const double now = motion.state().value;
     motion.step(dt_s);
     if (motion.remaining_s() == 0 && motion.target() == to) motion.move(from, 0.5 * duration_s);
     return now;

@@ -36,7 +36,7 @@ Limits random_limits(RandomStream& random) {
 }
 
 // A state that can be kept within the limits: taking its acceleration back does not pass the velocity limit.
-MotionProfile::State random_state(RandomStream& random, const Limits& l) {
+SetpointState random_state(RandomStream& random, const Limits& l) {
   const double acceleration = random.uniform(-1, 1) * std::min(l.acceleration, std::sqrt(2 * l.velocity * l.jerk));
   const double to_come = 0.5 * acceleration * std::abs(acceleration) / l.jerk;
   const double low = std::max(-l.velocity, -l.velocity - to_come), high = std::min(l.velocity, l.velocity - to_come);
@@ -45,12 +45,12 @@ MotionProfile::State random_state(RandomStream& random, const Limits& l) {
 
 // Steps once and says whether velocity, acceleration and jerk kept to the limits.
 bool step_within(MotionProfile& profile, const Limits& l, double dt = dt_s) {
-  const MotionProfile::State before = profile.state();
-  const MotionProfile::State& after = profile.step(dt);
+  const SetpointState before = profile.state();
+  const SetpointState& after = profile.step(dt);
   const double jerk = (after.acceleration - before.acceleration) / dt;
   return std::abs(after.velocity) <= l.velocity * (1 + tolerance) &&
          std::abs(after.acceleration) <= l.acceleration * (1 + tolerance) && std::abs(jerk) <= l.jerk * (1 + 1e-6) &&
-         std::abs(after.position - before.position) <= l.velocity * dt * (1 + 1e-6) + 1e-12;
+         std::abs(after.value - before.value) <= l.velocity * dt * (1 + 1e-6) + 1e-12;
 }
 
 }  // namespace
@@ -67,16 +67,16 @@ TEST_CASE("MotionProfile from rest to rest takes the optimal time, keeps the lim
     REQUIRE(profile.remaining_s() == doctest::Approx(optimal_time_s(std::abs(to - from), limits)).epsilon(1e-6));
     bool within = true, forward = true, beyond = false;
     while (profile.remaining_s() > 0) {
-      const double before = profile.state().position;
+      const double before = profile.state().value;
       within = within && step_within(profile, limits);
-      forward = forward && direction * (profile.state().position - before) >= -1e-12;
-      beyond = beyond || direction * (profile.state().position - to) > 1e-12;
+      forward = forward && direction * (profile.state().value - before) >= -1e-12;
+      beyond = beyond || direction * (profile.state().value - to) > 1e-12;
     }
     CAPTURE(i);
     REQUIRE(within);
     REQUIRE(forward);
     REQUIRE_FALSE(beyond);
-    REQUIRE(profile.state().position == to);
+    REQUIRE(profile.state().value == to);
     REQUIRE(profile.state().velocity == 0);
   }
 }
@@ -99,7 +99,7 @@ TEST_CASE("MotionProfile reaches any target from any state within the limits, co
     for (; profile.remaining_s() > 0 && ticks < 2'000'000; ++ticks) within = within && step_within(profile, limits);
     CAPTURE(i);
     REQUIRE(within);
-    REQUIRE(profile.state().position == to);
+    REQUIRE(profile.state().value == to);
     REQUIRE(profile.state().acceleration == 0);
   }
 }
@@ -118,7 +118,7 @@ TEST_CASE("MotionProfile keeps the limits while the target changes at random in 
   CHECK(profile.move(0.25, limits));
   while (profile.remaining_s() > 0) within = within && step_within(profile, limits);
   CHECK(within);
-  CHECK(profile.state().position == 0.25);
+  CHECK(profile.state().value == 0.25);
 }
 
 TEST_CASE("MotionProfile planned anew in each tick for the same target takes the same way in the same time") {
@@ -131,11 +131,11 @@ TEST_CASE("MotionProfile planned anew in each tick for the same target takes the
   int ticks = 0;
   for (; once.remaining_s() > 0; ++ticks) {
     (void)again.move(1.5, limits);
-    farthest = std::max(farthest, std::abs(again.step(dt_s).position - once.step(dt_s).position));
+    farthest = std::max(farthest, std::abs(again.step(dt_s).value - once.step(dt_s).value));
   }
   CHECK(ticks > 500);
   CHECK(farthest < 1e-6);
-  CHECK(again.state().position == doctest::Approx(1.5).epsilon(1e-9));
+  CHECK(again.state().value == doctest::Approx(1.5).epsilon(1e-9));
 }
 
 TEST_CASE("MotionProfile takes as long as it is told, or says that it cannot") {
@@ -144,7 +144,7 @@ TEST_CASE("MotionProfile takes as long as it is told, or says that it cannot") {
     const Limits limits = random_limits(random);
     const double to = random.uniform(-3, 3);
     MotionProfile profile;
-    profile.set_state(i % 2 == 0 ? MotionProfile::State{} : random_state(random, limits));
+    profile.set_state(i % 2 == 0 ? SetpointState{} : random_state(random, limits));
     MotionProfile fastest = profile;
     REQUIRE(fastest.move(to, limits));
     const double duration_s = fastest.remaining_s() * random.uniform(1.01, 5);
@@ -157,7 +157,7 @@ TEST_CASE("MotionProfile takes as long as it is told, or says that it cannot") {
     bool within = true;
     while (profile.remaining_s() > 0) within = within && step_within(profile, limits);
     REQUIRE(within);
-    REQUIRE(profile.state().position == to);
+    REQUIRE(profile.state().value == to);
   }
 }
 
@@ -172,7 +172,7 @@ TEST_CASE("MotionProfile from beyond its limits comes inside and still arrives")
     fastest = std::max(fastest, std::abs(profile.state().velocity));
   }
   CHECK(fastest < 3 + 0.5 * 20 * 20 / 100 + 0.01);  // the acceleration is taken back at once
-  CHECK(profile.state().position == 0.5);
+  CHECK(profile.state().value == 0.5);
 }
 
 TEST_CASE("MotionProfile stops sooner than any motion to a target could") {
@@ -183,7 +183,7 @@ TEST_CASE("MotionProfile stops sooner than any motion to a target could") {
   CHECK(profile.remaining_s() == doctest::Approx(15.0 / 400 + 1 / 15.0));
   CHECK(profile.target() == doctest::Approx(0.5 * profile.remaining_s()));
   while (profile.remaining_s() > 0) profile.step(dt_s);
-  CHECK(profile.state().position == profile.target());
+  CHECK(profile.state().value == profile.target());
 }
 
 TEST_CASE("MotionProfile told to go nowhere, or given no number, ends") {
@@ -191,11 +191,11 @@ TEST_CASE("MotionProfile told to go nowhere, or given no number, ends") {
   profile.reset(0.3);
   CHECK(profile.move(0.3, {}));
   CHECK(profile.remaining_s() == 0);
-  CHECK(profile.step(dt_s).position == 0.3);
+  CHECK(profile.step(dt_s).value == 0.3);
   (void)profile.move(NAN, {});
-  CHECK_FALSE(std::isfinite(profile.step(dt_s).position));
+  CHECK_FALSE(std::isfinite(profile.step(dt_s).value));
   profile.reset(0);
-  CHECK(profile.step(dt_s).position == 0);
+  CHECK(profile.step(dt_s).value == 0);
 }
 
 TEST_CASE("MotionProfile plans without allocating") {

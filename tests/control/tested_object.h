@@ -37,14 +37,14 @@ class TestedObject {
   void set_point(std::uint32_t channel, double value, double duration_s) {
     SetpointState at;
     if (plans(channel) || !object_->setpoint_state(channel, at)) return object_->set_point(channel, value, duration_s);
-    motions_[channel].follow({at.value, at.velocity, at.acceleration});
+    motions_[channel].follow(at);
     motions_[channel].move(value, duration_s);
     if (!(duration_s > 0)) object_->follow(channel, {.value = value});
   }
   void cancel_motion(std::uint32_t channel) {
     SetpointState at;
     if (plans(channel) || !object_->setpoint_state(channel, at)) return object_->cancel_motion(channel);
-    motions_[channel].follow({at.value, at.velocity, at.acceleration});
+    motions_[channel].follow(at);
     if (at.velocity != 0) motions_[channel].move(at.value + 0.05 * at.velocity, 0.1);
   }
   double motion_remaining_s() const noexcept {
@@ -80,8 +80,7 @@ class TestedObject {
   void lead() noexcept {
     for (std::uint32_t channel = 0; channel < motions_.size(); ++channel) {
       if (!(motions_[channel].remaining_s() > 0)) continue;
-      const MinimumJerk::State& at = motions_[channel].step(dt_s);
-      object_->follow(channel, {at.position, at.velocity, at.acceleration});
+      object_->follow(channel, motions_[channel].step(dt_s));
     }
   }
   // As the engines do it: what was computed in the last tick is written; the high level runs every tenth.

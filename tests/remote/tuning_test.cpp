@@ -6,13 +6,11 @@ using namespace kadans;
 
 TEST_CASE("what is unsaved is the way from the configuration to now, whatever the steps") {
   ParameterHistory history;
-  history.note({"kp", 10, 20}, true);
-  history.note({"kp", 20, 30}, true);
-  history.note({"squat.depth_m", 0.1, 0.2}, false);
+  history.note({"kp", 10, 20});
+  history.note({"kp", 20, 30});
   REQUIRE(history.unsaved().size() == 1);
   CHECK(history.unsaved()[0].before == 10);
   CHECK(history.unsaved()[0].now == 30);
-  history.drop();
   CHECK(history.newest()->now == 30);
   history.drop();
   CHECK(history.unsaved()[0].now == 20);
@@ -23,9 +21,9 @@ TEST_CASE("what is unsaved is the way from the configuration to now, whatever th
 
 TEST_CASE("undoing what was saved is a change again, and a value set while it was saved stays unsaved") {
   ParameterHistory history;
-  history.note({"kp", 10, 20}, true);
+  history.note({"kp", 10, 20});
   const auto saving = history.unsaved();
-  history.note({"kp", 20, 25}, true);
+  history.note({"kp", 20, 25});
   history.saved(saving);
   REQUIRE(history.unsaved().size() == 1);
   CHECK(history.unsaved()[0].before == 20);
@@ -39,8 +37,8 @@ TEST_CASE("undoing what was saved is a change again, and a value set while it wa
 
 TEST_CASE("what was set in this run is known after it was saved, until it is as it was") {
   ParameterHistory history;
-  history.note({"kp", 10, 20}, true);
-  history.note({"squat.depth_m", 0.1, 0.2, "squat.lua"}, true);
+  history.note({"kp", 10, 20});
+  history.note({"squat.depth_m", 0.1, 0.2, "squat.lua"});
   history.saved(history.unsaved());
   CHECK(history.unsaved().empty());
   REQUIRE(history.set().size() == 2);
@@ -54,7 +52,7 @@ TEST_CASE("what was set in this run is known after it was saved, until it is as 
 
 TEST_CASE("the way back has an end") {
   ParameterHistory history;
-  for (double value = 0; value < 2000; ++value) history.note({"kp", value, value + 1}, true);
+  for (double value = 0; value < 2000; ++value) history.note({"kp", value, value + 1});
   std::size_t steps = 0;
   for (; history.newest() != nullptr; ++steps) history.drop();
   CHECK(steps == ParameterHistory::steps_max);

@@ -50,7 +50,7 @@ void continue_motion(MinimumJerk& reference, double position_rad, double velocit
 class FadingEffort {
  public:
   void start(double effort_Nm) noexcept;
-  double step(double dt_s) noexcept { return effort_Nm_.step(dt_s).position; }
+  double step(double dt_s) noexcept { return effort_Nm_.step(dt_s).value; }
 
   void pass_state(auto& bytes) noexcept { bytes(effort_Nm_); }
 

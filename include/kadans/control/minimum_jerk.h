@@ -3,14 +3,12 @@
 // 4). A new target during a motion makes no step in position, velocity or acceleration.
 #pragma once
 
+#include "kadans/signal/setpoint.h"
+
 namespace kadans {
 
 class MinimumJerk {
  public:
-  struct State {
-    double position = 0, velocity = 0, acceleration = 0;
-  };
-
   // At rest at `position`, at once.
   void reset(double position) noexcept;
   // At `position`, moving with `velocity`, to rest at `target` after duration_s > 0.
@@ -18,18 +16,18 @@ class MinimumJerk {
   // Reaches `target` at rest after duration_s > 0; at once for 0.
   void move(double target, double duration_s) noexcept;
   // Takes a state of a motion that another part plans, and stays there until the next call.
-  void follow(const State& state) noexcept;
+  void follow(const SetpointState& state) noexcept;
   // Comes to rest in duration_s, after half the way that it would go at its present velocity.
   void stop(double duration_s) noexcept;
 
-  const State& step(double dt_s) noexcept;
-  const State& state() const noexcept { return state_; }
+  const SetpointState& step(double dt_s) noexcept;
+  const SetpointState& state() const noexcept { return state_; }
   double target() const noexcept { return target_; }
   double remaining_s() const noexcept { return remaining_s_; }  // 0 at rest
   void pass_state(auto& bytes) noexcept { bytes(state_, target_, remaining_s_); }
 
  private:
-  State state_;
+  SetpointState state_;
   double target_ = 0;
   double remaining_s_ = 0;
 };

@@ -19,6 +19,8 @@
 #include <array>
 #include <cstddef>
 
+#include "kadans/signal/setpoint.h"
+
 namespace kadans {
 
 class MotionProfile {
@@ -26,21 +28,18 @@ class MotionProfile {
   struct Limits {
     double velocity = 1, acceleration = 10, jerk = 100;
   };
-  struct State {
-    double position = 0, velocity = 0, acceleration = 0;
-  };
 
   // At rest at `position`, at once.
   void reset(double position) noexcept;
   // Takes a state in motion. Call move or stop next.
-  void set_state(const State& state) noexcept;
+  void set_state(const SetpointState& state) noexcept;
   // Reaches `target` at rest after duration_s. False when that is too soon: then as soon as the limits allow.
   bool move(double target, const Limits& limits, double duration_s = 0) noexcept;
   // Comes to rest as soon as the limits allow.
   void stop(const Limits& limits) noexcept;
 
-  const State& step(double dt_s) noexcept;
-  const State& state() const noexcept { return state_; }
+  const SetpointState& step(double dt_s) noexcept;
+  const SetpointState& state() const noexcept { return state_; }
   double target() const noexcept { return target_; }
   double remaining_s() const noexcept { return remaining_s_; }  // 0 at rest
 
@@ -61,8 +60,8 @@ class MotionProfile {
   std::array<Phase, phase_count> phases_{};
   std::size_t phase_ = phase_count;  // under way
   double time_s_ = 0;                // since the phase began
-  State phase_start_;
-  State state_;
+  SetpointState phase_start_;
+  SetpointState state_;
   double target_ = 0;
   double remaining_s_ = 0;
 };

@@ -14,13 +14,9 @@ class PositionReference {
 
   double remaining_s() const noexcept { return reference_.remaining_s(); }
   bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept {
-    const MinimumJerk::State& now = reference_.state();
-    if (which != 0) return false;
-    return state = {now.position, now.velocity, now.acceleration}, true;
+    return which == 0 && (state = reference_.state(), true);
   }
-  void follow(std::uint32_t, const SetpointState& state) noexcept {
-    reference_.follow({state.value, state.velocity, state.acceleration});
-  }
+  void follow(std::uint32_t, const SetpointState& state) noexcept { reference_.follow(state); }
   void pass_state(StateBytes& bytes) noexcept { bytes(reference_); }
 
  protected:

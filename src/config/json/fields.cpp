@@ -102,14 +102,6 @@ std::optional<std::uint64_t> whole(const JsonValue& value) {
 
 }  // namespace
 
-std::string number_text(double value) {
-  constexpr double plain_max = 1e9;  // up to here 1000000 reads better than 1e+06
-  if (std::abs(value) < plain_max && value == std::floor(value)) return std::to_string(static_cast<long>(value));
-  std::array<char, 32> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return error == std::errc{} ? std::string(buffer.data(), end) : std::string("?");
-}
-
 std::string Fields::path(std::string_view name) const { return key_path(path_, name); }
 
 TextPlace Fields::place(std::string_view name) const {

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "json_value.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 
@@ -202,8 +203,5 @@ FieldInfo describe_fields(Read&& read) {
   read(fields);
   return info;
 }
-
-// The shortest text that gives exactly this number: "0.001", "1e-05".
-std::string number_text(double value);
 
 }  // namespace kadans

@@ -32,8 +32,7 @@ class ParameterValues {
                               "of control object '" + object_ + "'");
       }
       for (const std::size_t i : fitting) {
-        check_range(entry, table_.info(ids_[i]));
-        values[ids_[i]] = entry.value;
+        if (in_range(entry, table_.info(ids_[i]))) values[ids_[i]] = entry.value;
       }
     }
     return {values.begin(), values.end()};
@@ -56,11 +55,12 @@ class ParameterValues {
     return candidates.empty() ? names_ : candidates;
   }
 
-  void check_range(const NumberEntry& entry, const Parameter& parameter) {
-    if (entry.value >= parameter.min && entry.value <= parameter.max) return;
+  bool in_range(const NumberEntry& entry, const Parameter& parameter) {
+    if (entry.value >= parameter.min && entry.value <= parameter.max) return true;
     problems_.add(entry.value_place, parameter.name + " is " + number_text(entry.value) + ", must be " +
                                          number_text(parameter.min) + ".." + number_text(parameter.max) +
                                          (parameter.unit.empty() ? "" : " " + parameter.unit) + ": " + parameter.doc);
+    return false;
   }
 
   const std::vector<ParameterId>& ids_;
@@ -300,21 +300,16 @@ void apply_parameters(const RobotConfig& config, Catalog& catalog) {
     throw std::invalid_argument("the catalog's control objects are not those of the configuration");
   }
   Problems problems(config.file);
-  std::vector<std::pair<ParameterId, double>> all;
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const ObjectConfig& object = config.objects[i];
     ParameterValues values(object, catalog.objects[i], catalog.parameters, problems);
-    const auto own = values.chosen(object.parameters);
-    all.insert(all.end(), own.begin(), own.end());
+    for (const auto& [id, value] : values.chosen(object.parameters)) catalog.parameters.set(id, value);
     catalog.objects[i].presets.clear();
     for (const PresetConfig& preset : object.presets) {
       catalog.objects[i].presets.push_back({preset.name.name, values.chosen(preset.values)});
     }
   }
   problems.throw_if_any();
-  for (const auto& [id, value] : all) {
-    if (!catalog.parameters.set(id, value)) throw std::logic_error("a checked parameter was refused");
-  }
 }
 
 }  // namespace kadans

@@ -195,11 +195,11 @@ void ComputedTorque::aim(Part& part, const ControlInput& input) noexcept {
     part.running = false;
   else if (!part.running)
     take_over(part, input);
-  const MinimumJerk::State& reference =
+  const SetpointState& reference =
       part.running ? part.reference.step(part.fresh ? 0 : input.dt_s) : part.reference.state();
-  s.reference_rad = reference.position;
+  s.reference_rad = reference.value;
   s.reference_velocity_rad_s = reference.velocity;
-  s.error_rad = reference.position - joint.position_rad;
+  s.error_rad = reference.value - joint.position_rad;
   s.acceleration_rad_s2 =
       reference.acceleration + c.kp_per_s2 * s.error_rad + c.kd_per_s * (reference.velocity - joint.velocity_rad_s);
 }
@@ -244,12 +244,11 @@ void ComputedTorque::step(const ControlInput& input, ActuationFrame& actuation) 
 }
 
 bool ComputedTorque::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
-  const MinimumJerk::State& now = parts_[channel].reference.state();
-  return state = {now.position, now.velocity, now.acceleration}, true;
+  return state = parts_[channel].reference.state(), true;
 }
 
 void ComputedTorque::follow(std::uint32_t channel, const SetpointState& state) noexcept {
-  parts_[channel].reference.follow({state.value, state.velocity, state.acceleration});
+  parts_[channel].reference.follow(state);
 }
 
 double ComputedTorque::motion_remaining_s() const noexcept {

@@ -291,13 +291,13 @@ void Gaze::move_target(double dt_s) noexcept {
     Direction& d = directions_[i];
     d.velocity_left_s -= dt_s;
     if (!(d.velocity_left_s > 0)) d.velocity_m_s = 0;
-    const MinimumJerk::State& point = d.point.step(dt_s);
-    const double next_m = point.position + d.went_m + dt_s * d.velocity_m_s;
+    const SetpointState& point = d.point.step(dt_s);
+    const double next_m = point.value + d.went_m + dt_s * d.velocity_m_s;
     if (std::abs(next_m) <= far_m)
       d.went_m += dt_s * d.velocity_m_s;
     else
       d.velocity_m_s = 0;
-    aimed_.target.point_m[i] = point.position + d.went_m;
+    aimed_.target.point_m[i] = point.value + d.went_m;
     aimed_.target.velocity_m_s[i] = point.velocity + d.velocity_m_s;
   }
 }
@@ -420,8 +420,8 @@ void Gaze::go_back() noexcept {
 void Gaze::set_point(std::uint32_t channel, double value, double duration_s) noexcept {
   Direction& d = directions_[channel % 3];
   if (channel < 3) {
-    MinimumJerk::State here = d.point.state();
-    here.position += d.went_m;
+    SetpointState here = d.point.state();
+    here.value += d.went_m;
     if (d.went_m != 0) d.point.follow(here);
     d.went_m = 0;
     d.point.move(value, duration_s);
@@ -439,14 +439,15 @@ void Gaze::cancel_motion(std::uint32_t channel) noexcept {
 
 bool Gaze::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
   if (channel >= 3) return false;
-  const MinimumJerk::State& now = directions_[channel].point.state();
-  return state = {now.position + directions_[channel].went_m, now.velocity, now.acceleration}, true;
+  state = directions_[channel].point.state();
+  state.value += directions_[channel].went_m;
+  return true;
 }
 
 void Gaze::follow(std::uint32_t channel, const SetpointState& state) noexcept {
   if (channel >= 3) return;
   directions_[channel].went_m = 0;
-  directions_[channel].point.follow({state.value, state.velocity, state.acceleration});
+  directions_[channel].point.follow(state);
 }
 
 double Gaze::motion_remaining_s() const noexcept {

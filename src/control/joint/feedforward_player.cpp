@@ -164,16 +164,16 @@ void PlayerLaw::start(const Handover& handover) noexcept {
 
 JointActuation PlayerLaw::step(const JointState& joint, double dt_s) noexcept {
   const Config& c = config_;
-  const MinimumJerk::State& posture = posture_.step(dt_s);
-  const MinimumJerk::State& amplitude = amplitude_.step(dt_s);
+  const SetpointState& posture = posture_.step(dt_s);
+  const SetpointState& amplitude = amplitude_.step(dt_s);
   const double series_rad = c.position_rad.value(*phase_);
-  const double wanted_rad = posture.position + amplitude.position * series_rad;
+  const double wanted_rad = posture.value + amplitude.value * series_rad;
   const double within_rad =
-      std::clamp(wanted_rad, std::min(axis_.lower_rad, posture.position), std::max(axis_.upper_rad, posture.position));
+      std::clamp(wanted_rad, std::min(axis_.lower_rad, posture.value), std::max(axis_.upper_rad, posture.value));
   const double velocity_rad_s =
-      posture.velocity + amplitude.velocity * series_rad + amplitude.position * c.position_rad.rate(*phase_);
-  state_.amplitude = amplitude.position;
-  state_.feedforward_Nm = effort_before_Nm_ + amplitude.position * c.effort_Nm.value(*phase_);
+      posture.velocity + amplitude.velocity * series_rad + amplitude.value * c.position_rad.rate(*phase_);
+  state_.amplitude = amplitude.value;
+  state_.feedforward_Nm = effort_before_Nm_ + amplitude.value * c.effort_Nm.value(*phase_);
   return law_.step(within_rad, within_rad == wanted_rad ? velocity_rad_s : 0, state_.feedforward_Nm, joint);
 }
 

@@ -53,7 +53,7 @@ class CascadeLaw : public PositionReference {
   }
 
  private:
-  double velocity_command(const MinimumJerk::State& reference, double position_rad) noexcept;
+  double velocity_command(const SetpointState& reference, double position_rad) noexcept;
 
   Config config_;
   State state_;
@@ -84,11 +84,11 @@ void CascadeLaw::declare(AxisTables& tables) {
   tables.signal("saturated", "", "Whether the torque was limited.", &s.saturated);
 }
 
-double CascadeLaw::velocity_command(const MinimumJerk::State& reference, double position_rad) noexcept {
+double CascadeLaw::velocity_command(const SetpointState& reference, double position_rad) noexcept {
   State& s = state_;
-  s.reference_rad = reference.position;
+  s.reference_rad = reference.value;
   s.reference_velocity_rad_s = reference.velocity;
-  s.error_rad = reference.position - position_rad;
+  s.error_rad = reference.value - position_rad;
   const double wanted_rad_s = config_.velocity_weight * reference.velocity + config_.kp_per_s * s.error_rad;
   s.velocity_command_rad_s = std::clamp(wanted_rad_s, -config_.velocity_max_rad_s, config_.velocity_max_rad_s);
   s.velocity_limited = s.velocity_command_rad_s != wanted_rad_s;
@@ -108,7 +108,7 @@ void CascadeLaw::start(const Handover& handover) noexcept {
 JointActuation CascadeLaw::step(const JointState& joint, double dt_s) noexcept {
   const Config& c = config_;
   State& s = state_;
-  const MinimumJerk::State& reference = reference_.step(dt_s);
+  const SetpointState& reference = reference_.step(dt_s);
   const double velocity_error_rad_s = velocity_command(reference, joint.position_rad) - joint.velocity_rad_s;
 
   const double unlimited_Nm = c.feedforward_Nm + c.inertia_kg_m2 * reference.acceleration +

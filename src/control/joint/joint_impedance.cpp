@@ -55,8 +55,8 @@ void ImpedanceLaw::start(const Handover& handover) noexcept {
 }
 
 JointActuation ImpedanceLaw::step(const JointState& joint, double dt_s) noexcept {
-  const MinimumJerk::State& reference = reference_.step(dt_s);
-  return law_.step(reference.position, reference.velocity, effort_.value, joint);
+  const SetpointState& reference = reference_.step(dt_s);
+  return law_.step(reference.value, reference.velocity, effort_.value, joint);
 }
 
 bool ImpedanceLaw::setpoint_state(std::uint32_t which, SetpointState& state) const noexcept {

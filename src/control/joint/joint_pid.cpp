@@ -19,16 +19,15 @@ class PidLaw : public PositionReference {
   void declare(AxisTables& tables);
   void start(const Handover& handover) noexcept;
   JointActuation step(const JointState& joint, double dt_s) noexcept {
-    const MinimumJerk::State& reference = reference_.step(dt_s);
-    return {
-        .effort_Nm = pid_.step(reference.position, reference.velocity, joint.position_rad, joint.velocity_rad_s, dt_s),
-        .mode = ActuationMode::effort};
+    const SetpointState& reference = reference_.step(dt_s);
+    return {.effort_Nm = pid_.step(reference.value, reference.velocity, joint.position_rad, joint.velocity_rad_s, dt_s),
+            .mode = ActuationMode::effort};
   }
   void rehearse(const JointState& joint, double dt_s) const noexcept {
     MinimumJerk reference = reference_;
     Pid pid = pid_;
-    const MinimumJerk::State& at = reference.step(dt_s);
-    (void)pid.step(at.position, at.velocity, joint.position_rad, joint.velocity_rad_s, dt_s);
+    const SetpointState& at = reference.step(dt_s);
+    (void)pid.step(at.value, at.velocity, joint.position_rad, joint.velocity_rad_s, dt_s);
   }
   void pass_state(StateBytes& bytes) noexcept {
     PositionReference::pass_state(bytes);

@@ -7,16 +7,15 @@ namespace kadans {
 namespace {
 
 using Limits = MotionProfile::Limits;
-using State = MotionProfile::State;
 using Phase = MotionProfile::Phase;
 
 constexpr int search_steps_max = 60;
 // Of the way that is left; the rest is cruised, so the target is met exactly and the duration to about this share.
 constexpr double fastest_tolerance = 1e-8, slower_tolerance = 1e-6;
 
-State advance(const State& s, double jerk, double t) noexcept {
+SetpointState advance(const SetpointState& s, double jerk, double t) noexcept {
   if (t == 0) return s;  // many phases are empty
-  return {s.position + t * (s.velocity + t * (0.5 * s.acceleration + t * jerk / 6)),
+  return {s.value + t * (s.velocity + t * (0.5 * s.acceleration + t * jerk / 6)),
           s.velocity + t * (s.acceleration + 0.5 * t * jerk), s.acceleration + t * jerk};
 }
 
@@ -39,12 +38,12 @@ Change change_velocity(double velocity, double acceleration, double to, const Li
 
   Change change;
   change.phases = {{{sign * direction * j, std::abs(rise) / j}, {0, hold_s}, {-sign * j, peak / j}}};
-  State s{0, velocity, acceleration};
+  SetpointState s{0, velocity, acceleration};
   for (const Phase& phase : change.phases) {
     s = advance(s, phase.jerk, phase.duration_s);
     change.duration_s += phase.duration_s;
   }
-  change.way = s.position;
+  change.way = s.value;
   return change;
 }
 
@@ -57,7 +56,7 @@ struct Plan {
   double cruise_s(double whole_way) const noexcept { return peak > 0 ? std::max(0.0, (whole_way - way()) / peak) : 0; }
 };
 
-Plan plan_with_peak(const State& from, double peak, const Limits& limits) noexcept {
+Plan plan_with_peak(const SetpointState& from, double peak, const Limits& limits) noexcept {
   return {change_velocity(from.velocity, from.acceleration, peak, limits), change_velocity(peak, 0, 0, limits), peak};
 }
 
@@ -85,7 +84,7 @@ double zero_from_below(Function f, double low, double f_low, double high, double
   return low;
 }
 
-Plan fastest_plan(const State& from, double way, double way_to_stop, const Limits& limits) noexcept {
+Plan fastest_plan(const SetpointState& from, double way, double way_to_stop, const Limits& limits) noexcept {
   const Plan fast = plan_with_peak(from, limits.velocity, limits);
   if (fast.way() <= way) return fast;
   const auto too_far = [&](double peak) { return plan_with_peak(from, peak, limits).way() - way; };
@@ -96,7 +95,7 @@ Plan fastest_plan(const State& from, double way, double way_to_stop, const Limit
 
 // A lower peak, and a cruise, that make the motion last longer than the fastest one. The function is the way that is
 // missing when what is left of the duration is cruised: 0 where both fit.
-Plan slower_plan(const State& from, double way, double way_to_stop, double duration_s, const Plan& fastest,
+Plan slower_plan(const SetpointState& from, double way, double way_to_stop, double duration_s, const Plan& fastest,
                  const Limits& limits) noexcept {
   const auto surplus = [&](double peak) {
     const Plan plan = plan_with_peak(from, peak, limits);
@@ -116,8 +115,8 @@ void MotionProfile::reset(double position) noexcept {
   remaining_s_ = 0;
 }
 
-void MotionProfile::set_state(const State& state) noexcept {
-  reset(state.position);
+void MotionProfile::set_state(const SetpointState& state) noexcept {
+  reset(state.value);
   state_ = state;
 }
 
@@ -134,15 +133,15 @@ void MotionProfile::stop(const Limits& limits) noexcept {
   const Change change = change_velocity(state_.velocity, state_.acceleration, 0, limits);
   phases_ = {};
   std::copy(change.phases.begin(), change.phases.end(), phases_.begin());
-  begin_plan(state_.position + change.way);
+  begin_plan(state_.value + change.way);
 }
 
 bool MotionProfile::move(double target, const Limits& limits, double duration_s) noexcept {
   const double way_to_stop = change_velocity(state_.velocity, state_.acceleration, 0, limits).way;
-  const double rest = target - state_.position - way_to_stop;
+  const double rest = target - state_.value - way_to_stop;
   const double sign = rest < 0 ? -1 : 1;
-  const State from{0, sign * state_.velocity, sign * state_.acceleration};
-  const double way = sign * (target - state_.position), stop_way = sign * way_to_stop;
+  const SetpointState from{0, sign * state_.velocity, sign * state_.acceleration};
+  const double way = sign * (target - state_.value), stop_way = sign * way_to_stop;
 
   Plan plan = rest == 0 ? plan_with_peak(from, 0, limits) : fastest_plan(from, way, stop_way, limits);
   const double fastest_s = plan.duration_s() + plan.cruise_s(way);
@@ -158,7 +157,7 @@ bool MotionProfile::move(double target, const Limits& limits, double duration_s)
   return in_time;
 }
 
-const MotionProfile::State& MotionProfile::step(double dt_s) noexcept {
+const SetpointState& MotionProfile::step(double dt_s) noexcept {
   if (phase_ == phase_count) return state_;
   time_s_ += dt_s;
   remaining_s_ = std::max(0.0, remaining_s_ - dt_s);

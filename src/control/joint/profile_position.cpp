@@ -38,13 +38,8 @@ class ProfileLaw {
   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
   void cancel(std::uint32_t which) noexcept;
   double remaining_s() const noexcept { return profile_.remaining_s(); }
-  bool setpoint_state(std::uint32_t, SetpointState& state) const noexcept {
-    const MotionProfile::State& now = profile_.state();
-    return state = {now.position, now.velocity, now.acceleration}, true;
-  }
-  void follow(std::uint32_t, const SetpointState& state) noexcept {
-    profile_.set_state({state.value, state.velocity, state.acceleration});
-  }
+  bool setpoint_state(std::uint32_t, SetpointState& state) const noexcept { return state = profile_.state(), true; }
+  void follow(std::uint32_t, const SetpointState& state) noexcept { profile_.set_state(state); }
   void pass_state(StateBytes& bytes) noexcept { bytes(state_, profile_, fading_, lowest_rad_, highest_rad_); }
 
  private:
@@ -106,9 +101,9 @@ void ProfileLaw::start(const Handover& handover) noexcept {
 
 JointActuation ProfileLaw::step(const JointState&, double dt_s) noexcept {
   State& s = state_;
-  const MotionProfile::State& reference = profile_.step(dt_s);
+  const SetpointState& reference = profile_.step(dt_s);
   s.target_rad = profile_.target();
-  s.reference_rad = std::clamp(reference.position, lowest_rad_, highest_rad_);
+  s.reference_rad = std::clamp(reference.value, lowest_rad_, highest_rad_);
   s.reference_velocity_rad_s = reference.velocity;
   s.reference_acceleration_rad_s2 = reference.acceleration;
   s.effort_Nm = fading_.step(dt_s);

@@ -96,7 +96,7 @@ MotionProfile SetpointMotions::profile(const SetpointState& from, double target,
                                        double acceleration_max, double duration_s) noexcept {
   const double rounding_s = duration_s > 0 ? std::min(corner_s, 0.1 * duration_s) : corner_s;
   MotionProfile profile;
-  profile.set_state({from.value, from.velocity, from.acceleration});
+  profile.set_state(from);
   (void)profile.move(target, {velocity_max, acceleration_max, acceleration_max / rounding_s}, duration_s);
   return profile;
 }
@@ -111,7 +111,7 @@ void SetpointMotions::lead(SetpointId id) noexcept {
   const SetpointState from = now(id);
   Motion& motion = activate(id);
   motion.kind = Motion::Kind::minimum_jerk;
-  motion.minimum_jerk.follow({from.value, from.velocity, from.acceleration});
+  motion.minimum_jerk.follow(from);
   object(id).follow(setpoints_[id].channel, from);  // ends the motion by which it comes to rest after its start
   motion.led = true;
   motion.told = from;
@@ -176,14 +176,8 @@ bool SetpointMotions::still_led(SetpointId id) const noexcept {
 }
 
 SetpointState SetpointMotions::advance(Motion& motion, double dt_s) noexcept {
-  if (motion.kind == Motion::Kind::minimum_jerk) {
-    const MinimumJerk::State& state = motion.minimum_jerk.step(dt_s);
-    return {state.position, state.velocity, state.acceleration};
-  }
-  if (motion.kind == Motion::Kind::trapezoid) {
-    const MotionProfile::State& state = motion.trapezoid.step(dt_s);
-    return {state.position, state.velocity, state.acceleration};
-  }
+  if (motion.kind == Motion::Kind::minimum_jerk) return motion.minimum_jerk.step(dt_s);
+  if (motion.kind == Motion::Kind::trapezoid) return motion.trapezoid.step(dt_s);
   if (!motion.planned) motion.spline.plan();
   motion.planned = true;
   motion.time_s += dt_s;

@@ -7,6 +7,7 @@
 #include <exception>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -76,23 +77,15 @@ void BehaviorSide::beside_tick(std::int64_t time_ns) {
 }
 
 void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns) {
+  Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns, .asked_tick = p_.engine.ticks()};
+  Answer& answer = pending.order->answer;
   try {
-    if (carry_out_now(order->order, order->answer)) {
-      order->answer.done = true;
-      return from.answer(std::move(order));
-    }
-    Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns, .asked_tick = p_.engine.ticks()};
-    try {
-      begin(pending);
-    } catch (...) {
-      order = std::move(pending.order);
-      throw;
-    }
-    pending_.push_back(std::move(pending));
+    if (!begin(pending)) return pending_.push_back(std::move(pending));
+    answer.done = true;
   } catch (const std::exception& error) {
-    order->answer.text = error.what();
-    from.answer(std::move(order));
+    answer.text = error.what();
   }
+  from.answer(std::move(pending.order));
 }
 
 // What played when the emergency stop came does not go on by itself when it is lifted.
@@ -103,15 +96,42 @@ void BehaviorSide::heed_stop() {
   if (stopped_ && !stopped_before) orders().order({.kind = PlayOrder::Kind::stop, .behavior = {}});
 }
 
-// False: it takes its time. Throws why not.
-bool BehaviorSide::carry_out_now(const Order& order, Answer& answer) {
+// True: it is carried out. False: it takes its time. Throws why not.
+bool BehaviorSide::begin(Pending& pending) {
+  const Order& order = pending.order->order;
+  Answer& answer = pending.order->answer;
   switch (order.kind) {
     case Order::Kind::report:
-      report(answer);
-      return true;
+      return report(answer), true;
     case Order::Kind::describe:
-      answer.text = behaviors_description(p_.host);
-      return true;
+      return answer.text = behaviors_description(p_.host), true;
+    case Order::Kind::play:
+      return give(pending, PlayOrder::Kind::play), false;
+    case Order::Kind::replace:
+      return give(pending, PlayOrder::Kind::replace), false;
+    case Order::Kind::pause:
+      return give(pending, PlayOrder::Kind::pause), false;
+    case Order::Kind::resume:
+      return give(pending, PlayOrder::Kind::resume), false;
+    case Order::Kind::stop:
+      return give(pending, PlayOrder::Kind::stop), false;
+    case Order::Kind::reload:
+      return give(pending, PlayOrder::Kind::reload), false;
+    case Order::Kind::switch_set: {
+      const std::uint32_t set = p_.instance.set_named(order.text);
+      return send(pending, std::array{Command{.kind = CommandKind::switch_set, .index = set}}), false;
+    }
+    case Order::Kind::set_point:
+      return send(pending, set_points_of(order)), false;
+    case Order::Kind::set_parameter:
+      return set_parameter(pending, order.text, order.value), false;
+    case Order::Kind::undo: {
+      const ParameterChange* last = tuning_.newest();
+      if (last == nullptr) throw InputError({.message = "there is nothing to undo"});
+      const auto is_undo = [](const Pending& other) { return other.order->order.kind == Order::Kind::undo; };
+      if (std::ranges::any_of(pending_, is_undo)) throw InputError({.message = "somebody else's undo is under way"});
+      return set_parameter(pending, last->name, last->before), false;
+    }
     case Order::Kind::changes:
       answer.changes = tuning_.unsaved();
       answer.set = tuning_.set();
@@ -121,6 +141,20 @@ bool BehaviorSide::carry_out_now(const Order& order, Answer& answer) {
       for (const ParameterChange& change : order.changes)
         say(time_ns_, order.who, "saved " + change.name + " = " + number_text(change.now));
       return true;
+    case Order::Kind::clear_faults:
+      pending.lifts = lifts_;
+      return p_.instance.clear_faults(), false;
+    case Order::Kind::enable_drives:
+    case Order::Kind::disable_drives:
+    case Order::Kind::reset_drives:
+    case Order::Kind::home_drives:
+    case Order::Kind::brake_drives:
+    case Order::Kind::release_drives:
+      return order_drives(pending), false;
+    case Order::Kind::line:
+      p_.instance.want_console_row(true);
+      (void)console_of(order);
+      return false;  // evaluated when there is a row of signals
     case Order::Kind::complete: {
       Console::Completion found = console_of(order).complete(order.text);
       answer.begin = found.begin;
@@ -131,39 +165,12 @@ bool BehaviorSide::carry_out_now(const Order& order, Answer& answer) {
       consoles_.erase(order.client);
       if (consoles_.empty()) p_.instance.want_console_row(false);
       return true;
-    default:
-      return false;
+    case Order::Kind::record_start:
+    case Order::Kind::record_stop:
+    case Order::Kind::record_dump:
+      break;
   }
-}
-
-// What is not answered at once.
-void BehaviorSide::begin(Pending& pending) {
-  const Order& order = pending.order->order;
-  switch (order.kind) {
-    case Order::Kind::switch_set:
-      return send(pending,
-                  std::array{Command{.kind = CommandKind::switch_set, .index = p_.instance.set_named(order.text)}});
-    case Order::Kind::clear_faults:
-      pending.lifts = lifts_;
-      return p_.instance.clear_faults();
-    case Order::Kind::set_point:
-      return send(pending, set_points_of(order));
-    case Order::Kind::set_parameter:
-      return begin_change(pending, change_of(order));
-    case Order::Kind::undo: {
-      const ParameterChange* last = tuning_.newest();
-      if (last == nullptr) throw InputError({.message = "there is nothing to undo"});
-      const auto is_undo = [](const Pending& other) { return other.order->order.kind == Order::Kind::undo; };
-      if (std::ranges::any_of(pending_, is_undo)) throw InputError({.message = "somebody else's undo is under way"});
-      return begin_change(pending, {last->name, last->now, last->before, last->chunk});
-    }
-    case Order::Kind::line:
-      p_.instance.want_console_row(true);
-      (void)console_of(order);
-      return;  // evaluated when there is a row of signals
-    default:
-      return drive_order_of(order.kind) == DriveOrder::none ? give(order) : order_drives(pending);
-  }
+  throw std::logic_error("an order about records came to the behaviors");
 }
 
 bool BehaviorSide::waits_for_tick(const Pending& pending) const noexcept {
@@ -209,7 +216,7 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
     if (order.kind == Order::Kind::set_parameter || order.kind == Order::Kind::undo) {
       finish(pending);
     } else {
-      answer.text = told(order, answer.done);
+      answer.text = told(pending, answer.done);
     }
     return true;
   }
@@ -255,8 +262,11 @@ void BehaviorSide::finish(Pending& pending) {
     case Order::Kind::undo:
       tuning_.drop();
       break;
+    case Order::Kind::set_parameter:
+      tuning_.note(change);
+      break;
     default:
-      tuning_.note(change, pending.lasting);
+      return;
   }
   answer.changes = {change};
   say(time_ns_, order.who,
@@ -272,24 +282,6 @@ void BehaviorSide::say(std::int64_t time_ns, const std::string& who, const std::
 
 namespace {
 
-// What the supervisor's list calls it.
-PlayOrder::Kind kind_of(Order::Kind kind) {
-  switch (kind) {
-    case Order::Kind::play:
-      return PlayOrder::Kind::play;
-    case Order::Kind::replace:
-      return PlayOrder::Kind::replace;
-    case Order::Kind::pause:
-      return PlayOrder::Kind::pause;
-    case Order::Kind::resume:
-      return PlayOrder::Kind::resume;
-    case Order::Kind::reload:
-      return PlayOrder::Kind::reload;
-    default:
-      return PlayOrder::Kind::stop;
-  }
-}
-
 // The parameters of behaviors are where their process is.
 void check_is_no_behavior(const std::vector<std::string>& behaviors, const std::string& parameter) {
   const std::string name = parameter.substr(0, parameter.find('.'));
@@ -297,12 +289,6 @@ void check_is_no_behavior(const std::vector<std::string>& behaviors, const std::
   throw InputError({.message = "parameters of behaviors cannot be set while they play in a process of their own: "
                                "change its file, then `kadans ctl reload " +
                                name + "`; or run with --behaviors thread"});
-}
-
-void check_range(const std::string& name, const std::string& unit, double value, double min, double max) {
-  if (value >= min && value <= max) return;
-  throw InputError({.message = name + " = " + number_text(value) + " is outside its range " + number_text(min) + ".." +
-                               number_text(max) + (unit.empty() ? "" : " " + unit)});
 }
 
 constexpr ScriptLimits console_limits{.tick_instructions = 200'000,
@@ -347,8 +333,9 @@ void BehaviorSide::report_process(Answer& answer) const {
 }
 
 // To the behaviors; the next tick carries it out.
-void BehaviorSide::give(const Order& order) {
-  const PlayOrder::Kind kind = kind_of(order.kind);
+void BehaviorSide::give(Pending& pending, PlayOrder::Kind kind) {
+  const Order& order = pending.order->order;
+  pending.given = kind;
   if (kind == PlayOrder::Kind::reload && order.text.empty()) {
     p_.echo.listen();
     for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
@@ -368,8 +355,9 @@ void BehaviorSide::give(const Order& order) {
 }
 
 // What was said in the tick that carried it out: by the supervisor, or by the behavior that was reloaded.
-std::string BehaviorSide::told(const Order& order, bool& done) {
-  const bool reload = order.kind == Order::Kind::reload;
+std::string BehaviorSide::told(const Pending& pending, bool& done) {
+  const Order& order = pending.order->order;
+  const bool reload = pending.given == PlayOrder::Kind::reload;
   std::string text;
   for (const LineEcho::Heard& line : lines_) {
     const bool supervisor = line.behavior == "supervisor";
@@ -379,7 +367,7 @@ std::string BehaviorSide::told(const Order& order, bool& done) {
   }
   if (reload && text.empty()) return "no new version: the files are as they were loaded";
   if (!order.who.empty() && !reload)
-    say(time_ns_, order.who, "asked for " + play_order_names[static_cast<std::size_t>(kind_of(order.kind))]);
+    say(time_ns_, order.who, "asked for " + play_order_names[static_cast<std::size_t>(pending.given)]);
   return text;
 }
 
@@ -432,54 +420,43 @@ std::vector<Command> BehaviorSide::set_points_of(const Order& order) const {
     if (!value) throw InputError({.message = "'" + entry + "' must be NAME=NUMBER, such as gaze.x_m=1.2"});
     const auto id = table.find(name);
     if (!id) throw InputError({.message = unknown_name("set-point", name, table.names())});
-    check_range(name, table[*id].unit, *value, table[*id].min, table[*id].max);
+    const Setpoint& info = table[*id];
+    if (!table.accepts(*id, *value))
+      throw InputError({.message = outside_range(name, *value, info.min, info.max, info.unit)});
     commands.push_back({.kind = CommandKind::set_point, .index = *id, .value = *value, .duration_s = order.value});
   }
   if (commands.empty()) throw InputError({.message = "there is no set-point in it"});
   return commands;
 }
 
-// The name as it is known, and the value now.
-ParameterChange BehaviorSide::change_of(const Order& order) const {
-  if (!std::isfinite(order.value)) throw InputError({.message = "a number is needed"});
+// Of the control layer: one command. Of a behavior: at once.
+void BehaviorSide::set_parameter(Pending& pending, const std::string& name, double value) {
+  if (!std::isfinite(value)) throw InputError({.message = "a number is needed"});
   const ParameterTable& table = p_.instance.catalog().parameters;
-  if (const auto id = table.find(order.text)) {
+  if (const auto id = table.find(name)) {
     const Parameter& info = table.info(*id);
-    check_range(info.name, info.unit, order.value, info.min, info.max);
-    double before = table.newest(*id);
+    if (!table.accepts(*id, value))
+      throw InputError({.message = outside_range(name, value, info.min, info.max, info.unit)});
+    pending.change = {name, table.newest(*id), value, {}};
     for (const Pending& other : pending_) {
-      if (other.change.name == order.text) before = other.change.now;
+      if (other.change.name == name) pending.change.before = other.change.now;
     }
-    return {order.text, before, order.value, {}};
+    return send(pending, std::array{Command{.kind = CommandKind::set_parameter, .index = *id, .value = value}});
   }
   std::vector<std::string> names = table.names();
   for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
-    const Behavior& behavior = p_.host->behavior(i);
+    Behavior& behavior = p_.host->behavior(i);
     for (const ScriptParameter& own : behavior.parameters()) {
       names.push_back(behavior.name() + "." + own.name);
-      if (names.back() != order.text) continue;
-      check_range(order.text, own.unit, order.value, own.min, own.max);
-      return {order.text, own.value, order.value, own.chunk};
+      if (names.back() != name) continue;
+      if (!behavior.set_parameter(own.name, value))
+        throw InputError({.message = outside_range(name, value, own.min, own.max, own.unit)});
+      pending.change = {name, own.value, value, own.chunk};
+      return;
     }
   }
-  if (p_.process != nullptr) check_is_no_behavior(p_.process->names(), order.text);
-  throw InputError({.message = unknown_name("parameter", order.text, names)});
-}
-
-void BehaviorSide::begin_change(Pending& pending, const ParameterChange& change) {
-  pending.change = change;
-  if (const auto id = p_.instance.catalog().parameters.find(change.name)) {
-    pending.lasting = true;
-    return send(pending, std::array{Command{.kind = CommandKind::set_parameter, .index = *id, .value = change.now}});
-  }
-  for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
-    Behavior& behavior = p_.host->behavior(i);
-    const std::string own = behavior.name() + ".";
-    if (!change.name.starts_with(own) || !behavior.set_parameter(change.name.substr(own.size()), change.now)) continue;
-    pending.lasting = true;
-    return;
-  }
-  throw InputError({.message = change.name + " is not there any more"});
+  if (p_.process != nullptr) check_is_no_behavior(p_.process->names(), name);
+  throw InputError({.message = unknown_name("parameter", name, names)});
 }
 
 // Consoles of clients have a smaller budget than that of a simulation, because the robot waits for them.

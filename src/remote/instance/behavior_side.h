@@ -79,15 +79,14 @@ class BehaviorSide final : public BesideTick {
     std::uint64_t asked_tick;    // tick of the behaviors; a simulation does not run them in each of its own ticks
     std::uint32_t sequence = 0;  // of its transaction; 0: the order waits for the end of a tick
     ParameterChange change{};    // for set_parameter and undo
-    bool lasting = false;
-    std::uint16_t lifts = 0;  // for clear_faults: SafetyStatus::lifts before it
-    JointMask joints = 0;     // for orders to drives
-    bool logged = false;      // likewise: the log has it
+    PlayOrder::Kind given{};     // for orders to the list of behaviors: what it was told
+    std::uint16_t lifts = 0;     // for clear_faults: SafetyStatus::lifts before it
+    JointMask joints = 0;        // for orders to drives
+    bool logged = false;         // likewise: the log has it
   };
 
   void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
-  bool carry_out_now(const Order& order, Answer& answer);
-  void begin(Pending& pending);
+  bool begin(Pending& pending);
   void settle(std::int64_t time_ns);
   void heed_stop();
   bool waits_for_tick(const Pending& pending) const noexcept;
@@ -98,14 +97,13 @@ class BehaviorSide final : public BesideTick {
   OrderTaker& orders() const noexcept { return p_.host != nullptr ? static_cast<OrderTaker&>(*p_.host) : *p_.process; }
   void report_process(Answer& answer) const;
   void report(Answer& answer) const;
-  void give(const Order& order);
-  void begin_change(Pending& pending, const ParameterChange& change);
-  ParameterChange change_of(const Order& order) const;
+  void give(Pending& pending, PlayOrder::Kind kind);
+  void set_parameter(Pending& pending, const std::string& name, double value);
   void send(Pending& pending, std::span<const Command> commands);
   std::vector<Command> set_points_of(const Order& order) const;
   JointMask joints_of(const Order& order) const;
   void order_drives(Pending& pending);
-  std::string told(const Order& order, bool& done);  // by lines_
+  std::string told(const Pending& pending, bool& done);  // by lines_
 
   void evaluate(const Order& order, Answer& answer);
   Console& console_of(const Order& order);

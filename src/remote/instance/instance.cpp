@@ -10,8 +10,7 @@
 namespace kadans {
 
 std::uint64_t InstancePort::send(Order order) {
-  const bool to_records = order.kind == Order::Kind::record_start || order.kind == Order::Kind::record_stop ||
-                          order.kind == Order::Kind::record_dump;
+  const bool to_records = is_about_records(order.kind);
   auto asked = std::make_unique<OrderCase>();
   asked->order = std::move(order);
   asked->answer.number = sent_ + 1;

@@ -10,22 +10,16 @@
 
 namespace kadans {
 
-void ParameterHistory::note(const ParameterChange& change, bool lasting) {
-  if (steps_.size() == steps_max) {
-    steps_.erase(steps_.begin());
-    lasting_.erase(lasting_.begin());
-  }
+void ParameterHistory::note(const ParameterChange& change) {
+  if (steps_.size() == steps_max) steps_.erase(steps_.begin());
   steps_.push_back(change);
-  lasting_.push_back(lasting);
-  if (lasting) move_on(change);
+  move_on(change);
 }
 
 void ParameterHistory::drop() {
   const ParameterChange step = steps_.back();
-  const bool lasting = lasting_.back();
   steps_.pop_back();
-  lasting_.pop_back();
-  if (lasting) move_on({step.name, step.now, step.before, step.chunk});
+  move_on({step.name, step.now, step.before, step.chunk});
 }
 
 void ParameterHistory::move_on(const ParameterChange& change) {

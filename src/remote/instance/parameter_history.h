@@ -20,8 +20,8 @@ class ParameterHistory {
  public:
   static constexpr std::size_t steps_max = 1000;
 
-  // Notes that a parameter was set. `lasting`: the parameter has a place in the configuration.
-  void note(const ParameterChange& change, bool lasting);
+  // Notes that a parameter was set.
+  void note(const ParameterChange& change);
   // The newest step; nullptr when there is none. It stays until drop().
   const ParameterChange* newest() const noexcept { return steps_.empty() ? nullptr : &steps_.back(); }
   // Removes the newest step after it was undone.
@@ -37,7 +37,6 @@ class ParameterHistory {
   void move_on(const ParameterChange& change);
 
   std::vector<ParameterChange> steps_;
-  std::vector<bool> lasting_;
   std::map<std::string, ParameterChange> unsaved_, set_;
 };
 

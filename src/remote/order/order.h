@@ -65,6 +65,12 @@ struct Order {
   std::vector<ParameterChange> changes{};
 };
 
+// The record thread carries these out, the behavior thread all others.
+constexpr bool is_about_records(Order::Kind kind) noexcept {
+  using enum Order::Kind;
+  return kind == record_start || kind == record_stop || kind == record_dump;
+}
+
 // What an order asks of drives; none: it is about something else.
 constexpr DriveOrder drive_order_of(Order::Kind kind) noexcept {
   using enum Order::Kind;
