@@ -6,9 +6,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -41,6 +43,13 @@ inline std::string outside_range(const std::string& name, double value, double m
 
 // A hash as 16 digits.
 inline std::string hash_text(std::uint64_t hash) { return printed("%016llx", static_cast<unsigned long long>(hash)); }
+
+// Two digits a byte.
+inline std::string hexadecimal(std::span<const std::byte> bytes) {
+  std::string text;
+  for (const std::byte byte : bytes) text += printed("%02x", std::to_integer<unsigned>(byte));
+  return text;
+}
 
 // The finite number that the whole text is, integers to a base; nothing when it is none.
 template <typename Number, typename... Base>

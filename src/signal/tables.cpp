@@ -25,10 +25,11 @@ ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_
   return id;
 }
 
-void ParameterTable::set(ParameterId id, double value) noexcept {
-  assert(accepts(id, value));
+bool ParameterTable::set(ParameterId id, double value) noexcept {
+  if (!accepts(id, value)) return false;
   *entries_[id].value = value;
   entries_[id].newest.set(value);
+  return true;
 }
 
 std::optional<ParameterId> ParameterTable::find(std::string_view name) const {

@@ -123,11 +123,10 @@ void JointBench::add_objects(const std::vector<BenchObject>& objects) {
 void JointBench::set(std::string_view parameter, double value) {
   const auto id = static_cast<ParameterId>(find_by_ending("parameter", parameter, catalog_.parameters.names()));
   const Parameter& info = catalog_.parameters.info(id);
-  if (!catalog_.parameters.accepts(id, value)) {
+  if (!catalog_.parameters.set(id, value)) {
     throw std::invalid_argument("parameter " + info.name + " cannot be " + std::to_string(value) + ", its range is " +
                                 std::to_string(info.min) + ".." + std::to_string(info.max) + " " + info.unit);
   }
-  catalog_.parameters.set(id, value);
   const std::uint32_t owner = catalog_.parameters.owner(id);
   if (owner < sets_->size()) sets_->object(owner).parameters_changed();
 }

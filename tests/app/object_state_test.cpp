@@ -60,14 +60,14 @@ struct Played {
     for (ParameterId id = 0; id < catalog.parameters.size(); ++id) {
       const Parameter& parameter = catalog.parameters.info(id);
       const bool off = parameter.initial == 0 && parameter.max > 0 && parameter.name != "it.l_knee.ki_Nm_per_rad";
-      if (off) catalog.parameters.set(id, parameter.name == "it.enabled" ? 1 : std::min(parameter.max, 5.0));
+      if (off) REQUIRE(catalog.parameters.set(id, parameter.name == "it.enabled" ? 1 : std::min(parameter.max, 5.0)));
     }
-    if (const auto id = catalog.parameters.find("it.force_max_N")) catalog.parameters.set(*id, 0.3);
+    if (const auto id = catalog.parameters.find("it.force_max_N")) REQUIRE(catalog.parameters.set(*id, 0.3));
     object->parameters_changed();
   }
   // In the run, by somebody.
   void tune() {
-    if (const auto id = catalog.parameters.find("it.gain")) catalog.parameters.set(*id, 0.5);
+    if (const auto id = catalog.parameters.find("it.gain")) REQUIRE(catalog.parameters.set(*id, 0.5));
     object->parameters_changed();
   }
 

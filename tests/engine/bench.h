@@ -66,9 +66,9 @@ inline std::vector<std::unique_ptr<ControlObject>> posture(Catalog& catalog, con
   catalog.sets = {{"posture", {0}}, {"spare", {1}}};
   for (const std::string& parameter : catalog.parameters.names()) {
     const ParameterId id = catalog.parameters.find(parameter).value();
-    if (parameter.ends_with("kp_Nm_per_rad")) catalog.parameters.set(id, 40);
-    if (parameter.ends_with("kd_Nms_per_rad")) catalog.parameters.set(id, 4);
-    if (parameter.ends_with("damping_ratio")) catalog.parameters.set(id, 0);  // of a spring the plant has not
+    if (parameter.ends_with("kp_Nm_per_rad")) (void)catalog.parameters.set(id, 40);
+    if (parameter.ends_with("kd_Nms_per_rad")) (void)catalog.parameters.set(id, 4);
+    if (parameter.ends_with("damping_ratio")) (void)catalog.parameters.set(id, 0);  // of a spring the plant has not
   }
   return objects;
 }

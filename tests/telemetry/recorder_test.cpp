@@ -288,7 +288,7 @@ TEST_CASE("Recorder tells all parameters at the start, then each change") {
   Recorder recorder(table, {.parameters = &parameters});
   REQUIRE(recorder.open(file.path()));
   for (std::uint64_t tick = 3; tick < 100; ++tick) {
-    if (tick == 41) parameters.set(kp, 55);
+    if (tick == 41) REQUIRE(parameters.set(kp, 55));
     recorder.record(tick, static_cast<std::int64_t>(tick) * ms, std::array{0.0, 0.0, 0.0});
     REQUIRE(recorder.drain());
   }

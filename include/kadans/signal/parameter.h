@@ -40,8 +40,9 @@ class ParameterTable {
     return id < entries_.size() && std::isfinite(value) && value >= entries_[id].info.min &&
            value <= entries_[id].info.max;
   }
-  // Control thread. Only what accepts() takes.
-  void set(ParameterId id, double value) noexcept;
+  // Control thread. False, and nothing changes, on an unknown id or a value that is not finite or outside
+  // [min, max].
+  [[nodiscard]] bool set(ParameterId id, double value) noexcept;
   // Control thread, or one that runs in lockstep with it; id < size().
   double get(ParameterId id) const noexcept { return *entries_[id].value; }
   // Any thread: what was set last; id < size(). Each number is whole, but not all are of the same tick.

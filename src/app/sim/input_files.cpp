@@ -21,21 +21,12 @@
 #include "kadans/signal/machine_name.h"
 #include "signal/byte_order.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 #include "version.h"
 
 namespace kadans {
 
 namespace {
-
-std::string hexadecimal(std::span<const unsigned char> bytes) {
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    char two[3];
-    std::snprintf(two, sizeof two, "%02x", byte);
-    text += two;
-  }
-  return text;
-}
 
 // The build id in a segment of ELF notes; "" when there is none. A note is its head, its name and its content, each
 // padded to four bytes.
@@ -47,7 +38,7 @@ std::string build_id(const unsigned char* notes, std::size_t size) {
     const std::size_t name = at + sizeof head, content = name + padded(head.n_namesz);
     if (content + head.n_descsz > size) break;
     if (head.n_type == NT_GNU_BUILD_ID && head.n_namesz == 4 && std::memcmp(notes + name, "GNU", 4) == 0)
-      return hexadecimal(std::span(notes + content, head.n_descsz));
+      return hexadecimal(std::as_bytes(std::span(notes + content, head.n_descsz)));
     at = content + padded(head.n_descsz);
   }
   return {};

@@ -23,11 +23,7 @@ constexpr const char* height_signal = "plant.base.height_m";
 std::vector<ScenarioCheck> reached_checks(const ScenarioConfig& scenario, double duration_s) {
   std::vector<ScenarioCheck> checks = scenario.checks;
   if (duration_s >= scenario.duration_s) return checks;
-  std::erase_if(checks, [&](const ScenarioCheck& c) {
-    const bool about_later = c.kind == CheckKind::at_end || c.kind == CheckKind::settles ||
-                             (c.kind == CheckKind::eventually && c.until_s > duration_s);
-    return c.from_s >= duration_s || about_later;
-  });
+  std::erase_if(checks, [&](const ScenarioCheck& check) { return !judges_run_until(check, duration_s); });
   return checks;
 }
 

@@ -303,7 +303,7 @@ void apply_parameters(const RobotConfig& config, Catalog& catalog) {
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const ObjectConfig& object = config.objects[i];
     ParameterValues values(object, catalog.objects[i], catalog.parameters, problems);
-    for (const auto& [id, value] : values.chosen(object.parameters)) catalog.parameters.set(id, value);
+    for (const auto& [id, value] : values.chosen(object.parameters)) (void)catalog.parameters.set(id, value);
     catalog.objects[i].presets.clear();
     for (const PresetConfig& preset : object.presets) {
       catalog.objects[i].presets.push_back({preset.name.name, values.chosen(preset.values)});

@@ -42,6 +42,9 @@ struct ScenarioCheck {
 void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std::vector<ScenarioCheck>& others,
                   Problems& problems);
 
+// Whether the check can judge a run that ends at duration_s, before the scenario's end.
+bool judges_run_until(const ScenarioCheck& check, double duration_s) noexcept;
+
 // A metric: a number that judges a run, beyond passed and failed, such as the greatest value of a signal or the time at
 // which a condition became true.
 //

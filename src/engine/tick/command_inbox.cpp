@@ -145,8 +145,8 @@ void CommandInbox::execute(const Command& command, const ControlInput& input, Sa
     case CommandKind::transaction:
       break;
     case CommandKind::set_parameter:
-      catalog_.parameters.set(command.index, command.value);
-      retuned_[catalog_.parameters.owner(command.index)] = true;
+      if (catalog_.parameters.set(command.index, command.value))
+        retuned_[catalog_.parameters.owner(command.index)] = true;
       break;
     case CommandKind::set_point:
       motions_.move(command.index, command.value, command.duration_s);

@@ -3,22 +3,9 @@
 #include <thread>
 
 #include "kadans/control/state_bytes.h"
+#include "signal/number_text.h"
 
 namespace kadans {
-namespace {
-
-std::string hexadecimal(const std::vector<std::byte>& bytes) {
-  constexpr const char* digits = "0123456789abcdef";
-  std::string text;
-  for (const std::byte byte : bytes) {
-    text += digits[std::to_integer<unsigned>(byte >> 4U)];
-    text += digits[std::to_integer<unsigned>(byte & std::byte{15})];
-  }
-  return text;
-}
-
-}  // namespace
-
 FaultState::FaultState(ControlSets& sets, const Catalog& catalog)
     : sets_(sets), catalog_(catalog), bytes_(sets.size()) {
   for (std::uint32_t i = 0; i < bytes_.size(); ++i) {

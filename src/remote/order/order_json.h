@@ -27,8 +27,8 @@ Json status_json(const Instance& instance, const InstanceStatus& status);
 // {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
 Json drives_json(const PowerStatus& power, const RobotModel& model);
 
-// Lists all items of a kind: "behaviors", "sets", "objects", "parameters", "signals". `report` is used for behaviors
-// and parameters, `status` for sets. Throws InputError on another kind.
+// Lists all items of a kind: "behaviors", "sets", "objects", "parameters", "signals", "joints". `report` is used for
+// behaviors and parameters, `status` for sets. Throws InputError on another kind.
 Json list_json(const std::string& what, const Instance& instance, const InstanceStatus& status, const Answer& report);
 
 // A request of a client, checked against the table of orders.
@@ -50,8 +50,8 @@ struct OrderRequest {
 OrderRequest read_request(std::string_view line, Role role);
 
 // {"verb": "set", "text": "l_knee.kp", "value": 50}: `text` is the order's text argument and `value` its number,
-// whatever their names in the table are. Other fields are left to the caller. `paced`: the run's time can be held.
-// Throws as read_request.
+// whatever their names in the table are. "id" is the caller's; any other field is refused. `paced`: the run's time can
+// be held. Throws as read_request.
 OrderRequest read_brief_request(const Json& json, bool paced);
 
 // Finishes a `save` after the behavior thread has answered with the changes: writes the file and informs that thread.

@@ -1,6 +1,7 @@
 #include "live_server.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cctype>
 #include <chrono>
@@ -20,6 +21,7 @@
 #include "kadans/signal/input_error.h"
 #include "live_connection.h"
 #include "realtime/signals_blocked.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 
@@ -28,15 +30,10 @@ using Tcp = asio::ip::tcp;
 using Error = boost::system::error_code;
 
 std::string new_token() {
-  unsigned char bytes[16];
-  if (getrandom(bytes, sizeof bytes, 0) != static_cast<ssize_t>(sizeof bytes))
+  std::array<std::byte, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
     throw std::system_error(errno, std::generic_category(), "no random numbers for a token");
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    constexpr const char* digits = "0123456789abcdef";
-    text += {digits[byte >> 4U], digits[byte & 15U]};
-  }
-  return text;
+  return hexadecimal(bytes);
 }
 
 struct LiveServer::Parts {

@@ -142,7 +142,7 @@ void Quantities::add_parameters(Catalog& catalog) {
     // The range was looked at: the table takes it.
     const auto store = [&catalog, id, scaled] {
       const Parameter& range = catalog.parameters.info(id);
-      catalog.parameters.set(id, std::clamp(scaled->value * scaled->factor, range.min, range.max));
+      (void)catalog.parameters.set(id, std::clamp(scaled->value * scaled->factor, range.min, range.max));
     };
     add("control." + info.name, {info.min, info.max, info.unit}, [scaled, store](double value) {
       scaled->value = value;

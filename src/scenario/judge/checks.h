@@ -32,7 +32,7 @@ inline std::string wanted_clause(const CheckResult& check) {
   return (check.wanted.empty() && check.note.empty() ? "" : ", wanted ") + demand(check);
 }
 
-// Judges one check of a scenario tick by tick: always, never, eventually, at_end, within, settles (scenario_check.h).
+// Judges one check of a scenario tick by tick (scenario_check.h).
 class Check {
  public:
   // What one tick shows. `value` is the value of the signal, or of the condition's first signal. `excess` is the

@@ -1,7 +1,7 @@
 // What a method that moves set-points is given: its options and its targets. The bindings and `kadans behavior check`
 // read it, and editor stubs and the reference are made from it.
 //
-//   minimum_jerk  the control object's own: from its present state to rest in time_s; peak 1.875 times the mean speed
+//   minimum_jerk  from its present state to rest in time_s; peak 1.875 times the mean speed
 //   trapezoid     speeds up, cruises, slows down, as fast as the limits of velocity and acceleration allow; all joints
 //                 arrive together. Or in time_s, with a peak of about 1.3 times the mean speed
 //   spline        through points at given times (move_through)

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include <zstd.h>
@@ -54,6 +55,7 @@ FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
       store_(settings.bytes),
       planes_(block_rows * (signals * sizeof(float) + 2 * sizeof(std::uint64_t))),
       packed_(ZSTD_compressBound(planes_.size())) {
+  if (zstd_ == nullptr) throw std::bad_alloc();
   ticks_.reserve(block_rows);
   times_.reserve(block_rows);
   values_.reserve(block_rows * signals);
