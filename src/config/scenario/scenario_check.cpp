@@ -91,22 +91,6 @@ void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std:
   }
 }
 
-bool judges_run_until(const ScenarioCheck& check, double duration_s) noexcept {
-  if (check.from_s >= duration_s) return false;
-  switch (check.kind) {
-    case CheckKind::always:
-    case CheckKind::never:
-    case CheckKind::within:
-      return true;
-    case CheckKind::eventually:
-      return check.until_s <= duration_s;
-    case CheckKind::at_end:
-    case CheckKind::settles:
-      return false;
-  }
-  return false;
-}
-
 namespace {
 
 const std::array<std::string, 8> metric_kinds{"max", "min", "mean", "rms", "end", "share", "first_time", "since"};

@@ -43,7 +43,21 @@ void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std:
                   Problems& problems);
 
 // Whether the check can judge a run that ends at duration_s, before the scenario's end.
-bool judges_run_until(const ScenarioCheck& check, double duration_s) noexcept;
+inline bool judges_run_until(const ScenarioCheck& check, double duration_s) noexcept {
+  if (check.from_s >= duration_s) return false;
+  switch (check.kind) {
+    case CheckKind::always:
+    case CheckKind::never:
+    case CheckKind::within:
+      return true;
+    case CheckKind::eventually:
+      return check.until_s <= duration_s;
+    case CheckKind::at_end:
+    case CheckKind::settles:
+      return false;
+  }
+  return false;
+}
 
 // A metric: a number that judges a run, beyond passed and failed, such as the greatest value of a signal or the time at
 // which a condition became true.
