@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 using kadans::MinimumJerk;
+using kadans::SetpointState;
 
 namespace {
 

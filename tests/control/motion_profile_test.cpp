@@ -9,6 +9,7 @@
 #include "kadans/testing/allocation_count.h"
 
 using kadans::MotionProfile;
+using kadans::SetpointState;
 using kadans::RandomStream;
 
 namespace {
