@@ -300,16 +300,19 @@ void apply_parameters(const RobotConfig& config, Catalog& catalog) {
     throw std::invalid_argument("the catalog's control objects are not those of the configuration");
   }
   Problems problems(config.file);
+  std::vector<std::pair<ParameterId, double>> all;
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const ObjectConfig& object = config.objects[i];
     ParameterValues values(object, catalog.objects[i], catalog.parameters, problems);
-    for (const auto& [id, value] : values.chosen(object.parameters)) (void)catalog.parameters.set(id, value);
+    const auto own = values.chosen(object.parameters);
+    all.insert(all.end(), own.begin(), own.end());
     catalog.objects[i].presets.clear();
     for (const PresetConfig& preset : object.presets) {
       catalog.objects[i].presets.push_back({preset.name.name, values.chosen(preset.values)});
     }
   }
   problems.throw_if_any();
+  for (const auto& [id, value] : all) (void)catalog.parameters.set(id, value);  // chosen() looked at the range
 }
 
 }  // namespace kadans
