@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "app/command_line.h"
+#include "remote/order/order.h"
 
 namespace kadans {
 namespace {
@@ -91,55 +92,10 @@ constexpr Examples all_examples[] = {
      "  kadans ctl status\n"
      "  kadans ctl watch joint.l_knee.position_rad safety.level\n"
      "  kadans ctl set posture.l_knee.kp_Nm_per_rad 250\n"},
-    {"ctl status", "  kadans ctl status --json\n"},
-    {"ctl drives", "  kadans ctl drives --json\n"},
-    {"ctl list",
-     "  kadans ctl list behaviors\n"
-     "  kadans ctl list parameters --names\n"},
-    {"ctl get", "  kadans ctl get posture.l_knee.kp_Nm_per_rad\n"},
-    {"ctl watch",
-     "  kadans ctl watch joint.l_knee.position_rad safety.level\n"
-     "  kadans ctl watch base.tilt_rad --rate 100 --count 500 --json\n"},
-    {"ctl play",
-     "  kadans ctl play 'squat{depth_m=0.08}, wave'\n"
-     "  kadans ctl play stand --replace\n"},
-    {"ctl pause", "  kadans ctl pause\n"},
-    {"ctl resume", "  kadans ctl resume\n"},
-    {"ctl stop", "  kadans ctl stop\n"},
-    {"ctl estop", "  kadans ctl estop\n"},
-    {"ctl switch", "  kadans ctl switch posture\n"},
-    {"ctl lead", "  kadans ctl lead gaze.x_m=1.2,gaze.y_m=0.3 --time 0.5\n"},
     {"ctl drive", "  kadans ctl drive enable\n"},
-    {"ctl drive enable",
-     "  kadans ctl drive enable\n"
-     "  kadans ctl drive enable 'l_*'\n"},
-    {"ctl drive disable", "  kadans ctl drive disable l_knee\n"},
-    {"ctl drive reset",
-     "  kadans ctl drive reset\n"
-     "  kadans ctl drive reset l_knee\n"},
-    {"ctl drive home", "  kadans ctl drive home 'l_*'\n"},
-    {"ctl drive brake", "  kadans ctl drive brake\n"},
-    {"ctl drive release", "  kadans ctl drive release l_knee\n"},
     {"ctl fault", "  kadans ctl fault list\n"},
-    {"ctl fault list", "  kadans ctl fault list --json\n"},
-    {"ctl fault clear", "  kadans ctl fault clear\n"},
     {"ctl record", "  kadans ctl record start walk.mcap\n"},
-    {"ctl record start",
-     "  kadans ctl record start\n"
-     "  kadans ctl record start walk.mcap\n"},
-    {"ctl record stop", "  kadans ctl record stop\n"},
-    {"ctl record dump", "  kadans ctl record dump\n"},
-    {"ctl set",
-     "  kadans ctl set posture.l_knee.kp_Nm_per_rad 250\n"
-     "  kadans ctl set squat.depth_m 0.08\n"},
-    {"ctl undo", "  kadans ctl undo\n"},
-    {"ctl save",
-     "  kadans ctl save\n"
-     "  kadans ctl save --preset stiff    also into the gains that behaviors choose as \"stiff\"\n"},
     {"ctl repl", "  kadans ctl repl\n"},
-    {"ctl reload",
-     "  kadans ctl reload\n"
-     "  kadans ctl reload squat\n"},
     {"completion",
      "  kadans completion zsh\n"
      "  eval \"$(kadans completion bash)\"    in ~/.bashrc; an installed program's is in its place already\n"},
@@ -169,10 +125,20 @@ constexpr const char* program_end =
     "\nResults go to stdout, progress and errors to stderr.\n"
     "Exit codes: 0 passed, 1 failed, 2 wrong usage or input, 3 internal error, 130 interrupted.\n";
 
+// Those of an order stand in the table of orders.
+std::string order_examples(const std::string& words) {
+  for (const OrderInfo& order : order_table::orders) {
+    if (words != std::string("ctl ") + order.words) continue;
+    return order.examples[0] != 0 ? order.examples : "  kadans " + words + "\n";
+  }
+  return "";
+}
+
 void add_below(CLI::App& app, const std::string& words) {
   const auto* const found = std::ranges::find(all_examples, words, &Examples::words);
   const std::string own = app.get_footer();
-  std::string end = found == std::end(all_examples) ? "" : "Examples:\n" + std::string(found->text);
+  const std::string text = found == std::end(all_examples) ? order_examples(words) : found->text;
+  std::string end = text.empty() ? "" : "Examples:\n" + text;
   if (words.empty()) end += program_end;
   const std::vector<CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
   for (CLI::App* command : commands) add_below(*command, words + (words.empty() ? "" : " ") + command->get_name());

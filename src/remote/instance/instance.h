@@ -27,7 +27,7 @@
 #include "kadans/signal/status.h"
 #include "latest_row.h"
 #include "parameter_history.h"
-#include "remote/order/order.h"
+#include "remote/order/answer.h"
 #include "safety/emergency_stop.h"
 #include "telemetry/record/event_log.h"
 

@@ -1,4 +1,4 @@
-// The orders that clients may give to a running instance, and their answers. order_queue.h says how they cross threads.
+// The orders that clients may give to a running instance.
 #pragma once
 
 #include <array>
@@ -12,9 +12,7 @@
 
 #include "kadans/signal/frames.h"
 #include "kadans/signal/parameter.h"
-#include "order_queue.h"
 #include "remote/ctl/ctl_folder.h"
-#include "script/host/script_parameter.h"
 
 namespace kadans {
 
@@ -106,6 +104,7 @@ struct OrderInfo {
   const char* doc;
   std::optional<Order::Kind> kind;  // the order that it becomes; nullopt: the server answers by itself
   std::array<OrderArgument, 2> arguments{};
+  const char* examples = "";  // command lines for its --help, where the words alone do not do
 
   bool is_brief() const noexcept { return faces == Faces::all || faces == Faces::paced; }
   // The first argument of this kind; nullptr: there is none.
@@ -130,7 +129,14 @@ inline constexpr OrderArgument some_joints{.name = "joints",
                                            .lists = "joints"};
 
 inline constexpr OrderInfo orders[] = {
-    {"status", "status", ctl, Role::read, "The instance's name, mode, safety level and behaviors", Is::report},
+    {"status",
+     "status",
+     ctl,
+     Role::read,
+     "The instance's name, mode, safety level and behaviors",
+     Is::report,
+     {},
+     "  kadans ctl status --json\n"},
     {"list",
      "list",
      ctl,
@@ -141,14 +147,17 @@ inline constexpr OrderInfo orders[] = {
         .kind = text,
         .shown = "KIND",
         .doc = "behaviors, sets, objects, parameters, signals or joints",
-        .required = true}}}},
+        .required = true}}},
+     "  kadans ctl list behaviors\n"
+     "  kadans ctl list parameters --names\n"},
     {"get",
      "get",
      ctl,
      Role::read,
      "The value of a parameter or signal",
      Is::report,
-     {{{.name = "name", .kind = text, .shown = "NAME", .lists = "parameters signals", .required = true}}}},
+     {{{.name = "name", .kind = text, .shown = "NAME", .lists = "parameters signals", .required = true}}},
+     "  kadans ctl get posture.l_knee.kp_Nm_per_rad\n"},
     {"watch",
      "watch",
      ctl,
@@ -161,42 +170,52 @@ inline constexpr OrderInfo orders[] = {
         .shown = "--rate HZ",
         .doc = "largest number of samples in a second (default: 10)",
         .min = 0.01,
-        .max = 1000}}}},
+        .max = 1000}}},
+     "  kadans ctl watch joint.l_knee.position_rad safety.level\n"
+     "  kadans ctl watch base.tilt_rad --rate 100 --count 500 --json\n"},
     {"unwatch", "", sockets, Role::read, "End the samples", {}},
     {"drives",
      "drives",
      ctl,
      Role::read,
      "What the drives and their supply report: state, code, temperature, voltage",
-     {}},
+     {},
+     {},
+     "  kadans ctl drives --json\n"},
     {"enable_drives",
      "drive enable",
      all,
      Role::operate,
      "Let drives give torque; a joint that safety has let go stays so until faults are cleared",
      Is::enable_drives,
-     {{some_joints}}},
+     {{some_joints}},
+     "  kadans ctl drive enable\n"
+     "  kadans ctl drive enable 'l_*'\n"},
     {"disable_drives",
      "drive disable",
      all,
      Role::operate,
      "Let drives give no torque; brakes hold where there are any",
      Is::disable_drives,
-     {{some_joints}}},
+     {{some_joints}},
+     "  kadans ctl drive disable l_knee\n"},
     {"reset_drives",
      "drive reset",
      all,
      Role::operate,
      "Clear the drives' own faults",
      Is::reset_drives,
-     {{some_joints}}},
+     {{some_joints}},
+     "  kadans ctl drive reset\n"
+     "  kadans ctl drive reset l_knee\n"},
     {"home_drives",
      "drive home",
      all,
      Role::operate,
      "Let drives find their zero position",
      Is::home_drives,
-     {{some_joints}}},
+     {{some_joints}},
+     "  kadans ctl drive home 'l_*'\n"},
     {"brake_drives", "drive brake", all, Role::operate, "Engage the brakes", Is::brake_drives, {{some_joints}}},
     {"release_drives",
      "drive release",
@@ -209,8 +228,16 @@ inline constexpr OrderInfo orders[] = {
         .shown = "JOINTS",
         .doc = "names or patterns of joints, such as \"l_*\"",
         .lists = "joints",
-        .required = true}}}},
-    {"faults", "fault list", ctl, Role::read, "Faults since the start or the last clearing", {}},
+        .required = true}}},
+     "  kadans ctl drive release l_knee\n"},
+    {"faults",
+     "fault list",
+     ctl,
+     Role::read,
+     "Faults since the start or the last clearing",
+     {},
+     {},
+     "  kadans ctl fault list --json\n"},
     {"clear_faults", "fault clear", all, Role::operate, "Clear the faults of the safety layer, and the emergency stop",
      Is::clear_faults},
     {"estop", "estop", all, Role::operate, "Emergency stop: damp at once, then off, until faults are cleared", {}},
@@ -221,7 +248,9 @@ inline constexpr OrderInfo orders[] = {
      "Play behaviors after those that play now: \"squat{depth_m=0.08}, wave\"",
      Is::play,
      {{{.name = "list", .kind = text, .shown = "LIST", .lists = "behaviors", .required = true},
-       {.name = "replace", .kind = flag, .shown = "--replace", .doc = "instead of those that play now"}}}},
+       {.name = "replace", .kind = flag, .shown = "--replace", .doc = "instead of those that play now"}}},
+     "  kadans ctl play 'squat{depth_m=0.08}, wave'\n"
+     "  kadans ctl play stand --replace\n"},
     {"replace",
      "",
      all,
@@ -238,7 +267,8 @@ inline constexpr OrderInfo orders[] = {
      Role::operate,
      "Activate another control set",
      Is::switch_set,
-     {{{.name = "set", .kind = text, .shown = "SET", .lists = "sets", .required = true}}}},
+     {{{.name = "set", .kind = text, .shown = "SET", .lists = "sets", .required = true}}},
+     "  kadans ctl switch posture\n"},
     {"set_point",
      "lead",
      all,
@@ -250,8 +280,17 @@ inline constexpr OrderInfo orders[] = {
         .kind = number,
         .shown = "--time S",
         .doc = "duration of the motion to them (default: 0)",
-        .min = 0}}}},
-    {"record_start", "record start", all, Role::operate, "Begin a record", Is::record_start, {{record_file}}},
+        .min = 0}}},
+     "  kadans ctl lead gaze.x_m=1.2,gaze.y_m=0.3 --time 0.5\n"},
+    {"record_start",
+     "record start",
+     all,
+     Role::operate,
+     "Begin a record",
+     Is::record_start,
+     {{record_file}},
+     "  kadans ctl record start\n"
+     "  kadans ctl record start walk.mcap\n"},
     {"record_stop", "record stop", all, Role::operate, "End the record", Is::record_stop},
     {"record_dump",
      "record dump",
@@ -267,7 +306,9 @@ inline constexpr OrderInfo orders[] = {
      "Set a parameter",
      Is::set_parameter,
      {{{.name = "name", .kind = text, .shown = "NAME", .lists = "parameters", .required = true},
-       {.name = "value", .kind = number, .shown = "X", .required = true}}}},
+       {.name = "value", .kind = number, .shown = "X", .required = true}}},
+     "  kadans ctl set posture.l_knee.kp_Nm_per_rad 250\n"
+     "  kadans ctl set squat.depth_m 0.08\n"},
     {"undo", "undo", all, Role::develop, "Undo the last set; repeat it for earlier ones", Is::undo},
     {"save",
      "save",
@@ -278,14 +319,18 @@ inline constexpr OrderInfo orders[] = {
      {{{.name = "preset",
         .kind = text,
         .shown = "--preset NAME",
-        .doc = "write those that this preset contains into the preset, too"}}}},
+        .doc = "write those that this preset contains into the preset, too"}}},
+     "  kadans ctl save\n"
+     "  kadans ctl save --preset stiff    also into the gains that behaviors choose as \"stiff\"\n"},
     {"reload",
      "reload",
      all,
      Role::develop,
      "Reload the file of a behavior, or the files of all that play",
      Is::reload,
-     {{{.name = "name", .kind = text, .shown = "NAME", .lists = "behaviors"}}}},
+     {{{.name = "name", .kind = text, .shown = "NAME", .lists = "behaviors"}}},
+     "  kadans ctl reload\n"
+     "  kadans ctl reload squat\n"},
     {"line",
      "",
      sockets,
@@ -324,29 +369,5 @@ inline constexpr OrderInfo orders[] = {
 const OrderInfo* find_order(std::string_view verb) noexcept;  // nullptr: there is none
 // The verbs of the page and of ROS 2, separated by blanks.
 std::string brief_verbs(bool paced);
-
-struct BehaviorReport {
-  std::string name, state, outcome, error;
-  std::uint32_t lane = 0;
-  bool over = false;
-  std::uint64_t chart = 0;  // a number that changes when the chart's states or transitions change
-  std::vector<ScriptParameter> parameters;
-};
-
-struct Answer {
-  std::uint64_t number = 0;  // of the order
-  bool done = false;
-  std::string text;  // when not done: the reason; else a message
-  std::vector<BehaviorReport> behaviors{};
-  bool paused = false;
-  std::vector<ParameterChange> changes{};
-  std::vector<ParameterChange> set{};  // for the order `changes`: also those that are already saved
-  std::vector<std::string> words{};    // of a completion; they replace the text from `begin` on
-  std::size_t begin = 0;
-  bool incomplete = false, writes = false, leaves = false;  // of a console
-};
-
-using OrderCase = BasicOrderCase<Order, Answer>;
-using OrderQueue = BasicOrderQueue<OrderCase>;
 
 }  // namespace kadans
