@@ -58,6 +58,8 @@ std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
       return of + "joint " +
              (refusal.joint < catalog.model->joints.size() ? catalog.model->joints[refusal.joint].name : "?") +
              " is held";
+    case RefusalReason::armed_full:
+      return "as many transactions as can wait are armed already";
   }
   return "";
 }

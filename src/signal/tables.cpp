@@ -1,6 +1,7 @@
 // The tables of parameters, set-points and signals.
 #include <cassert>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "kadans/signal/parameter.h"
@@ -80,30 +81,35 @@ SignalId SignalTable::add_info(Signal signal) {
 SignalId SignalTable::add(Signal signal, const double* source) {
   const SignalId id = add_info(std::move(signal));
   doubles_.push_back({id, source});
+  sources_.emplace_back(source);
   return id;
 }
 
 SignalId SignalTable::add(Signal signal, const bool* source) {
   const SignalId id = add_info(std::move(signal));
   bools_.push_back({id, source});
+  sources_.emplace_back(source);
   return id;
 }
 
 SignalId SignalTable::add(Signal signal, const std::uint8_t* source) {
   const SignalId id = add_info(std::move(signal));
   choices_.push_back({id, source});
+  sources_.emplace_back(source);
   return id;
 }
 
 SignalId SignalTable::add(Signal signal, const std::uint32_t* source) {
   const SignalId id = add_info(std::move(signal));
   counts_.push_back({id, source});
+  sources_.emplace_back(source);
   return id;
 }
 
 SignalId SignalTable::add(Signal signal, const std::atomic<std::uint32_t>* source) {
   const SignalId id = add_info(std::move(signal));
   shared_.push_back({id, source});
+  sources_.emplace_back(source);
   return id;
 }
 
@@ -114,6 +120,17 @@ void SignalTable::gather(std::span<double> row) const noexcept {
   for (const auto& [id, value] : choices_) row[id] = static_cast<double>(*value);
   for (const auto& [id, value] : counts_) row[id] = static_cast<double>(*value);
   for (const auto& [id, value] : shared_) row[id] = static_cast<double>(value->load(std::memory_order_relaxed));
+}
+
+double SignalTable::read(SignalId id) const noexcept {
+  const auto number = []<typename T>(const T* source) {
+    if constexpr (std::is_same_v<T, std::atomic<std::uint32_t>>) {
+      return static_cast<double>(source->load(std::memory_order_relaxed));
+    } else {
+      return static_cast<double>(*source);
+    }
+  };
+  return std::visit(number, sources_[id]);
 }
 
 std::optional<SignalId> SignalTable::find(std::string_view name) const {

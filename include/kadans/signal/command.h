@@ -23,7 +23,27 @@ enum class CommandKind : std::uint8_t {
               // acceleration are limits
   via_point,  // index = SetpointId, value to be passed duration_s after the point before; count = its number, 0 begins
   order_drive,  // index = joint, count = DriveOrder; of persons alone
+  arm,        // the `count` commands behind it, of which the first `index` are conditions, wait in the control engine;
+              // sequence = ArmOptions, duration_s = for how long they wait
+  condition,  // of an arm: count = ConditionKind, index = SignalId or SetpointId, value
+  disarm,     // takes back: sequence = number of the transaction, index = which of its arms, from 0
 };
+
+// When the commands behind an arm are carried out: in the tick in which its conditions become true.
+enum class ConditionKind : std::uint8_t {
+  above,    // the signal is greater than `value`
+  below,    // the signal is less than `value`
+  after,    // `value` seconds have passed since it was armed
+  arrived,  // no set-point of the set-point's control object moves any more
+};
+inline constexpr ConditionKind last_condition_kind = ConditionKind::arrived;
+enum ArmOptions : std::uint8_t {
+  arm_any = 1,         // one condition suffices; else all must be true
+  arm_every_time = 2,  // again each time that they become true; else once
+};
+inline constexpr std::size_t max_armed = 8;             // that wait at the same time
+inline constexpr std::size_t max_armed_conditions = 4;  // of one
+inline constexpr std::size_t max_armed_commands = 63;   // that one carries out
 
 struct Command {
   CommandKind kind = CommandKind::transaction;
@@ -54,6 +74,7 @@ enum class RefusalReason : std::uint8_t {
   too_old,       // the whole transaction
   robot_held,
   joint_held,
+  armed_full,  // too many wait already
 };
 
 struct alignas(8) Refusal {
@@ -67,5 +88,20 @@ struct alignas(8) Refusal {
 static_assert(std::is_trivially_copyable_v<Refusal> && sizeof(Refusal) == 24);
 
 inline constexpr std::uint32_t refusals_shown = 8;
+
+// What became of an armed transaction. The status stays until its place is taken by another one: that which ended first
+// goes first.
+enum class ArmedState : std::uint8_t { none, waits, done, refused, expired, taken_back };
+
+struct alignas(8) ArmedStatus {
+  std::uint32_t sequence = 0;  // number of the transaction that armed it
+  std::uint16_t which = 0;     // of the arms of that transaction, from 0
+  ArmedState state = ArmedState::none;
+  RefusalReason reason = RefusalReason::none;  // why it was refused when its conditions were true
+  std::uint32_t fired = 0;                     // how often it was carried out
+  std::uint32_t reserved = 0;
+  std::uint64_t fired_tick = 0;  // the last time
+};
+static_assert(std::is_trivially_copyable_v<ArmedStatus> && sizeof(ArmedStatus) == 24);
 
 }  // namespace kadans

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <variant>
 #include <vector>
 
 namespace kadans {
@@ -33,6 +34,8 @@ class SignalTable {
 
   // Control thread. row.size() == size(), asserted; booleans become 0 and 1. No allocation.
   void gather(std::span<double> row) const noexcept;
+  // Control thread: one signal as it is now, which may be newer than the last row. id < size().
+  double read(SignalId id) const noexcept;
 
   // Any thread: the declarations do not change once the loop runs.
   std::optional<SignalId> find(std::string_view name) const;
@@ -49,7 +52,11 @@ class SignalTable {
     SignalId id;
     const T* value;
   };
+  // The source of a signal, whatever its type.
+  using AnySource = std::variant<const double*, const bool*, const std::uint8_t*, const std::uint32_t*,
+                                 const std::atomic<std::uint32_t>*>;
   std::vector<Signal> infos_;
+  std::vector<AnySource> sources_;  // by id
   std::unordered_map<std::string, SignalId> ids_;
   std::vector<Source<double>> doubles_;
   std::vector<Source<bool>> bools_;

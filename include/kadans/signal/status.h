@@ -111,6 +111,7 @@ struct alignas(8) Snapshot {
   std::array<ObjectStatus, max_objects> objects{};
   std::array<SetpointStatus, max_setpoints_shown> setpoints{};  // by SetpointId
   std::array<Refusal, refusals_shown> refusals{};               // the newest; number n is at n modulo refusals_shown
+  std::array<ArmedStatus, max_armed> armed{};
   JoystickState joystick;
   PowerStatus power;
 };
@@ -139,6 +140,7 @@ inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
   copy_first(from.objects, from.object_count, to.objects);
   copy_first(from.setpoints, from.setpoint_count, to.setpoints);
   to.refusals = from.refusals;
+  to.armed = from.armed;
   to.joystick = from.joystick;
   to.power.supply_V = from.power.supply_V;
   to.power.emergency = from.power.emergency;
@@ -150,6 +152,6 @@ static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 && sizeof(Sa
               sizeof(ObjectStatus) == 16 && alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 112 && offsetof(Snapshot, joints) == 32);
 static_assert(sizeof(DriveStatus) == 12 && sizeof(PowerStatus) == 16 + 12 * max_joints);
-static_assert(sizeof(Snapshot) == 5776);  // a new field also belongs in copy_used()
+static_assert(sizeof(Snapshot) == 5968);  // a new field also belongs in copy_used()
 
 }  // namespace kadans

@@ -28,7 +28,8 @@ CommandInbox::CommandInbox(CommandQueue& queue, Catalog& catalog, ControlSets& s
       sets_(sets),
       commands_per_tick_max_(commands_per_tick_max),
       age_max_ns_(age_max_ns),
-      motions_(catalog, sets) {
+      motions_(catalog, sets),
+      armed_(catalog, motions_) {
   if (commands_per_tick_max_ + 1 < max_transaction) {
     throw std::invalid_argument("commands_per_tick_max " + std::to_string(commands_per_tick_max_) +
                                 " would never let the largest transaction pass: at least " +
@@ -45,8 +46,12 @@ RefusalReason CommandInbox::judge(const Command& command) const noexcept {
     return known(catalog_.setpoints.size(), catalog_.setpoints.accepts(command.index, command.value));
   };
   switch (command.kind) {
-    case CommandKind::transaction:
-      return malformed;  // a header inside a transaction
+    case CommandKind::transaction:  // a header inside a transaction
+    case CommandKind::arm:          // those that stand where they belong are judged by judge_arm
+    case CommandKind::condition:
+      return malformed;
+    case CommandKind::disarm:
+      return none;
     case CommandKind::set_parameter:
       return known(catalog_.parameters.size(), catalog_.parameters.accepts(command.index, command.value));
     case CommandKind::set_point: {
@@ -73,7 +78,8 @@ RefusalReason CommandInbox::judge(const Command& command) const noexcept {
 
 RefusalReason CommandInbox::held(const Command& command, const Safety& safety, SetMask active,
                                  std::uint16_t& joint) const noexcept {
-  if (clears(command, safety) || command.kind == CommandKind::cancel_motion) return RefusalReason::none;
+  if (clears(command, safety) || command.kind == CommandKind::cancel_motion || command.kind == CommandKind::disarm)
+    return RefusalReason::none;
   if (command.kind == CommandKind::order_drive)
     return safety.stopped() && !keeps_still(command) ? RefusalReason::robot_held : RefusalReason::none;
   if (safety.robot_level() >= SafetyLevel::hold) return RefusalReason::robot_held;
@@ -109,11 +115,44 @@ RefusalReason CommandInbox::held(const Command& command, const Safety& safety, S
   return is_held ? RefusalReason::joint_held : RefusalReason::none;
 }
 
-Refusal CommandInbox::judge_transaction(std::uint32_t count, const Safety& safety) const noexcept {
+template <typename At>
+Refusal CommandInbox::judge_arm(std::uint32_t rest, std::uint32_t armed_before, At at) const noexcept {
+  const Command& arm = at(0);
+  const auto refused = [](const Command& command, RefusalReason reason) {
+    return Refusal{.kind = command.kind, .reason = reason, .index = command.index, .value = command.value};
+  };
+  const bool whole = arm.count <= rest && arm.index >= 1 && arm.index <= max_armed_conditions &&
+                     arm.count > arm.index && arm.count - arm.index <= max_armed_commands;
+  if (!whole) return refused(arm, RefusalReason::malformed);
+  if (!(arm.duration_s >= 0 && arm.duration_s <= motion_duration_max_s)) return refused(arm, RefusalReason::motion);
+  if (!armed_.has_room(armed_before)) return refused(arm, RefusalReason::armed_full);
+  for (std::uint32_t i = 1; i <= arm.count; ++i) {
+    const Command& command = at(i);
+    RefusalReason reason = RefusalReason::malformed;
+    if (i <= arm.index) {
+      reason = armed_.judge(command);
+    } else if (ArmedTransactions::can_wait(command.kind)) {
+      reason = judge(command);
+    }
+    if (reason != RefusalReason::none) return refused(command, reason);
+  }
+  return {};
+}
+
+template <typename At>
+Refusal CommandInbox::judge_all(std::uint32_t count, const Safety& safety, At at) const noexcept {
   bool cleared = false;
   SetMask active = sets_.active();
-  for (std::uint32_t i = 1; i <= count; ++i) {
-    const Command& command = queue_.peek(i);
+  std::uint32_t armed = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Command& command = at(i);
+    if (command.kind == CommandKind::arm) {  // whether a joint is held is asked when its conditions are true
+      const Refusal refusal =
+          judge_arm(count - i - 1, armed++, [&](std::uint32_t behind) -> const Command& { return at(i + behind); });
+      if (refusal.reason != RefusalReason::none) return refusal;
+      i += command.count;
+      continue;
+    }
     Refusal refusal{.kind = command.kind, .reason = judge(command), .index = command.index, .value = command.value};
     cleared = cleared || clears(command, safety);
     if (refusal.reason == RefusalReason::none && !cleared)
@@ -133,6 +172,7 @@ void CommandInbox::refuse(const Command& header, Refusal refusal, std::uint64_t 
 }
 
 void CommandInbox::fill(Snapshot& snapshot) const noexcept {
+  armed_.fill(snapshot);
   snapshot.transactions_applied = state_.last_transaction;
   snapshot.commands_refused = state_.refused;
   if (snapshot.transactions_refused == transactions_refused_) return;
@@ -143,6 +183,11 @@ void CommandInbox::fill(Snapshot& snapshot) const noexcept {
 void CommandInbox::execute(const Command& command, const ControlInput& input, Safety& safety) noexcept {
   switch (command.kind) {
     case CommandKind::transaction:
+    case CommandKind::arm:  // execute_all
+    case CommandKind::condition:
+      break;
+    case CommandKind::disarm:
+      armed_.disarm(command.sequence, command.index);
       break;
     case CommandKind::set_parameter:
       if (catalog_.parameters.set(command.index, command.value))
@@ -186,6 +231,7 @@ bool CommandInbox::orders_again(std::uint32_t count) const noexcept {
 }
 
 void CommandInbox::revoke_orders(const SensorFrame& sensors) noexcept {
+  armed_.disarm_all();
   for (std::size_t i = 0; i < sensors.joint_count; ++i) {
     DriveRequest& request = drive_requests_[i];
     const bool enables = request.order == DriveOrder::enable || request.order == DriveOrder::home;
@@ -202,7 +248,38 @@ void CommandInbox::notify_owners() noexcept {
   }
 }
 
+void CommandInbox::execute_all(const Command& header, const ControlInput& input, Safety& safety) noexcept {
+  std::uint16_t which = 0;
+  for (std::uint32_t i = 1; i <= header.count; ++i) {
+    const Command& command = queue_.peek(i);
+    if (command.kind != CommandKind::arm) {
+      execute(command, input, safety);
+      continue;
+    }
+    const auto behind = [&](std::uint32_t k) -> const Command& { return queue_.peek(i + 1 + k); };
+    armed_.arm(command, header.sequence, which++, input.time_ns, behind);
+    i += command.count;
+  }
+  notify_owners();
+}
+
+void CommandInbox::carry_out_armed(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept {
+  armed_.step(tick, input.time_ns, [&](std::uint32_t sequence, std::span<const Command> commands) {
+    const auto count = static_cast<std::uint32_t>(commands.size());
+    const Refusal refusal = judge_all(count, safety, [&](std::uint32_t i) -> const Command& { return commands[i]; });
+    if (refusal.reason != RefusalReason::none) {
+      refuse({.count = count, .sequence = sequence}, refusal, tick, safety);
+      return refusal.reason;
+    }
+    for (const Command& command : commands) execute(command, input, safety);
+    notify_owners();
+    state_.applied += count;
+    return RefusalReason::none;
+  });
+}
+
 void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept {
+  const auto arrived = [this](std::uint32_t i) -> const Command& { return queue_.peek(i + 1); };
   std::uint32_t share = commands_per_tick_max_;
   ordered_ = 0;
   std::size_t waiting = queue_.size();
@@ -218,10 +295,10 @@ void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& 
     }
     if (header.count > share || orders_again(header.count)) return;
     const bool fresh = input.time_ns - header.time_ns <= age_max_ns_;
-    const Refusal refusal = fresh ? judge_transaction(header.count, safety) : Refusal{.reason = RefusalReason::too_old};
+    const Refusal refusal =
+        fresh ? judge_all(header.count, safety, arrived) : Refusal{.reason = RefusalReason::too_old};
     if (refusal.reason == RefusalReason::none) {
-      for (std::uint32_t i = 1; i <= header.count; ++i) execute(queue_.peek(i), input, safety);
-      notify_owners();
+      execute_all(header, input, safety);
       state_.applied += header.count;
       state_.last_transaction = header.sequence;
     } else {

@@ -16,6 +16,7 @@
 
 #include <cstdint>
 
+#include "armed_transactions.h"
 #include "engine/motion/setpoint_motions.h"
 #include "kadans/control/control_sets.h"
 #include "kadans/signal/command.h"
@@ -33,6 +34,10 @@ class CommandInbox {
   // so that set-points behind the switch in the same transaction act on them.
   void apply(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept;
 
+  // Control thread, after apply(): carries out the armed transactions whose conditions became true. One that the
+  // robot's state forbids now is refused as one that arrives now.
+  void carry_out_armed(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept;
+
   struct State {
     std::uint32_t last_transaction = 0;  // number of the last one applied
     std::uint32_t applied = 0;           // commands, headers not counted
@@ -44,7 +49,7 @@ class CommandInbox {
   SetpointMotions& motions() noexcept { return motions_; }
   const DriveRequests& drive_requests() const noexcept { return drive_requests_; }
   // Control thread, when the emergency stop comes: orders that let a joint move and are not carried out yet count no
-  // more.
+  // more, nor do armed transactions.
   void revoke_orders(const SensorFrame& sensors) noexcept;
 
  private:
@@ -53,7 +58,13 @@ class CommandInbox {
   // the command.
   RefusalReason held(const Command& command, const Safety& safety, SetMask active, std::uint16_t& joint) const noexcept;
   // The refusal of the first of the `count` commands that is refused; with the reason none: there is no such command.
-  Refusal judge_transaction(std::uint32_t count, const Safety& safety) const noexcept;
+  // `at(i)` is the i-th, from 0.
+  template <typename At>
+  Refusal judge_all(std::uint32_t count, const Safety& safety, At at) const noexcept;
+  // An arm with what belongs to it: at(0) is the arm, and `rest` commands follow.
+  template <typename At>
+  Refusal judge_arm(std::uint32_t rest, std::uint32_t armed_before, At at) const noexcept;
+  void execute_all(const Command& header, const ControlInput& input, Safety& safety) noexcept;
   void refuse(const Command& header, Refusal refusal, std::uint64_t tick, Safety& safety) noexcept;
   bool orders_again(std::uint32_t count) const noexcept;
   void execute(const Command& command, const ControlInput& input, Safety& safety) noexcept;
@@ -65,6 +76,7 @@ class CommandInbox {
   std::uint32_t commands_per_tick_max_;
   std::int64_t age_max_ns_;
   SetpointMotions motions_;
+  ArmedTransactions armed_;
   DriveRequests drive_requests_{};
   JointMask ordered_ = 0;  // joints whose drives were ordered in this tick
   State state_;

@@ -46,6 +46,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
   const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
   if (safety_.came_back()) sets_.restart(input);
   inbox_.apply(tick_, input, safety_);
+  inbox_.carry_out_armed(tick_, input, safety_);
   copy_first(inbox_.drive_requests(), actuation_.joint_count, actuation_.drives);
   inbox_.motions().step(dt_s);
   sets_.step(tick_, input, actuation_);
