@@ -74,6 +74,8 @@ SignalId SignalTable::add_info(Signal signal) {
   if (!ids_.emplace(signal.name, id).second) {
     throw std::invalid_argument("signal " + signal.name + " is declared twice");
   }
+  if (!keys_.emplace(signal_key(signal.name), id).second)
+    throw std::invalid_argument("signal " + signal.name + " has the key of another one: give it another name");
   infos_.push_back(std::move(signal));
   return id;
 }
@@ -136,6 +138,12 @@ double SignalTable::read(SignalId id) const noexcept {
 std::optional<SignalId> SignalTable::find(std::string_view name) const {
   const auto found = ids_.find(std::string(name));
   if (found == ids_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<SignalId> SignalTable::find_key(std::int64_t key) const noexcept {
+  const auto found = keys_.find(key);
+  if (found == keys_.end()) return std::nullopt;
   return found->second;
 }
 

@@ -21,7 +21,8 @@ class Posed final : public Plant {
  public:
   void read(SensorFrame& sensors) noexcept override {
     sensors.joint_count = 2;
-    ++sequence_;
+    sensors.imu.sequence = ++sequence_;
+    sensors.imu.acceleration_m_s2 = {0, 0, 9.81 + 1e-6 * (sequence_ % 2)};
     for (std::uint32_t i = 0; i < 2; ++i) {
       sensors.joints[i] = {};
       sensors.joints[i].position_rad = sensors.joints[i].motor_position_rad = position_rad[i];
@@ -68,8 +69,8 @@ struct Stand : bench::Robot {
   }
   Command hip(ConditionKind kind, double value) const {
     return {.kind = CommandKind::condition,
-            .index = own.signals.find("joint.hip.position_rad").value(),
             .count = static_cast<std::uint32_t>(kind),
+            .time_ns = signal_key("joint.hip.position_rad"),
             .value = value};
   }
   static Command after(double seconds) {
@@ -103,11 +104,11 @@ struct Stand : bench::Robot {
 TEST_CASE("An armed transaction acts in the tick of its condition as one that arrives in this tick") {
   Stand armed, plain;
   const std::uint32_t number =
-      armed.send({Stand::arm(1, 2), armed.hip(ConditionKind::above, 0.3), armed.set_kp(70), armed.set_hip(0.5)});
+      armed.send({Stand::arm(1, 2), armed.hip(ConditionKind::above, 0.003), armed.set_kp(70), armed.set_hip(0.5)});
   for (Stand* stand : {&armed, &plain}) stand->ticks(20);
   CHECK(armed.value() == 40);
   CHECK(armed.status(number).state == ArmedState::waits);
-  for (Stand* stand : {&armed, &plain}) stand->posed.position_rad[0] = 0.31;
+  for (Stand* stand : {&armed, &plain}) stand->posed.position_rad[0] = 0.004;
   (void)plain.send({plain.set_kp(70), plain.set_hip(0.5)});
   const std::uint64_t tick = armed.engine.state().tick + 1;
   for (int i = 0; i < 5; ++i) {
@@ -127,9 +128,9 @@ TEST_CASE("It is carried out once, or each time that its conditions become true"
     CAPTURE(every_time);
     Stand stand;
     const std::uint32_t number = stand.send({Stand::arm(1, 1, 1, every_time ? arm_every_time : 0),
-                                             stand.hip(ConditionKind::below, -0.1), stand.set_kp(70)});
+                                             stand.hip(ConditionKind::below, -0.003), stand.set_kp(70)});
     for (int i = 0; i < 3; ++i) {
-      stand.posed.position_rad[0] = -0.2;
+      stand.posed.position_rad[0] = -0.004;
       stand.ticks(4);
       stand.posed.position_rad[0] = 0;
       stand.ticks(4);
@@ -143,15 +144,15 @@ TEST_CASE("All conditions must be true in the same tick, or one suffices") {
   for (const bool any : {false, true}) {
     CAPTURE(any);
     Stand stand;
-    (void)stand.send({Stand::arm(2, 1, 1, any ? arm_any : 0), stand.hip(ConditionKind::above, 0.3), Stand::after(0.01),
+    (void)stand.send({Stand::arm(2, 1, 1, any ? arm_any : 0), stand.hip(ConditionKind::above, 0.003), Stand::after(0.01),
                       stand.set_kp(70)});
-    stand.posed.position_rad[0] = 0.4;
+    stand.posed.position_rad[0] = 0.004;
     stand.ticks(5);
     CHECK(stand.value() == (any ? 70 : 40));
     stand.posed.position_rad[0] = 0;
     stand.ticks(20);
     CHECK(stand.value() == (any ? 70 : 40));
-    stand.posed.position_rad[0] = 0.4;
+    stand.posed.position_rad[0] = 0.004;
     stand.ticks(1);
     CHECK(stand.value() == 70);
   }
@@ -161,7 +162,7 @@ TEST_CASE("Time counts from the tick in which it was armed, and what waits too l
   Stand stand;
   const std::uint32_t timed = stand.send({Stand::arm(1, 1), Stand::after(0.01), stand.set_kp(70)});
   const std::uint32_t late =
-      stand.send({Stand::arm(1, 1, 0.02), stand.hip(ConditionKind::above, 0.3), stand.set_kp(90)});
+      stand.send({Stand::arm(1, 1, 0.02), stand.hip(ConditionKind::above, 0.003), stand.set_kp(90)});
   stand.ticks(10);
   CHECK(stand.value() == 40);
   stand.ticks(1);
@@ -171,7 +172,7 @@ TEST_CASE("Time counts from the tick in which it was armed, and what waits too l
   CHECK(stand.status(late).state == ArmedState::waits);
   stand.ticks(1);
   CHECK(stand.status(late).state == ArmedState::expired);
-  stand.posed.position_rad[0] = 0.4;
+  stand.posed.position_rad[0] = 0.004;
   stand.ticks(3);
   CHECK(stand.value() == 70);
 }
@@ -190,10 +191,10 @@ TEST_CASE("The end of a motion is a condition") {
 
 TEST_CASE("It can be taken back, one by one, also in the tick of its condition") {
   Stand stand;
-  const std::uint32_t number = stand.send({Stand::arm(1, 1), stand.hip(ConditionKind::above, 0.3), stand.set_kp(70),
-                                           Stand::arm(1, 1), stand.hip(ConditionKind::above, 0.3), stand.set_kp(90)});
+  const std::uint32_t number = stand.send({Stand::arm(1, 1), stand.hip(ConditionKind::above, 0.003), stand.set_kp(70),
+                                           Stand::arm(1, 1), stand.hip(ConditionKind::above, 0.003), stand.set_kp(90)});
   stand.ticks(2);
-  stand.posed.position_rad[0] = 0.4;
+  stand.posed.position_rad[0] = 0.004;
   (void)stand.send({Command{.kind = CommandKind::disarm, .index = 1, .sequence = number}});
   stand.ticks(1);
   CHECK(stand.value() == 70);
@@ -203,16 +204,17 @@ TEST_CASE("It can be taken back, one by one, also in the tick of its condition")
 
 TEST_CASE("An arm that is torn, asks for what cannot wait, or is one too many refuses its whole transaction") {
   Stand stand;
-  const Command condition = stand.hip(ConditionKind::above, 0.3), good = stand.set_kp(70);
+  const Command condition = stand.hip(ConditionKind::above, 0.003), good = stand.set_kp(70);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Command unknown{.kind = CommandKind::condition, .index = 99'999};
-  const Command odd{.kind = CommandKind::condition, .index = condition.index, .count = 77};
+  const Command unknown{.kind = CommandKind::condition, .time_ns = 99};
+  const Command odd{.kind = CommandKind::condition, .count = 77, .time_ns = condition.time_ns};
   const Command clear{.kind = CommandKind::clear_faults}, header{.kind = CommandKind::transaction};
   struct Case {
     std::vector<Command> commands;
     RefusalReason reason;
   };
-  using enum RefusalReason;
+  constexpr auto malformed = RefusalReason::malformed, out_of_range = RefusalReason::out_of_range,
+                 motion = RefusalReason::motion, armed_full = RefusalReason::armed_full;
   const Case cases[] = {
       {{Stand::arm(1, 5), condition, good}, malformed},
       {{Stand::arm(0, 1), good}, malformed},
@@ -255,12 +257,12 @@ TEST_CASE("An arm that is torn, asks for what cannot wait, or is one too many re
 TEST_CASE("What the robot's state forbids when the condition comes is refused then, and told") {
   Stand stand;
   const std::uint32_t number =
-      stand.send({Stand::arm(1, 1, 100), stand.hip(ConditionKind::above, 0.3), stand.set_kp(70)});
+      stand.send({Stand::arm(1, 1, 100), stand.hip(ConditionKind::above, 0.003), stand.set_kp(70)});
   stand.ticks(1);
   stand.beats = false;
   for (int i = 0; i < 1000 && stand.engine.state().status.safety.level < SafetyLevel::hold; ++i) stand.ticks(1);
   CHECK(stand.status(number).state == ArmedState::waits);
-  stand.posed.position_rad[0] = 0.4;
+  stand.posed.position_rad[0] = 0.004;
   stand.ticks(1);
   CHECK(stand.status(number).state == ArmedState::refused);
   CHECK(stand.status(number).reason == RefusalReason::robot_held);
@@ -271,7 +273,7 @@ TEST_CASE("What the robot's state forbids when the condition comes is refused th
 TEST_CASE("The emergency stop takes back what is armed") {
   Stand stand;
   const std::uint32_t number =
-      stand.send({Stand::arm(1, 1, 100), stand.hip(ConditionKind::above, 0.3), stand.set_kp(70)});
+      stand.send({Stand::arm(1, 1, 100), stand.hip(ConditionKind::above, 0.003), stand.set_kp(70)});
   stand.ticks(1);
   stand.safety.emergency_stop().ask({});
   stand.ticks(1);
@@ -281,11 +283,11 @@ TEST_CASE("The emergency stop takes back what is armed") {
 TEST_CASE("Armed transactions take no memory while they wait and when they act") {
   Stand stand;
   for (std::size_t i = 0; i < max_armed; ++i)
-    (void)stand.send({Stand::arm(1, 2, 1, arm_every_time), stand.hip(ConditionKind::above, 0.3), stand.set_kp(70),
+    (void)stand.send({Stand::arm(1, 2, 1, arm_every_time), stand.hip(ConditionKind::above, 0.003), stand.set_kp(70),
                       stand.set_hip(0.2, 0.1)});
-  const AllocationCount heap;
+  const testing::AllocationCount heap;
   stand.ticks(5);
-  stand.posed.position_rad[0] = 0.4;
+  stand.posed.position_rad[0] = 0.004;
   stand.ticks(5);
   CHECK(heap.count() == 0);
   CHECK(stand.value() == 70);

@@ -25,7 +25,7 @@ enum class CommandKind : std::uint8_t {
   order_drive,  // index = joint, count = DriveOrder; of persons alone
   arm,        // the `count` commands behind it, of which the first `index` are conditions, wait in the control engine;
               // sequence = ArmOptions, duration_s = for how long they wait
-  condition,  // of an arm: count = ConditionKind, index = SignalId or SetpointId, value
+  condition,  // of an arm: count = ConditionKind, time_ns = signal_key() or index = SetpointId, value
   disarm,     // takes back: sequence = number of the transaction, index = which of its arms, from 0
 };
 

@@ -22,6 +22,13 @@ struct Signal {
   std::string doc;  // one sentence
 };
 
+// Tells signals apart by name in another process too, whose table may have other numbers.
+constexpr std::int64_t signal_key(std::string_view name) noexcept {
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return static_cast<std::int64_t>(hash);
+}
+
 class SignalTable {
  public:
   // Before the loop. The source is read by the control thread and must outlive the table's use.
@@ -39,6 +46,8 @@ class SignalTable {
 
   // Any thread: the declarations do not change once the loop runs.
   std::optional<SignalId> find(std::string_view name) const;
+  // Any thread; allocates nothing.
+  std::optional<SignalId> find_key(std::int64_t key) const noexcept;
   // Throws std::out_of_range on an unknown id.
   const Signal& info(SignalId id) const { return infos_.at(id); }
   std::size_t size() const noexcept { return infos_.size(); }
@@ -58,6 +67,7 @@ class SignalTable {
   std::vector<Signal> infos_;
   std::vector<AnySource> sources_;  // by id
   std::unordered_map<std::string, SignalId> ids_;
+  std::unordered_map<std::int64_t, SignalId> keys_;
   std::vector<Source<double>> doubles_;
   std::vector<Source<bool>> bools_;
   std::vector<Source<std::uint8_t>> choices_;

@@ -19,7 +19,7 @@ RefusalReason ArmedTransactions::judge(const Command& condition) const noexcept 
   switch (static_cast<ConditionKind>(condition.count)) {
     case ConditionKind::above:
     case ConditionKind::below:
-      if (condition.index >= catalog_.signals.size()) return unknown;
+      if (!catalog_.signals.find_key(condition.time_ns)) return unknown;
       return std::isfinite(condition.value) ? none : out_of_range;
     case ConditionKind::after:
       return condition.value >= 0 && condition.value <= motion_duration_max_s ? none : out_of_range;
@@ -68,9 +68,12 @@ ArmedTransactions::Slot& ArmedTransactions::begin(const Command& arm, std::uint3
   return slot;
 }
 
-void ArmedTransactions::add(Slot& slot, const Command& command) noexcept {
+void ArmedTransactions::add(Slot& slot, const Command& command) const noexcept {
   if (slot.condition_count < slot.expected_conditions) {
-    slot.conditions[slot.condition_count++] = command;
+    Command& condition = slot.conditions[slot.condition_count++] = command;
+    const auto kind = static_cast<ConditionKind>(command.count);
+    if (kind == ConditionKind::above || kind == ConditionKind::below)
+      condition.index = catalog_.signals.find_key(command.time_ns).value_or(0);  // judge() knew it
   } else {
     slot.commands[slot.command_count++] = command;
   }

@@ -67,7 +67,7 @@ class ArmedTransactions {
     bool was_true = false;    // its conditions, in the tick before
   };
   Slot& begin(const Command& arm, std::uint32_t sequence, std::uint16_t which, std::int64_t time_ns) noexcept;
-  static void add(Slot& slot, const Command& command) noexcept;
+  void add(Slot& slot, const Command& command) const noexcept;
   bool due(std::size_t index, std::int64_t time_ns) noexcept;
   void note(std::size_t index, std::uint64_t tick, RefusalReason refused) noexcept;
   void end(std::size_t index, ArmedState how) noexcept;

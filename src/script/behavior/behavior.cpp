@@ -259,6 +259,25 @@ void Behavior::Parts::tell_refused() noexcept {
     ++transactions_refused;
     log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
                 "refused by the control engine, all commands of that tick: " + refusal_text(*refusal, catalog));
+    bindings.forget_armed(refusal->sequence);
+  }
+}
+
+void Behavior::Parts::tell_armed() noexcept {
+  ArmedHere armed;
+  ArmedStatus status;
+  while (bindings.look_at_armed(armed, status)) {
+    const std::string of = "what " + (armed.owner == 0 ? chart.name : chart.states[armed.owner].path) + " armed ";
+    if (status.fired != armed.fired) {
+      log.message(bindings.engine_ns(), BehaviorLog::Severity::info, chart.name,
+                  of + "acted in tick " + std::to_string(status.fired_tick));
+      if (armed.event != no_event) (void)runner->post(armed.event);
+    }
+    if (status.state == ArmedState::refused) {
+      ++transactions_refused;
+      log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
+                  of + "was refused when its condition was true");
+    }
   }
 }
 
@@ -304,6 +323,8 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
+  if (bindings.armed_count > 0) parts.tell_armed();
+  bindings.take_back_orphans();
   if (snapshot.transactions_refused != bindings.refusals_seen) parts.tell_refused();
   if (bindings.wanted != 0) bindings.bring_in_again();
   if (!parts.run(tick_chart)) {

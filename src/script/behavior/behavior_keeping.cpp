@@ -43,6 +43,33 @@ void put_bindings(const Bindings& bindings, ByteWriter& bytes) {
   bytes.put(bindings.refusals_seen);
 }
 
+// What is armed, with the path of the state that it belongs to.
+void put_armed(const Behavior::Parts& parts, ByteWriter& bytes) {
+  const Bindings& bindings = parts.bindings;
+  bytes.put(bindings.armed_count);
+  for (std::uint32_t i = 0; i < bindings.armed_count; ++i) {
+    const ArmedHere& armed = bindings.armed[i];
+    bytes.put(armed.sequence);
+    bytes.put(armed.which);
+    bytes.put(armed.fired);
+    bytes.put_string(armed.owner == no_state ? "" : parts.chart.states[armed.owner].path);
+    bytes.put_string(armed.event == no_event ? "" : parts.chart.events[static_cast<std::size_t>(armed.event)]);
+  }
+}
+
+// Without the state, or when it is not active, the next tick takes it back.
+void take_armed(Behavior::Parts& parts, ByteReader& bytes) {
+  Bindings& bindings = parts.bindings;
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
+    ArmedHere armed{.sequence = bytes.take<std::uint32_t>(), .which = bytes.take<std::uint16_t>()};
+    armed.fired = bytes.take<std::uint32_t>();
+    const auto owner = std::ranges::find(parts.chart.states, bytes.take_string(), &Chart::State::path);
+    if (owner != parts.chart.states.end()) armed.owner = static_cast<StateIndex>(owner - parts.chart.states.begin());
+    armed.event = parts.chart.find_event(bytes.take_string());
+    if (bytes.ok() && bindings.armed_count < bindings.armed.size()) bindings.armed[bindings.armed_count++] = armed;
+  }
+}
+
 void take_bindings(Bindings& bindings, ByteReader& bytes) {
   bindings.wanted = bytes.take<SetMask>() & bindings.all_sets();
   for (std::uint32_t& sequence : bindings.sent) sequence = bytes.take<std::uint32_t>();
@@ -299,6 +326,7 @@ std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
   put_parameters(parts.lua->core(), bytes);
   bytes.put(std::as_bytes(std::span(&parts.lua->core().random, 1)));
   put_bindings(parts.bindings, bytes);
+  put_armed(parts, bytes);
   parts.runner->keep(bytes);
   return put_machines(parts, bytes);
 }
@@ -313,6 +341,7 @@ bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snaps
   const auto kept = bytes.take_bytes(sizeof going_on.random);
   if (!kept.empty()) std::memcpy(static_cast<void*>(&going_on.random), kept.data(), sizeof going_on.random);
   take_bindings(parts.bindings, bytes);
+  take_armed(parts, bytes);
   if (!parts.runner->restore(bytes)) {
     parts.error.set_message("what was kept does not fit the chart");
     return false;

@@ -41,6 +41,9 @@ constexpr ArgumentType types[] = {{"pose", "kadans.pose|table<string, number>"},
                                   {"name", "string"},
                                   {"setpoint", "string"},
                                   {"preset", "string"},
+                                  {"set", "string"},
+                                  {"condition", "string|table"},
+                                  {"record", "fun(c: kadans.Machine)"},
                                   {"event", "string"},
                                   {"format", "string"},
                                   {"value", "number"},
@@ -140,6 +143,11 @@ constexpr ApiEntry written[] = {
     {"m", "args", "table", "Arguments of the caller"},
     {"m", "wait(seconds)", "nil", "Waits so many seconds; in `run` only"},
     {"m", "emit(event)", "boolean?, string?", "Posts an event; seen from the next tick on; nil, \"queue_full\""},
+    {"m", "on(condition, record, options)", "kadans.Armed?, string?",
+     "Arms a transaction: the control engine sends what the function asks for in the tick in which the condition "
+     "becomes "
+     "true, within { within_s = }; nil, \"queue_full\""},
+    {"m", "use(set)", "nil", "Inside the function of m:on: activates a control set"},
     {"m", "clear_faults()", "boolean?, string?",
      "Clears the faults of the safety layer, but no emergency stop; commands later in the same tick count already; "
      "nil, \"queue_full\""},
@@ -156,6 +164,13 @@ constexpr ApiEntry written[] = {
     {"object", "parameter(name)", "number", "The value of a parameter, in its unit"},
     {"object", "set_gains(preset)", "boolean?, string?", "Sets the parameters of a preset; nil, \"queue_full\""},
     {"object", "set_parameter(name, value)", "boolean?, string?", "Sets one parameter; nil, \"queue_full\""},
+
+    {"object", "hold()", "boolean?, string?", "Lets all its motions come to rest where they are; nil, \"queue_full\""},
+
+    {"armed", "outcome", "'waits'|'done'|'refused'|'expired'|'taken_back'|'over'",
+     "What became of it; 'over': it ended, how is not known any more"},
+    {"armed", "fired", "number", "How often it acted"},
+    {"armed", "cancel()", "boolean?, string?", "Takes it back; nil, \"queue_full\""},
 
     {"motion", "done", "boolean", "Whether the motion is over: arrived, cancelled or refused"},
     {"motion", "outcome", "'moving'|'done'|'cancelled'|'queue_full'|'refused'|'expired'", "How it ended"},
@@ -232,6 +247,7 @@ constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require
                             {"m", "kadans.Machine", "`m`: what a behavior acts through"},
                             {"object", "kadans.Object", "A control object: `m.posture`"},
                             {"motion", "kadans.Motion", "A motion: what `move` and `set` return"},
+                            {"armed", "kadans.Armed", "An armed transaction: what `m:on` returns"},
                             {"s", "kadans.Snapshot", "`s`: the snapshot, read-only"},
                             {"joint", "kadans.Joint", "A joint: `s.joints.l_knee`"},
                             {"base", "kadans.Base", "The trunk: `s.base`"},
@@ -375,6 +391,7 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("m", known.machine.names());
   add("object", known.object_methods);
   add("motion", known.motion_fields);
+  add("armed", known.armed_fields);
   add("s", known.snapshot.names());
   add("joint", s["joints"].fields.begin()->second.names());
   add("base", s["base"].names());

@@ -50,6 +50,11 @@ const Refusal* Bindings::next_refusal() noexcept {
 }
 
 bool Bindings::send(const Command& command) noexcept {
+  if (recording) {
+    if (recorded_count < recorded.size()) recorded[recorded_count] = command;
+    ++recorded_count;
+    return true;
+  }
   if (sender->add(command)) return true;
   refused = true;
   return false;
@@ -61,6 +66,8 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
   now_ns = time_ns - held_ns;
   refused = false;
   motion_count = 0;
+  recording = false;
+  armed_in_tick = 0;
   to.begin(time_ns);
 }
 
@@ -75,6 +82,7 @@ bool Bindings::commit() noexcept {
     if (motion.state == MotionState::pending) motion.state = taken ? MotionState::sent : MotionState::queue_full;
   }
   motion_count = 0;
+  if (!taken && armed_in_tick > 0) forget_armed(sender->last_sequence() + 1);
   return taken;
 }
 

@@ -18,6 +18,15 @@
 
 namespace kadans {
 
+// A transaction that this behavior armed, until it ended or its state was left.
+struct ArmedHere {
+  std::uint32_t sequence = 0;
+  std::uint16_t which = 0;
+  StateIndex owner = no_state;  // the state whose function armed it; when it is left, the transaction is taken back
+  EventId event = no_event;     // to be posted when it acts
+  std::uint32_t fired = 0;      // as last seen
+};
+
 struct Bindings {
   const Catalog* catalog = nullptr;
   std::vector<const ControlSetInfo*> sets;  // for each machine its own set or its caller's; nullptr: every object
@@ -33,6 +42,13 @@ struct Bindings {
   std::array<std::uint32_t, 8> sent{};  // the newest transactions, a ring indexed by sent_count
   std::uint32_t sent_count = 0;
   std::uint32_t refusals_seen = 0;  // transactions_refused of the last snapshot
+  StateIndex caller = 0;            // the state whose function runs
+  bool recording = false;           // the function of m:on runs: what it asks for is recorded, not sent
+  std::array<Command, max_armed_commands> recorded{};
+  std::uint32_t recorded_count = 0;  // may be greater than its room
+  std::array<ArmedHere, max_armed> armed{};
+  std::uint32_t armed_count = 0;
+  std::uint16_t armed_in_tick = 0;
 
   const ControlSetInfo* set_of(std::size_t machine) const noexcept {
     return machine < sets.size() ? sets[machine] : nullptr;
@@ -45,6 +61,16 @@ struct Bindings {
   void bring_in_again() noexcept;
   // The next refusal in the snapshot of one of this behavior's transactions; nullptr when all have been returned.
   const Refusal* next_refusal() noexcept;
+  // Notes the transaction that was just armed.
+  const ArmedHere& note_armed(EventId event) noexcept;
+  // A state was left: takes back what it armed.
+  void take_back(StateIndex owner) noexcept;
+  // After a reload: takes back what belongs to states that are not active.
+  void take_back_orphans() noexcept;
+  // The next one that acted, or ended, since the last call; false: there is none.
+  bool look_at_armed(ArmedHere& told, ArmedStatus& status) noexcept;
+  void forget_armed(std::uint32_t sequence) noexcept;  // its transaction was refused when it arrived
+  void drop_armed(std::uint32_t index) noexcept;
   // False when the queue has no place; then the whole transaction will be refused.
   bool send(const Command& command) noexcept;
   void begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept;
@@ -60,6 +86,12 @@ void open_log(lua_State* state);  // [-1 +1] adds `log` to the module's table at
 // [-0 +1] Pushes the handle of a control object: m.posture.
 void push_object(lua_State* state, std::uint32_t object);
 void open_objects(lua_State* state);
+
+// nullptr: its place was taken by another one, or it has not arrived.
+const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, std::uint32_t which) noexcept;
+// [-0 +0] Adds m:on and m:use to the machine's table at the top of the stack.
+void open_armed(lua_State* state, const Chart& chart);
+void open_armed_handles(lua_State* state);
 
 // Makes `m` for each machine, and `s`. Stores their references in the runner's tables. Raises.
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables);

@@ -74,6 +74,16 @@ int set_gains(lua_State* state) {
   return luaL_error(state, "'%s' has no gains '%s'%s", object.name.c_str(), name, hint.data());
 }
 
+// object:hold() -> true | nil, "queue_full": all its motions come to rest where they are.
+int hold(lua_State* state) {
+  std::uint32_t number = 0;
+  const ObjectInfo& object = check_object(state, number);
+  for (const SetpointId id : object.setpoints) {
+    if (!bindings_of(state).send({.kind = CommandKind::cancel_motion, .index = id})) return queue_full(state);
+  }
+  return lua_pushboolean(state, 1), 1;
+}
+
 }  // namespace
 
 const ObjectInfo& check_object(lua_State* state, std::uint32_t& number) {
@@ -108,8 +118,11 @@ void push_object(lua_State* state, std::uint32_t object) {
 }
 
 void open_objects(lua_State* state) {
-  const luaL_Reg methods[] = {
-      {"setpoint", setpoint}, {"parameter", parameter}, {"set_gains", set_gains}, {"set_parameter", set_parameter}};
+  const luaL_Reg methods[] = {{"setpoint", setpoint},
+                              {"parameter", parameter},
+                              {"set_gains", set_gains},
+                              {"set_parameter", set_parameter},
+                              {"hold", hold}};
   lua_pushlightuserdata(state, const_cast<char*>(&object_key));
   lua_createtable(state, 0, 2);
   lua_createtable(state, 0, 8);
@@ -159,6 +172,7 @@ int refuse_read(lua_State* state) {
 
 // m:clear_faults() -> true | nil, "queue_full". What is asked for behind it in the same tick counts already.
 int clear_faults(lua_State* state) {
+  if (bindings_of(state).recording) return luaL_error(state, "what waits for a condition cannot clear faults");
   if (bindings_of(state).send({.kind = CommandKind::clear_faults})) return lua_pushboolean(state, 1), 1;
   return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
 }
@@ -193,6 +207,8 @@ void push_copy_of_reference(lua_State* state, int reference) {
 }
 
 int emit(lua_State* state) {
+  if (bindings_of(state).recording)
+    return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
   const auto* chart = static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
   const EventId event = chart->find_event(luaL_checkstring(state, 2));
   if (event == no_event || event == run_done_event) {
@@ -224,6 +240,7 @@ void push_machine_content(lua_State* state, const Chart& chart, const Bindings& 
   lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
   lua_pushcclosure(state, emit, 1);
   lua_setfield(state, -2, "emit");
+  open_armed(state, chart);
 }
 
 const ControlSetInfo* find_set(Behavior::Parts& parts, const Chart::Machine& machine) {
@@ -278,6 +295,7 @@ void check_together(Behavior::Parts& parts, std::size_t number) {
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables) {
   open_objects(state);
   open_motions(state);
+  open_armed_handles(state);
   tables.machines.resize(chart.machines.size());
   for (std::size_t i = 0; i < chart.machines.size(); ++i) {
     push_machine_content(state, chart, bindings, i);

@@ -134,6 +134,7 @@ void ChartRunner::leave(lua_State* state, StateIndex index) {
   run.outcome = index == 0 ? run.outcome : no_event;
   if (chart_.states[index].kind == Chart::Kind::final_state) go_on(chart_.states[index].parent);
   cancel_run(state, index);
+  bindings_of(state).take_back(index);
   if (chart_.states[index].exit != Chart::no_function) call(state, chart_.states[index].exit, index);
 }
 
@@ -386,6 +387,7 @@ void ChartRunner::set_time(lua_State* state, StateIndex index) {
 
 void ChartRunner::call(lua_State* state, int function, StateIndex index) {
   set_time(state, index);
+  bindings_of(state).caller = index;
   core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, function);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].handle);
@@ -448,6 +450,7 @@ void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   int arguments = 0;
   if (!ready(state, run, thread, arguments)) return;
   set_time(state, index);
+  bindings_of(state).caller = index;
   LuaCore& core = core_of(state);
   run.thread_started = true;
   core.called = chart_.states[index].run;

@@ -143,6 +143,7 @@ KnownNames read_known_names(Behavior::Parts& parts) {
     throw InputError({error.file.data(), error.line, 0, error.message.data()});
   }
   known.motion_fields = {"cancel", "done", "outcome", "reason", "wait"};
+  known.armed_fields = {"cancel", "fired", "outcome"};
   for (const ScriptParameter& parameter : parts.lua->core().parameters) {
     known.parameters[parameter.chunk].push_back(parameter.name);
   }

@@ -34,6 +34,7 @@ int wait_for_motion(lua_State* state) {
 int cancel(lua_State* state) {
   Motion* motion = check_motion(state, "cancel");
   Bindings& bindings = bindings_of(state);
+  if (bindings.recording) return luaL_error(state, "inside the function of m:on an object's hold() ends its motions");
   observe(*motion, *bindings.snapshot, bindings.now_ns);
   if (motion->over()) return lua_pushboolean(state, 1), 1;
   for (std::uint32_t i = 0; i < motion->count; ++i) {

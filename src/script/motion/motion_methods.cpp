@@ -30,6 +30,7 @@ Motion* start_motion(lua_State* state, std::uint32_t object, std::uint32_t count
 
 int finish_motion(lua_State* state, Motion* motion) {
   Bindings& bindings = bindings_of(state);
+  if (bindings.recording) return lua_pushboolean(state, 1), 1;  // it begins when the condition is true
   bindings.motions[bindings.motion_count++] = motion;
   return 1;
 }
