@@ -189,6 +189,16 @@ constexpr ChargeCase cases[] = {
     {"P.__newindex", "return pcall, function() P.depth = 1 end"},
     {"m.__index.clear_faults", "return m.clear_faults, m"},
     {"m.__index.emit", "return pcall, m.emit, m, ('x'):rep(60000)"},
+    {"m.__index.on",
+     "return pcall, m.on, m, { all = { { after_s = 1 }, { after_s = 1 }, { arrived = m.posture }, { arrived = "
+     "m.posture } } "
+     "}, function(c) c.posture:hold() end, { within_s = 1 }"},
+    {"m.__index.on", "return pcall, m.on, m, ('x'):rep(200), function(c) c.posture:hold() end, { within_s = 1 }"},
+    {"m.__index.on",
+     "return pcall, m.on, m, { any = { { after_s = 1 }, { after_s = 1 }, { after_s = 1 }, (' '):rep(60000) } }, "
+     "function(c) "
+     "end, { within_s = 1 }"},
+    {"m.__index.use", "return pcall, m.use, m, ('x'):rep(200)"},
     {"m.__index.wait", "return pcall, m.wait, m, 1"},
     {"m.__index.wait", "return pcall, function() return m[('x'):rep(200)] end"},
     {"m.__newindex", "return pcall, function() m[('x'):rep(60000)] = 1 end"},
@@ -219,6 +229,7 @@ constexpr ChargeCase cases[] = {
     {"object.__index.setpoint", "return pcall, m.posture.setpoint, m.posture, 'r_shoulder_pitch.position_rad'"},
     {"object.__index.parameter", "return m.posture.parameter, m.posture, 'r_shoulder_pitch.kp_Nm_per_rad'"},
     {"object.__index.set_parameter", "return m.posture.set_parameter, m.posture, 'r_shoulder_pitch.kp_Nm_per_rad', 1"},
+    {"object.__index.hold", "return m.posture.hold, m.posture"},
     {"object.__index.set_gains", "return m.posture.set_gains, m.posture, 'stiff'"},
     {"object.__index.set_gains", "return pcall, m.posture.set_gains, m.posture, ('x'):rep(200)"},
     {"s.__newindex", "return pcall, function() s.x = 1 end"},

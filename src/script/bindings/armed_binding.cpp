@@ -15,7 +15,7 @@ namespace kadans {
 namespace {
 
 const char armed_key = 0;
-constexpr double arm_instructions = 2000, condition_instructions = 500;
+constexpr double arm_instructions = 2000, condition_instructions = 500, letter_instructions = 1;
 
 // The data behind the handle that m:on returns.
 struct ArmedHandle {
@@ -77,7 +77,10 @@ Command signal_condition(lua_State* state) {
 // The condition at the top of the stack.
 Command read_condition(lua_State* state) {
   core_of(state).budget.charge(state, condition_instructions);
-  if (lua_type(state, -1) == LUA_TSTRING) return signal_condition(state);
+  if (lua_type(state, -1) == LUA_TSTRING) {
+    core_of(state).budget.charge(state, letter_instructions * static_cast<double>(lua_objlen(state, -1)));
+    return signal_condition(state);
+  }
   if (!lua_istable(state, -1)) refuse_condition(state, "this is no condition");
   Command command{.kind = CommandKind::condition};
   lua_getfield(state, -1, "after_s");

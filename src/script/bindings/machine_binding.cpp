@@ -14,6 +14,7 @@ namespace kadans {
 namespace {
 
 const char object_key = 0;
+constexpr double command_instructions = 20;
 
 // object:setpoint(name) -> number: where it is on its way now.
 int setpoint(lua_State* state) {
@@ -78,6 +79,7 @@ int set_gains(lua_State* state) {
 int hold(lua_State* state) {
   std::uint32_t number = 0;
   const ObjectInfo& object = check_object(state, number);
+  core_of(state).budget.charge(state, command_instructions * static_cast<double>(object.setpoints.size()));
   for (const SetpointId id : object.setpoints) {
     if (!bindings_of(state).send({.kind = CommandKind::cancel_motion, .index = id})) return queue_full(state);
   }

@@ -1,0 +1,173 @@
+// Transactions that a behavior arms: m:on. What the control engine does with them is tested in tests/engine.
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "kadans/signal/signal.h"
+#include "script/fixture.h"
+
+using namespace kadans;
+using namespace kadans::script_test;
+
+namespace {
+
+double contact = 0, height_m = 0;
+
+// A robot with two signals; `code` runs with m and s in `enter` of state "a". Event "touched" leads to "b".
+struct ArmedStage : Stage {
+  explicit ArmedStage(const std::string& code, const std::string& out = "{ on = 'touched', to = 'b' },")
+      : Stage(
+            "local k = require 'kadans'\nreturn k.behavior 'test' { controls = 'posture', initial = 'a',\n"
+            "k.state 'a' { enter = function(m, s)\n" +
+            code + "\nend,\n" + out + " }, k.state 'b' { endless = true } }\n") {
+    robot.catalog.signals.add({"foot.right.contact", "", ""}, &contact);
+    robot.catalog.signals.add({"base.height_m", "m", ""}, &height_m);
+    robot.catalog.signals.add({"plant.base.height_m", "m", ""}, &height_m);
+  }
+  // What the control engine would have told.
+  void tell(ArmedState state, std::uint32_t fired) {
+    snapshot.armed[0] = {
+        .sequence = sender.last_sequence(), .which = 0, .state = state, .fired = fired, .fired_tick = 77};
+  }
+  std::string error() const { return behavior->error().text(); }
+};
+
+std::string error_of(const std::string& code) {
+  ArmedStage stage(code);
+  stage.tick();
+  return stage.error();
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("m:on sends the condition and what its function asks for, and nothing of it happens at once") {
+  ArmedStage stage(
+      "m:on('foot.right.contact', function(c) c:use('gesture') c.posture:set_parameter('l_knee.kp_Nm_per_rad', 55) "
+      "end, "
+      "{ within_s = 0.5 })\n"
+      "m.posture:set('l_knee.position_rad', 1)");
+  stage.tick();
+  REQUIRE(stage.applied.size() == 1 + 1 + 1 + 2 + 1);
+  const Command& arm = stage.applied[1];
+  CHECK(stage.applied[0].count == 5);
+  CHECK(arm.kind == CommandKind::arm);
+  CHECK(arm.index == 1);
+  CHECK(arm.count == 3);
+  CHECK(arm.sequence == 0);
+  CHECK(arm.duration_s == 0.5);
+  CHECK(stage.applied[2].kind == CommandKind::condition);
+  CHECK(stage.applied[2].time_ns == signal_key("foot.right.contact"));
+  CHECK(stage.applied[2].count == static_cast<std::uint32_t>(ConditionKind::above));
+  CHECK(stage.applied[2].value == 0.5);
+  CHECK(stage.applied[3].kind == CommandKind::switch_set);
+  CHECK(stage.applied[3].index == 1);
+  CHECK(stage.applied[4].value == 55);
+  CHECK(stage.applied[5].kind == CommandKind::set_point);
+}
+
+TEST_CASE("a condition is a signal, a time, the end of motions, or a few of them") {
+  ArmedStage stage(
+      "m:on({ any = { 'not foot.right.contact', 'base.height_m < 0.3', { after_s = 2 }, { arrived = m.posture } } },\n"
+      "function(c) c.posture:hold() end, { within_s = 3, every_time = true })");
+  stage.tick();
+  CHECK(stage.error() == "");
+  CHECK(stage.applied[1].index == 4);
+  CHECK(stage.applied[1].sequence == (arm_any | arm_every_time));
+  const auto kind = [&](std::size_t i) { return static_cast<ConditionKind>(stage.applied[i].count); };
+  CHECK(kind(2) == ConditionKind::below);
+  CHECK(stage.applied[2].value == 0.5);
+  CHECK(kind(3) == ConditionKind::below);
+  CHECK(stage.applied[3].value == 0.3);
+  CHECK(stage.applied[3].time_ns == signal_key("base.height_m"));
+  CHECK(kind(4) == ConditionKind::after);
+  CHECK(stage.applied[4].value == 2);
+  CHECK(kind(5) == ConditionKind::arrived);
+  CHECK(stage.commands(CommandKind::cancel_motion) == 12);
+}
+
+TEST_CASE("when it acts, the behavior gets its event and the log a line, once each time") {
+  ArmedStage stage("m:on('foot.right.contact', function(c) c.posture:hold() end, { within_s = 9, event = 'touched' })");
+  stage.tick();
+  stage.tell(ArmedState::waits, 0);
+  stage.tick(3);
+  CHECK(stage.behavior->state() == "a");
+  stage.tell(ArmedState::done, 1);
+  stage.tick(2);
+  CHECK(stage.behavior->state() == "b");
+  CHECK(stage.said() == "what a armed acted in tick 77\n");
+  stage.tick(5);
+  CHECK(stage.said() == "what a armed acted in tick 77\n");
+}
+
+TEST_CASE("the handle says what became of it, and takes it back") {
+  ArmedStage stage(
+      "m.vars.armed = m:on('foot.right.contact', function(c) c.posture:hold() end, { within_s = 9 })\n"
+      "print(m.vars.armed.outcome, m.vars.armed.fired)",
+      "{ when = function(s, m) return m.vars.armed.fired == 2 end, to = 'b', action = function(m)\n"
+      "print(m.vars.armed.outcome) print(m.vars.armed:cancel()) end },");
+  stage.tick();
+  CHECK(stage.error() == "");
+  stage.tell(ArmedState::waits, 2);
+  stage.tick(2);
+  CHECK(has(stage.said(), "waits 0\n"));
+  CHECK(has(stage.said(), "waits\ntrue\n"));
+}
+
+TEST_CASE("what a state armed is taken back when the state is left") {
+  ArmedStage stage("m:on('foot.right.contact', function(c) c.posture:hold() end, { within_s = 9 })",
+                   "{ after = 0.05, to = 'b' },");
+  stage.tick();
+  const std::uint32_t number = stage.sender.last_sequence();
+  stage.tell(ArmedState::waits, 0);
+  stage.tick(10);
+  REQUIRE(stage.commands(CommandKind::disarm) == 1);
+  const auto disarm = std::ranges::find(stage.applied, CommandKind::disarm, &Command::kind);
+  CHECK(disarm->sequence == number);
+  CHECK(disarm->index == 0);
+}
+
+TEST_CASE("one that is refused, expired or gone is forgotten") {
+  for (const ArmedState end : {ArmedState::refused, ArmedState::expired, ArmedState::none}) {
+    ArmedStage stage("m:on('foot.right.contact', function(c) c.posture:hold() end, { within_s = 9 })",
+                     "{ after = 0.05, to = 'b' },");
+    stage.tick();
+    stage.tell(end, 0);
+    stage.tick(10);
+    CHECK(stage.commands(CommandKind::disarm) == 0);
+    CHECK(stage.behavior->transactions_refused() == (end == ArmedState::refused ? 1 : 0));
+  }
+}
+
+TEST_CASE("a mistake in m:on is told with its line, and nothing is recorded any more") {
+  const std::string what = ", function(c) c.posture:hold() end, { within_s = 1 })";
+  CHECK(has(error_of("m:on('foot.rihgt.contact'" + what),
+            "test.lua:4: m:on: unknown signal 'foot.rihgt.contact', did you mean 'foot.right.contact'"));
+  CHECK(has(error_of("m:on('plant.base.height_m > 1'" + what), "is the truth of a simulation, which no robot knows"));
+  CHECK(has(error_of("m:on('base.height_m > high'" + what), "behind < or > stands a number"));
+  CHECK(has(error_of("m:on(7" + what), "this is no condition; a condition is \"foot.right.contact\""));
+  CHECK(has(error_of("m:on({ all = {} }" + what), "there are too many conditions, or none"));
+  CHECK(has(error_of("m:on({ after_s = -1 }" + what), "after_s is in 0..3600 s"));
+  CHECK(has(error_of("m:on('base.height_m > 1', function(c) end, { within_s = 1 })"), "the function asks for nothing"));
+  CHECK(has(error_of("m:on('base.height_m > 1', nil, { within_s = 1 })"), "needs a function that says what to do"));
+  CHECK(has(error_of("m:on('base.height_m > 1', function(c) c.posture:hold() end)"), "{ within_s = seconds }"));
+  CHECK(has(error_of("m:on('base.height_m > 1', function(c) c.posture:hold() end, { within_s = 0 })"), "0..3600 s"));
+  CHECK(has(error_of("m:on('base.height_m > 1', function(c) c.posture:hold() end, { within = 1 })"), "m:on takes {"));
+  CHECK(has(error_of("m:on('base.height_m > 1', function(c) c:emit('touched') end, { within_s = 1 })"),
+            "event = \"name\""));
+  CHECK(has(error_of("m:on('base.height_m > 1', function(c) c:clear_faults() end, { within_s = 1 })"),
+            "cannot clear faults"));
+  CHECK(has(error_of("m:on('base.height_m > 1', function(c) c:use('gestures') end, { within_s = 1 })"),
+            "did you mean 'gesture'"));
+  CHECK(
+      has(error_of("m:on('base.height_m > 1', function(c) for i = 1, 7 do c.posture:hold() end end, { within_s = 1 })"),
+          "more than 63 commands"));
+  CHECK(has(error_of("m:use('gesture')"), "use() works inside the function of m:on"));
+  ArmedStage stage(
+      "pcall(m.on, m, 'base.height_m > 1', function(c) c.posture:hold() error('no') end, { within_s = 1 })\n"
+      "m.posture:set('l_knee.position_rad', 1)");
+  stage.tick();
+  CHECK(stage.commands(CommandKind::set_point) == 1);
+  CHECK(stage.commands(CommandKind::cancel_motion) == 0);
+}
