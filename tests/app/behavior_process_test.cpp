@@ -66,6 +66,31 @@ TEST_CASE(
   CHECK(has(read(project / "err"), "supervisor: stop"));
 }
 
+TEST_CASE("a reflex that a behavior process arms acts in the same tick as one of a thread") {
+  const auto project = project_copy("process_reflex");
+  write(project / "behaviors/tulip/reflex.lua", R"(local k = require "kadans"
+return k.behavior "reflex" {
+  controls = "posture", initial = "bend",
+  k.state "bend" {
+    enter = function(m)
+      m:on("joint.l_knee.position_rad > 0.1", function(c) c.posture:hold() end, { within_s = 5, event = "bent" })
+      m.posture:move({ l_knee = 0.6 }, { time_s = 1 })
+    end,
+    { on = "bent", to = "held" },
+  },
+  k.state "held" { { after = 0.5, to = "over", action = function(_, s)
+    k.log.info("stays at %.3f rad", s.joints.l_knee.position_rad) end } },
+  k.final "over" { outcome = "done" },
+}
+)");
+  const std::string play = "run config/tulip/robot.json --plant ideal --play reflex --duration 2 -v ";
+  const Outcome threads = run(play + "--threads-on-virtual-time", project);
+  const Outcome process = run(play + on_virtual_time, project);
+  CHECK(has(said(threads.err), "what bend armed acted in tick "));
+  CHECK(has(said(threads.err), "stays at 0.1"));
+  CHECK(said(process.err) == said(threads.err));
+}
+
 TEST_CASE("run refuses a wrong behavior before anything moves, wherever it would play") {
   const auto project = project_copy("process_wrong");
   REQUIRE(edit(project / "behaviors/tulip/squat.lua", "to = \"rest\"", "to = \"rset\""));

@@ -117,6 +117,7 @@ struct ChargedScript::Parts {
 
   void begin() {
     behavior.bindings.begin(engine.sender, engine.snapshot, engine.snapshot.time_ns);
+    behavior.bindings.armed_count = 0;
     behavior.snapshot_tables.refill(behavior.lua->get(), engine.snapshot, 0);
   }
 };
@@ -127,6 +128,7 @@ ChargedScript::ChargedScript() : parts_(std::make_unique<Parts>()) {
   load_behavior(parts_->behavior);
   parts_->begin();
   const auto keep = [](lua_State* state) {
+    static_cast<Behavior::Parts*>(lua_touserdata(state, 1))->runner->tick(state, 0);  // its state is active
     if (luaL_loadstring(state, "local k = require 'kadans' return k.params { depth = 0.1 }, k.call 'x'") != 0)
       return lua_error(state);
     push_environment(state);
@@ -136,7 +138,7 @@ ChargedScript::ChargedScript() : parts_(std::make_unique<Parts>()) {
     lua_setfield(state, LUA_REGISTRYINDEX, "test.parameters");
     return 0;
   };
-  if (!parts_->behavior.lua->call(keep, nullptr, unlimited, 0))
+  if (!parts_->behavior.lua->call(keep, &parts_->behavior, unlimited, 0))
     throw InputError({.message = parts_->behavior.lua->error().text()});
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/assembly.h"
 #include "app/terminal.h"
+#include "estimate/estimator.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/placement.h"
 #include "run_threads.h"
@@ -80,6 +81,9 @@ int run_behavior_process(const RunOptions& options) {
   const Robot robot = read_robot(scenario.robot, scenario.plugins);
   const std::unique_ptr<ControlSystem> system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));  // declares parameters too
+  // The names of what the control engine measures, for conditions (m:on); the values stay in its own process.
+  const auto measured = std::make_unique<Snapshot>();
+  declare_signals(system->catalog.signals, robot.config.model, robot.config.estimate, *measured);
   SpokenLines lines(link);
   BehaviorLog log{&lines};
   const std::unique_ptr<ScriptHost> host =
