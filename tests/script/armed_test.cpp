@@ -20,7 +20,8 @@ struct ArmedStage : Stage {
             "local k = require 'kadans'\nreturn k.behavior 'test' { controls = 'posture', initial = 'a',\n"
             "k.state 'a' { enter = function(m, s)\n" +
             code + "\nend,\n" + out + " }, k.state 'b' { endless = true } }\n") {
-    robot.catalog.signals.add({"foot.right.contact", "", ""}, &contact);
+    for (const char* foot : {"foot.l_sole.contact", "foot.l_sole.force_N", "foot.r_sole.contact"})
+      robot.catalog.signals.add({foot, "", ""}, &contact);
     robot.catalog.signals.add({"base.height_m", "m", ""}, &height_m);
     robot.catalog.signals.add({"plant.base.height_m", "m", ""}, &height_m);
   }
@@ -58,13 +59,24 @@ TEST_CASE("m:on sends the condition and what its function asks for, and nothing 
   CHECK(arm.sequence == 0);
   CHECK(arm.duration_s == 0.5);
   CHECK(stage.applied[2].kind == CommandKind::condition);
-  CHECK(stage.applied[2].time_ns == signal_key("foot.right.contact"));
+  CHECK(stage.applied[2].time_ns == signal_key("foot.r_sole.contact"));
   CHECK(stage.applied[2].count == static_cast<std::uint32_t>(ConditionKind::above));
   CHECK(stage.applied[2].value == 0.5);
   CHECK(stage.applied[3].kind == CommandKind::switch_set);
   CHECK(stage.applied[3].index == 1);
   CHECK(stage.applied[4].value == 55);
   CHECK(stage.applied[5].kind == CommandKind::set_point);
+}
+
+TEST_CASE("what is armed may switch to another control set and command its objects") {
+  ArmedStage stage(
+      "m:on('foot.right.contact', function(c) c:use('gesture') c.arms:set('l_shoulder_pitch.position_rad', 1) end, "
+      "{ within_s = 1 })\n"
+      "print(pcall(function() return m.arms end))");
+  stage.tick();
+  CHECK(has(stage.said(), "false"));
+  CHECK(stage.commands(CommandKind::switch_set) == 1);
+  CHECK(stage.commands(CommandKind::set_point) == 1);
 }
 
 TEST_CASE("a condition is a signal, a time, the end of motions, or a few of them") {
@@ -142,8 +154,8 @@ TEST_CASE("one that is refused, expired or gone is forgotten") {
 
 TEST_CASE("a mistake in m:on is told with its line, and nothing is recorded any more") {
   const std::string what = ", function(c) c.posture:hold() end, { within_s = 1 })";
-  CHECK(has(error_of("m:on('foot.rihgt.contact'" + what),
-            "test.lua:4: m:on: unknown signal 'foot.rihgt.contact', did you mean 'foot.right.contact'"));
+  CHECK(has(error_of("m:on('foot.right.contatc'" + what),
+            "test.lua:4: m:on: unknown signal 'foot.r_sole.contatc', did you mean 'foot.r_sole.contact'"));
   CHECK(has(error_of("m:on('plant.base.height_m > 1'" + what), "is the truth of a simulation, which no robot knows"));
   CHECK(has(error_of("m:on('base.height_m > high'" + what), "behind < or > stands a number"));
   CHECK(has(error_of("m:on(7" + what), "this is no condition; a condition is \"foot.right.contact\""));

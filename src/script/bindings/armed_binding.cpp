@@ -16,6 +16,7 @@ namespace {
 
 const char armed_key = 0;
 constexpr double arm_instructions = 2000, condition_instructions = 500, letter_instructions = 1;
+constexpr std::size_t hints_max = 40;  // signals among which the one that was meant is looked for
 
 // The data behind the handle that m:on returns.
 struct ArmedHandle {
@@ -38,17 +39,57 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text;
 }
 
-void check_signal(lua_State* state, std::string_view name) {
+using SignalName = std::array<char, 128>;
+
+std::string_view part_of(std::string_view name, std::size_t from) noexcept {
+  return name.substr(from, name.find('.', from) - from);
+}
+
+// A signal as the table names it: a foot has the name of its link there, and that of `s.feet` here.
+SignalName table_name(const Bindings& bindings, std::string_view name) noexcept {
+  constexpr std::size_t foot_at = 5;  // behind "foot."
+  SignalName text{};
+  std::string_view foot = name.starts_with("foot.") ? part_of(name, foot_at) : std::string_view{}, link = foot;
+  const auto known = std::ranges::find(*bindings.feet, foot);
+  if (known != bindings.feet->end()) {
+    const SignalTable& signals = bindings.catalog->signals;
+    auto before = known - bindings.feet->begin();
+    std::string_view last;
+    for (SignalId id = 0; id < signals.size(); ++id) {
+      const std::string_view other = signals.info(id).name;
+      if (!other.starts_with("foot.") || part_of(other, foot_at) == last) continue;
+      last = part_of(other, foot_at);
+      if (before-- == 0) link = last;
+    }
+  }
+  const std::string_view rest = foot.empty() ? name : name.substr(foot_at + foot.size());
+  std::snprintf(text.data(), text.size(), "%s%.*s%.*s", foot.empty() ? "" : "foot.", static_cast<int>(link.size()),
+                link.data(), static_cast<int>(rest.size()), rest.data());
+  return text;
+}
+
+// The key of a signal that behaviors may know. The text is at the top of the stack.
+std::int64_t check_signal(lua_State* state, std::string_view name) {
   const Bindings& bindings = bindings_of(state);
   for (const char* truth : {"plant.", "reference.", "world."}) {
     if (name.starts_with(truth))
       luaL_error(state, "m:on: '%s' is the truth of a simulation, which no robot knows", lua_tostring(state, -1));
   }
-  if (bindings.catalog->signals.find_key(signal_key(name))) return;
-  char wrong[96];
-  std::snprintf(wrong, sizeof wrong, "%.*s", static_cast<int>(std::min<std::size_t>(name.size(), 90)), name.data());
-  const Hint hint = make_hint(state, wrong, [&](auto& names) { names = bindings.catalog->signals.names(); });
-  luaL_error(state, "m:on: unknown signal '%s'%s", wrong, hint.data());
+  const SignalName known = table_name(bindings, name);
+  if (bindings.catalog->signals.find_key(signal_key(known.data()))) return signal_key(known.data());
+  const std::string_view wanted = known.data(), topic = part_of(wanted, 0);
+  const std::string_view owner = part_of(wanted, std::min(wanted.size(), topic.size() + 1));
+  const std::string_view quantity = wanted.substr(std::min(wanted.rfind('.'), wanted.size()));
+  const Hint hint = make_hint(state, known.data(), [&](auto& names) {
+    for (SignalId id = 0; id < bindings.catalog->signals.size(); ++id) {
+      const std::string& other = bindings.catalog->signals.info(id).name;
+      if (part_of(other, 0) != topic || other.size() == topic.size()) continue;
+      const bool near = part_of(other, topic.size() + 1) == owner || std::string_view(other).ends_with(quantity);
+      if (near && names.size() < hints_max) names.push_back(other);
+    }
+  });
+  luaL_error(state, "m:on: unknown signal '%s'%s", known.data(), hint.data());
+  return 0;
 }
 
 // "not foot.right.contact", "joint.l_knee.position_rad > 0.3"; the text is at the top of the stack.
@@ -68,9 +109,8 @@ Command signal_condition(lua_State* state) {
     kind = ConditionKind::below;
     text = trimmed(text.substr(4));
   }
-  check_signal(state, text);
   command.count = static_cast<std::uint32_t>(kind);
-  command.time_ns = signal_key(text);
+  command.time_ns = check_signal(state, text);
   return command;
 }
 

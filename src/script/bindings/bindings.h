@@ -27,8 +27,11 @@ struct ArmedHere {
   std::uint32_t fired = 0;      // as last seen
 };
 
+inline const std::vector<std::string> no_feet;
+
 struct Bindings {
   const Catalog* catalog = nullptr;
+  const std::vector<std::string>* feet = &no_feet;  // their names in `s.feet`, in the snapshot's order
   std::vector<const ControlSetInfo*> sets;  // for each machine its own set or its caller's; nullptr: every object
   const Snapshot* snapshot = nullptr;
   CommandSender* sender = nullptr;

@@ -164,8 +164,10 @@ int emit(lua_State* state);  // upvalue: the chart
 int refuse_read(lua_State* state) {
   const Bindings& bindings = bindings_of(state);
   const ControlSetInfo* set = bindings.set_of(static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(2))));
-  for (const ObjectInfo& object : bindings.catalog->objects) {
+  for (std::uint32_t i = 0; i < bindings.catalog->objects.size(); ++i) {
+    const ObjectInfo& object = bindings.catalog->objects[i];
     if (lua_type(state, 2) != LUA_TSTRING || object.name != lua_tostring(state, 2) || set == nullptr) continue;
+    if (bindings.recording) return push_object(state, i), 1;  // m:on may switch to its set
     return luaL_error(state, "control object '%s' is not in this behavior's control set, '%s'", object.name.c_str(),
                       set->name.c_str());
   }
