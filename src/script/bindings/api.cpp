@@ -139,7 +139,9 @@ constexpr ApiEntry written[] = {
     {"m", "vars", "table", "The behavior's own plain data; a reload keeps it"},
     {"m", "args", "table", "Arguments of the caller"},
     {"m", "wait(seconds)", "nil", "Waits so many seconds; in `run` only"},
-    {"m", "emit(event)", "boolean?, string?", "Posts an event; seen from the next tick on; nil, \"queue_full\""},
+    {"m", "emit(event)", "boolean?, string?",
+     "Sends an event; what waits for it takes it in this tick; from `during` and `run` in the next; nil, "
+     "\"queue_full\""},
     {"m", "clear_faults()", "boolean?, string?",
      "Clears the faults of the safety layer, but no emergency stop; commands later in the same tick count already; "
      "nil, \"queue_full\""},

@@ -142,7 +142,7 @@ int wait(lua_State* state) {
   return lua_yield(state, 0);
 }
 
-// m:emit(event) -> true | nil, "queue_full". The behavior sees it from its next tick on.
+// m:emit(event) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the next.
 int emit(lua_State* state);  // upvalue: the chart
 
 // Reading what m does not have; upvalues: its content, its number.
@@ -195,7 +195,11 @@ void push_copy_of_reference(lua_State* state, int reference) {
 int emit(lua_State* state) {
   const auto* chart = static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
   const EventId event = chart->find_event(luaL_checkstring(state, 2));
-  if (event == no_event || event == run_done_event) {
+  if (event != no_event && chart->made_by_runner(event)) {
+    return luaL_error(state, "'%s' says how a state or a run ended, it cannot be emitted: give the event another name",
+                      lua_tostring(state, 2));
+  }
+  if (event == no_event) {
     return luaL_error(state, "nothing in this behavior waits for the event '%s'", lua_tostring(state, 2));
   }
   if (bindings_of(state).runner->post(event)) return lua_pushboolean(state, 1), 1;

@@ -13,7 +13,7 @@
 namespace kadans {
 namespace {
 
-enum Bit : std::uint8_t { bit_active = 1, bit_entering = 2, bit_run_done = 4 };
+enum Bit : std::uint8_t { bit_active = 1, bit_entering = 2, bit_run_done = 4, bit_passed_over = 8 };
 
 bool same_kind(const Chart::State& one, const Chart::State& other) noexcept {
   return one.kind == other.kind && one.machine_root == other.machine_root;
@@ -61,13 +61,13 @@ void ChartRunner::keep(ByteWriter& bytes) const {
     if (!told(run)) continue;
     put_state(chart_.states[i], bytes);
     bytes.put(static_cast<std::uint8_t>((run.active ? bit_active : 0) | (run.entering ? bit_entering : 0) |
-                                        (run.run_done ? bit_run_done : 0)));
+                                        (run.run_done ? bit_run_done : 0) | (run.passed_over ? bit_passed_over : 0)));
     bytes.put(run.entered_ns);
     put_event(run.outcome);
   }
   keep_histories(bytes);
-  bytes.put(event_count_);
-  for (std::uint32_t i = 0; i < event_count_; ++i) put_event(events_[(event_first_ + i) % events_.size()]);
+  bytes.put(static_cast<std::uint32_t>(queue_.size()));
+  for (std::size_t i = 0; i < queue_.size(); ++i) put_event(queue_[i].id);  // between ticks no end of a state waits
 }
 
 void ChartRunner::keep_histories(ByteWriter& bytes) const {
@@ -94,7 +94,7 @@ bool ChartRunner::restore(ByteReader& bytes) {
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
     const EventId event = chart_.find_event(text_of(bytes));
-    if (event == no_event || !post(event)) ++unhandled_;
+    if (event == no_event || chart_.made_by_runner(event) || !post(event)) ++unhandled_;
   }
   list_active();
   fill_gaps();
@@ -115,6 +115,7 @@ bool ChartRunner::restore_state(ByteReader& bytes, std::vector<bool>& listed) {
   StateRun& run = run_[index];
   run.outcome = outcome;
   run.run_done = (bits & bit_run_done) != 0;
+  run.passed_over = (bits & bit_passed_over) != 0;
   run.entered_ns = entered_ns;
   if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return true;
   const auto there = [&](StateIndex i) { return run_[i].active || run_[i].entering; };

@@ -21,9 +21,11 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
       tables_(tables),
       sink_(sink),
       run_(chart.states.size()),
-      guards_(chart.transitions.size(), Guard::unknown),
+      guards_(chart.transitions.size()),
       histories_(chart.states.size()),
-      remembered_(chart.states.size(), false) {
+      remembered_(chart.states.size(), false),
+      queue_(chart.states.size()),
+      told_(chart.events.size(), false) {
   active_.reserve(chart.states.size());
   selected_.reserve(chart.transitions.size() + 1);
   for (std::size_t i = 0; i < chart.states.size(); ++i) {
@@ -31,27 +33,17 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
   }
 }
 
-bool ChartRunner::post(EventId event) noexcept {
-  if (event_count_ == events_.size()) return false;
-  events_[(event_first_ + event_count_++) % events_.size()] = event;
-  return true;
-}
-
 void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   now_ns_ = now_ns;
   if (finished_) return;
-  selected_.clear();
-  if (!started_) {
-    started_ = true;
-    mark_entry(0);
-  } else if (filling_) {
-    filling_ = false;
-  } else {
-    std::fill(guards_.begin(), guards_.end(), Guard::unknown);
-    look_for_transitions(state);
+  first_step(state);
+  std::uint32_t steps = 1;
+  while (run_[0].outcome == no_event && steps < steps_max && select_event(state)) {
+    take_step(state);
+    ++steps;
   }
-  take_step(state);
   if (run_[0].outcome != no_event) return stop(state, now_ns);
+  drop_events(steps);
   for (const StateIndex index : active_) {
     if (chart_.states[index].during != Chart::no_function) call(state, chart_.states[index].during, index);
   }
@@ -60,21 +52,45 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   }
 }
 
-// Among the events that waited when the tick began: what a guard emits is for the next one.
-void ChartRunner::look_for_transitions(lua_State* state) {
-  std::uint32_t waiting = event_count_;
-  const auto oldest = [&] { return waiting > 0 ? events_[event_first_] : no_event; };
-  select(state, oldest(), false);
-  while (waiting > 0) {
-    const bool taken = took(oldest());
-    if (!taken && !selected_.empty()) return;
-    event_first_ = static_cast<std::uint32_t>((event_first_ + 1) % events_.size());
-    --event_count_;
-    --waiting;
-    if (taken) return;
-    ++unhandled_;
-    if (waiting > 0) select(state, oldest(), true);
+void ChartRunner::first_step(lua_State* state) {
+  selected_.clear();
+  if (!started_) {
+    started_ = true;
+    mark_entry(0);
+  } else if (filling_) {
+    filling_ = false;
+  } else {
+    select(state, nullptr);
   }
+  take_step(state);
+}
+
+// Takes the oldest event out of the queue for which there is a transition. False: there is none.
+bool ChartRunner::select_event(lua_State* state) {
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    const WaitingEvent event = queue_[i];
+    select(state, &event);
+    if (selected_.empty()) continue;
+    queue_.remove(i);
+    return true;
+  }
+  return false;
+}
+
+void ChartRunner::drop_events(std::uint32_t steps) noexcept {
+  if (queue_.size() == 0) return;
+  unhandled_ += queue_.size();
+  if (steps == steps_max && !told_steps_) {
+    const Chart::Transition& last = chart_.transitions[selected_.front()];
+    sink_.out_of_steps(chart_.states[last.source].chunk.c_str(), last.line);
+    told_steps_ = true;
+  }
+  for (std::size_t i = 0; i < queue_.size() && steps < steps_max; ++i) {
+    const auto id = static_cast<std::size_t>(queue_[i].id);
+    if (!told_[id]) sink_.event_dropped(chart_.events[id].c_str());
+    told_[id] = true;
+  }
+  queue_.clear();
 }
 
 void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
@@ -129,6 +145,7 @@ void ChartRunner::leave(lua_State* state, StateIndex index) {
   run.active = false;
   run.leaving = false;
   run.outcome = index == 0 ? run.outcome : no_event;
+  queue_.withdraw(index);
   if (chart_.states[index].kind == Chart::Kind::final_state) go_on(chart_.states[index].parent);
   cancel_run(state, index);
   if (chart_.states[index].exit != Chart::no_function) call(state, chart_.states[index].exit, index);
@@ -138,7 +155,7 @@ void ChartRunner::enter(lua_State* state, StateIndex index) {
   const Chart::State& entered = chart_.states[index];
   StateRun& run = run_[index];
   run.active = true;
-  run.run_done = false;
+  run.run_done = run.passed_over = false;
   run.outcome = no_event;
   run.entered_ns = now_ns_;
   if (entered.machine_root) {  // a call begins anew: nothing is left of the one before
@@ -157,24 +174,39 @@ void ChartRunner::complete(StateIndex index, EventId outcome) noexcept {
   const Chart::State& ended = chart_.states[index];
   if (index == 0) return;
   if (ended.machine_root) return complete(ended.parent, outcome);
+  if (waits_for_end(index, outcome)) queue_.end(index, outcome);
   if (ended.kind != Chart::Kind::region) return;
   EventId together = no_event;  // the first outcome that is not "done", else "done"
   for (StateIndex region = static_cast<StateIndex>(ended.parent + 1); region < chart_.states[ended.parent].end;
        region = chart_.states[region].end) {
     const EventId its = run_[region].outcome;
     if (its == no_event) return;
-    if (together == no_event || chart_.events[static_cast<std::size_t>(together)] == "done") together = its;
+    if (together == no_event || together == done_event) together = its;
   }
-  run_[ended.parent].outcome = together;
+  complete(ended.parent, together);
 }
 
 // The opposite: a final state of `index` is left while what is around it stays.
 void ChartRunner::go_on(StateIndex index) noexcept {
   if (index == 0) return;
   run_[index].outcome = no_event;
+  queue_.withdraw(index);
   const Chart::State& ended = chart_.states[index];
   if (ended.machine_root) return go_on(ended.parent);
-  if (ended.kind == Chart::Kind::region) run_[ended.parent].outcome = no_event;
+  if (ended.kind == Chart::Kind::region) go_on(ended.parent);
+}
+
+// Whether a transition somewhere has this event: an end that nobody waits for is none.
+bool ChartRunner::waits_for_end(StateIndex ended, EventId outcome) const noexcept {
+  const auto has = [&](std::uint16_t first, std::uint16_t count) {
+    const auto begin = chart_.transitions.begin() + first;
+    return std::any_of(begin, begin + count, [&](const Chart::Transition& one) { return one.on == outcome; });
+  };
+  for (StateIndex index = ended;; index = chart_.states[index].parent) {
+    const Chart::State& at = chart_.states[index];
+    if (has(at.first_transition, at.transition_count) || has(at.first_always, at.always_count)) return true;
+    if (at.kind == Chart::Kind::region || at.machine_root) return false;
+  }
 }
 
 bool ChartRunner::marked_inside(StateIndex index) const noexcept {
