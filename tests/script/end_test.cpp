@@ -142,3 +142,11 @@ TEST_CASE("neither a script nor the outside can send the end of a state or of a 
               "' says how a state or a run ended, it cannot be emitted: give the event another name");
   }
 }
+
+TEST_CASE("the end of a parallel tells how each region ended") {
+  CHECK(played(R"(return k.behavior 't' { initial = 'p', k.parallel 'p' {
+    k.region 'l' { k.final 'f' {} }, k.region 'r' { initial = 'i', k.state 'i' { { to = 'f' } }, k.final 'f' { outcome = 'lost' } },
+    { on = 'lost', when = function(s) return s.event.data.outcomes.l == 'done' end,
+      action = function(_, s) print(s.event.name, s.event.data.outcomes.r) end, to = 'x' } },
+    k.state 'x' {} })") == "lost lost\n");
+}

@@ -151,3 +151,37 @@ TEST_CASE("an outer after that was passed over waits for its guard, and begins a
   stage.tick(11);
   CHECK(stage.said() == "b 0.05\nb 0.09\n");
 }
+
+TEST_CASE("guards and actions read the event's name and a copy of its data, and s.event is empty elsewhere") {
+  Stage stage(head + R"(local given = { distance_m = 1, at = { x = 2 } }
+    return k.behavior 't' { initial = 'a',
+    k.state 'a' { enter = function(m) m:emit('seen', given) given.distance_m = 9 m:emit('seen', { distance_m = 3 }) end,
+      { on = 'seen', when = function(s) return s.event.data.distance_m > 2 end,
+        action = function(m, s) print(s.event.name, s.event.data.distance_m) end, to = 'b' } },
+    k.state 'b' { { on = 'seen', action = function(m, s) print(s.event.name, s.event.data.at.x) end, to = 'c' } },
+    k.state 'c' { enter = function(m) m:emit('bare') end,
+      { on = 'bare', when = function(s) return s.event.data == nil end, to = 'd' } },
+    k.state 'd' { enter = function(m, s) print('in', s.event.name) end, during = function(m, s) print(s.event.name, s.event.data) end } })");
+  stage.tick();
+  CHECK(stage.behavior->error().text() == "");
+  CHECK(stage.said() == "seen 3\nseen 2\nin bare\nnil nil\n");
+}
+
+TEST_CASE("data of an event is a bounded table of plain data") {
+  const auto emits = [](const std::string& data) {
+    Stage stage(head +
+                "local t = {} for i = 1, 65 do t[i] = i end local deep = { { { { { } } } } }\n"
+                "return k.behavior 't' { k.state 'a' { enter = function(m) m:emit('go', " +
+                data + ") end, { on = 'go', to = 'a', after = 9 } } }");
+    stage.tick();
+    return stage.behavior->error().text();
+  };
+  CHECK(emits("nil") == "");
+  CHECK(emits("{}") == "");
+  CHECK(emits("5").ends_with("the data of an event is a table { name = value }, not a number"));
+  CHECK(emits("{ print }").ends_with("an event's data is plain data, not a function"));
+  CHECK(emits("{ [true] = 1 }").ends_with("an event's data is plain data, not a boolean"));
+  CHECK(emits("t").ends_with("an event's data has more than 64 fields"));
+  CHECK(emits("deep").ends_with("an event's data is nested too deeply"));
+  CHECK(emits("{ x = string.rep('x', 257) }").ends_with("a text in an event's data is longer than 256 characters"));
+}

@@ -224,6 +224,7 @@ int open_bindings(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   open_machines(state, parts.chart, parts.bindings, parts.tables);
   parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, parts.settings.feet, true);
+  parts.tables.event = parts.snapshot_tables.event();
   return 0;
 }
 

@@ -67,7 +67,10 @@ void ChartRunner::keep(ByteWriter& bytes) const {
   }
   keep_histories(bytes);
   bytes.put(static_cast<std::uint32_t>(queue_.size()));
-  for (std::size_t i = 0; i < queue_.size(); ++i) put_event(queue_[i].id);  // between ticks no end of a state waits
+  for (std::size_t i = 0; i < queue_.size(); ++i) {  // between ticks no end of a state waits
+    put_event(queue_[i].id);
+    bytes.put(queue_[i].place);
+  }
 }
 
 void ChartRunner::keep_histories(ByteWriter& bytes) const {
@@ -94,7 +97,8 @@ bool ChartRunner::restore(ByteReader& bytes) {
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
     const EventId event = chart_.find_event(text_of(bytes));
-    if (event == no_event || chart_.made_by_runner(event) || !post(event)) ++unhandled_;
+    const auto place = bytes.take<std::int8_t>();
+    if (event == no_event || chart_.made_by_runner(event) || !post(event, place)) ++unhandled_;
   }
   list_active();
   fill_gaps();

@@ -40,10 +40,12 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   std::uint32_t steps = 1;
   while (run_[0].outcome == no_event && steps < steps_max && select_event(state)) {
     take_step(state);
+    forget_data(state, shown_);
     ++steps;
   }
+  if (shown_.id != no_event) hide_event(state);
   if (run_[0].outcome != no_event) return stop(state, now_ns);
-  drop_events(steps);
+  if (queue_.size() > 0) drop_events(state, steps);
   for (const StateIndex index : active_) {
     if (chart_.states[index].during != Chart::no_function) call(state, chart_.states[index].during, index);
   }
@@ -69,6 +71,7 @@ void ChartRunner::first_step(lua_State* state) {
 bool ChartRunner::select_event(lua_State* state) {
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     const WaitingEvent event = queue_[i];
+    show_event(state, event);
     select(state, &event);
     if (selected_.empty()) continue;
     queue_.remove(i);
@@ -77,8 +80,65 @@ bool ChartRunner::select_event(lua_State* state) {
   return false;
 }
 
-void ChartRunner::drop_events(std::uint32_t steps) noexcept {
-  if (queue_.size() == 0) return;
+// s.event: name and data of the event whose transitions are looked at, or taken.
+void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
+  shown_ = event;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
+  lua_pushliteral(state, "name");
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_names);
+  lua_rawgeti(state, -1, event.id + 1);
+  lua_remove(state, -2);
+  lua_rawset(state, -3);
+  lua_pushliteral(state, "data");
+  if (event.place >= 0) {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
+    lua_rawgeti(state, -1, event.place + 1);
+    lua_remove(state, -2);
+  } else if (event.from != no_state && chart_.states[event.from].kind == Chart::Kind::parallel) {
+    push_outcomes(state, event.from);
+  } else {
+    lua_pushnil(state);
+  }
+  lua_rawset(state, -3);
+  lua_pop(state, 1);
+}
+
+void ChartRunner::hide_event(lua_State* state) {
+  shown_ = {};
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
+  for (const char* key : {"name", "data"}) {
+    lua_pushstring(state, key);
+    lua_pushnil(state);
+    lua_rawset(state, -3);
+  }
+  lua_pop(state, 1);
+}
+
+// [-0 +1] { outcomes = { region = "done" } }
+void ChartRunner::push_outcomes(lua_State* state, StateIndex parallel) {
+  lua_createtable(state, 0, 1);
+  lua_createtable(state, 0, 4);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_names);
+  const StateIndex end = chart_.states[parallel].end;
+  for (auto region = static_cast<StateIndex>(parallel + 1); region < end; region = chart_.states[region].end) {
+    lua_pushstring(state, chart_.states[region].name.c_str());
+    lua_rawgeti(state, -2, run_[region].outcome + 1);
+    lua_rawset(state, -4);
+  }
+  lua_pop(state, 1);
+  lua_setfield(state, -2, "outcomes");
+}
+
+void ChartRunner::forget_data(lua_State* state, const WaitingEvent& event) {
+  if (event.place < 0) return;
+  queue_.free(event);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
+  lua_pushnil(state);
+  lua_rawseti(state, -2, event.place + 1);
+  lua_pop(state, 1);
+}
+
+void ChartRunner::drop_events(lua_State* state, std::uint32_t steps) {
   unhandled_ += queue_.size();
   if (steps == steps_max && !told_steps_) {
     const Chart::Transition& last = chart_.transitions[selected_.front()];
@@ -90,6 +150,7 @@ void ChartRunner::drop_events(std::uint32_t steps) noexcept {
     if (!told_[id]) sink_.event_dropped(chart_.events[id].c_str());
     told_[id] = true;
   }
+  for (std::size_t i = 0; i < queue_.size(); ++i) forget_data(state, queue_[i]);
   queue_.clear();
 }
 

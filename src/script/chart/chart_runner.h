@@ -45,6 +45,9 @@ struct RunnerTables {
   int snapshot = Chart::no_function;  // s
   int threads = Chart::no_function;   // keeps the coroutines alive
   int time_key = Chart::no_function;  // "time_s"
+  int event = Chart::no_function;        // content of s.event
+  int event_names = Chart::no_function;  // by EventId + 1
+  int event_data = Chart::no_function;   // by place + 1
 };
 
 class TransitionSink {
@@ -69,7 +72,8 @@ class ChartRunner {
   void stop(lua_State* state, std::int64_t now_ns);
 
   // False when the queue is full.
-  bool post(EventId event) noexcept { return queue_.send(event); }
+  bool post(EventId event, std::int8_t place = -1) noexcept { return queue_.send(event, place); }
+  const EventQueue& events() const noexcept { return queue_; }
 
   // For a reload and for another process: the runner before writes itself with keep(); this one calls restore() before
   // the first tick, and start_runs() once the machines have their vars. Active states, their time, histories and
@@ -137,7 +141,11 @@ class ChartRunner {
 
   void first_step(lua_State* state);
   bool select_event(lua_State* state);
-  void drop_events(std::uint32_t steps) noexcept;
+  void drop_events(lua_State* state, std::uint32_t steps);
+  void show_event(lua_State* state, const WaitingEvent& event);
+  void hide_event(lua_State* state);
+  void forget_data(lua_State* state, const WaitingEvent& event);
+  void push_outcomes(lua_State* state, StateIndex parallel);
   void take_step(lua_State* state);
   void leave(lua_State* state, StateIndex index);
   void enter(lua_State* state, StateIndex index);
@@ -178,6 +186,7 @@ class ChartRunner {
   EventQueue queue_;
   std::vector<bool> told_;  // events that were told as dropped
   bool told_steps_ = false;
+  WaitingEvent shown_;  // the event of the step, for s.event
   std::uint64_t unhandled_ = 0;
   std::int64_t now_ns_ = 0;
   bool started_ = false, finished_ = false;

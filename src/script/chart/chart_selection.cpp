@@ -159,15 +159,20 @@ void ChartRunner::select(lua_State* state, const WaitingEvent* event) {
   meter.settle();
 }
 
+// Not those beside an event: there is none.
 void ChartRunner::try_guards(lua_State* state) {
   ++look_;
+  const auto attempt = [&](std::uint16_t number) {
+    const EventId on = chart_.transitions[number].on;
+    if (on == no_event || on == run_done_event) (void)guard(state, number);
+  };
   for (const StateIndex index : active_) {
     const Chart::State& at = chart_.states[index];
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
-      (void)guard(state, static_cast<std::uint16_t>(at.first_transition + i));
+      attempt(static_cast<std::uint16_t>(at.first_transition + i));
     }
     for (std::uint16_t i = 0; i < at.always_count; ++i) {
-      (void)guard(state, static_cast<std::uint16_t>(at.first_always + i));
+      attempt(static_cast<std::uint16_t>(at.first_always + i));
     }
   }
 }
