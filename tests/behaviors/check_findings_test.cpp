@@ -54,10 +54,22 @@ const Case wrong[] = {
     {"an outcome that the call has not",
      "return k.behavior 't' { k.state 'a' { k.call 'over', { on = 'tirde', to = 'a' } } }",
      "t.lua:2: nobody emits the event 'tirde' here, did you mean 'tired'?"},
-    {"an outcome of what is inside, waited for outside",
-     "return k.behavior 't' { initial = 'o', k.state 'o' { k.state 'a' { k.final 'x' { outcome = 'ok' } },\n"
-     "{ on = 'ok', to = 'o' } } }",
-     "t.lua:3: nobody emits the event 'ok' here"},
+    {"an end that nothing inside has",
+     "return k.behavior 't' { initial = 'o', k.state 'o' { k.state 'a' { endless = true },\n"
+     "{ on = 'done', to = 'o' } } }",
+     "t.lua:3: nothing in 'o' ends with 'done'"},
+    {"the end of one region, waited for outside",
+     "return k.behavior 't' { k.parallel 'p' { k.region 'x' { k.final 'e' { outcome = 'ok' } },\n"
+     "k.region 'y' { k.state 's' { endless = true } }, { on = 'ok', to = 'p' } } }",
+     "t.lua:3: nothing in 'p' ends with 'ok'"},
+    {"done of regions of which one never is",
+     "return k.behavior 't' { k.parallel 'p' { k.region 'x' { k.final 'e' { outcome = 'ok' } },\n"
+     "k.region 'y' { k.final 'f' { outcome = 'done' } }, { on = 'done', to = 'p' }, { on = 'ok', to = 'p' } } }",
+     "t.lua:3: nothing in 'p' ends with 'done'"},
+    {"an end that is emitted",
+     "return k.behavior 't' { initial = 'o', k.state 'o' { endless = true, enter = function(m)\n"
+     "m:emit 'done' end, k.final 'x' { outcome = 'done' } } }",
+     "t.lua:3: 'done' says how a state or a run ended, it cannot be emitted: give the event another name"},
     {"an event that is none of the emitted ones",
      "return k.behavior 't' { k.state 'a' { enter = function(m) m:emit(m.time_s > 1 and 'late' or 'soon') end,\n"
      "{ on = 'late', to = 'a' }, { on = 'never', to = 'a' }, { on = 'soon', to = 'a' } } }",
@@ -99,6 +111,10 @@ const Case wrong[] = {
 };
 
 const Case right[] = {
+    {"an end of what is inside, waited for outside",
+     "return k.behavior 't' { initial = 'o', k.state 'o' { k.state 'a' { k.final 'x' { outcome = 'ok' } },\n"
+     "{ on = 'ok', to = 'o' } } }",
+     ""},
     {"a wait in run, and in what it calls",
      "local function rest(m) m:wait(1) end\nreturn k.behavior 't' { controls = 'posture', k.state 'a' { endless = "
      "true,\n"

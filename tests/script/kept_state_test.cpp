@@ -171,6 +171,18 @@ TEST_CASE("when the file changed meanwhile, states that are gone lead to the ini
   CHECK(theatre.log.joined() == "n 4\n");
 }
 
+TEST_CASE("events that wait are kept with their data") {
+  Theatre theatre({R"(local k = require 'kadans'
+    return k.behavior 'one' { initial = 'a', k.state 'a' { during = function(m) m:emit('go', { n = 7, to = { 'x' } }) m:emit 'on' end,
+      { on = 'go', action = function(m, s) print(s.event.data.n, s.event.data.to[1]) end, to = 'b' } },
+      k.state 'b' { { on = 'on', to = 'c' } }, k.state 'c' { endless = true } })"});
+  theatre.tick();
+  const std::vector<std::byte> kept = kept_of(theatre);
+  replace_host(theatre, kept);
+  CHECK(theatre.log.joined() == "7 x\n");
+  CHECK(theatre.host->behavior(0).state() == "c");
+}
+
 TEST_CASE("vars that are no plain data cannot be kept, and keep() says so") {
   Theatre theatre(
       {"local k = require 'kadans'\nreturn k.behavior 'one' { vars = { f = 0 }, k.state 'a' { endless = "

@@ -224,6 +224,7 @@ int open_bindings(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   open_machines(state, parts.chart, parts.bindings, parts.tables);
   parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, parts.settings.feet, true);
+  parts.tables.event = parts.snapshot_tables.event();
   return 0;
 }
 
@@ -296,6 +297,22 @@ void Behavior::Parts::transitioned(const std::string& from, const std::string& t
   transition.to = to;
   transition.why = why;
   log.transition(transition);
+}
+
+void Behavior::Parts::event_dropped(const char* event) noexcept {
+  char text[320];
+  std::snprintf(text, sizeof text, "event '%.200s' was dropped: no transition took it in its tick (told once)", event);
+  say_with(BehaviorLog::Severity::warning, text);
+}
+
+void Behavior::Parts::out_of_steps(const char* chunk, int line) noexcept {
+  char text[512];
+  std::snprintf(
+      text, sizeof text,
+      "%.300s:%d: a tick took all %u steps, the last one by the transition here; further events were dropped. "
+      "Do events lead to each other? (told once)",
+      chunk, line, ChartRunner::steps_max);
+  say_with(BehaviorLog::Severity::warning, text);
 }
 
 bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
@@ -401,7 +418,7 @@ std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
 
 bool Behavior::post(const std::string& event) noexcept {
   const EventId id = parts_->chart.find_event(event);
-  return id != no_event && id != run_done_event && parts_->runner->post(id);
+  return id != no_event && !parts_->chart.made_by_runner(id) && parts_->runner->post(id);
 }
 
 const std::string& Behavior::name() const noexcept { return parts_->chart.name; }

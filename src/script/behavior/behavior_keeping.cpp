@@ -258,6 +258,36 @@ void give_vars(lua_State* state, const Chart::Machine& machine, int version) {
   lua_settop(state, vars);
 }
 
+// The data of the events that wait, each behind a 1 and its place.
+void put_event_data(Behavior::Parts& parts, ByteWriter& bytes) {
+  lua_State* state = parts.lua->get();
+  const EventQueue& events = parts.runner->events();
+  const int top = lua_gettop(state);
+  std::string why;
+  for (std::size_t i = 0; i < events.size() && lua_checkstack(state, 8) != 0; ++i) {
+    if (events[i].place < 0) continue;
+    bytes.put<std::uint8_t>(1);
+    bytes.put(events[i].place);
+    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.event_data);
+    lua_rawgeti(state, -1, events[i].place + 1);
+    (void)put_value(state, top + 2, bytes, why);  // plain data: m:emit checked that
+    lua_settop(state, top);
+  }
+  bytes.put<std::uint8_t>(0);
+}
+
+void take_event_data(lua_State* state, const Behavior::Parts& parts, ByteReader& bytes) {
+  luaL_checkstack(state, 8, "events");
+  while (bytes.take<std::uint8_t>() != 0) {
+    const auto place = bytes.take<std::int8_t>();
+    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.event_data);
+    push_value(state, bytes, parts.catalog);
+    if (place < 0 || place >= EventQueue::places) luaL_error(state, "an event's data has no place");
+    lua_rawseti(state, -2, place + 1);
+    lua_pop(state, 1);
+  }
+}
+
 std::size_t machine_at(const Chart& chart, std::string_view path) {
   std::size_t at = 0;
   while (at < chart.machines.size() && chart.states[chart.machines[at].root].path != path) ++at;
@@ -306,6 +336,7 @@ struct GoingOn {
 int take_machines(lua_State* state) {
   const GoingOn& going_on = *static_cast<const GoingOn*>(lua_touserdata(state, 1));
   Behavior::Parts& parts = going_on.parts;
+  take_event_data(state, parts, going_on.bytes);
   ByteReader again = going_on.bytes;
   parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
   renew_machines(state, parts, going_on.bytes);
@@ -328,6 +359,7 @@ std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
   put_bindings(parts.bindings, bytes);
   put_armed(parts, bytes);
   parts.runner->keep(bytes);
+  put_event_data(parts, bytes);
   return put_machines(parts, bytes);
 }
 

@@ -60,6 +60,8 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
   void tell_dropped(bool at_once) noexcept;  // logs how many lines were dropped
   void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;
+  void event_dropped(const char* event) noexcept override;
+  void out_of_steps(const char* chunk, int line) noexcept override;
   void tell_refused() noexcept;  // logs what the control engine has refused since the last call
   void tell_armed() noexcept;    // logs what became of armed transactions since the last call, and posts their events
   // Asks in the next tick for the control sets of all active machines that are not active in the snapshot.

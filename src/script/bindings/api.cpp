@@ -78,6 +78,7 @@ std::string argument_type(std::string_view function, std::string_view name) {
       if (function == table.argument) return std::string(needed ? ": " : "?: ") + table.type;
     }
   }
+  if (name == "data") return "?: table";
   if (function == "pose" && name == "name") return ": kadans.pose";
   for (const ArgumentType& known : types) {
     if (name == known.name) return std::string(": ") + known.type;
@@ -142,11 +143,13 @@ constexpr ApiEntry written[] = {
     {"m", "vars", "table", "The behavior's own plain data; a reload keeps it"},
     {"m", "args", "table", "Arguments of the caller"},
     {"m", "wait(seconds)", "nil", "Waits so many seconds; in `run` only"},
-    {"m", "emit(event)", "boolean?, string?", "Posts an event; seen from the next tick on; nil, \"queue_full\""},
+    {"m", "emit(event, data)", "boolean?, string?",
+     "Sends an event, with a table of plain data if need be; what waits for it takes it in this tick; from `during` "
+     "and `run` in the next; nil, "
+     "\"queue_full\""},
     {"m", "on(condition, record, options)", "kadans.Armed?, string?",
      "Arms a transaction: the control engine sends what the function asks for in the tick in which the condition "
-     "becomes "
-     "true, within { within_s = }; nil, \"queue_full\""},
+     "becomes true, within { within_s = }; nil, \"queue_full\""},
     {"m", "use(set)", "nil", "Inside the function of m:on: activates a control set"},
     {"m", "clear_faults()", "boolean?, string?",
      "Clears the faults of the safety layer, but no emergency stop; commands later in the same tick count already; "
@@ -181,10 +184,13 @@ constexpr ApiEntry written[] = {
 
     {"s", "joints", "kadans.Joints", "By name"},
     {"s", "base", "kadans.Base", "The trunk"},
+    {"s", "event", "kadans.Event", "The event of the present step; empty outside of such a step"},
     {"s", "feet", "kadans.Feet", "left and right"},
     {"s", "support", "kadans.Support", "Where the ground supports the robot"},
     {"s", "safety", "kadans.Safety", "State of the safety layer"},
     {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
+    {"event", "name", "string?", "Its name"},
+    {"event", "data", "table?", "What m:emit gave it; of the end of a k.parallel: { outcomes = { region = outcome } }"},
     {"base", "angular_velocity_rad_s", "kadans.Rate", "In the base frame"},
     {"s", "sensors", "kadans.Sensors",
      "What the robot's configuration names under `sensors`; NaN before the first reading"},
@@ -249,6 +255,7 @@ constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require
                             {"motion", "kadans.Motion", "A motion: what `move` and `set` return"},
                             {"armed", "kadans.Armed", "An armed transaction: what `m:on` returns"},
                             {"s", "kadans.Snapshot", "`s`: the snapshot, read-only"},
+                            {"event", "kadans.Event", "The event of the present step: `s.event`"},
                             {"joint", "kadans.Joint", "A joint: `s.joints.l_knee`"},
                             {"base", "kadans.Base", "The trunk: `s.base`"},
                             {"rate", "kadans.Rate", "A rate of rotation: `s.base.angular_velocity_rad_s`"},
@@ -393,6 +400,7 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("motion", known.motion_fields);
   add("armed", known.armed_fields);
   add("s", known.snapshot.names());
+  add("event", s["event"].names());
   add("joint", s["joints"].fields.begin()->second.names());
   add("base", s["base"].names());
   add("rate", s["base"].fields["angular_velocity_rad_s"].names());

@@ -157,8 +157,8 @@ int wait(lua_State* state) {
   return lua_yield(state, 0);
 }
 
-// m:emit(event) -> true | nil, "queue_full". The behavior sees it from its next tick on.
-int emit(lua_State* state);  // upvalue: the chart
+// m:emit(event, data?) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the next.
+int emit(lua_State* state);  // upvalues: the chart, the reference of the events' data
 
 // Reading what m does not have; upvalues: its content, its number.
 int refuse_read(lua_State* state) {
@@ -210,19 +210,67 @@ void push_copy_of_reference(lua_State* state, int reference) {
   lua_remove(state, -2);
 }
 
+// [-0 +1] A copy of the data of an event, the table at `index`: plain data, bounded.
+void push_event_data(lua_State* state, int index, int depth, int& fields) {
+  constexpr int fields_max = 64, depth_max = 4;
+  constexpr std::size_t text_max = 256;
+  luaL_checkstack(state, 6, "event data");
+  lua_newtable(state);
+  const int copy = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, index) != 0; lua_pop(state, 1)) {
+    core_of(state).budget.charge(state, copied_field_instructions);
+    if (++fields > fields_max) luaL_error(state, "an event's data has more than %d fields", fields_max);
+    const int value = lua_gettop(state), type = lua_type(state, value);
+    for (const int at : {value - 1, value}) {
+      if (lua_type(state, at) == LUA_TSTRING && lua_objlen(state, at) > text_max)
+        luaL_error(state, "a text in an event's data is longer than %d characters", static_cast<int>(text_max));
+    }
+    const bool plain = type == LUA_TNUMBER || type == LUA_TSTRING || type == LUA_TBOOLEAN || type == LUA_TTABLE;
+    const int key = lua_type(state, value - 1);
+    if (!plain || (key != LUA_TSTRING && key != LUA_TNUMBER))
+      luaL_error(state, "an event's data is plain data, not a %s", luaL_typename(state, plain ? value - 1 : value));
+    lua_pushvalue(state, value - 1);
+    if (type == LUA_TTABLE) {
+      if (depth == depth_max) luaL_error(state, "an event's data is nested too deeply");
+      push_event_data(state, value, depth + 1, fields);
+    } else {
+      lua_pushvalue(state, value);
+    }
+    lua_rawset(state, copy);
+  }
+}
+
 int emit(lua_State* state) {
   if (bindings_of(state).recording)
     return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
   const auto* chart = static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
   const EventId event = chart->find_event(luaL_checkstring(state, 2));
-  if (event == no_event || event == run_done_event) {
+  if (event != no_event && chart->made_by_runner(event)) {
+    return luaL_error(state, "'%s' says how a state or a run ended, it cannot be emitted: give the event another name",
+                      lua_tostring(state, 2));
+  }
+  if (event == no_event) {
     return luaL_error(state, "nothing in this behavior waits for the event '%s'", lua_tostring(state, 2));
   }
-  if (bindings_of(state).runner->post(event)) return lua_pushboolean(state, 1), 1;
-  return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
+  ChartRunner& runner = *bindings_of(state).runner;
+  const bool with_data = !lua_isnoneornil(state, 3);
+  if (with_data && !lua_istable(state, 3)) {
+    return luaL_error(state, "the data of an event is a table { name = value }, not a %s", luaL_typename(state, 3));
+  }
+  int fields = 0;
+  if (with_data) push_event_data(state, 3, 1, fields);
+  const std::int8_t place = with_data ? runner.events().free_place() : std::int8_t{-1};
+  if (!runner.post(event, place)) return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
+  if (with_data) {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, static_cast<int>(lua_tointeger(state, lua_upvalueindex(2))));
+    lua_insert(state, -2);
+    lua_rawseti(state, -2, place + 1);
+  }
+  return lua_pushboolean(state, 1), 1;
 }
 
-void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, std::size_t number) {
+void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, const RunnerTables& tables,
+                          std::size_t number) {
   lua_newtable(state);
   for (std::uint32_t object = 0; object < bindings.catalog->objects.size(); ++object) {
     if (!bindings.has_object(number, object)) continue;
@@ -242,7 +290,8 @@ void push_machine_content(lua_State* state, const Chart& chart, const Bindings& 
   lua_pushcfunction(state, clear_faults);
   lua_setfield(state, -2, "clear_faults");
   lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
-  lua_pushcclosure(state, emit, 1);
+  lua_pushinteger(state, tables.event_data);
+  lua_pushcclosure(state, emit, 2);
   lua_setfield(state, -2, "emit");
   open_armed(state, chart);
 }
@@ -301,8 +350,16 @@ void open_machines(lua_State* state, const Chart& chart, const Bindings& binding
   open_motions(state);
   open_armed_handles(state);
   tables.machines.resize(chart.machines.size());
+  lua_createtable(state, static_cast<int>(chart.events.size()), 0);
+  for (std::size_t i = 0; i < chart.events.size(); ++i) {
+    lua_pushstring(state, chart.events[i].c_str());
+    lua_rawseti(state, -2, static_cast<int>(i) + 1);
+  }
+  tables.event_names = luaL_ref(state, LUA_REGISTRYINDEX);
+  lua_createtable(state, EventQueue::places, 0);
+  tables.event_data = luaL_ref(state, LUA_REGISTRYINDEX);
   for (std::size_t i = 0; i < chart.machines.size(); ++i) {
-    push_machine_content(state, chart, bindings, i);
+    push_machine_content(state, chart, bindings, tables, i);
     lua_pushvalue(state, -1);
     tables.machines[i].content = luaL_ref(state, LUA_REGISTRYINDEX);
     lua_createtable(state, 0, 1);

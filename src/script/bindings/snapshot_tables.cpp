@@ -127,6 +127,11 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, const std::ve
   lua_setfield(state, -2, "joystick");
   push_whole_part(state, Kind::sensors, 0, "s.sensors");
   lua_setfield(state, -2, "sensors");
+  lua_createtable(state, 0, 2);
+  lua_pushvalue(state, -1);
+  event_ = luaL_ref(state, LUA_REGISTRYINDEX);
+  make_read_only(state, "s.event", false);
+  lua_setfield(state, -2, "event");
   finish_part(state, 0, "s");
   std::size_t all = 0;
   for (const Part& part : parts_)

@@ -21,6 +21,8 @@ class SnapshotTables {
   // `on_demand` this object must outlive the state and must not move; without it every field is refilled each time.
   // Raises.
   int open(lua_State* state, const Catalog& catalog, const std::vector<std::string>& feet, bool on_demand = false);
+  // After open(): registry reference of the content of s.event, which the chart's runner fills.
+  int event() const noexcept { return event_; }
   // The snapshot must live as long as functions of this tick run. Existing fields are replaced without allocation.
   // Raises only when out of memory.
   void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
@@ -61,6 +63,7 @@ class SnapshotTables {
   std::vector<StatusField> fields_;
   std::vector<int> choices_;  // registry references, by field
   int keys_ = 0;
+  int event_ = LUA_NOREF;
 };
 
 // Finds the number of slots of a table, empty ones included. The time to go through a table is proportional to its

@@ -170,6 +170,14 @@ EventId Chart::intern(std::string_view event) {
   return static_cast<EventId>(events.size() - 1);
 }
 
+bool Chart::hears_end(StateIndex state, StateIndex ended) const noexcept {
+  if (state == no_state || !inside(ended, state) || states[state].machine != states[ended].machine) return false;
+  for (StateIndex index = ended; index != state; index = states[index].parent) {
+    if (states[index].kind == Kind::region) return false;
+  }
+  return true;
+}
+
 void Chart::resolve(std::vector<InputProblem>& problems) {
   Resolver resolver{*this, problems};
   // Each mistake goes through all names; who reads them mends the first ones first.
@@ -183,6 +191,11 @@ void Chart::resolve(std::vector<InputProblem>& problems) {
     if (states[i].kind == Kind::history) resolver.history(i);
   }
   for (std::size_t i = 0; i < transitions.size() && !enough(); ++i) resolver.transition(transitions[i]);
+  ends_.assign(events.size(), false);
+  ends_[run_done_event] = ends_[done_event] = true;
+  for (const State& state : states) {
+    if (state.outcome != no_event) ends_[static_cast<std::size_t>(state.outcome)] = true;
+  }
 }
 
 }  // namespace kadans

@@ -19,6 +19,7 @@ inline constexpr StateIndex no_state = 0xffff;
 using EventId = std::int32_t;
 inline constexpr EventId no_event = -1;
 inline constexpr EventId run_done_event = 0;  // "run.done"
+inline constexpr EventId done_event = 1;      // "done"
 
 struct Chart {
   enum class Kind : std::uint8_t { state, parallel, region, final_state, history };
@@ -72,17 +73,25 @@ struct Chart {
   std::vector<State> states;
   std::vector<Transition> transitions;  // those of one state are contiguous
   std::vector<Machine> machines;
-  std::vector<std::string> events{"run.done"};
+  std::vector<std::string> events{"run.done", "done"};
 
   bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // true also for the ancestor itself
     return state >= ancestor && state < states[ancestor].end;
   }
+  // Whether the end of `ended` is an event for `state`: for itself and the states around it in its behavior, up to the
+  // region that it is in.
+  bool hears_end(StateIndex state, StateIndex ended) const noexcept;
+  // Events that only the runner makes: the ends of coroutines and of states.
+  bool made_by_runner(EventId event) const noexcept { return ends_[static_cast<std::size_t>(event)]; }
   StateIndex size() const noexcept { return static_cast<StateIndex>(states.size()); }
   EventId intern(std::string_view event);
   EventId find_event(std::string_view event) const noexcept;
 
   // Resolves all names and finds every mistake.
   void resolve(std::vector<InputProblem>& problems);
+
+ private:
+  std::vector<bool> ends_;  // by event; made by resolve()
 };
 
 }  // namespace kadans

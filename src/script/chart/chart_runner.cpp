@@ -14,9 +14,6 @@ namespace {
 
 constexpr std::size_t state_steps = 2;  // to look at a state for one transition
 
-constexpr std::uint16_t none = 0xffff;
-constexpr std::size_t transition_steps = 6, selected_steps = 6;  // to look at one
-
 }  // namespace
 
 ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, TransitionSink& sink)
@@ -24,9 +21,11 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
       tables_(tables),
       sink_(sink),
       run_(chart.states.size()),
-      guards_(chart.transitions.size(), Guard::unknown),
+      guards_(chart.transitions.size()),
       histories_(chart.states.size()),
-      remembered_(chart.states.size(), false) {
+      remembered_(chart.states.size(), false),
+      queue_(chart.states.size()),
+      told_(chart.events.size(), false) {
   active_.reserve(chart.states.size());
   selected_.reserve(chart.transitions.size() + 1);
   for (std::size_t i = 0; i < chart.states.size(); ++i) {
@@ -34,27 +33,19 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
   }
 }
 
-bool ChartRunner::post(EventId event) noexcept {
-  if (event_count_ == events_.size()) return false;
-  events_[(event_first_ + event_count_++) % events_.size()] = event;
-  return true;
-}
-
 void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   now_ns_ = now_ns;
   if (finished_) return;
-  selected_.clear();
-  if (!started_) {
-    started_ = true;
-    mark_entry(0);
-  } else if (filling_) {
-    filling_ = false;
-  } else {
-    std::fill(guards_.begin(), guards_.end(), Guard::unknown);
-    look_for_transitions(state);
+  first_step(state);
+  std::uint32_t steps = 1;
+  while (run_[0].outcome == no_event && steps < steps_max && select_event(state)) {
+    take_step(state);
+    forget_data(state, shown_);
+    ++steps;
   }
-  take_step(state);
+  if (shown_.id != no_event) hide_event(state);
   if (run_[0].outcome != no_event) return stop(state, now_ns);
+  if (queue_.size() > 0) drop_events(state, steps);
   for (const StateIndex index : active_) {
     if (chart_.states[index].during != Chart::no_function) call(state, chart_.states[index].during, index);
   }
@@ -63,21 +54,104 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   }
 }
 
-// Among the events that waited when the tick began: what a guard emits is for the next one.
-void ChartRunner::look_for_transitions(lua_State* state) {
-  std::uint32_t waiting = event_count_;
-  const auto oldest = [&] { return waiting > 0 ? events_[event_first_] : no_event; };
-  select(state, oldest(), false);
-  while (waiting > 0) {
-    const bool taken = took(oldest());
-    if (!taken && !selected_.empty()) return;
-    event_first_ = static_cast<std::uint32_t>((event_first_ + 1) % events_.size());
-    --event_count_;
-    --waiting;
-    if (taken) return;
-    ++unhandled_;
-    if (waiting > 0) select(state, oldest(), true);
+void ChartRunner::first_step(lua_State* state) {
+  selected_.clear();
+  if (!started_) {
+    started_ = true;
+    mark_entry(0);
+  } else if (filling_) {
+    filling_ = false;
+  } else {
+    select(state, nullptr);
   }
+  take_step(state);
+}
+
+// Takes the oldest event out of the queue for which there is a transition. False: there is none.
+bool ChartRunner::select_event(lua_State* state) {
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    const WaitingEvent event = queue_[i];
+    show_event(state, event);
+    select(state, &event);
+    if (selected_.empty()) continue;
+    queue_.remove(i);
+    return true;
+  }
+  return false;
+}
+
+// s.event: name and data of the event whose transitions are looked at, or taken.
+void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
+  shown_ = event;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
+  lua_pushliteral(state, "name");
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_names);
+  lua_rawgeti(state, -1, event.id + 1);
+  lua_remove(state, -2);
+  lua_rawset(state, -3);
+  lua_pushliteral(state, "data");
+  if (event.place >= 0) {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
+    lua_rawgeti(state, -1, event.place + 1);
+    lua_remove(state, -2);
+  } else if (event.from != no_state && chart_.states[event.from].kind == Chart::Kind::parallel) {
+    push_outcomes(state, event.from);
+  } else {
+    lua_pushnil(state);
+  }
+  lua_rawset(state, -3);
+  lua_pop(state, 1);
+}
+
+void ChartRunner::hide_event(lua_State* state) {
+  shown_ = {};
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
+  for (const char* key : {"name", "data"}) {
+    lua_pushstring(state, key);
+    lua_pushnil(state);
+    lua_rawset(state, -3);
+  }
+  lua_pop(state, 1);
+}
+
+// [-0 +1] { outcomes = { region = "done" } }
+void ChartRunner::push_outcomes(lua_State* state, StateIndex parallel) {
+  lua_createtable(state, 0, 1);
+  lua_createtable(state, 0, 4);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_names);
+  const StateIndex end = chart_.states[parallel].end;
+  for (auto region = static_cast<StateIndex>(parallel + 1); region < end; region = chart_.states[region].end) {
+    lua_pushstring(state, chart_.states[region].name.c_str());
+    lua_rawgeti(state, -2, run_[region].outcome + 1);
+    lua_rawset(state, -4);
+  }
+  lua_pop(state, 1);
+  lua_setfield(state, -2, "outcomes");
+}
+
+void ChartRunner::forget_data(lua_State* state, const WaitingEvent& event) {
+  if (event.place < 0) return;
+  queue_.free(event);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
+  lua_pushnil(state);
+  lua_rawseti(state, -2, event.place + 1);
+  lua_pop(state, 1);
+}
+
+void ChartRunner::drop_events(lua_State* state, std::uint32_t steps) {
+  unhandled_ += queue_.size();
+  if (steps == steps_max && !told_steps_) {
+    const Chart::Transition& last = chart_.transitions[selected_.front()];
+    sink_.out_of_steps(chart_.states[last.source].chunk.c_str(), last.line);
+    told_steps_ = true;
+  }
+  for (std::size_t i = 0; i < queue_.size() && steps < steps_max; ++i) {
+    const auto id = static_cast<std::size_t>(queue_[i].id);
+    if (!told_[id]) sink_.event_dropped(chart_.events[id].c_str());
+    told_[id] = true;
+  }
+  for (std::size_t i = 0; i < queue_.size(); ++i) forget_data(state, queue_[i]);
+  queue_.clear();
 }
 
 void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
@@ -132,6 +206,7 @@ void ChartRunner::leave(lua_State* state, StateIndex index) {
   run.active = false;
   run.leaving = false;
   run.outcome = index == 0 ? run.outcome : no_event;
+  queue_.withdraw(index);
   if (chart_.states[index].kind == Chart::Kind::final_state) go_on(chart_.states[index].parent);
   cancel_run(state, index);
   bindings_of(state).take_back(index);
@@ -142,7 +217,7 @@ void ChartRunner::enter(lua_State* state, StateIndex index) {
   const Chart::State& entered = chart_.states[index];
   StateRun& run = run_[index];
   run.active = true;
-  run.run_done = false;
+  run.run_done = run.passed_over = false;
   run.outcome = no_event;
   run.entered_ns = now_ns_;
   if (entered.machine_root) {  // a call begins anew: nothing is left of the one before
@@ -161,24 +236,39 @@ void ChartRunner::complete(StateIndex index, EventId outcome) noexcept {
   const Chart::State& ended = chart_.states[index];
   if (index == 0) return;
   if (ended.machine_root) return complete(ended.parent, outcome);
+  if (waits_for_end(index, outcome)) queue_.end(index, outcome);
   if (ended.kind != Chart::Kind::region) return;
   EventId together = no_event;  // the first outcome that is not "done", else "done"
   for (StateIndex region = static_cast<StateIndex>(ended.parent + 1); region < chart_.states[ended.parent].end;
        region = chart_.states[region].end) {
     const EventId its = run_[region].outcome;
     if (its == no_event) return;
-    if (together == no_event || chart_.events[static_cast<std::size_t>(together)] == "done") together = its;
+    if (together == no_event || together == done_event) together = its;
   }
-  run_[ended.parent].outcome = together;
+  complete(ended.parent, together);
 }
 
 // The opposite: a final state of `index` is left while what is around it stays.
 void ChartRunner::go_on(StateIndex index) noexcept {
   if (index == 0) return;
   run_[index].outcome = no_event;
+  queue_.withdraw(index);
   const Chart::State& ended = chart_.states[index];
   if (ended.machine_root) return go_on(ended.parent);
-  if (ended.kind == Chart::Kind::region) run_[ended.parent].outcome = no_event;
+  if (ended.kind == Chart::Kind::region) go_on(ended.parent);
+}
+
+// Whether a transition somewhere has this event: an end that nobody waits for is none.
+bool ChartRunner::waits_for_end(StateIndex ended, EventId outcome) const noexcept {
+  const auto has = [&](std::uint16_t first, std::uint16_t count) {
+    const auto begin = chart_.transitions.begin() + first;
+    return std::any_of(begin, begin + count, [&](const Chart::Transition& one) { return one.on == outcome; });
+  };
+  for (StateIndex index = ended;; index = chart_.states[index].parent) {
+    const Chart::State& at = chart_.states[index];
+    if (has(at.first_transition, at.transition_count) || has(at.first_always, at.always_count)) return true;
+    if (at.kind == Chart::Kind::region || at.machine_root) return false;
+  }
 }
 
 bool ChartRunner::marked_inside(StateIndex index) const noexcept {
@@ -257,121 +347,16 @@ void ChartRunner::report(std::uint16_t number) noexcept {
   sink_.transitioned(chart_.states[from].path, chart_.states[transition.target].path, transition.why);
 }
 
+StateIndex ChartRunner::innermost() const noexcept {
+  StateIndex at = 0;
+  for (const StateIndex index : active_) {
+    if (index != 0 && chart_.states[index].parent == at) at = index;
+  }
+  return at;
+}
+
 double ChartRunner::state_time_s(StateIndex state) const noexcept {
   return static_cast<double>(now_ns_ - run_[state].entered_ns) / 1e9;
-}
-
-bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
-  const Chart::Transition& transition = chart_.transitions[number];
-  if (transition.when == Chart::no_function) return true;
-  if (guards_[number] == Guard::unknown) {  // several innermost states may ask
-    set_time(state, transition.source);
-    core_of(state).called = transition.when;
-    lua_rawgeti(state, LUA_REGISTRYINDEX, transition.when);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[transition.source].machine].handle);
-    lua_call(state, 2, 1);
-    guards_[number] = lua_toboolean(state, -1) != 0 ? Guard::yes : Guard::no;
-    lua_pop(state, 1);
-  }
-  return guards_[number] == Guard::yes;
-}
-
-bool ChartRunner::enabled(lua_State* state, std::uint16_t number, EventId event, bool events_only) {
-  const Chart::Transition& transition = chart_.transitions[number];
-  const StateRun& source = run_[transition.source];
-  if (transition.on != no_event) {
-    const bool happened = transition.on == event || transition.on == source.outcome ||
-                          (transition.on == run_done_event && source.run_done);
-    if (!happened) return false;
-  } else if (events_only) {
-    return false;
-  }
-  if (transition.timed) {
-    const double after_s = transition.after_parameter != Chart::no_parameter
-                               ? core_of(state).parameters[static_cast<std::size_t>(transition.after_parameter)].value
-                               : transition.after_s;
-    if (!(state_time_s(transition.source) >= after_s)) return false;
-  }
-  return guard(state, number);
-}
-
-std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event,
-                                         bool events_only) {
-  for (const StateIndex around : active_) {  // from the outside in
-    if (around > leaf) break;
-    meter.spend();
-    const Chart::State& outer = chart_.states[around];
-    if (outer.always_count == 0 || !chart_.inside(leaf, around)) continue;
-    for (std::uint16_t i = 0; i < outer.always_count; ++i) {
-      const auto number = static_cast<std::uint16_t>(outer.first_always + i);
-      meter.spend(transition_steps);
-      if (run_[chart_.transitions[number].target].active) continue;  // it is there already
-      if (enabled(state, number, event, events_only)) return number;
-    }
-  }
-  return none;
-}
-
-std::uint16_t ChartRunner::select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event,
-                                           bool events_only) {
-  for (StateIndex inner = leaf; inner != no_state; inner = chart_.states[inner].parent) {
-    const Chart::State& at = chart_.states[inner];
-    for (std::uint16_t i = 0; i < at.transition_count; ++i) {
-      meter.spend(transition_steps);
-      const auto number = static_cast<std::uint16_t>(at.first_transition + i);
-      if (enabled(state, number, event, events_only)) return number;
-    }
-  }
-  return none;
-}
-
-// Keeps `selected_` free of transitions that leave the same states.
-void ChartRunner::add_selected(std::uint16_t added) noexcept {
-  const Chart::Transition& transition = chart_.transitions[added];
-  for (const std::uint16_t other : selected_) {
-    if (other == added) return;
-    const Chart::Transition& earlier = chart_.transitions[other];
-    const bool conflict =
-        chart_.inside(transition.domain, earlier.domain) || chart_.inside(earlier.domain, transition.domain);
-    const bool further_inside = transition.source != earlier.source && chart_.inside(transition.source, earlier.source);
-    if (conflict && !further_inside) return;
-  }
-  std::erase_if(selected_, [&](std::uint16_t other) {
-    const Chart::Transition& earlier = chart_.transitions[other];
-    return chart_.inside(transition.domain, earlier.domain) || chart_.inside(earlier.domain, transition.domain);
-  });
-  selected_.push_back(added);
-}
-
-bool ChartRunner::is_leaf(std::size_t position) const noexcept {
-  return position + 1 == active_.size() || !chart_.inside(active_[position + 1], active_[position]);
-}
-
-void ChartRunner::select(lua_State* state, EventId event, bool events_only) {
-  StepMeter meter(state);
-  selected_.clear();
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    if (!is_leaf(i)) continue;
-    const std::uint16_t found = select_always(state, meter, active_[i], event, events_only);
-    run_[active_[i]].decided = found != none;
-    if (found == none) continue;
-    meter.spend(selected_steps * selected_.size());
-    add_selected(found);
-  }
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    if (!is_leaf(i) || run_[active_[i]].decided) continue;
-    const std::uint16_t found = select_ordinary(state, meter, active_[i], event, events_only);
-    if (found == none) continue;
-    meter.spend(selected_steps * selected_.size());
-    add_selected(found);
-  }
-  meter.settle();
-}
-
-bool ChartRunner::took(EventId event) const noexcept {
-  return std::any_of(selected_.begin(), selected_.end(),
-                     [&](std::uint16_t number) { return chart_.transitions[number].on == event; });
 }
 
 // Calls into Lua: functions of states, and the coroutines of `run`.
@@ -476,228 +461,6 @@ void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   }
   run.run_done = true;
   cancel_run(state, index);
-}
-
-// A runner continues where another one stood, of an older version of the chart or of another process. The state of a
-// runner is written as bytes and read back. States, events and outcomes are written by their names, because the other
-// runner has read the chart's file anew and may have found another version of it. What no longer exists is left out,
-// and so is what contradicts itself. A state is the same when its path and its kind are, and both are a machine's root
-// or both not.
-
-namespace {
-
-enum Bit : std::uint8_t { bit_active = 1, bit_entering = 2, bit_run_done = 4 };
-
-bool same_kind(const Chart::State& one, const Chart::State& other) noexcept {
-  return one.kind == other.kind && one.machine_root == other.machine_root;
-}
-
-StateIndex find_state(const Chart& chart, const Chart::State& wanted) {
-  const auto found = std::ranges::find(chart.states, wanted.path, &Chart::State::path);
-  const bool same = found != chart.states.end() && same_kind(*found, wanted);
-  return same ? static_cast<StateIndex>(found - chart.states.begin()) : no_state;
-}
-
-std::string_view text_of(ByteReader& bytes) noexcept {
-  const auto text = bytes.take_bytes(bytes.take<std::uint32_t>());
-  return {reinterpret_cast<const char*>(text.data()), text.size()};
-}
-
-void put_state(const Chart::State& state, ByteWriter& bytes) {
-  bytes.put_string(state.path);
-  bytes.put(static_cast<std::uint8_t>(state.kind));
-  bytes.put<std::uint8_t>(state.machine_root);
-}
-
-StateIndex take_state(const Chart& chart, ByteReader& bytes) {
-  Chart::State wanted;
-  wanted.path = bytes.take_string();
-  wanted.kind = static_cast<Chart::Kind>(bytes.take<std::uint8_t>());
-  wanted.machine_root = bytes.take<std::uint8_t>() != 0;
-  return find_state(chart, wanted);
-}
-
-}  // namespace
-
-void ChartRunner::keep(ByteWriter& bytes) const {
-  const auto put_event = [&](EventId event) {
-    bytes.put_string(event == no_event ? std::string_view{} : chart_.events[static_cast<std::size_t>(event)]);
-  };
-  bytes.put<std::uint8_t>(started_);
-  bytes.put<std::uint8_t>(finished_);
-  bytes.put<std::uint8_t>(filling_);
-  bytes.put(unhandled_);
-  const auto told = [](const StateRun& run) { return run.active || run.entering || run.outcome != no_event; };
-  bytes.put(static_cast<std::uint32_t>(std::ranges::count_if(run_, told)));
-  for (StateIndex i = 0; i < chart_.size(); ++i) {
-    const StateRun& run = run_[i];
-    if (!told(run)) continue;
-    put_state(chart_.states[i], bytes);
-    bytes.put(static_cast<std::uint8_t>((run.active ? bit_active : 0) | (run.entering ? bit_entering : 0) |
-                                        (run.run_done ? bit_run_done : 0)));
-    bytes.put(run.entered_ns);
-    put_event(run.outcome);
-  }
-  keep_histories(bytes);
-  bytes.put(event_count_);
-  for (std::uint32_t i = 0; i < event_count_; ++i) put_event(events_[(event_first_ + i) % events_.size()]);
-}
-
-void ChartRunner::keep_histories(ByteWriter& bytes) const {
-  bytes.put(static_cast<std::uint32_t>(std::ranges::count(remembered_, true)));
-  for (StateIndex history = 0; history < chart_.size(); ++history) {
-    if (!remembered_[history]) continue;
-    put_state(chart_.states[history], bytes);
-    bytes.put(static_cast<std::uint32_t>(std::ranges::count(histories_[history], true)));
-    for (StateIndex i = 0; i < chart_.size(); ++i) {
-      if (histories_[history][i]) put_state(chart_.states[i], bytes);
-    }
-  }
-}
-
-bool ChartRunner::restore(ByteReader& bytes) {
-  started_ = bytes.take<std::uint8_t>() != 0;
-  finished_ = bytes.take<std::uint8_t>() != 0;
-  filling_ = bytes.take<std::uint8_t>() != 0;
-  unhandled_ = bytes.take<std::uint64_t>();
-  std::vector<bool> listed(chart_.states.size(), false);
-  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
-    if (!restore_state(bytes, listed)) return false;
-  }
-  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
-  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
-    const EventId event = chart_.find_event(text_of(bytes));
-    if (event == no_event || !post(event)) ++unhandled_;
-  }
-  list_active();
-  fill_gaps();
-  return bytes.ok() && (active_.empty() == (!started_ || finished_));
-}
-
-// In the chart's order: what is around a state came before it. False: the state was listed before. What is in it may be
-// active already and rely on it.
-bool ChartRunner::restore_state(ByteReader& bytes, std::vector<bool>& listed) {
-  const StateIndex index = take_state(chart_, bytes);
-  const auto bits = bytes.take<std::uint8_t>();
-  const auto entered_ns = bytes.take<std::int64_t>();
-  const EventId outcome = chart_.find_event(text_of(bytes));
-  if (index == no_state || !bytes.ok()) return true;
-  if (listed[index]) return false;
-  listed[index] = true;
-  const Chart::State& state = chart_.states[index];
-  StateRun& run = run_[index];
-  run.outcome = outcome;
-  run.run_done = (bits & bit_run_done) != 0;
-  run.entered_ns = entered_ns;
-  if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return true;
-  const auto there = [&](StateIndex i) { return run_[i].active || run_[i].entering; };
-  bool alone = true;
-  for (StateIndex other = static_cast<StateIndex>(state.parent + 1);
-       index != 0 && other < chart_.states[state.parent].end; other = chart_.states[other].end) {
-    alone = alone && !there(other);
-  }
-  const bool fits =
-      index == 0 || (there(state.parent) && (alone || chart_.states[state.parent].kind == Chart::Kind::parallel));
-  run.active = fits && (bits & bit_active) != 0;
-  run.entering = fits && !run.active;
-  entering_ = entering_ || run.entering;
-  return true;
-}
-
-void ChartRunner::restore_history(ByteReader& bytes) {
-  const StateIndex history = take_state(chart_, bytes);
-  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
-    const StateIndex state = take_state(chart_, bytes);
-    if (history == no_state || state == no_state || histories_[history].empty()) continue;
-    const StateIndex around = chart_.states[history].parent, its = chart_.states[state].parent;
-    if (state == around || !chart_.inside(state, around) || (its != around && !histories_[history][its])) continue;
-    histories_[history][state] = remembered_[history] = true;
-  }
-}
-
-void ChartRunner::start_runs(lua_State* state) {
-  for (const StateIndex index : active_) {
-    if (chart_.states[index].run != Chart::no_function && !run_[index].run_done) start_run(state, index);
-  }
-}
-
-// What is active and has states, none of them active: they are entered by default.
-void ChartRunner::fill_gaps() noexcept {
-  for (const StateIndex index : active_) {
-    const Chart::State& around = chart_.states[index];
-    const bool parallel = around.kind == Chart::Kind::parallel;
-    bool any = false;
-    for (StateIndex child = static_cast<StateIndex>(index + 1); child < around.end; child = chart_.states[child].end) {
-      const bool there = run_[child].active || run_[child].entering;
-      any = any || there;
-      if (parallel && !there) fill(index, child);
-    }
-    if (!parallel && !any && around.initial != no_state) fill(index, around.initial);
-  }
-}
-
-void ChartRunner::fill(StateIndex around, StateIndex entered) noexcept {
-  filling_ = true;
-  run_[around].outcome = no_event;
-  mark_entry(entered);
-}
-
-std::vector<bool> ChartRunner::gone_from(const ChartRunner& other) const {
-  std::vector<bool> gone(chart_.states.size(), false);
-  for (StateIndex index = 0; index < chart_.size(); ++index) {
-    if (!run_[index].active) continue;
-    const StateIndex there = find_state(other.chart_, chart_.states[index]);
-    gone[index] = there == no_state || !other.run_[there].active;
-  }
-  return gone;
-}
-
-void ChartRunner::report_gone(const ChartRunner& old, const std::vector<bool>& gone) noexcept {
-  for (std::size_t i = 0; i < old.active_.size(); ++i) {
-    if (!gone[old.active_[i]] || !old.is_leaf(i)) continue;
-    StateIndex around = old.active_[i];
-    while (gone[around]) around = old.chart_.states[around].parent;
-    const StateIndex stays = find_state(chart_, old.chart_.states[around]), initial = chart_.states[stays].initial;
-    sink_.transitioned(old.chart_.states[old.active_[i]].path,
-                       chart_.states[initial != no_state ? initial : stays].path, "reload");
-  }
-}
-
-void ChartRunner::try_guards(lua_State* state) {
-  for (const StateIndex index : active_) {
-    const Chart::State& at = chart_.states[index];
-    for (std::uint16_t i = 0; i < at.transition_count; ++i) {
-      (void)guard(state, static_cast<std::uint16_t>(at.first_transition + i));
-    }
-    for (std::uint16_t i = 0; i < at.always_count; ++i) {
-      (void)guard(state, static_cast<std::uint16_t>(at.first_always + i));
-    }
-  }
-}
-
-void ChartRunner::leave_marked(lua_State* state, const std::vector<bool>& marks, std::int64_t now_ns) {
-  now_ns_ = now_ns;
-  for (StateIndex index = chart_.size(); index > 0; --index) {
-    const auto i = static_cast<StateIndex>(index - 1);
-    if (run_[i].active && marks[i]) leave(state, i);
-  }
-  list_active();
-}
-
-StateIndex ChartRunner::innermost() const noexcept {
-  StateIndex at = 0;
-  for (const StateIndex index : active_) {
-    if (index != 0 && chart_.states[index].parent == at) at = index;
-  }
-  return at;
-}
-
-void ChartRunner::enter_again(const std::vector<bool>& marks) noexcept {
-  for (StateIndex i = 0; i < chart_.size(); ++i) {
-    if (!marks[i]) continue;
-    entering_ = run_[i].entering = true;
-    filling_ = true;
-  }
 }
 
 }  // namespace kadans

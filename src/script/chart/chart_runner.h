@@ -1,28 +1,30 @@
-// Runs a chart, one tick at a time. A tick works against one snapshot:
+// Runs a chart, one tick at a time. A tick works against one snapshot. Its first step looks at transitions without an
+// event:
 //
-//   1. Each innermost active state looks for an enabled transition among the `always` of itself and of the states
-//   around
-//      it, from the outside in.
+//   1. Each innermost active state looks among the `always` of itself and of the states around it, from the outside in.
+//      The `after` of a state around it that was passed over in an earlier tick counts as such.
 //   2. Each that found none looks among their other transitions, from the inside out, in the order written.
 //   3. Of transitions that would leave the same state the first one is taken, unless a later one starts further inside
 //      (SCXML, section D, removeConflictingTransitions). So an `always` of any region goes before other transitions.
 //   4. All exits run, innermost and last first, then the actions, then all entries, outermost and first first.
-//   5. The `during` functions run, then the coroutines of `run`.
 //
-// So a tick takes one step, and its effects are seen in the next tick.
+// Then, as long as events wait, further steps of the same kind follow, each for one event: the oldest that an active
+// state takes. Only transitions with this event are looked at. A tick has at most steps_max steps. What waits after the
+// last one is dropped, counted and told. Then the `during` functions run, and the coroutines of `run`.
 //
-// Events wait in a bounded queue, and a tick looks at the oldest one. An event that no transition takes is dropped and
-// counted. It stays in the queue while transitions without an event are taken.
+// The end of a state is an event, too. It reaches the state that ended and the states around it in its behavior, up to
+// the region that it is in: what is around a region hears how all the regions ended. When the state goes on or is left
+// before its end was taken, the end is withdrawn.
 //
 // tick() and stop() call into Lua, and its errors unwind through them. So no function here holds an object that needs a
 // destructor. They allocate nothing beyond what the script allocates.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "chart.h"
+#include "event_queue.h"
 
 struct lua_State;
 
@@ -43,12 +45,19 @@ struct RunnerTables {
   int snapshot = Chart::no_function;  // s
   int threads = Chart::no_function;   // keeps the coroutines alive
   int time_key = Chart::no_function;  // "time_s"
+  int event = Chart::no_function;        // content of s.event
+  int event_names = Chart::no_function;  // by EventId + 1
+  int event_data = Chart::no_function;   // by place + 1
 };
 
 class TransitionSink {
  public:
   virtual ~TransitionSink() = default;
   virtual void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept = 0;
+  // Both are told once: no transition took this event in its tick; a tick took all its steps, the last one by the
+  // transition in this line.
+  virtual void event_dropped(const char* event) noexcept = 0;
+  virtual void out_of_steps(const char* chunk, int line) noexcept = 0;
 };
 
 class ChartRunner {
@@ -56,12 +65,15 @@ class ChartRunner {
   // Make it before the first tick. All references must outlive the runner.
   ChartRunner(const Chart& chart, const RunnerTables& tables, TransitionSink& sink);
 
+  static constexpr std::uint32_t steps_max = 16;
+
   void tick(lua_State* state, std::int64_t now_ns);
   // Leaves all active states, `exit` innermost first.
   void stop(lua_State* state, std::int64_t now_ns);
 
-  // False when the queue is full; this is counted.
-  bool post(EventId event) noexcept;
+  // False when the queue is full.
+  bool post(EventId event, std::int8_t place = -1) noexcept { return queue_.send(event, place); }
+  const EventQueue& events() const noexcept { return queue_; }
 
   // For a reload and for another process: the runner before writes itself with keep(); this one calls restore() before
   // the first tick, and start_runs() once the machines have their vars. Active states, their time, histories and
@@ -99,7 +111,8 @@ class ChartRunner {
   struct StateRun {
     bool active = false, run_done = false;
     bool entering = false, leaving = false;
-    bool decided = false;  // an `always` was found for it in this tick
+    bool decided = false;      // an `always` was found for it in this step
+    bool passed_over = false;  // one of its `after` was due, and a transition was taken that would not let it
     EventId outcome = no_event;
     std::int64_t entered_ns = 0;
     lua_State* thread = nullptr;
@@ -107,22 +120,37 @@ class ChartRunner {
     Motion* motion = nullptr;  // the motion that it waits for
     std::int64_t wake_ns = 0;
   };
-  enum class Guard : std::uint8_t { unknown, no, yes };
+  struct Guard {
+    std::uint64_t look = 0;  // when it was evaluated
+    bool yes = false;
+  };
 
-  void select(lua_State* state, EventId event, bool events_only);
-  std::uint16_t select_always(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event, bool events_only);
-  std::uint16_t select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf, EventId event, bool events_only);
+  // With an event: among the transitions that have it; without one: among those that have none.
+  void select(lua_State* state, const WaitingEvent* event);
+  std::uint16_t select_always(lua_State* state, StepMeter& meter, StateIndex leaf, const WaitingEvent* event);
+  std::uint16_t select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf, const WaitingEvent* event);
+  std::uint16_t select_passed_over(lua_State* state, StepMeter& meter, StateIndex outer);
+  void note_passed_over(lua_State* state, StepMeter& meter);
   bool is_leaf(std::size_t position) const noexcept;
-  bool enabled(lua_State* state, std::uint16_t transition, EventId event, bool events_only);
+  bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
+  bool happened(const Chart::Transition& transition, const WaitingEvent* event) const noexcept;
+  bool due(lua_State* state, const Chart::Transition& transition) const noexcept;
   bool guard(lua_State* state, std::uint16_t transition);
   void add_selected(std::uint16_t transition) noexcept;
-  bool took(EventId event) const noexcept;
+  bool conflict(std::uint16_t one, std::uint16_t other) const noexcept;
 
-  void look_for_transitions(lua_State* state);
+  void first_step(lua_State* state);
+  bool select_event(lua_State* state);
+  void drop_events(lua_State* state, std::uint32_t steps);
+  void show_event(lua_State* state, const WaitingEvent& event);
+  void hide_event(lua_State* state);
+  void forget_data(lua_State* state, const WaitingEvent& event);
+  void push_outcomes(lua_State* state, StateIndex parallel);
   void take_step(lua_State* state);
   void leave(lua_State* state, StateIndex index);
   void enter(lua_State* state, StateIndex index);
   void complete(StateIndex index, EventId outcome) noexcept;
+  bool waits_for_end(StateIndex ended, EventId outcome) const noexcept;
   void go_on(StateIndex index) noexcept;
   void mark_entry(StateIndex target) noexcept;
   void mark_ancestors(StateIndex target, StateIndex domain) noexcept;
@@ -151,11 +179,14 @@ class ChartRunner {
   std::vector<StateRun> run_;
   std::vector<StateIndex> active_;            // in document order
   std::vector<std::uint16_t> selected_;       // transitions
-  std::vector<Guard> guards_;                 // one for each transition, for this tick
+  std::vector<Guard> guards_;                 // one for each transition
+  std::uint64_t look_ = 0;                    // counts select()
   std::vector<std::vector<bool>> histories_;  // one for each state; empty when it has no history
   std::vector<bool> remembered_;
-  std::array<EventId, 32> events_{};
-  std::uint32_t event_first_ = 0, event_count_ = 0;
+  EventQueue queue_;
+  std::vector<bool> told_;  // events that were told as dropped
+  bool told_steps_ = false;
+  WaitingEvent shown_;  // the event of the step, for s.event
   std::uint64_t unhandled_ = 0;
   std::int64_t now_ns_ = 0;
   bool started_ = false, finished_ = false;

@@ -176,27 +176,55 @@ void add_emitted(const Tokens& tokens, Emitted& emitted) {
   }
 }
 
-// How what is inside a state may end: events that only it, not what is around it, hears.
-std::set<std::string> outcomes_of(const Chart& chart, StateIndex index) {
-  std::set<std::string> outcomes;
-  const bool parallel = chart.states[index].kind == Chart::Kind::parallel;
-  for (StateIndex i = static_cast<StateIndex>(index + 1); i < chart.states[index].end; ++i) {
-    const Chart::State& child = chart.states[i];
-    if (child.parent != index) continue;
-    if (child.kind == Chart::Kind::final_state) outcomes.insert(child.outcome_name);
-    if (parallel || child.machine_root) outcomes.merge(outcomes_of(chart, i));
+// The names with which states may end, as far as the chart tells.
+using Ends = std::set<std::string>;
+
+template <typename Visit>
+void each_child(const Chart& chart, StateIndex index, Visit visit) {
+  for (StateIndex child = static_cast<StateIndex>(index + 1); child < chart.states[index].end;
+       child = chart.states[child].end) {
+    visit(child);
   }
-  return outcomes;
 }
 
-// A behavior that is called may end in other ways tomorrow: waiting for the usual ones is foresight.
-bool ends_by_others(const Chart& chart, StateIndex index) {
-  const bool parallel = chart.states[index].kind == Chart::Kind::parallel;
-  for (StateIndex i = static_cast<StateIndex>(index + 1); i < chart.states[index].end; ++i) {
-    if (chart.states[i].parent != index) continue;
-    if (chart.states[i].machine_root || (parallel && ends_by_others(chart, i))) return true;
-  }
-  return false;
+Ends own_ends(const Chart& chart, StateIndex index);
+
+// All regions must end; it is done when all of them are.
+Ends ends_of_parallel(const Chart& chart, StateIndex index) {
+  Ends all;
+  bool each_ends = true, each_done = true;
+  each_child(chart, index, [&](StateIndex region) {
+    Ends its = own_ends(chart, region);
+    each_ends = each_ends && !its.empty();
+    each_done = each_done && its.contains("done");
+    all.merge(its);
+  });
+  if (!each_ends) return {};
+  if (!each_done) all.erase("done");
+  return all;
+}
+
+Ends own_ends(const Chart& chart, StateIndex index) {
+  if (chart.states[index].kind == Chart::Kind::parallel) return ends_of_parallel(chart, index);
+  Ends ends;
+  each_child(chart, index, [&](StateIndex child) {
+    const Chart::State& inside = chart.states[child];
+    if (inside.kind == Chart::Kind::final_state) ends.insert(inside.outcome_name);
+    if (!inside.machine_root) return;
+    ends.merge(own_ends(chart, child));
+    ends.insert({"done", "failed"});  // it may end so tomorrow: waiting for that is foresight
+  });
+  return ends;
+}
+
+// Its own ends, and those of states inside that reach it.
+Ends heard_ends(const Chart& chart, StateIndex index) {
+  Ends ends = own_ends(chart, index);
+  each_child(chart, index, [&](StateIndex child) {
+    const bool within = !chart.states[child].machine_root && chart.states[child].kind != Chart::Kind::region;
+    if (within) ends.merge(heard_ends(chart, child));
+  });
+  return ends;
 }
 
 struct Looking {
@@ -266,14 +294,16 @@ void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::
   for (const Chart::Transition& transition : chart.transitions) {
     if (transition.on == no_event || transition.on == run_done_event) continue;
     const std::string& event = chart.events[static_cast<std::size_t>(transition.on)];
-    if (emitted.may_be(event)) continue;
-    std::set<std::string> known = outcomes_of(chart, transition.source);
-    if (ends_by_others(chart, transition.source)) known.insert({"done", "failed"});
-    if (known.contains(event)) continue;
-    known.insert(emitted.events.begin(), emitted.events.end());
-    problems.push_back(
-        {chart.states[transition.source].chunk, transition.line, 0,
-         "nobody emits the event '" + event + "' here" + hint_text(event, {known.begin(), known.end()})});
+    const bool end = chart.made_by_runner(transition.on);
+    if (!end && emitted.may_be(event)) continue;
+    Ends ends = heard_ends(chart, transition.source);
+    if (ends.contains(event)) continue;
+    if (!end) ends.insert(emitted.events.begin(), emitted.events.end());
+    const Chart::State& source = chart.states[transition.source];
+    const std::string told =
+        end ? "nothing in '" + (source.name.empty() ? chart.name : source.name) + "' ends with '" + event + "'"
+            : "nobody emits the event '" + event + "' here";
+    problems.push_back({source.chunk, transition.line, 0, told + hint_text(event, {ends.begin(), ends.end()})});
   }
 }
 

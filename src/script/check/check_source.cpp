@@ -323,7 +323,12 @@ class SourceCheck final : public SourceListener {
     if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
     if (tokens[at - 1].is("(") && !tokens[at + 1].is(")")) return;  // a part of it
     const EventId id = parts_.chart.find_event(tokens[at].text);
-    if (id != no_event && id != run_done_event) return;
+    if (id != no_event && parts_.chart.made_by_runner(id)) {
+      return problem(tokens[at].line, "'" + tokens[at].text +
+                                          "' says how a state or a run ended, it cannot be emitted: give the event "
+                                          "another name");
+    }
+    if (id != no_event) return;
     problem(tokens[at].line, "nothing in this behavior waits for the event '" + tokens[at].text + "'" +
                                  hint_text(tokens[at].text, parts_.chart.events));
   }

@@ -112,6 +112,9 @@ int read(lua_State* state) {
   if (played) {
     lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.snapshot);
     read_shape(state, lua_gettop(state), known.snapshot, 0);
+    KnownNames::Shape& event = known.snapshot.fields["event"];
+    event.fields["name"] = {};
+    event.fields["data"].open = true;
     read_methods(state, known.object_methods);
   }
   read_modules(state, known);

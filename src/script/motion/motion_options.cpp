@@ -149,7 +149,7 @@ using Type = MotionOption::Type;
 constexpr std::uint8_t move_set = MotionOption::move | MotionOption::set;
 constexpr std::uint8_t limited = move_set | MotionOption::follow;
 constexpr double limit_min = 0.001, velocity_most = 1000, acceleration_most = 10000;
-constexpr MotionOption all_options[] = {
+constexpr MotionOption known_options[] = {
     {"time_s", Type::number, 0, 600, "s", nullptr, move_set | MotionOption::point,
      "Duration of the motion; 0: at once"},
     {"profile", Type::text, 0, 0, "", nullptr, move_set, "'minimum_jerk' (the default) or 'trapezoid'"},
@@ -177,9 +177,9 @@ bool starts_with(const char* text, const char* start) noexcept {
 
 // What every table of this method may hold, for messages.
 void check_names(lua_State* state, int index, MotionOption::Method method, const char* called) {
-  std::array<const char*, std::size(all_options) + 1> names{};
+  std::array<const char*, std::size(known_options) + 1> names{};
   std::size_t count = 0;
-  for (const MotionOption& option : all_options) {
+  for (const MotionOption& option : known_options) {
     if ((option.methods & method) != 0) names[count++] = option.name;
   }
   check_keys(state, index, calling_place(state), called, names.data());
@@ -256,7 +256,7 @@ void check_together(lua_State* state, MotionOption::Method method, const char* c
 
 }  // namespace
 
-std::span<const MotionOption> motion_options() noexcept { return all_options; }
+std::span<const MotionOption> motion_options() noexcept { return known_options; }
 std::span<const MotionMethod> motion_methods() noexcept { return methods; }
 
 MotionOptions read_motion_options(lua_State* state, int index, MotionOption::Method method, const char* called,
@@ -265,7 +265,7 @@ MotionOptions read_motion_options(lua_State* state, int index, MotionOption::Met
   if (lua_isnoneornil(state, index) && (method == MotionOption::set || method == MotionOption::through)) return options;
   if (lua_istable(state, index)) {
     check_names(state, index, method, called);
-    for (const MotionOption& option : all_options) {
+    for (const MotionOption& option : known_options) {
       lua_getfield(state, index, option.name);
       if (!lua_isnil(state, -1)) take(state, option, called, unit, options);
       lua_pop(state, 1);

@@ -1,0 +1,215 @@
+// A runner continues where another one stood, of an older version of the chart or of another process. The state of a
+// runner is written as bytes and read back. States, events and outcomes are written by their names, because the other
+// runner has read the chart's file anew and may have found another version of it. What no longer exists is left out,
+// and so is what contradicts itself. A state is the same when its path and its kind are, and both are a machine's root
+// or both not.
+#include <algorithm>
+
+#include <lua.hpp>
+
+#include "chart_runner.h"
+#include "signal/byte_order.h"
+
+namespace kadans {
+namespace {
+
+enum Bit : std::uint8_t { bit_active = 1, bit_entering = 2, bit_run_done = 4, bit_passed_over = 8 };
+
+bool same_kind(const Chart::State& one, const Chart::State& other) noexcept {
+  return one.kind == other.kind && one.machine_root == other.machine_root;
+}
+
+StateIndex find_state(const Chart& chart, const Chart::State& wanted) {
+  const auto found = std::ranges::find(chart.states, wanted.path, &Chart::State::path);
+  const bool same = found != chart.states.end() && same_kind(*found, wanted);
+  return same ? static_cast<StateIndex>(found - chart.states.begin()) : no_state;
+}
+
+std::string_view text_of(ByteReader& bytes) noexcept {
+  const auto text = bytes.take_bytes(bytes.take<std::uint32_t>());
+  return {reinterpret_cast<const char*>(text.data()), text.size()};
+}
+
+void put_state(const Chart::State& state, ByteWriter& bytes) {
+  bytes.put_string(state.path);
+  bytes.put(static_cast<std::uint8_t>(state.kind));
+  bytes.put<std::uint8_t>(state.machine_root);
+}
+
+StateIndex take_state(const Chart& chart, ByteReader& bytes) {
+  Chart::State wanted;
+  wanted.path = bytes.take_string();
+  wanted.kind = static_cast<Chart::Kind>(bytes.take<std::uint8_t>());
+  wanted.machine_root = bytes.take<std::uint8_t>() != 0;
+  return find_state(chart, wanted);
+}
+
+}  // namespace
+
+void ChartRunner::keep(ByteWriter& bytes) const {
+  const auto put_event = [&](EventId event) {
+    bytes.put_string(event == no_event ? std::string_view{} : chart_.events[static_cast<std::size_t>(event)]);
+  };
+  bytes.put<std::uint8_t>(started_);
+  bytes.put<std::uint8_t>(finished_);
+  bytes.put<std::uint8_t>(filling_);
+  bytes.put(unhandled_);
+  const auto told = [](const StateRun& run) { return run.active || run.entering || run.outcome != no_event; };
+  bytes.put(static_cast<std::uint32_t>(std::ranges::count_if(run_, told)));
+  for (StateIndex i = 0; i < chart_.size(); ++i) {
+    const StateRun& run = run_[i];
+    if (!told(run)) continue;
+    put_state(chart_.states[i], bytes);
+    bytes.put(static_cast<std::uint8_t>((run.active ? bit_active : 0) | (run.entering ? bit_entering : 0) |
+                                        (run.run_done ? bit_run_done : 0) | (run.passed_over ? bit_passed_over : 0)));
+    bytes.put(run.entered_ns);
+    put_event(run.outcome);
+  }
+  keep_histories(bytes);
+  bytes.put(static_cast<std::uint32_t>(queue_.size()));
+  for (std::size_t i = 0; i < queue_.size(); ++i) {  // between ticks no end of a state waits
+    put_event(queue_[i].id);
+    bytes.put(queue_[i].place);
+  }
+}
+
+void ChartRunner::keep_histories(ByteWriter& bytes) const {
+  bytes.put(static_cast<std::uint32_t>(std::ranges::count(remembered_, true)));
+  for (StateIndex history = 0; history < chart_.size(); ++history) {
+    if (!remembered_[history]) continue;
+    put_state(chart_.states[history], bytes);
+    bytes.put(static_cast<std::uint32_t>(std::ranges::count(histories_[history], true)));
+    for (StateIndex i = 0; i < chart_.size(); ++i) {
+      if (histories_[history][i]) put_state(chart_.states[i], bytes);
+    }
+  }
+}
+
+bool ChartRunner::restore(ByteReader& bytes) {
+  started_ = bytes.take<std::uint8_t>() != 0;
+  finished_ = bytes.take<std::uint8_t>() != 0;
+  filling_ = bytes.take<std::uint8_t>() != 0;
+  unhandled_ = bytes.take<std::uint64_t>();
+  std::vector<bool> listed(chart_.states.size(), false);
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
+    if (!restore_state(bytes, listed)) return false;
+  }
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
+    const EventId event = chart_.find_event(text_of(bytes));
+    const auto place = bytes.take<std::int8_t>();
+    if (event == no_event || chart_.made_by_runner(event) || !post(event, place)) ++unhandled_;
+  }
+  list_active();
+  fill_gaps();
+  return bytes.ok() && (active_.empty() == (!started_ || finished_));
+}
+
+// In the chart's order: what is around a state came before it. False: the state was listed before. What is in it may be
+// active already and rely on it.
+bool ChartRunner::restore_state(ByteReader& bytes, std::vector<bool>& listed) {
+  const StateIndex index = take_state(chart_, bytes);
+  const auto bits = bytes.take<std::uint8_t>();
+  const auto entered_ns = bytes.take<std::int64_t>();
+  const EventId outcome = chart_.find_event(text_of(bytes));
+  if (index == no_state || !bytes.ok()) return true;
+  if (listed[index]) return false;
+  listed[index] = true;
+  const Chart::State& state = chart_.states[index];
+  StateRun& run = run_[index];
+  run.outcome = outcome;
+  run.run_done = (bits & bit_run_done) != 0;
+  run.passed_over = (bits & bit_passed_over) != 0;
+  run.entered_ns = entered_ns;
+  if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return true;
+  const auto there = [&](StateIndex i) { return run_[i].active || run_[i].entering; };
+  bool alone = true;
+  for (StateIndex other = static_cast<StateIndex>(state.parent + 1);
+       index != 0 && other < chart_.states[state.parent].end; other = chart_.states[other].end) {
+    alone = alone && !there(other);
+  }
+  const bool fits =
+      index == 0 || (there(state.parent) && (alone || chart_.states[state.parent].kind == Chart::Kind::parallel));
+  run.active = fits && (bits & bit_active) != 0;
+  run.entering = fits && !run.active;
+  entering_ = entering_ || run.entering;
+  return true;
+}
+
+void ChartRunner::restore_history(ByteReader& bytes) {
+  const StateIndex history = take_state(chart_, bytes);
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
+    const StateIndex state = take_state(chart_, bytes);
+    if (history == no_state || state == no_state || histories_[history].empty()) continue;
+    const StateIndex around = chart_.states[history].parent, its = chart_.states[state].parent;
+    if (state == around || !chart_.inside(state, around) || (its != around && !histories_[history][its])) continue;
+    histories_[history][state] = remembered_[history] = true;
+  }
+}
+
+void ChartRunner::start_runs(lua_State* state) {
+  for (const StateIndex index : active_) {
+    if (chart_.states[index].run != Chart::no_function && !run_[index].run_done) start_run(state, index);
+  }
+}
+
+// What is active and has states, none of them active: they are entered by default.
+void ChartRunner::fill_gaps() noexcept {
+  for (const StateIndex index : active_) {
+    const Chart::State& around = chart_.states[index];
+    const bool parallel = around.kind == Chart::Kind::parallel;
+    bool any = false;
+    for (StateIndex child = static_cast<StateIndex>(index + 1); child < around.end; child = chart_.states[child].end) {
+      const bool there = run_[child].active || run_[child].entering;
+      any = any || there;
+      if (parallel && !there) fill(index, child);
+    }
+    if (!parallel && !any && around.initial != no_state) fill(index, around.initial);
+  }
+}
+
+void ChartRunner::fill(StateIndex around, StateIndex entered) noexcept {
+  filling_ = true;
+  run_[around].outcome = no_event;
+  mark_entry(entered);
+}
+
+std::vector<bool> ChartRunner::gone_from(const ChartRunner& other) const {
+  std::vector<bool> gone(chart_.states.size(), false);
+  for (StateIndex index = 0; index < chart_.size(); ++index) {
+    if (!run_[index].active) continue;
+    const StateIndex there = find_state(other.chart_, chart_.states[index]);
+    gone[index] = there == no_state || !other.run_[there].active;
+  }
+  return gone;
+}
+
+void ChartRunner::report_gone(const ChartRunner& old, const std::vector<bool>& gone) noexcept {
+  for (std::size_t i = 0; i < old.active_.size(); ++i) {
+    if (!gone[old.active_[i]] || !old.is_leaf(i)) continue;
+    StateIndex around = old.active_[i];
+    while (gone[around]) around = old.chart_.states[around].parent;
+    const StateIndex stays = find_state(chart_, old.chart_.states[around]), initial = chart_.states[stays].initial;
+    sink_.transitioned(old.chart_.states[old.active_[i]].path,
+                       chart_.states[initial != no_state ? initial : stays].path, "reload");
+  }
+}
+
+void ChartRunner::leave_marked(lua_State* state, const std::vector<bool>& marks, std::int64_t now_ns) {
+  now_ns_ = now_ns;
+  for (StateIndex index = chart_.size(); index > 0; --index) {
+    const auto i = static_cast<StateIndex>(index - 1);
+    if (run_[i].active && marks[i]) leave(state, i);
+  }
+  list_active();
+}
+
+void ChartRunner::enter_again(const std::vector<bool>& marks) noexcept {
+  for (StateIndex i = 0; i < chart_.size(); ++i) {
+    if (!marks[i]) continue;
+    entering_ = run_[i].entering = true;
+    filling_ = true;
+  }
+}
+
+}  // namespace kadans
