@@ -185,3 +185,22 @@ TEST_CASE("data of an event is a bounded table of plain data") {
   CHECK(emits("deep").ends_with("an event's data is nested too deeply"));
   CHECK(emits("{ x = string.rep('x', 257) }").ends_with("a text in an event's data is longer than 256 characters"));
 }
+
+TEST_CASE("a transition may have several events") {
+  Stage stage(head + R"(return k.behavior 't' { initial = 'a',
+    k.state 'a' { { on = { 'one', 'two' }, action = function(_, s) print(s.event.name) end, to = 'b' } },
+    k.state 'b' { { on = { 'one', 'two' }, action = function(_, s) print(s.event.name) end, to = 'a' } } })");
+  stage.tick();
+  CHECK(stage.behavior->post("two"));
+  CHECK(stage.behavior->post("one"));
+  stage.tick();
+  CHECK(stage.said() == "two\none\n");
+  const auto refused = [](const std::string& on) {
+    return load_error("local k = require 'kadans'\nreturn k.behavior 't' { k.state 'a' {\n{ on = " + on +
+                      ", to = 'a' } } }");
+  };
+  CHECK(refused("5").find("'on' must be an event's name or a list of names, not a number") != std::string::npos);
+  CHECK(refused("{ 'x', 5 }").find("'on' must be an event's name or a list of names, not a list with a number") !=
+        std::string::npos);
+  CHECK(refused("{}").find("'on' lists 1 to 32 events: on = { \"a\", \"b\" }") != std::string::npos);
+}

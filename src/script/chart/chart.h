@@ -56,6 +56,7 @@ struct Chart {
     std::int32_t after_parameter = no_parameter;
     std::string target_name, why;
     int line = 0;
+    bool listed = false;  // a further event of on = { "a", "b" }: otherwise the same as the one before
   };
   struct Machine {
     std::string name;

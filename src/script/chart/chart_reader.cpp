@@ -16,6 +16,7 @@ namespace kadans {
 namespace {
 
 const char node_key = 0;
+constexpr int listed_max = 32;                        // events in one on = { ... }
 constexpr std::size_t name_max = 64, text_max = 256;  // characters: charts keep them outside the script's memory
 
 constexpr double node_instructions = 300, transition_instructions = 110;  // to check one
@@ -48,7 +49,7 @@ const char* wanted_type(const char* key) noexcept {
   for (const char* name : {"enter", "exit", "during", "run", "migrate", "when", "action"}) {
     if (std::strcmp(key, name) == 0) return "function";
   }
-  for (const char* name : {"initial", "controls", "outcome", "to", "why", "on"}) {
+  for (const char* name : {"initial", "controls", "outcome", "to", "why"}) {
     if (std::strcmp(key, name) == 0) return "string";
   }
   for (const char* name : {"vars", "args", "always"}) {
@@ -83,6 +84,32 @@ void check_after(lua_State* state, int table, const ScriptPlace& place) {
   lua_pop(state, 1);
 }
 
+void check_on(lua_State* state, int table, const ScriptPlace& place) {
+  lua_getfield(state, table, "on");
+  const int on = lua_gettop(state);
+  const auto event = [&](const char* where) {
+    if (lua_type(state, -1) != LUA_TSTRING)
+      raise_at(state, place, "on", "'on' must be an event's name or a list of names, not %s%s", where,
+               luaL_typename(state, -1));
+    if (lua_objlen(state, -1) > text_max)
+      raise_at(state, place, "on", "'on' is longer than %d characters", static_cast<int>(text_max));
+    if (lua_objlen(state, -1) == 0) raise_at(state, place, "on", "'on' is the name of an event, not an empty text");
+  };
+  if (lua_istable(state, on)) {
+    const int count = static_cast<int>(lua_objlen(state, on));
+    if (count == 0 || count > listed_max)
+      raise_at(state, place, "on", "'on' lists 1 to %d events: on = { \"a\", \"b\" }", listed_max);
+    for (int i = 1; i <= count; ++i) {
+      lua_rawgeti(state, on, i);
+      event("a list with a ");
+      lua_pop(state, 1);
+    }
+  } else if (!lua_isnil(state, on)) {
+    event("a ");
+  }
+  lua_settop(state, on - 1);
+}
+
 void check_transition(lua_State* state, int table, const ScriptPlace& place) {
   core_of(state).budget.charge(state, transition_instructions);
   lua_getfield(state, table, "to");
@@ -95,6 +122,7 @@ void check_transition(lua_State* state, int table, const ScriptPlace& place) {
   }
   check_keys(state, table, nearer, "a transition", transition_keys);
   check_types(state, table, nearer, transition_keys);
+  check_on(state, table, nearer);
   check_after(state, table, nearer);
   lua_pop(state, 1);
 }
@@ -298,7 +326,25 @@ struct Reader {
     return chart.intern(event);
   }
 
+  // One transition for each of its events.
   void read_transition(int table, StateIndex source, const ScriptPlace& place) {
+    lua_getfield(state, table, "on");
+    const int on = lua_gettop(state);
+    if (!lua_istable(state, on)) {
+      add_transition(table, lua_isnil(state, on) ? "" : text(table, "on"), source, place);
+    } else {
+      const int count = static_cast<int>(lua_objlen(state, on));
+      for (int i = 1; i <= count; ++i) {
+        lua_rawgeti(state, on, i);
+        add_transition(table, lua_tostring(state, -1), source, place);
+        chart.transitions.back().listed = i > 1;
+        lua_pop(state, 1);
+      }
+    }
+    lua_settop(state, on - 1);
+  }
+
+  void add_transition(int table, const char* on, StateIndex source, const ScriptPlace& place) {
     if (chart.transitions.size() >= transitions_max)
       raise_at(state, place, nullptr, "more than %d transitions", static_cast<int>(transitions_max));
     Chart::Transition& made = chart.transitions.emplace_back();
@@ -307,7 +353,6 @@ struct Reader {
     made.line = find_line(place, made.target_name.c_str());
     made.when = reference(table, "when");
     made.action = reference(table, "action");
-    const char* on = text(table, "on");
     if (*on != '\0') made.on = intern(on);
     lua_getfield(state, table, "after");
     std::size_t number = 0;
@@ -522,8 +567,11 @@ void place(const Tokens& tokens, std::size_t at, Chart& chart, std::uint16_t fir
     for (std::uint16_t i = 0; target != 0 && i < count; ++i) {
       Chart::Transition& transition = chart.transitions[static_cast<std::size_t>(first + i)];
       if (placed[i] || transition.target_name != tokens[target].text) continue;
-      placed[i] = true;
-      transition.line = tokens[target].line;
+      do {
+        placed[i] = true;
+        chart.transitions[static_cast<std::size_t>(first + i)].line = tokens[target].line;
+        ++i;
+      } while (i < count && chart.transitions[static_cast<std::size_t>(first + i)].listed);
       break;
     }
   }

@@ -42,9 +42,9 @@ struct RunnerTables {
     int content = Chart::no_function;  // the table behind m
   };
   std::vector<Machine> machines;
-  int snapshot = Chart::no_function;  // s
-  int threads = Chart::no_function;   // keeps the coroutines alive
-  int time_key = Chart::no_function;  // "time_s"
+  int snapshot = Chart::no_function;     // s
+  int threads = Chart::no_function;      // keeps the coroutines alive
+  int time_key = Chart::no_function;     // "time_s"
   int event = Chart::no_function;        // content of s.event
   int event_names = Chart::no_function;  // by EventId + 1
   int event_data = Chart::no_function;   // by place + 1
