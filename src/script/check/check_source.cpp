@@ -6,6 +6,7 @@
 
 #include "check_arguments.h"
 #include "hint.h"
+#include "script/bindings/machine_sets.h"
 #include "source_scopes.h"
 
 namespace kadans {
@@ -286,14 +287,12 @@ class SourceCheck final : public SourceListener {
   }
 
   // Of the behavior in this file, else of the one that is played.
-  std::string set_name() const {
+  std::size_t machine_here() const {
     const auto& machines = parts_.chart.machines;
-    for (std::size_t i = machines.size(); i-- > 0;) {
-      const bool here = i == 0 || parts_.chart.states[machines[i].root].chunk == source_.chunk;
-      const ControlSetInfo* set = parts_.bindings.set_of(i);
-      if (here && set != nullptr) return set->name;
+    for (std::size_t i = machines.size(); i-- > 1;) {
+      if (parts_.chart.states[machines[i].root].chunk == source_.chunk) return i;
     }
-    return "";
+    return 0;
   }
 
   // The token behind '=' of an assignment.
@@ -304,8 +303,7 @@ class SourceCheck final : public SourceListener {
   void machine_field(const SourceUse& use, const ObjectInfo* object, const std::vector<SourceToken>& tokens) {
     const auto& path = use.meaning.path;
     if (object != nullptr) {
-      return problem(place(use), "control object '" + path.front() + "' is not in this behavior's control set, '" +
-                                     set_name() + "'");
+      return problem(place(use), not_in_sets(parts_.bindings, path.front(), machine_here()).data());
     }
     if (use.assigned && path.front() == "vars" && path.size() > 1 && gives_function(use, tokens))
       problem(place(use), "m.vars." + path[1] + " is given a function: vars hold plain data, which a reload keeps");
