@@ -175,7 +175,11 @@ TEST_CASE("an object that the sets of a state do not hold is an error where one 
       "return k.behavior 'main' { controls = 'legs', initial = 'a', k.state 'a' { initial = 'i',\n"
       "k.state 'i' { run = function(m) m:wait(0.015)\nsoftly(m) end, { after = 0.1, to = 'b' } } },\n"
       "k.state 'b' { controls = 'gesture', endless = true, enter = softly } }";
+  const auto check = [&] {
+    return check_behavior(cast.scripts.root, cast.scripts.root / "behaviors/main.lua", cast.robot.catalog);
+  };
   play_alone(cast, text);
+  CHECK(check().empty());  // one of the two states holds it
   cast.tick(5);
   CHECK(cast.host->behavior(0).error().text() ==
         "behaviors/main.lua:2: 'arms' is not in the control sets of state 'a.i' ('legs'): give the state controls = "
@@ -188,6 +192,25 @@ TEST_CASE("an object that the sets of a state do not hold is an error where one 
   CHECK(cast.host->behavior(0).error().text() ==
         "behaviors/lib/nods.lua:3: control object 'posture' is not in this behavior's control sets, 'gesture' and "
         "'legs'");
+}
+
+TEST_CASE("the check finds objects that the sets of a state do not hold in the functions of that state") {
+  Cast cast;
+  cast.write(
+      "main",
+      "return k.behavior 'main' { controls = 'legs', initial = 'a', k.state 'a' { controls = 'gesture',\n"
+      "enter = function(m)\nif m.name == 'x' then m.legs:set_gains('soft') end\nend,\n"
+      "{ after = 1, to = 'b', action = function(m)\nm.arms:set_gains('soft')\nm.legs:set_gains('soft')\nend } },\n"
+      "k.state 'b' { endless = true, enter = function(m)\nm.legs:set_gains('soft')\nend } }");
+  const auto found = check_behavior(cast.scripts.root, cast.scripts.root / "behaviors/main.lua", cast.robot.catalog);
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].line == 4);
+  CHECK(found[1].line == 8);
+  for (const InputProblem& one : found) {
+    CHECK(one.file == "behaviors/main.lua");
+    CHECK(one.message ==
+          "'legs' is not in the control sets of state 'a' ('gesture'): give the state controls = \"legs\"");
+  }
 }
 
 TEST_CASE("a reload keeps to the set of the state that is active, and switches when the new version names another") {
@@ -225,7 +248,7 @@ TEST_CASE("a version that is taken back leaves the sets as the old one needs the
   version("legs", "");
   cast.play({"main"});
   cast.tick(3);
-  version("gesture", "{ after = 0.06, to = 'a', action = function() error('bad') end }");
+  version("gesture", "during = function() end,");
   cast.host->order({.kind = PlayOrder::Kind::reload, .behavior = {"main", {}}, .file = {}});
   cast.tick(2);
   version("posture", "{ after = 0.06, to = 'a', action = function() error('bad') end }");

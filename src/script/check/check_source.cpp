@@ -283,7 +283,22 @@ class SourceCheck final : public SourceListener {
     if (path.size() > 1 && use.arguments != 0) {
       return problem(place(use), "call it with a colon: m." + path.front() + ":" + method + "(...)");
     }
+    if (use.arguments != 0) in_sets(use, *object);
     if (use.arguments != 0) tell(arguments_.of_method(*object, method, tokens, use.arguments));
+  }
+
+  // In a function of the chart, all states of which run without the object.
+  void in_sets(const SourceUse& use, const ObjectInfo& object) {
+    const auto file = known_.acting.find(source_.chunk);
+    if (use.function == 0 || file == known_.acting.end() || !file->second.contains(use.function)) return;
+    const auto& acting = file->second.at(use.function);
+    const auto number = static_cast<std::uint32_t>(&object - parts_.catalog.objects.data());
+    const auto lacks = [&](StateIndex index) {
+      const SetMask sets = parts_.chart.states[index].sets;
+      return sets != 0 && (parts_.bindings.partition->objects(sets) >> number & 1U) == 0;
+    };
+    if (!std::ranges::all_of(acting, lacks)) return;
+    problem(place(use), not_in_sets(parts_.bindings, number, parts_.chart.states[*acting.begin()]).data());
   }
 
   // Of the behavior in this file, else of the one that is played.
