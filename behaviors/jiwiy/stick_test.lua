@@ -18,13 +18,22 @@ describe("stick", function()
     run:advance(2)
     expect(run.control_sets).to_equal "position"
     expect(run.joints.pan.position_rad).to_be_near(1.2, 0.02)
-    expect(run.states).to_equal "velocity.stick_velocity.held effort position"
+    expect(run.states).to_equal "velocity effort position"
   end)
 end)
 
-describe("stick_velocity", function()
+-- From its first tick on the stick means what this button says.
+local function play(button)
+  local run = k.play("stick.lua", robot)
+  run:set_sensor("joystick." .. button, true)
+  run:advance(0.1)
+  run:set_sensor("joystick." .. button, false)
+  return run
+end
+
+describe("the stick as a rate", function()
   it("turns as fast as the stick says, and rests when it is let go", function()
-    local run = k.play("stick_velocity.lua", robot)
+    local run = play "button_2"
     run:set_sensor("joystick.x", 0.8)
     run:set_sensor("joystick.y", -0.4)
     run:advance(0.4)
@@ -38,9 +47,9 @@ describe("stick_velocity", function()
   end)
 end)
 
-describe("stick_position", function()
+describe("the stick as a pose", function()
   it("looks where the stick points, and ahead when it is let go", function()
-    local run = k.play("stick_position.lua", robot)
+    local run = play "button_1"
     run:set_sensor("joystick.x", -0.5)
     run:set_sensor("joystick.y", 1)
     run:advance(1.5)
@@ -52,9 +61,9 @@ describe("stick_position", function()
   end)
 end)
 
-describe("stick_effort", function()
+describe("the stick as a path", function()
   it("leads along a path, which ends where the stick is let go", function()
-    local run = k.play("stick_effort.lua", robot)
+    local run = play "button_3"
     run:set_sensor("joystick.x", -1)
     run:advance(1)
     expect(run.joints.pan.velocity_rad_s).to_be_near(1.5, 0.15)
@@ -67,7 +76,7 @@ describe("stick_effort", function()
   end)
 
   it("does not lead beyond the end", function()
-    local run = k.play("stick_effort.lua", robot)
+    local run = play "button_3"
     run:set_sensor("joystick.y", -1)
     run:advance(2)
     expect(run.joints.tilt.position_rad).to_be_near(0.7, 0.01)

@@ -16,6 +16,7 @@ bool CommandSender::add(const Command& command) noexcept {
     return false;
   }
   batch_[size_++] = command;
+  switches_ = switches_ || command.kind == CommandKind::switch_set;
   return true;
 }
 
@@ -29,6 +30,7 @@ std::uint32_t CommandSender::commit() noexcept {
                       .time_ns = time_ns_};
   const bool sent = overflow_ == 0 && queue_.try_push(std::span<const Command>(batch_.data(), size_));
   const std::size_t commands = size_ - 1;
+  const bool switches = switches_;
   discard();
   if (!sent) {
     refused_ += wanted;
@@ -37,7 +39,9 @@ std::uint32_t CommandSender::commit() noexcept {
   if (room_ != SIZE_MAX) room_ -= commands + 1;
   sent_ += wanted;
   committed_ = commands;
-  return ++sequence_;
+  ++sequence_;
+  if (switches) switch_ = sequence_;
+  return sequence_;
 }
 
 void CommandSender::follow(std::uint32_t last_sequence, std::size_t room) noexcept {
@@ -50,6 +54,7 @@ void CommandSender::follow(std::uint32_t last_sequence, std::size_t room) noexce
 void CommandSender::discard() noexcept {
   size_ = 1;
   overflow_ = 0;
+  switches_ = false;
 }
 
 }  // namespace kadans

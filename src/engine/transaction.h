@@ -31,8 +31,9 @@ class CommandSender {
   std::span<const Command> committed() const noexcept { return {batch_.data() + 1, committed_}; }
 
   std::uint32_t last_sequence() const noexcept { return sequence_; }
-  std::uint64_t sent() const noexcept { return sent_; }        // commands, headers not counted
-  std::uint64_t refused() const noexcept { return refused_; }  // commands in refused transactions
+  std::uint32_t last_switch() const noexcept { return switch_; }  // the last one that switches control sets; 0: none
+  std::uint64_t sent() const noexcept { return sent_; }           // commands, headers not counted
+  std::uint64_t refused() const noexcept { return refused_; }     // commands in refused transactions
 
  private:
   CommandQueue& queue_;
@@ -40,7 +41,8 @@ class CommandSender {
   std::size_t size_ = 1;  // batch_[0] is the header
   std::size_t committed_ = 0;
   std::int64_t time_ns_ = 0;
-  std::uint32_t sequence_ = 0;
+  std::uint32_t sequence_ = 0, switch_ = 0;
+  bool switches_ = false;  // what was added since begin()
   std::size_t room_ = SIZE_MAX;
   std::uint64_t sent_ = 0, refused_ = 0;
   std::uint64_t overflow_ = 0;  // commands that did not fit

@@ -127,7 +127,7 @@ TEST_CASE("run is led by a joystick's recording, also when behaviors play in a p
             project);
     CHECK_MESSAGE(outcome.exit_code == 0, outcome.err);
     CHECK(has(outcome.err, "joystick: is there"));
-    CHECK(has(outcome.err, "velocity.stick_velocity.held -> effort (button 3)"));
+    CHECK(has(outcome.err, "velocity -> effort (button 3)"));
   }
 }
 

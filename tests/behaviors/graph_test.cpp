@@ -12,7 +12,8 @@ constexpr const char* nested =
     "  initial = \"work\",\n"
     "  always = { { when = function(s) return s.safety.level ~= \"normal\" end, to = \"done\", why = \"safety\" } },\n"
     "  k.parallel \"work\" {\n"
-    "    k.region \"left\"  { initial = \"a\", k.state \"a\" { { after = 1.5, to = \"b\" } }, k.final \"b\" { outcome "
+    "    k.region \"left\"  { controls = \"posture\", initial = \"a\", k.state \"a\" { { after = 1.5, to = \"b\" } }, "
+    "k.final \"b\" { outcome "
     "= \"ok\" } },\n"
     "    k.region \"right\" { initial = \"c\", k.state \"c\" { { on = \"go\", to = \"d\" } }, k.final \"d\" { outcome "
     "= \"ok\" } },\n"
@@ -46,7 +47,7 @@ TEST_CASE("behavior graph draws the same for Graphviz") {
   const std::string text = graph("graph_dot", "--format dot");
   CHECK(text.rfind("digraph \"nested\" {", 0) == 0);
   CHECK(has(text, "subgraph cluster_s1 {"));
-  CHECK(has(text, "label=\"left\"; style=dashed;"));
+  CHECK(has(text, "label=\"left [posture]\"; style=dashed;"));
   CHECK(has(text, "s4 [label=\"b: ok\", shape=doublecircle];"));
   CHECK(has(text, "s3 -> s4 [label=\"after 1.5 s\"];"));
 }

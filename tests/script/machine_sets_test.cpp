@@ -1,50 +1,13 @@
-// Control sets of behaviors that are called or played beside others: the caller's, or one with joints of its own.
+// Control sets of behaviors that are called or played beside others.
 #include <doctest/doctest.h>
 
-#include "kadans/signal/input_error.h"
+#include "script/cast.h"
 #include "script/check/check_behavior.h"
-#include "script/fixture.h"
 
 using namespace kadans;
 using namespace kadans::script_test;
 
 namespace {
-
-enum Set : std::uint32_t { posture, gesture, legs };
-
-const std::string head = "local k = require 'kadans'\n";
-
-// The robot of the fixture with a set of its legs beside that of its arms; what is called is in behaviors/lib.
-struct Cast : Theatre {
-  Cast() { robot.add_legs(); }
-  void write(const std::string& name, const std::string& text) {
-    scripts.write("behaviors/" + name + ".lua", head + text);
-  }
-  // Plays these, each in a lane of its own.
-  void play(const std::vector<std::string>& names) {
-    ScriptHost::Settings settings;
-    for (const PlayItem& item : list(names)) {
-      settings.play.push_back(item);
-      settings.play.back().lane = static_cast<std::uint32_t>(settings.play.size() - 1);
-    }
-    open(settings);
-  }
-  std::string refusal(const std::vector<std::string>& names) {
-    try {
-      play(names);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
-  std::vector<std::uint32_t> switches() const {
-    std::vector<std::uint32_t> all;
-    for (const Command& command : applied) {
-      if (command.kind == CommandKind::switch_set) all.push_back(command.index);
-    }
-    return all;
-  }
-};
 
 const std::string nods =
     "return k.behavior 'nods' { controls = 'gesture', initial = 'a', k.state 'a' { "
@@ -126,9 +89,9 @@ TEST_CASE("regions may call behaviors on sets of their own, those that share a j
   CHECK(cast.log.errors == 0);
   both("moves");
   const std::string why =
-      "behaviors/main.lua:3: behavior 'moves' cannot play beside 'nods': control sets 'gesture' and 'posture' both "
-      "drive joint 'l_shoulder_pitch'; a called or parallel behavior uses its caller's control set, or one with joints "
-      "of its own";
+      "behaviors/main.lua:3: behavior 'moves' cannot be active beside behavior 'nods': control sets 'gesture' and "
+      "'posture' both drive joint 'l_shoulder_pitch'; the regions of a parallel run on the same control sets, or on "
+      "sets without a common joint";
   CHECK(cast.refusal({"main"}) == why);
   const auto problems = check_behavior(cast.scripts.root, cast.scripts.root / "behaviors/main.lua", cast.robot.catalog);
   REQUIRE(problems.size() == 1);

@@ -258,6 +258,7 @@ void Behavior::Parts::tell_dropped(bool at_once) noexcept {
 void Behavior::Parts::tell_refused() noexcept {
   while (const Refusal* refusal = bindings.next_refusal()) {
     ++transactions_refused;
+    bindings.sets_lost = true;
     log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
                 "refused by the control engine, all commands of that tick: " + refusal_text(*refusal, catalog));
     bindings.forget_armed(refusal->sequence);
@@ -282,13 +283,7 @@ void Behavior::Parts::tell_armed() noexcept {
   }
 }
 
-void Behavior::Parts::want_sets(const Snapshot& snapshot) noexcept {
-  for (std::size_t i = 0; i < chart.machines.size(); ++i) {
-    const ControlSetInfo* set = bindings.set_of(i);
-    if (set == nullptr || !runner->active(chart.machines[i].root)) continue;
-    bindings.wanted |= set_bit(static_cast<std::uint32_t>(set - catalog.sets.data())) & ~snapshot.control_sets;
-  }
-}
+void Behavior::Parts::want_sets() noexcept { bindings.wanted = runner->sets_asked() & ~bindings.sets_sent; }
 
 void Behavior::Parts::transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept {
   transition.time_ns = bindings.engine_ns();
@@ -343,6 +338,11 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   if (bindings.armed_count > 0) parts.tell_armed();
   bindings.take_back_orphans();
   if (snapshot.transactions_refused != bindings.refusals_seen) parts.tell_refused();
+  if (bindings.sets_lost && bindings.sets_known() && snapshot.status.safety.level < SafetyLevel::hold) {
+    bindings.sets_lost = false;
+    bindings.sets_sent = bindings.sets_now = snapshot.control_sets;
+    parts.want_sets();
+  }
   if (bindings.wanted != 0) bindings.bring_in_again();
   if (!parts.run(tick_chart)) {
     commands.discard();
@@ -439,14 +439,11 @@ std::string Behavior::outcome() const {
 
 std::string Behavior::state() const { return parts_->chart.states[parts_->runner->innermost()].path; }
 
-SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets(); }
+SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets; }
 
 ObjectMask Behavior::objects() const noexcept {
   ObjectMask all = 0;
-  for (const ControlSetInfo* set : parts_->bindings.sets) {
-    if (set == nullptr) return ~ObjectMask{0};
-    for (const std::uint32_t object : set->objects) all |= ObjectMask{1} << object;
-  }
+  for (const ObjectMask objects : parts_->bindings.machine_objects) all |= objects;
   return all;
 }
 

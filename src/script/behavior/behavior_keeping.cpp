@@ -37,10 +37,14 @@ void take_parameters(LuaCore& core, ByteReader& bytes) {
 }
 
 void put_bindings(const Bindings& bindings, ByteWriter& bytes) {
-  bytes.put(bindings.wanted);
+  bytes.put(bindings.sets_sent);
+  bytes.put<std::uint8_t>(bindings.sets_lost);
   for (const std::uint32_t sequence : bindings.sent) bytes.put(sequence);
   bytes.put(bindings.sent_count);
   bytes.put(bindings.refusals_seen);
+  bytes.put(bindings.refused_last);
+  bytes.put(bindings.switched);
+  bytes.put<std::uint8_t>(bindings.begun);
 }
 
 // What is armed, with the path of the state that it belongs to.
@@ -71,10 +75,14 @@ void take_armed(Behavior::Parts& parts, ByteReader& bytes) {
 }
 
 void take_bindings(Bindings& bindings, ByteReader& bytes) {
-  bindings.wanted = bytes.take<SetMask>() & bindings.all_sets();
+  bindings.sets_sent = bytes.take<SetMask>();
+  bindings.sets_lost = bytes.take<std::uint8_t>() != 0;
   for (std::uint32_t& sequence : bindings.sent) sequence = bytes.take<std::uint32_t>();
   bindings.sent_count = bytes.take<std::uint32_t>();
   bindings.refusals_seen = bytes.take<std::uint32_t>();
+  bindings.refused_last = bytes.take<std::uint32_t>();
+  bindings.switched = bytes.take<std::uint32_t>();
+  bindings.begun = bytes.take<std::uint8_t>() != 0;
 }
 
 // [-0 +1] Pushes the `vars` of a machine.
@@ -382,7 +390,7 @@ bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snaps
   const bool taken = parts.lua->call(take_machines, &going_on, instructions, parts.settings.limits.load_wall_ns);
   commands.discard();  // a guard that commands
   core.random = going_on.random;
-  if (taken && parts.runner->started()) parts.want_sets(snapshot);
+  if (taken && parts.runner->started()) parts.want_sets();
   if (!taken) parts.error = parts.lua->error();
   return taken && bytes.ok();
 }
@@ -463,7 +471,7 @@ Behavior::Reload Behavior::reload(const Snapshot& snapshot, CommandSender& comma
     return refuse(snapshot.time_ns, error.what());
   }
   if (!holds(wanted, fresh->lua->sources())) return refuse(snapshot.time_ns, "the file changed while it was read");
-  if (const std::string clash = clash_text(fresh->catalog, fresh->bindings.all_sets(), elsewhere); !clash.empty()) {
+  if (const std::string clash = clash_text(fresh->catalog, fresh->bindings.all_sets, elsewhere); !clash.empty()) {
     return refuse(snapshot.time_ns, clash + ", and the other set's behavior plays at the same time");
   }
   ByteWriter kept;
@@ -504,7 +512,8 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
     (void)leave_states(failing, failing.runner->gone_from(*old.runner), snapshot, commands);
   }
   old.runner->enter_again(past_->left);
-  old.want_sets(snapshot);
+  old.bindings.go_on_after(failing.bindings);
+  old.want_sets();
   parts_ = std::move(past_->parts);
   parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "new version taken back, the old one goes on: " + error.text());

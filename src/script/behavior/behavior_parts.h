@@ -64,8 +64,8 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void out_of_steps(const char* chunk, int line) noexcept override;
   void tell_refused() noexcept;  // logs what the control engine has refused since the last call
   void tell_armed() noexcept;    // logs what became of armed transactions since the last call, and posts their events
-  // Asks in the next tick for the control sets of all active machines that are not active in the snapshot.
-  void want_sets(const Snapshot& snapshot) noexcept;
+  // Asks in the next tick for the control sets of the active states that are not active.
+  void want_sets() noexcept;
   // Runs one of the functions below under the tick's budget.
   bool run(int (*function)(lua_State*)) noexcept;
 

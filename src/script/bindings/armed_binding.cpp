@@ -245,7 +245,7 @@ int on(lua_State* state) {
   lua_settop(state, 4);
   core_of(state).budget.charge(state, arm_instructions);
   if (bindings.recording) return luaL_error(state, "m:on does not work inside the function of another m:on");
-  if (!bindings.runner->active(bindings.caller))
+  if (!bindings.runner->active(bindings.runner->acting_index()))
     return luaL_error(state, "m:on belongs to a state that is active: call it in enter, during or run");
   if (!lua_isfunction(state, 3))
     return luaL_error(state, "m:on needs a function that says what to do: function(c) ... end");
@@ -341,7 +341,10 @@ const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, 
 
 const ArmedHere& Bindings::note_armed(EventId event) noexcept {
   ArmedHere& here = armed[armed_count++];
-  here = {.sequence = sender->last_sequence() + 1, .which = armed_in_tick++, .owner = caller, .event = event};
+  here = {.sequence = sender->last_sequence() + 1,
+          .which = armed_in_tick++,
+          .owner = runner->acting_index(),
+          .event = event};
   return here;
 }
 

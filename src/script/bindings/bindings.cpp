@@ -2,6 +2,7 @@
 #include "bindings.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "script/chart/chart_reader.h"
 #include "script/check/hint.h"
@@ -10,33 +11,27 @@
 
 namespace kadans {
 
-bool Bindings::has_object(std::size_t machine, std::uint32_t object) const noexcept {
-  const ControlSetInfo* set = set_of(machine);
-  return set == nullptr || std::find(set->objects.begin(), set->objects.end(), object) != set->objects.end();
-}
-
-SetMask Bindings::all_sets() const noexcept {
-  SetMask all = 0;
-  for (const ControlSetInfo* set : sets) {
-    if (set != nullptr) all |= set_bit(static_cast<std::uint32_t>(set - catalog->sets.data()));
-  }
-  return all;
-}
-
-// The snapshot tells which sets are active, unless something of this behavior's is still on its way. A switch to a set
-// that is active does nothing.
-void Bindings::bring_in(std::size_t machine) noexcept {
-  const ControlSetInfo* set = set_of(machine);
-  if (set == nullptr) return;
-  const auto number = static_cast<std::uint32_t>(set - catalog->sets.data());
-  const bool told = sent_count == 0 || snapshot->transactions_applied >= sent[(sent_count - 1) % sent.size()];
-  if ((told && (snapshot->control_sets & set_bit(number)) != 0) || (wanted & set_bit(number)) != 0) return;
-  wanted |= set_bit(number);
-  (void)send({.kind = CommandKind::switch_set, .index = number});
+void Bindings::want(SetMask sets) noexcept {
+  wanted = (wanted & sets) | (sets & ~sets_now);
+  bring_in_again();
 }
 
 void Bindings::bring_in_again() noexcept {
-  each_bit(wanted, [&](std::uint32_t set) { (void)send({.kind = CommandKind::switch_set, .index = set}); });
+  each_bit(wanted & ~sets_now, [&](std::uint32_t set) {
+    sets_now = partition->after(sets_now, set);
+    (void)send({.kind = CommandKind::switch_set, .index = set});
+  });
+}
+
+void Bindings::go_on_after(const Bindings& other) noexcept {
+  sent = other.sent;
+  sent_count = other.sent_count;
+  refusals_seen = other.refusals_seen;
+  refused_last = other.refused_last;
+  switched = other.switched;
+  begun = other.begun;
+  sets_sent = other.sets_sent;
+  sets_lost = other.sets_lost;
 }
 
 const Refusal* Bindings::next_refusal() noexcept {
@@ -44,7 +39,9 @@ const Refusal* Bindings::next_refusal() noexcept {
   if (count - refusals_seen > refusals_shown) refusals_seen = count - refusals_shown;
   while (refusals_seen != count) {
     const Refusal& refusal = snapshot->refusals[refusals_seen++ % refusals_shown];
-    if (std::find(sent.begin(), sent.end(), refusal.sequence) != sent.end()) return &refusal;
+    if (std::find(sent.begin(), sent.end(), refusal.sequence) == sent.end()) continue;
+    refused_last = refusal.sequence;
+    return &refusal;
   }
   return nullptr;
 }
@@ -68,13 +65,20 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
   motion_count = 0;
   recording = false;
   armed_in_tick = 0;
+  if (!std::exchange(begun, true)) switched = to.last_switch();  // of a behavior before
+  if (sets_known()) sets_sent = seen.control_sets;
+  sets_now = sets_sent;
   to.begin(time_ns);
 }
 
 bool Bindings::commit() noexcept {
   const std::uint32_t sequence = sender->commit();
   const bool taken = !refused && (sequence != 0 || sender->last_sequence() == 0);
-  if (taken) wanted = 0;
+  if (taken) {
+    wanted = 0;
+    sets_sent = sets_now;
+    if (sender->last_switch() == sequence) switched = sequence;
+  }
   if (taken && !sender->committed().empty()) sent[sent_count++ % sent.size()] = sequence;
   for (std::uint32_t i = 0; i < motion_count; ++i) {
     Motion& motion = *motions[i];

@@ -1,8 +1,10 @@
 // The data on which the functions of `m` work: the catalog, the snapshot and the transaction of the running tick.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +34,10 @@ inline const std::vector<std::string> no_feet;
 struct Bindings {
   const Catalog* catalog = nullptr;
   const std::vector<std::string>* feet = &no_feet;  // their names in `s.feet`, in the snapshot's order
-  std::vector<const ControlSetInfo*> sets;  // for each machine its own set or its caller's; nullptr: every object
+  std::optional<SetPartition> partition;
+  SetMask all_sets = 0;                       // those that any state may run on
+  std::vector<SetMask> machine_sets;          // those that the states of each machine run on
+  std::vector<ObjectMask> machine_objects{};  // what `m` of each machine shows; empty: every object
   const Snapshot* snapshot = nullptr;
   CommandSender* sender = nullptr;
   std::int64_t held_ns = 0;  // how much the behaviors' clock is behind the engine's, because of pauses
@@ -41,25 +46,29 @@ struct Bindings {
   bool refused = false;                            // a command of this tick found no place in the queue
   std::array<Motion*, max_transaction> motions{};  // motions asked for in this tick
   std::uint32_t motion_count = 0;
-  SetMask wanted = 0;                   // sets that are needed and have not been sent for yet
+  // Sets of which no command has been sent yet that brings them in; which are active once all transactions sent are
+  // applied; and once this tick's is, too.
+  SetMask wanted = 0, sets_sent = 0, sets_now = 0;
+  bool sets_lost = false;               // a transaction was refused that may have brought sets in
   std::array<std::uint32_t, 8> sent{};  // the newest transactions, a ring indexed by sent_count
   std::uint32_t sent_count = 0;
   std::uint32_t refusals_seen = 0;  // transactions_refused of the last snapshot
-  StateIndex caller = 0;            // the state whose function runs
   bool recording = false;           // the function of m:on runs: what it asks for is recorded, not sent
   std::array<Command, max_armed_commands> recorded{};
   std::uint32_t recorded_count = 0;  // may be greater than its room
   std::array<ArmedHere, max_armed> armed{};
   std::uint32_t armed_count = 0;
   std::uint16_t armed_in_tick = 0;
+  std::uint32_t refused_last = 0;  // the newest transaction of this behavior that was refused
+  std::uint32_t switched = 0;      // the newest one that brings sets in
+  bool begun = false;
 
-  const ControlSetInfo* set_of(std::size_t machine) const noexcept {
-    return machine < sets.size() ? sets[machine] : nullptr;
+  bool has_object(std::size_t machine, std::uint32_t object) const noexcept {
+    return machine >= machine_objects.size() || (machine_objects[machine] >> object & 1U) != 0;
   }
-  bool has_object(std::size_t machine, std::uint32_t object) const noexcept;
-  SetMask all_sets() const noexcept;
-  // To be called when a machine is entered: asks for its control set, unless it is active.
-  void bring_in(std::size_t machine) noexcept;
+  // To be called in the step of a chart, between its exits and its entries, with the control sets that its active
+  // states run on: switches to those that are not active.
+  void want(SetMask sets) noexcept;
   // To be called after begin(): asks again for sets that could not be sent before.
   void bring_in_again() noexcept;
   // The next refusal in the snapshot of one of this behavior's transactions; nullptr when all have been returned.
@@ -78,6 +87,10 @@ struct Bindings {
   bool send(const Command& command) noexcept;
   void begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept;
   std::int64_t engine_ns() const noexcept { return now_ns + held_ns; }
+  // Whether the snapshot shows the control sets as this behavior has left them.
+  bool sets_known() const noexcept { return std::max(snapshot->transactions_applied, refused_last) >= switched; }
+  // Goes on after what another version of the behavior has sent.
+  void go_on_after(const Bindings& other) noexcept;
   // Commits the transaction and stores its number in its motions. False: refused.
   bool commit() noexcept;
 };

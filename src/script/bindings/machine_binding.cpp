@@ -5,7 +5,6 @@
 
 #include "bindings.h"
 #include "machine_sets.h"
-#include "script/behavior/behavior_parts.h"
 #include "script/check/hint.h"
 #include "script/motion/motion_options.h"
 #include "script/sandbox/sandbox.h"
@@ -98,7 +97,13 @@ const ObjectInfo& check_object(lua_State* state, std::uint32_t& number) {
   }
   if (handle == nullptr) luaL_error(state, "call it on a control object, with a colon: m.object:method(...)");
   number = handle != nullptr ? *static_cast<const std::uint32_t*>(handle) : 0;
-  return bindings_of(state).catalog->objects[number];
+  const Bindings& bindings = bindings_of(state);
+  if (bindings.runner != nullptr && !bindings.recording) {  // m:on may switch to the set of any object
+    const Chart::State& acting = bindings.runner->acting();
+    const bool there = acting.sets == 0 || (bindings.partition->objects(acting.sets) >> number & 1U) != 0;
+    if (!there) luaL_error(state, "%s", not_in_sets(bindings, number, acting).data());
+  }
+  return bindings.catalog->objects[number];
 }
 
 const char* short_name(const ObjectInfo& object, const std::string& name) noexcept {
@@ -163,13 +168,13 @@ int emit(lua_State* state);  // upvalues: the chart, the reference of the events
 // Reading what m does not have; upvalues: its content, its number.
 int refuse_read(lua_State* state) {
   const Bindings& bindings = bindings_of(state);
-  const ControlSetInfo* set = bindings.set_of(static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(2))));
+  const auto number = static_cast<std::size_t>(lua_tointeger(state, lua_upvalueindex(2)));
   for (std::uint32_t i = 0; i < bindings.catalog->objects.size(); ++i) {
     const ObjectInfo& object = bindings.catalog->objects[i];
-    if (lua_type(state, 2) != LUA_TSTRING || object.name != lua_tostring(state, 2) || set == nullptr) continue;
+    if (lua_type(state, 2) != LUA_TSTRING || object.name != lua_tostring(state, 2)) continue;
     if (bindings.recording) return push_object(state, i), 1;  // m:on may switch to its set
-    return luaL_error(state, "control object '%s' is not in this behavior's control set, '%s'", object.name.c_str(),
-                      set->name.c_str());
+    if (number < bindings.machine_sets.size())
+      return luaL_error(state, "%s", not_in_sets(bindings, object.name, number).data());
   }
   return raise_unknown_field(state, "m", lua_upvalueindex(1), 2);
 }
@@ -296,53 +301,6 @@ void push_machine_content(lua_State* state, const Chart& chart, const Bindings& 
   open_armed(state, chart);
 }
 
-const ControlSetInfo* find_set(Behavior::Parts& parts, const Chart::Machine& machine) {
-  std::vector<std::string> names;
-  for (const ControlSetInfo& set : parts.catalog.sets) {
-    names.push_back(set.name);
-    if (set.name == machine.controls) return &set;
-  }
-  const Chart::State& root = parts.chart.states[machine.root];
-  parts.problems.push_back(
-      {root.chunk, parts.lua->line_of(root.chunk, root.line, machine.controls), 0,
-       "unknown control set '" + machine.controls + "' in 'controls'" + hint_text(machine.controls, names)});
-  return nullptr;
-}
-
-// Whether both can be active: one is inside the other, or the innermost state around both is a parallel.
-bool together(const Chart& chart, StateIndex a, StateIndex b) {
-  StateIndex around = std::max(a, b);
-  const StateIndex other = std::min(a, b);
-  while (!chart.inside(other, around) && !chart.inside(around, other)) {
-    const StateIndex parent = chart.states[around].parent;
-    if (chart.inside(other, parent)) return chart.states[parent].kind == Chart::Kind::parallel;
-    around = parent;
-  }
-  return true;
-}
-
-SetMask bit_of(const Catalog& catalog, const ControlSetInfo* set) {
-  return set == nullptr ? 0 : set_bit(static_cast<std::uint32_t>(set - catalog.sets.data()));
-}
-
-// A behavior that is called, against those before it in the chart.
-void check_together(Behavior::Parts& parts, std::size_t number) {
-  const Chart& chart = parts.chart;
-  const Chart::Machine& called = chart.machines[number];
-  for (std::size_t i = 0; i < number; ++i) {
-    const Chart::Machine& other = chart.machines[i];
-    const std::string clash = clash_text(parts.catalog, bit_of(parts.catalog, parts.bindings.sets[i]),
-                                         bit_of(parts.catalog, parts.bindings.sets[number]));
-    if (clash.empty() || !together(chart, other.root, called.root)) continue;
-    const bool caller = chart.inside(called.root, other.root);
-    parts.problems.push_back(
-        {called.call_chunk, parts.lua->line_of(called.call_chunk, called.call_line, called.name), 0,
-         "behavior '" + called.name + "' cannot play " + (caller ? "inside" : "beside") + " '" + other.name + "': " +
-             clash + "; a called or parallel behavior uses its caller's control set, or one with joints of its own"});
-    return;
-  }
-}
-
 }  // namespace
 
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables) {
@@ -396,34 +354,6 @@ void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tab
   }
   lua_setfield(state, top + 1, "args");
   lua_settop(state, top);
-}
-
-void find_control_sets(Behavior::Parts& parts) {
-  const Chart& chart = parts.chart;
-  auto& sets = parts.bindings.sets;
-  for (const Chart::Machine& machine : chart.machines) {
-    const StateIndex caller = chart.states[machine.root].parent;
-    const ControlSetInfo* inherited = caller == no_state ? nullptr : sets[chart.states[caller].machine];
-    sets.push_back(machine.controls.empty() ? inherited : find_set(parts, machine));
-  }
-  for (std::size_t i = 1; i < sets.size(); ++i) {
-    if (!chart.machines[i].controls.empty()) check_together(parts, i);
-  }
-}
-
-std::string clash_text(const Catalog& catalog, SetMask a, SetMask b) {
-  std::string text;
-  const SetPartition partition(catalog);
-  each_bit(a, [&](std::uint32_t one) {
-    each_bit(b, [&](std::uint32_t other) {
-      if (!text.empty() || !partition.clash(set_bit(one), set_bit(other))) return;
-      const JointMask shared = partition.joints(set_bit(one)) & partition.joints(set_bit(other));
-      const auto joint = static_cast<std::size_t>(std::countr_zero(shared));
-      text = "control sets '" + catalog.sets[one].name + "' and '" + catalog.sets[other].name + "' both drive " +
-             (shared != 0 ? "joint '" + catalog.model->joints[joint].name + "'" : "the same control object");
-    });
-  });
-  return text;
 }
 
 }  // namespace kadans

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/status.h"
 
 namespace kadans {
 
@@ -45,6 +46,8 @@ struct Chart {
     int enter = no_function, exit = no_function, during = no_function, run = no_function;  // registry references
     EventId outcome = no_event;                                                            // final states
     std::string initial_name, outcome_name;
+    std::vector<std::string> controls;  // names of the control sets that it runs on; none: those of the state around it
+    SetMask sets = 0;                   // its own or inherited; 0: no state around it names any
   };
   struct Transition {
     StateIndex source = 0, target = no_state;
@@ -64,7 +67,6 @@ struct Chart {
     int vars = no_function, arguments = no_function;  // registry: as declared
     int given = no_function;                          // registry: values given by the caller
     int migrate = no_function;                        // registry: converts vars of another version
-    std::string controls;                             // name of its control set; "": its caller's
     std::string call_chunk;                           // file that calls it
     int call_line = 0;
     int version = 0;

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "kadans/signal/capacity.h"
 #include "script/check/source_lexer.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
@@ -23,8 +24,9 @@ constexpr double node_instructions = 300, transition_instructions = 110;  // to 
 
 constexpr const char* behavior_keys[] = {"version", "controls", "vars",   "args", "migrate", "initial", "always",
                                          "enter",   "exit",     "during", "run",  "endless", nullptr};
-constexpr const char* state_keys[] = {"initial", "enter", "exit", "during", "run", "always", "endless", nullptr};
-constexpr const char* parallel_keys[] = {"enter", "exit", "during", "run", "always", nullptr};
+constexpr const char* state_keys[] = {"controls", "initial", "enter",   "exit", "during",
+                                      "run",      "always",  "endless", nullptr};
+constexpr const char* parallel_keys[] = {"controls", "enter", "exit", "during", "run", "always", nullptr};
 constexpr const char* final_keys[] = {"outcome", "enter", nullptr};
 constexpr const char* history_keys[] = {"deep", "to", nullptr};
 constexpr const char* transition_keys[] = {"when", "on", "after", "to", "why", "action", nullptr};
@@ -49,7 +51,7 @@ const char* wanted_type(const char* key) noexcept {
   for (const char* name : {"enter", "exit", "during", "run", "migrate", "when", "action"}) {
     if (std::strcmp(key, name) == 0) return "function";
   }
-  for (const char* name : {"initial", "controls", "outcome", "to", "why"}) {
+  for (const char* name : {"initial", "outcome", "to", "why"}) {
     if (std::strcmp(key, name) == 0) return "string";
   }
   for (const char* name : {"vars", "args", "always"}) {
@@ -71,6 +73,31 @@ void check_types(lua_State* state, int table, const ScriptPlace& place, const ch
     }
     lua_pop(state, 1);
   }
+}
+
+// controls = "legs" or controls = { "legs", "arms" }
+void check_controls(lua_State* state, int table, const ScriptPlace& place) {
+  lua_getfield(state, table, "controls");
+  const int value = lua_gettop(state);
+  const bool list = lua_istable(state, value);
+  const auto count = list ? static_cast<int>(lua_objlen(state, value)) : 1;
+  if (!lua_isnil(state, value) && !list && lua_type(state, value) != LUA_TSTRING)
+    raise_at(state, place, "controls", "'controls' must be the name of a control set or a list of names, not a %s",
+             luaL_typename(state, value));
+  if (count < 1 || count > static_cast<int>(max_control_sets))
+    raise_at(state, place, "controls", "'controls' is a list of 1..%d names of control sets, not of %d",
+             static_cast<int>(max_control_sets), count);
+  for (int i = 1; list && i <= count; ++i) {
+    lua_rawgeti(state, value, i);
+    if (lua_type(state, -1) != LUA_TSTRING)
+      raise_at(state, place, "controls", "'controls' lists names of control sets, not a %s", luaL_typename(state, -1));
+    if (lua_objlen(state, -1) > text_max)
+      raise_at(state, place, "controls", "'controls' is longer than %d characters", static_cast<int>(text_max));
+    lua_pop(state, 1);
+  }
+  if (!list && lua_objlen(state, value) > text_max)
+    raise_at(state, place, "controls", "'controls' is longer than %d characters", static_cast<int>(text_max));
+  lua_pop(state, 1);
 }
 
 void check_after(lua_State* state, int table, const ScriptPlace& place) {
@@ -179,6 +206,7 @@ int finish_node(lua_State* state) {
   core_of(state).budget.charge(state, node_instructions);
   check_keys(state, 1, place, node_word(kind), keys_of(kind));
   check_types(state, 1, place, keys_of(kind));
+  check_controls(state, 1, place);
   check_transitions(state, 1, place, true);
   lua_getfield(state, 1, "always");
   if (lua_istable(state, 2)) check_transitions(state, 2, place, false);
@@ -399,7 +427,20 @@ struct Reader {
     return index;
   }
 
+  void read_controls(int body, StateIndex index) {
+    lua_getfield(state, body, "controls");
+    if (lua_type(state, -1) == LUA_TSTRING) chart.states[index].controls.emplace_back(lua_tostring(state, -1));
+    const int count = lua_istable(state, -1) ? static_cast<int>(lua_objlen(state, -1)) : 0;
+    for (int i = 1; i <= count; ++i) {
+      lua_rawgeti(state, -1, i);
+      if (lua_type(state, -1) == LUA_TSTRING) chart.states[index].controls.emplace_back(lua_tostring(state, -1));
+      lua_pop(state, 1);
+    }
+    lua_pop(state, 1);
+  }
+
   void read_body(int body, StateIndex index, const ScriptPlace& place, int depth) {
+    read_controls(body, index);
     {
       Chart::State& made = chart.states[index];
       made.enter = reference(body, "enter");
@@ -511,7 +552,6 @@ struct Reader {
     Chart::Machine& machine = chart.machines[number];
     machine.name = name;
     machine.root = index;
-    machine.controls = text(body, "controls");
     machine.vars = reference(body, "vars");
     machine.arguments = reference(body, "args");
     machine.migrate = reference(body, "migrate");

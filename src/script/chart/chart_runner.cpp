@@ -193,6 +193,7 @@ void ChartRunner::take_step(lua_State* state) {
     mark_ancestors(transition.target, transition.domain);
   }
   entering_ = false;
+  if (Bindings& bindings = bindings_of(state); bindings.all_sets != 0) bindings.want(sets_asked());
   for (StateIndex index = 0; index < chart_.size(); ++index) {
     if (!run_[index].entering) continue;
     run_[index].entering = false;
@@ -221,7 +222,6 @@ void ChartRunner::enter(lua_State* state, StateIndex index) {
   run.outcome = no_event;
   run.entered_ns = now_ns_;
   if (entered.machine_root) {  // a call begins anew: nothing is left of the one before
-    bindings_of(state).bring_in(entered.machine);
     renew_machine(state, chart_, tables_, entered.machine);
     for (StateIndex i = index; i < entered.end; ++i) remembered_[i] = false;
   }
@@ -355,6 +355,18 @@ StateIndex ChartRunner::innermost() const noexcept {
   return at;
 }
 
+SetMask ChartRunner::sets_asked() const noexcept {
+  SetMask asked = 0;
+  StateIndex next = chart_.size();  // the next active state in document order
+  for (StateIndex index = chart_.size(); index > 0; --index) {
+    const auto i = static_cast<StateIndex>(index - 1);
+    if (!run_[i].active && !run_[i].entering) continue;
+    if (next >= chart_.states[i].end) asked |= chart_.states[i].sets;  // nothing in it is active
+    next = i;
+  }
+  return asked;
+}
+
 double ChartRunner::state_time_s(StateIndex state) const noexcept {
   return static_cast<double>(now_ns_ - run_[state].entered_ns) / 1e9;
 }
@@ -363,6 +375,7 @@ double ChartRunner::state_time_s(StateIndex state) const noexcept {
 
 // m.time_s is the time in the state whose function is called.
 void ChartRunner::set_time(lua_State* state, StateIndex index) {
+  acting_ = index;
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].content);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.time_key);
   lua_pushnumber(state, state_time_s(index));
@@ -372,7 +385,6 @@ void ChartRunner::set_time(lua_State* state, StateIndex index) {
 
 void ChartRunner::call(lua_State* state, int function, StateIndex index) {
   set_time(state, index);
-  bindings_of(state).caller = index;
   core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, function);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].handle);
@@ -435,7 +447,6 @@ void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   int arguments = 0;
   if (!ready(state, run, thread, arguments)) return;
   set_time(state, index);
-  bindings_of(state).caller = index;
   LuaCore& core = core_of(state);
   run.thread_started = true;
   core.called = chart_.states[index].run;

@@ -6,7 +6,8 @@
 //   2. Each that found none looks among their other transitions, from the inside out, in the order written.
 //   3. Of transitions that would leave the same state the first one is taken, unless a later one starts further inside
 //      (SCXML, section D, removeConflictingTransitions). So an `always` of any region goes before other transitions.
-//   4. All exits run, innermost and last first, then the actions, then all entries, outermost and first first.
+//   4. All exits run, innermost and last first, then the actions, then all entries, outermost and first first. Between
+//      actions and entries the control sets are switched to that the active states run on from now on.
 //
 // Then, as long as events wait, further steps of the same kind follow, each for one event: the oldest that an active
 // state takes. Only transitions with this event are looked at. A tick has at most steps_max steps. What waits after the
@@ -101,6 +102,10 @@ class ChartRunner {
   bool active(StateIndex state) const noexcept { return run_[state].active; }
   StateIndex innermost() const noexcept;  // active state, the first when there are several; 0 before the first tick
   double state_time_s(StateIndex state) const noexcept;
+  // The control sets that its innermost active states run on.
+  SetMask sets_asked() const noexcept;
+  const Chart::State& acting() const noexcept { return chart_.states[acting_]; }  // whose function ran last
+  StateIndex acting_index() const noexcept { return acting_; }
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }
   // What the running coroutine waits for: set by the bindings just before they yield.
   void wait_for(Motion* motion) noexcept { wait_motion_ = motion; }
@@ -189,6 +194,7 @@ class ChartRunner {
   WaitingEvent shown_;  // the event of the step, for s.event
   std::uint64_t unhandled_ = 0;
   std::int64_t now_ns_ = 0;
+  StateIndex acting_ = 0;
   bool started_ = false, finished_ = false;
   bool entering_ = false;  // some state is marked to be entered
   bool filling_ = false;   // the next tick only enters what a reload left empty; it takes no transition

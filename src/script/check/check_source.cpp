@@ -6,6 +6,7 @@
 
 #include "check_arguments.h"
 #include "hint.h"
+#include "script/bindings/machine_sets.h"
 #include "source_scopes.h"
 
 namespace kadans {
@@ -282,18 +283,31 @@ class SourceCheck final : public SourceListener {
     if (path.size() > 1 && use.arguments != 0) {
       return problem(place(use), "call it with a colon: m." + path.front() + ":" + method + "(...)");
     }
+    if (use.arguments != 0) in_sets(use, *object);
     if (use.arguments != 0) tell(arguments_.of_method(*object, method, tokens, use.arguments));
   }
 
+  // In a function of the chart, all states of which run without the object.
+  void in_sets(const SourceUse& use, const ObjectInfo& object) {
+    const auto file = known_.acting.find(source_.chunk);
+    if (use.function == 0 || file == known_.acting.end() || !file->second.contains(use.function)) return;
+    const auto& acting = file->second.at(use.function);
+    const auto number = static_cast<std::uint32_t>(&object - parts_.catalog.objects.data());
+    const auto lacks = [&](StateIndex index) {
+      const SetMask sets = parts_.chart.states[index].sets;
+      return sets != 0 && (parts_.bindings.partition->objects(sets) >> number & 1U) == 0;
+    };
+    if (!std::ranges::all_of(acting, lacks)) return;
+    problem(place(use), not_in_sets(parts_.bindings, number, parts_.chart.states[*acting.begin()]).data());
+  }
+
   // Of the behavior in this file, else of the one that is played.
-  std::string set_name() const {
+  std::size_t machine_here() const {
     const auto& machines = parts_.chart.machines;
-    for (std::size_t i = machines.size(); i-- > 0;) {
-      const bool here = i == 0 || parts_.chart.states[machines[i].root].chunk == source_.chunk;
-      const ControlSetInfo* set = parts_.bindings.set_of(i);
-      if (here && set != nullptr) return set->name;
+    for (std::size_t i = machines.size(); i-- > 1;) {
+      if (parts_.chart.states[machines[i].root].chunk == source_.chunk) return i;
     }
-    return "";
+    return 0;
   }
 
   // The token behind '=' of an assignment.
@@ -304,8 +318,7 @@ class SourceCheck final : public SourceListener {
   void machine_field(const SourceUse& use, const ObjectInfo* object, const std::vector<SourceToken>& tokens) {
     const auto& path = use.meaning.path;
     if (object != nullptr) {
-      return problem(place(use), "control object '" + path.front() + "' is not in this behavior's control set, '" +
-                                     set_name() + "'");
+      return problem(place(use), not_in_sets(parts_.bindings, path.front(), machine_here()).data());
     }
     if (use.assigned && path.front() == "vars" && path.size() > 1 && gives_function(use, tokens))
       problem(place(use), "m.vars." + path[1] + " is given a function: vars hold plain data, which a reload keeps");

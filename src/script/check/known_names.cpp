@@ -73,24 +73,26 @@ void read_modules(lua_State* state, KnownNames& known) {
   lua_pop(state, 1);
 }
 
-void read_place(lua_State* state, int reference, const char* key, KnownNames& known) {
+void read_place(lua_State* state, int reference, const char* key, std::size_t of, KnownNames& known) {
   if (reference == Chart::no_function) return;
   lua_Debug function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
   if (lua_getinfo(state, ">S", &function) == 0 || function.source[0] != '@') return;
   known.functions[function.source + 1][function.linedefined].insert(key);
+  known.acting[function.source + 1][function.linedefined].insert(static_cast<StateIndex>(of));
 }
 
 void read_functions(lua_State* state, const Chart& chart, KnownNames& known) {
-  for (const Chart::State& one : chart.states) {
-    read_place(state, one.enter, "enter", known);
-    read_place(state, one.exit, "exit", known);
-    read_place(state, one.during, "during", known);
-    read_place(state, one.run, "run", known);
+  for (std::size_t i = 0; i < chart.states.size(); ++i) {
+    const Chart::State& one = chart.states[i];
+    read_place(state, one.enter, "enter", i, known);
+    read_place(state, one.exit, "exit", i, known);
+    read_place(state, one.during, "during", i, known);
+    read_place(state, one.run, "run", i, known);
   }
   for (const Chart::Transition& transition : chart.transitions) {
-    read_place(state, transition.when, "when", known);
-    read_place(state, transition.action, "action", known);
+    read_place(state, transition.when, "when", transition.source, known);
+    read_place(state, transition.action, "action", transition.source, known);
   }
 }
 

@@ -28,6 +28,7 @@ struct KnownNames {
   std::set<std::string> given_somewhere;
   // The keys ("enter", "when" ...) of the chart's functions, by file and by the line where the function begins.
   std::map<std::string, std::map<int, std::set<std::string>>> functions;
+  std::map<std::string, std::map<int, std::set<StateIndex>>> acting;  // the states whose functions these are
 };
 
 // `parts` is a loaded behavior or a module. For a module `m` and `s` are open, because its users are unknown.

@@ -521,6 +521,9 @@ std::size_t SourceScopes::name_at(std::size_t at) {
   const std::size_t fields = start_at(at, use);
   for (const Block& block : blocks_) use.guard = use.guard || function(block.function).guard;
   use.at_once = at_once(at);
+  const int begins = blocks_.empty() ? 0 : function(blocks_.back().function).line;
+  const auto there = functions_by_line_.find(begins);
+  use.function = there != functions_by_line_.end() && there->second == 1 ? begins : 0;
   use.next = fields_at(fields, use);
   use.assigned = use.arguments == 0 && is_assigned(use.next);
   if (use.assigned && use.known) assign(use, at);

@@ -126,6 +126,7 @@ struct SourceUse {
                               // or in a function that it always calls; else ""
   std::string method;         // after ':', or ""
   int line = 0;               // of the name
+  int function = 0;           // line where the function around it begins; 0: another one begins there, too
   std::size_t arguments = 0;  // index of the token after the '(' of a call; 0: no call
   std::size_t next = 0;       // index of the token after the whole use, the '=' of an assignment
 };
