@@ -321,3 +321,21 @@ TEST_CASE("a behavior of a list does not rely on sets that the one before it is 
   CHECK(cast.host->behavior(0).name() == "a");
   CHECK(cast.switches() == Switches{gesture, posture, gesture});
 }
+
+TEST_CASE("a transition leaves the sets of other regions as a reflex or a person has switched them") {
+  Cast cast;
+  play_alone(cast,
+             "return k.behavior 'main' { k.parallel 'p' { k.region 'l' { controls = 'legs', initial = 'a',\n"
+             "k.state 'a' { { after = 0.1, to = 'b' } }, k.state 'b' { endless = true } },\n"
+             "k.region 'r' { controls = 'gesture', initial = 'a', k.state 'a' { { after = 0.04, to = 'b' } },\n"
+             "k.state 'b' { endless = true } } } }");
+  cast.tick(2);
+  CHECK(cast.switches() == Switches{gesture, legs});
+  cast.snapshot.control_sets = set_bit(gesture);  // something else has the legs
+  cast.tick(4);
+  CHECK(cast.log.transitions.size() == 1);  // r.b was entered
+  CHECK(cast.switches() == Switches{gesture, legs});
+  cast.tick(6);  // a state that is entered takes them back
+  CHECK(cast.log.transitions.size() == 2);
+  CHECK(cast.switches() == Switches{gesture, legs, legs});
+}
