@@ -213,6 +213,31 @@ TEST_CASE("the check finds objects that the sets of a state do not hold in the f
   }
 }
 
+TEST_CASE("the check follows a state's functions into those that they call, and into a line with several") {
+  Cast cast;
+  const auto problems = [&](const std::string& enter) {
+    cast.write("main",
+               "local function soft(m)\nm.legs:set_gains('soft') end\n"
+               "return k.behavior 'main' { controls = 'legs', initial = 'a', k.state 'a' { controls = 'gesture',\n"
+               "exit = function() end, enter = function(m) " +
+                   enter +
+                   " end,\n{ after = 1, to = 'b' } }, k.state 'b' { endless = true,\n"
+                   "enter = function(m) m.legs:set_gains('soft') end } }");
+    return check_behavior(cast.scripts.root, cast.scripts.root / "behaviors/main.lua", cast.robot.catalog);
+  };
+  CHECK(problems("soft({ legs = m.arms })").empty());
+  const std::string message =
+      "'legs' is not in the control sets of state 'a' ('gesture'): give the state controls = \"legs\"";
+  auto found = problems("soft(m)");
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].line == 3);
+  CHECK(found[0].message == message);
+  found = problems("m.legs:set_gains('soft')");
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].line == 5);
+  CHECK(found[0].message == message);
+}
+
 TEST_CASE("a reload keeps to the set of the state that is active, and switches when the new version names another") {
   Cast cast;
   const auto version = [&](const std::string& set, const std::string& more) {
@@ -320,4 +345,22 @@ TEST_CASE("a behavior of a list does not rely on sets that the one before it is 
   cast.tick();
   CHECK(cast.host->behavior(0).name() == "a");
   CHECK(cast.switches() == Switches{gesture, posture, gesture});
+}
+
+TEST_CASE("a transition leaves the sets of other regions as a reflex or a person has switched them") {
+  Cast cast;
+  play_alone(cast,
+             "return k.behavior 'main' { k.parallel 'p' { k.region 'l' { controls = 'legs', initial = 'a',\n"
+             "k.state 'a' { { after = 0.1, to = 'b' } }, k.state 'b' { endless = true } },\n"
+             "k.region 'r' { controls = 'gesture', initial = 'a', k.state 'a' { { after = 0.04, to = 'b' } },\n"
+             "k.state 'b' { endless = true } } } }");
+  cast.tick(2);
+  CHECK(cast.switches() == Switches{gesture, legs});
+  cast.snapshot.control_sets = set_bit(gesture);  // something else has the legs
+  cast.tick(4);
+  CHECK(cast.log.transitions.size() == 1);  // r.b was entered
+  CHECK(cast.switches() == Switches{gesture, legs});
+  cast.tick(6);  // a state that is entered takes them back
+  CHECK(cast.log.transitions.size() == 2);
+  CHECK(cast.switches() == Switches{gesture, legs, legs});
 }

@@ -11,8 +11,8 @@
 
 namespace kadans {
 
-void Bindings::want(SetMask sets) noexcept {
-  wanted = (wanted & sets) | (sets & ~sets_now);
+void Bindings::want(SetMask sets, SetMask needed) noexcept {
+  wanted = (wanted & sets) | (needed & ~sets_now);
   bring_in_again();
 }
 

@@ -67,8 +67,9 @@ struct Bindings {
     return machine >= machine_objects.size() || (machine_objects[machine] >> object & 1U) != 0;
   }
   // To be called in the step of a chart, between its exits and its entries, with the control sets that its active
-  // states run on: switches to those that are not active.
-  void want(SetMask sets) noexcept;
+  // states run on: switches to those of them that are `needed` and not active. The others were switched to when their
+  // states were entered; since then a reflex or a person may have taken their joints.
+  void want(SetMask sets, SetMask needed) noexcept;
   // To be called after begin(): asks again for sets that could not be sent before.
   void bring_in_again() noexcept;
   // The next refusal in the snapshot of one of this behavior's transactions; nullptr when all have been returned.

@@ -170,6 +170,7 @@ void ChartRunner::take_step(lua_State* state) {
   StepMeter meter(state);
   meter.spend(state_steps * selected_.size() * (active_.size() + chart_.size()));
   meter.settle();
+  const SetMask sets_before = bindings_of(state).all_sets != 0 ? sets_asked() : 0;
   for (const std::uint16_t number : selected_) report(number);
   for (const StateIndex index : active_) {
     for (const std::uint16_t number : selected_) {
@@ -193,7 +194,10 @@ void ChartRunner::take_step(lua_State* state) {
     mark_ancestors(transition.target, transition.domain);
   }
   entering_ = false;
-  if (Bindings& bindings = bindings_of(state); bindings.all_sets != 0) bindings.want(sets_asked());
+  if (Bindings& bindings = bindings_of(state); bindings.all_sets != 0) {
+    const SetMask sets = sets_asked();
+    bindings.want(sets, (sets & ~sets_before) | sets_asked(Asking::entering));
+  }
   for (StateIndex index = 0; index < chart_.size(); ++index) {
     if (!run_[index].entering) continue;
     run_[index].entering = false;
@@ -355,13 +359,14 @@ StateIndex ChartRunner::innermost() const noexcept {
   return at;
 }
 
-SetMask ChartRunner::sets_asked() const noexcept {
+SetMask ChartRunner::sets_asked(Asking asking) const noexcept {
   SetMask asked = 0;
   StateIndex next = chart_.size();  // the next active state in document order
   for (StateIndex index = chart_.size(); index > 0; --index) {
     const auto i = static_cast<StateIndex>(index - 1);
     if (!run_[i].active && !run_[i].entering) continue;
-    if (next >= chart_.states[i].end) asked |= chart_.states[i].sets;  // nothing in it is active
+    const bool counts = asking == Asking::all || !run_[i].active;
+    if (next >= chart_.states[i].end && counts) asked |= chart_.states[i].sets;  // nothing in it is active
     next = i;
   }
   return asked;

@@ -102,8 +102,9 @@ class ChartRunner {
   bool active(StateIndex state) const noexcept { return run_[state].active; }
   StateIndex innermost() const noexcept;  // active state, the first when there are several; 0 before the first tick
   double state_time_s(StateIndex state) const noexcept;
-  // The control sets that its innermost active states run on.
-  SetMask sets_asked() const noexcept;
+  // The control sets that its innermost active states run on, those that are being entered with them or alone.
+  enum class Asking : std::uint8_t { all, entering };
+  SetMask sets_asked(Asking asking = Asking::all) const noexcept;
   const Chart::State& acting() const noexcept { return chart_.states[acting_]; }  // whose function ran last
   StateIndex acting_index() const noexcept { return acting_; }
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }

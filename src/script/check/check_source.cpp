@@ -287,17 +287,15 @@ class SourceCheck final : public SourceListener {
     if (use.arguments != 0) tell(arguments_.of_method(*object, method, tokens, use.arguments));
   }
 
-  // In a function of the chart, all states of which run without the object.
+  // In a function of the chart, or one that such functions call, when all these states run without the object.
   void in_sets(const SourceUse& use, const ObjectInfo& object) {
-    const auto file = known_.acting.find(source_.chunk);
-    if (use.function == 0 || file == known_.acting.end() || !file->second.contains(use.function)) return;
-    const auto& acting = file->second.at(use.function);
+    const auto& acting = use.states;
     const auto number = static_cast<std::uint32_t>(&object - parts_.catalog.objects.data());
     const auto lacks = [&](StateIndex index) {
       const SetMask sets = parts_.chart.states[index].sets;
       return sets != 0 && (parts_.bindings.partition->objects(sets) >> number & 1U) == 0;
     };
-    if (!std::ranges::all_of(acting, lacks)) return;
+    if (acting.empty() || !std::ranges::all_of(acting, lacks)) return;
     problem(place(use), not_in_sets(parts_.bindings, number, parts_.chart.states[*acting.begin()]).data());
   }
 
@@ -375,7 +373,8 @@ void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<
   std::vector<ReadSource> read;
   for (const LuaState::Source& source : parts.lua->sources()) {
     read.push_back({&source, SourceScopes(lex_source(source.text), read.size(), facts)});
-    if (!parts.chart.machines.empty()) read.back().scopes.know_functions(known.functions[source.chunk]);
+    if (!parts.chart.machines.empty())
+      read.back().scopes.know_functions(known.functions[source.chunk], known.acting[source.chunk]);
   }
   name_modules(read, *parts.lua, known, facts);
   std::vector<SourceScopes*> files;

@@ -412,6 +412,7 @@ std::size_t SourceScopes::function_at(std::size_t start) {
   function.returns = 0;
   function.in_chart = !chart_ || chart_->contains(function.line);
   call_by_chart(start);
+  give_states(start);
   if (start >= 2 && tokens_[start - 1].is("=") && is_key(start - 2)) {
     function.literal = function.in_chart && is_at_once(tokens_[start - 2].text);
     give_key(tokens_[start - 2].text, {file_, start});
@@ -462,6 +463,14 @@ void SourceScopes::call_by_chart(std::size_t function) {
   const auto found = chart_->find(line);
   if (found == chart_->end()) return;
   for (const std::string& key : found->second) give_key(key, {file_, function});
+}
+
+// The states of the functions that begin in its line. Where several begin there, it must be one state.
+void SourceScopes::give_states(std::size_t function) {
+  const int line = tokens_[function].line;
+  const auto found = states_.find(line);
+  if (found == states_.end() || (functions_by_line_[line] != 1 && found->second.size() != 1)) return;
+  this->function(function).states.insert(found->second.begin(), found->second.end());
 }
 
 std::size_t SourceScopes::local_at(std::size_t at) {
@@ -521,9 +530,7 @@ std::size_t SourceScopes::name_at(std::size_t at) {
   const std::size_t fields = start_at(at, use);
   for (const Block& block : blocks_) use.guard = use.guard || function(block.function).guard;
   use.at_once = at_once(at);
-  const int begins = blocks_.empty() ? 0 : function(blocks_.back().function).line;
-  const auto there = functions_by_line_.find(begins);
-  use.function = there != functions_by_line_.end() && there->second == 1 ? begins : 0;
+  use.states = function(blocks_.back().function).states;
   use.next = fields_at(fields, use);
   use.assigned = use.arguments == 0 && is_assigned(use.next);
   if (use.assigned && use.known) assign(use, at);
@@ -574,7 +581,9 @@ void SourceScopes::hand_on(const SourceUse& call, SourcePlace callee) {
     const bool guard = call.guard && !function.guard, at_once = !call.at_once.empty() && function.at_once.empty();
     if (guard) function.guard = true;
     if (at_once) function.at_once = call.at_once;
-    facts_->learnt = facts_->learnt || guard || at_once;
+    const std::size_t states = function.states.size();
+    function.states.insert(call.states.begin(), call.states.end());
+    facts_->learnt = facts_->learnt || guard || at_once || function.states.size() > states;
   }
   std::size_t number = call.method.empty() ? 0 : 1;
   if (!tokens_[call.arguments - 1].is("(")) return;

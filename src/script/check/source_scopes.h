@@ -65,6 +65,7 @@ class SourceFacts {
     int returns = 0;              // number of `return`s up to the current place
     bool literal = false;         // it is written directly under the key of `at_once`
     std::string at_once;
+    std::set<std::uint16_t> states;  // the states of the chart whose function it is, or whose functions call it
   };
 
   void name_module(const std::string& name, std::size_t file) { modules_[name] = file; }
@@ -114,21 +115,21 @@ class SourceFacts {
 
 // One use of a name: `m.posture:move(` or `x.y = `.
 struct SourceUse {
-  SourceMeaning meaning;      // meaning of the name and the fields after it
-  std::string name;           // as written
-  std::vector<int> lines;     // of the fields in meaning.path
-  std::size_t written = 0;    // how many of these fields, the last ones, are written here
-  bool known = false;         // a local or parameter, or `require` of a module
-  bool outer = false;         // a local of a function around this one, or of the file
-  bool assigned = false;      // stands left of a '='
-  bool guard = false;         // in a guard or in a function that a guard calls
-  std::string at_once;        // the key ("enter" ...) of a function that ends within its tick, when this use is in it
-                              // or in a function that it always calls; else ""
-  std::string method;         // after ':', or ""
-  int line = 0;               // of the name
-  int function = 0;           // line where the function around it begins; 0: another one begins there, too
-  std::size_t arguments = 0;  // index of the token after the '(' of a call; 0: no call
-  std::size_t next = 0;       // index of the token after the whole use, the '=' of an assignment
+  SourceMeaning meaning;    // meaning of the name and the fields after it
+  std::string name;         // as written
+  std::vector<int> lines;   // of the fields in meaning.path
+  std::size_t written = 0;  // how many of these fields, the last ones, are written here
+  bool known = false;       // a local or parameter, or `require` of a module
+  bool outer = false;       // a local of a function around this one, or of the file
+  bool assigned = false;    // stands left of a '='
+  bool guard = false;       // in a guard or in a function that a guard calls
+  std::string at_once;      // the key ("enter" ...) of a function that ends within its tick, when this use is in it
+                            // or in a function that it always calls; else ""
+  std::set<std::uint16_t> states;  // the states whose function it stands in, or whose functions call that one
+  std::string method;              // after ':', or ""
+  int line = 0;                    // of the name
+  std::size_t arguments = 0;       // index of the token after the '(' of a call; 0: no call
+  std::size_t next = 0;            // index of the token after the whole use, the '=' of an assignment
 };
 
 // A function that is written in the text.
@@ -148,12 +149,16 @@ class SourceScopes {
  public:
   // The keys ("enter", "when" ...) of the chart's functions, by the line where the function begins.
   using ChartFunctions = std::map<int, std::set<std::string>>;
+  using ChartStates = std::map<int, std::set<std::uint16_t>>;  // the states whose functions these are
 
   // `file` is its number among the files that share `facts`. `facts` must outlive this object.
   SourceScopes(std::vector<SourceToken> tokens, std::size_t file, SourceFacts& facts);
   // Gives the functions of the chart: only these are guards, end within their tick, or get `m` and `s`. Without this
   // call, every function counts as what its key says.
-  void know_functions(ChartFunctions chart) { chart_ = std::move(chart); }
+  void know_functions(ChartFunctions chart, ChartStates states) {
+    chart_ = std::move(chart);
+    states_ = std::move(states);
+  }
   // Reads the file once and adds to the facts.
   void read() { walk(nullptr); }
   void tell(SourceListener& listener) { walk(&listener); }
@@ -182,6 +187,7 @@ class SourceScopes {
   std::size_t function_at(std::size_t at);
   SourceMeaning name_function(std::size_t start);
   void call_by_chart(std::size_t function);
+  void give_states(std::size_t function);
   std::size_t local_at(std::size_t at);
   std::size_t for_at(std::size_t at);
   std::size_t name_at(std::size_t at);
@@ -212,6 +218,7 @@ class SourceScopes {
   std::size_t file_ = 0;
   SourceFacts* facts_;
   std::optional<ChartFunctions> chart_;
+  ChartStates states_;
   std::map<int, int> functions_by_line_;  // number of functions that begin on each line
   std::vector<Block> blocks_;
   std::vector<Braces> braces_;
