@@ -31,7 +31,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 58> breakages = {{
+constexpr std::array<Breakage, 59> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -98,6 +98,8 @@ constexpr std::array<Breakage, 58> breakages = {{
     {"step_forward_less", robot, "\"extra_x_m\": -0.05", "\"extra_x_m\": 0.073", "stays up"},
     {"step_forward_less", "", "[8, 0, 0]", "[2, 0, 0]", "steps: a foot goes by"},
     {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},
+    {"touched_feet", "behaviors/hanging/touched.lua", "c:use(\"held\")", "c:use(\"loose\")",
+     "held in the tick of a contact, loose in the tick after the last one"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
 }};
 

@@ -69,7 +69,7 @@ TEST_CASE("A reflex switches the legs in the tick of the contact, and no torque 
 
 TEST_CASE("States switch the legs in the behavior tick that sees the contact, and no torque steps by it") {
   const auto project = project_copy("state_switches");
-  write(project / "behaviors/tulip/held_or_loose.lua", R"(local k = require "kadans"
+  write(project / "behaviors/hanging/held_or_loose.lua", R"(local k = require "kadans"
 local function touched(s) return s.feet.left.contact or s.feet.right.contact end
 return k.behavior "held_or_loose" {
   initial = "loose",

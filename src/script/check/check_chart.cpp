@@ -164,6 +164,12 @@ void add_values(const Tokens& tokens, std::size_t at, std::size_t end, Emitted& 
 void add_emitted(const Tokens& tokens, Emitted& emitted) {
   for (std::size_t i = 1; i + 2 < tokens.size(); ++i) {
     const bool name = tokens[i].kind == Kind::name || tokens[i].kind == Kind::text;
+    const bool field = name && (tokens[i - 1].is("{") || tokens[i - 1].is(",")) && tokens[i + 1].is("=");
+    if (field && tokens[i].text == "event") {  // of m:on
+      const bool text = tokens[i + 2].kind == Kind::text;
+      emitted.unknown = emitted.unknown || !text;
+      if (text) emitted.events.insert(tokens[i + 2].text);
+    }
     if (!name || tokens[i].text != "emit") continue;
     const bool method = tokens[i].kind == Kind::name && tokens[i - 1].is(":");
     if (method && tokens[i + 1].kind == Kind::text) {
