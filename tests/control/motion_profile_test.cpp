@@ -9,8 +9,8 @@
 #include "kadans/testing/allocation_count.h"
 
 using kadans::MotionProfile;
-using kadans::SetpointState;
 using kadans::RandomStream;
+using kadans::SetpointState;
 
 namespace {
 

@@ -144,8 +144,8 @@ TEST_CASE("All conditions must be true in the same tick, or one suffices") {
   for (const bool any : {false, true}) {
     CAPTURE(any);
     Stand stand;
-    (void)stand.send({Stand::arm(2, 1, 1, any ? arm_any : 0), stand.hip(ConditionKind::above, 0.003), Stand::after(0.01),
-                      stand.set_kp(70)});
+    (void)stand.send({Stand::arm(2, 1, 1, any ? arm_any : 0), stand.hip(ConditionKind::above, 0.003),
+                      Stand::after(0.01), stand.set_kp(70)});
     stand.posed.position_rad[0] = 0.004;
     stand.ticks(5);
     CHECK(stand.value() == (any ? 70 : 40));
