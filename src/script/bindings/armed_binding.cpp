@@ -8,13 +8,14 @@
 
 #include "bindings.h"
 #include "script/check/hint.h"
+#include "script/sandbox/handle.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/number_text.h"
 
 namespace kadans {
 namespace {
 
-const char armed_key = 0;
+const HandleKey armed_key = 0;
 constexpr double arm_instructions = 2000, condition_instructions = 500, letter_instructions = 1;
 constexpr std::size_t hints_max = 40;  // signals among which the one that was meant is looked for
 
@@ -133,13 +134,10 @@ Command read_condition(lua_State* state) {
   }
   lua_getfield(state, -2, "arrived");
   if (lua_isnil(state, -1)) refuse_condition(state, "this is no condition");
-  const int top = lua_gettop(state);
-  lua_pushvalue(state, -1);
-  lua_insert(state, 1);  // where a method finds its object
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
-  lua_remove(state, 1);
-  lua_settop(state, top - 2);
+  const std::uint32_t* number = to_object(state, -1);
+  if (number == nullptr) refuse_condition(state, "arrived is a control object");
+  const ObjectInfo& object = bindings_of(state).catalog->objects[*number];
+  lua_pop(state, 2);
   if (object.setpoints.empty()) luaL_error(state, "m:on: '%s' has no set-points", object.name.c_str());
   command.count = static_cast<std::uint32_t>(ConditionKind::arrived);
   command.index = object.setpoints.front();
@@ -200,9 +198,7 @@ Options read_options(lua_State* state, int index, const Chart& chart) {
     } else if (name == "every_time" && lua_isboolean(state, -1)) {
       options.every_time = lua_toboolean(state, -1) != 0;
     } else if (name == "event" && lua_type(state, -1) == LUA_TSTRING) {
-      options.event = chart.find_event(lua_tostring(state, -1));
-      if (options.event == no_event || options.event == run_done_event)
-        luaL_error(state, "m:on: nothing in this behavior waits for the event '%s'", lua_tostring(state, -1));
+      options.event = check_event(state, chart, lua_tostring(state, -1));
     } else {
       luaL_error(state, "m:on takes { within_s = seconds, every_time = true or false, event = \"name\" }");
     }
@@ -231,11 +227,8 @@ void record(lua_State* state) {
 
 // [-0 +1]
 void push_handle(lua_State* state, std::uint32_t sequence, std::uint16_t which) {
-  auto* handle = new (lua_newuserdata(state, sizeof(ArmedHandle))) ArmedHandle{sequence, which};
-  (void)handle;
-  lua_pushlightuserdata(state, const_cast<char*>(&armed_key));
-  lua_rawget(state, LUA_REGISTRYINDEX);
-  lua_setmetatable(state, -2);
+  new (lua_newuserdata(state, sizeof(ArmedHandle))) ArmedHandle{sequence, which};
+  set_kind(state, armed_key);
 }
 
 // m:on(condition, function(c) ... end, { within_s = }) -> handle | nil, "queue_full". Upvalue: the chart.
@@ -245,6 +238,8 @@ int on(lua_State* state) {
   lua_settop(state, 4);
   core_of(state).budget.charge(state, arm_instructions);
   if (bindings.recording) return luaL_error(state, "m:on does not work inside the function of another m:on");
+  if (bindings.armed_count == bindings.armed.size())
+    return luaL_error(state, "m:on: %d transactions are armed already", static_cast<int>(max_armed));
   if (!bindings.runner->active(bindings.runner->acting_index()))
     return luaL_error(state, "m:on belongs to a state that is active: call it in enter, during or run");
   if (!lua_isfunction(state, 3))
@@ -255,9 +250,7 @@ int on(lua_State* state) {
   record(state);
   end_callback(state);
   const std::uint32_t flags = conditions.options | (options.every_time ? std::uint32_t{arm_every_time} : 0U);
-  bool fits = bindings.armed_count < bindings.armed.size();
-  if (!fits) return luaL_error(state, "m:on: %d transactions are armed already", static_cast<int>(max_armed));
-  fits = bindings.send({.kind = CommandKind::arm,
+  bool fits = bindings.send({.kind = CommandKind::arm,
                         .index = conditions.count,
                         .count = conditions.count + bindings.recorded_count,
                         .sequence = flags,
@@ -286,13 +279,7 @@ int use(lua_State* state) {
 }
 
 ArmedHandle& check_handle(lua_State* state) {
-  ArmedHandle* handle = nullptr;
-  if (lua_type(state, 1) == LUA_TUSERDATA && lua_getmetatable(state, 1) != 0) {
-    lua_pushlightuserdata(state, const_cast<char*>(&armed_key));
-    lua_rawget(state, LUA_REGISTRYINDEX);
-    if (lua_rawequal(state, -1, -2) != 0) handle = static_cast<ArmedHandle*>(lua_touserdata(state, 1));
-    lua_pop(state, 2);
-  }
+  auto* handle = static_cast<ArmedHandle*>(to_handle(state, 1, armed_key));
   if (handle == nullptr) luaL_error(state, "call it with a colon: armed:cancel()");
   return *handle;
 }
@@ -323,11 +310,7 @@ int read_field(lua_State* state) {
   const std::string_view name = lua_type(state, 2) == LUA_TSTRING ? lua_tostring(state, 2) : "";
   if (name == "outcome") return lua_pushstring(state, outcome(handle, status, snapshot)), 1;
   if (name == "fired") return lua_pushnumber(state, status != nullptr ? status->fired : 0), 1;
-  lua_settop(state, 2);
-  lua_pushvalue(state, 2);
-  lua_rawget(state, lua_upvalueindex(1));
-  if (lua_isnil(state, -1)) return raise_unknown_field(state, "an armed transaction", lua_upvalueindex(1), 2);
-  return 1;
+  return push_method(state, "an armed transaction");
 }
 
 }  // namespace
@@ -399,16 +382,8 @@ void open_armed(lua_State* state, const Chart& chart) {
 }
 
 void open_armed_handles(lua_State* state) {
-  lua_pushlightuserdata(state, const_cast<char*>(&armed_key));
-  lua_createtable(state, 0, 2);
-  lua_createtable(state, 0, 1);
-  lua_pushcfunction(state, cancel);
-  lua_setfield(state, -2, "cancel");
-  lua_pushcclosure(state, read_field, 1);
-  lua_setfield(state, -2, "__index");
-  lua_pushboolean(state, 0);
-  lua_setfield(state, -2, "__metatable");
-  lua_rawset(state, LUA_REGISTRYINDEX);
+  const luaL_Reg methods[] = {{"cancel", cancel}};
+  open_kind(state, armed_key, methods, read_field);
 }
 
 }  // namespace kadans

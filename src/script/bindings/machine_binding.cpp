@@ -7,12 +7,13 @@
 #include "machine_sets.h"
 #include "script/check/hint.h"
 #include "script/motion/motion_options.h"
+#include "script/sandbox/handle.h"
 #include "script/sandbox/sandbox.h"
 
 namespace kadans {
 namespace {
 
-const char object_key = 0;
+const HandleKey object_key = 0;
 constexpr double command_instructions = 20;
 
 // object:setpoint(name) -> number: where it is on its way now.
@@ -87,16 +88,14 @@ int hold(lua_State* state) {
 
 }  // namespace
 
+const std::uint32_t* to_object(lua_State* state, int index) noexcept {
+  return static_cast<const std::uint32_t*>(to_handle(state, index, object_key));
+}
+
 const ObjectInfo& check_object(lua_State* state, std::uint32_t& number) {
-  const void* handle = nullptr;
-  if (lua_type(state, 1) == LUA_TUSERDATA && lua_getmetatable(state, 1) != 0) {
-    lua_pushlightuserdata(state, const_cast<char*>(&object_key));
-    lua_rawget(state, LUA_REGISTRYINDEX);
-    if (lua_rawequal(state, -1, -2) != 0) handle = lua_touserdata(state, 1);
-    lua_pop(state, 2);
-  }
+  const std::uint32_t* handle = to_object(state, 1);
   if (handle == nullptr) luaL_error(state, "call it on a control object, with a colon: m.object:method(...)");
-  number = handle != nullptr ? *static_cast<const std::uint32_t*>(handle) : 0;
+  number = handle != nullptr ? *handle : 0;
   const Bindings& bindings = bindings_of(state);
   if (bindings.runner != nullptr && !bindings.recording) {  // m:on may switch to the set of any object
     const Chart::State& acting = bindings.runner->acting();
@@ -119,9 +118,7 @@ int queue_full(lua_State* state) { return lua_pushnil(state), lua_pushliteral(st
 
 void push_object(lua_State* state, std::uint32_t object) {
   *static_cast<std::uint32_t*>(lua_newuserdata(state, sizeof object)) = object;
-  lua_pushlightuserdata(state, const_cast<char*>(&object_key));
-  lua_rawget(state, LUA_REGISTRYINDEX);
-  lua_setmetatable(state, -2);
+  set_kind(state, object_key);
 }
 
 void open_objects(lua_State* state) {
@@ -130,7 +127,6 @@ void open_objects(lua_State* state) {
                               {"set_gains", set_gains},
                               {"set_parameter", set_parameter},
                               {"hold", hold}};
-  lua_pushlightuserdata(state, const_cast<char*>(&object_key));
   lua_createtable(state, 0, 2);
   lua_createtable(state, 0, 8);
   for (const luaL_Reg& method : methods) {
@@ -140,9 +136,7 @@ void open_objects(lua_State* state) {
   open_motion_methods(state);
   make_read_only(state, "a control object");
   lua_setfield(state, -2, "__index");
-  lua_pushboolean(state, 0);
-  lua_setfield(state, -2, "__metatable");
-  lua_rawset(state, LUA_REGISTRYINDEX);
+  open_kind(state, object_key);
 }
 
 // `m`: what the functions of a behavior act through. Each machine has its own; the control objects are the same.
@@ -245,18 +239,23 @@ void push_event_data(lua_State* state, int index, int depth, int& fields) {
   }
 }
 
+}  // namespace
+
+EventId check_event(lua_State* state, const Chart& chart, const char* name) {
+  const EventId event = chart.find_event(name);
+  if (event == no_event) luaL_error(state, "nothing in this behavior waits for the event '%s'", name);
+  if (chart.made_by_runner(event))
+    luaL_error(state, "'%s' says how a state or a run ended, it cannot be emitted: give the event another name", name);
+  return event;
+}
+
+namespace {
+
 int emit(lua_State* state) {
   if (bindings_of(state).recording)
     return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
-  const auto* chart = static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
-  const EventId event = chart->find_event(luaL_checkstring(state, 2));
-  if (event != no_event && chart->made_by_runner(event)) {
-    return luaL_error(state, "'%s' says how a state or a run ended, it cannot be emitted: give the event another name",
-                      lua_tostring(state, 2));
-  }
-  if (event == no_event) {
-    return luaL_error(state, "nothing in this behavior waits for the event '%s'", lua_tostring(state, 2));
-  }
+  const auto& chart = *static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
+  const EventId event = check_event(state, chart, luaL_checkstring(state, 2));
   ChartRunner& runner = *bindings_of(state).runner;
   const bool with_data = !lua_isnoneornil(state, 3);
   if (with_data && !lua_istable(state, 3)) {

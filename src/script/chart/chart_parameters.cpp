@@ -8,12 +8,13 @@
 
 #include "chart_reader.h"
 #include "script/lua/lua_core.h"
+#include "script/sandbox/handle.h"
 #include "script/sandbox/sandbox.h"
 
 namespace kadans {
 namespace {
 
-const char handle_key = 0;
+const HandleKey handle_key = 0;
 constexpr std::size_t parameters_max = 1000, parameter_text_max = 512;  // they are kept outside the script's memory
 constexpr double parameter_instructions = 200;
 constexpr const char* spec_keys[] = {"min", "max", "unit", "doc", nullptr};
@@ -118,9 +119,7 @@ int params(lua_State* state) {
     add_parameter(state, read_spec(state, lua_tostring(state, 4), place), place);
     auto* handle = static_cast<std::size_t*>(lua_newuserdata(state, sizeof(std::size_t)));
     *handle = core_of(state).parameters.size() - 1;
-    lua_pushlightuserdata(state, const_cast<char*>(&handle_key));
-    lua_rawget(state, LUA_REGISTRYINDEX);
-    lua_setmetatable(state, -2);
+    set_kind(state, handle_key);
     lua_pushvalue(state, 4);
     lua_insert(state, -2);
     lua_rawset(state, 2);
@@ -142,26 +141,19 @@ int params(lua_State* state) {
 }  // namespace
 
 bool is_parameter(lua_State* state, int index, std::size_t* number) {
-  if (lua_type(state, index) != LUA_TUSERDATA || lua_getmetatable(state, index) == 0) return false;
-  lua_pushlightuserdata(state, const_cast<char*>(&handle_key));
-  lua_rawget(state, LUA_REGISTRYINDEX);
-  const bool same = lua_rawequal(state, -1, -2) != 0;
-  lua_pop(state, 2);
-  if (same) *number = *static_cast<std::size_t*>(lua_touserdata(state, index));
-  return same;
+  const auto* handle = static_cast<const std::size_t*>(to_handle(state, index, handle_key));
+  if (handle != nullptr) *number = *handle;
+  return handle != nullptr;
 }
 
 void open_parameters(lua_State* state) {
-  lua_pushlightuserdata(state, const_cast<char*>(&handle_key));
   lua_newtable(state);
   for (const char* event : {"__add", "__sub", "__mul", "__div", "__mod", "__pow", "__unm", "__lt", "__le", "__concat",
                             "__index", "__call"}) {
     lua_pushcfunction(state, refuse_arithmetic);
     lua_setfield(state, -2, event);
   }
-  lua_pushboolean(state, 0);
-  lua_setfield(state, -2, "__metatable");
-  lua_rawset(state, LUA_REGISTRYINDEX);
+  open_kind(state, handle_key);
   lua_pushcfunction(state, params);
   lua_setfield(state, -2, "params");
 }

@@ -11,12 +11,13 @@
 #include "script/check/source_lexer.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
+#include "script/sandbox/handle.h"
 #include "script/sandbox/sandbox.h"
 
 namespace kadans {
 namespace {
 
-const char node_key = 0;
+const HandleKey node_key = 0;
 constexpr int listed_max = 32;                        // events in one on = { ... }
 constexpr std::size_t name_max = 64, text_max = 256;  // characters: charts keep them outside the script's memory
 
@@ -188,9 +189,7 @@ void make_node(lua_State* state, NodeKind kind, const char* name, const ScriptPl
   lua_setfield(state, -2, "chunk");
   lua_pushinteger(state, place.line);
   lua_setfield(state, -2, "line");
-  lua_pushlightuserdata(state, const_cast<char*>(&node_key));
-  lua_rawget(state, LUA_REGISTRYINDEX);
-  lua_setmetatable(state, -2);
+  set_kind(state, node_key);
 }
 
 // Upvalues: kind, name, chunk, line. Takes the body.
@@ -270,12 +269,7 @@ const char* node_word(NodeKind kind) noexcept {
 }
 
 bool is_node(lua_State* state, int index, NodeKind* kind) {
-  if (!lua_istable(state, index) || lua_getmetatable(state, index) == 0) return false;
-  lua_pushlightuserdata(state, const_cast<char*>(&node_key));
-  lua_rawget(state, LUA_REGISTRYINDEX);
-  const bool same = lua_rawequal(state, -1, -2) != 0;
-  lua_pop(state, 2);
-  if (!same) return false;
+  if (!lua_istable(state, index) || !is_kind(state, index, node_key)) return false;
   lua_pushvalue(state, index);
   lua_getfield(state, -1, "kind");
   *kind = static_cast<NodeKind>(lua_tointeger(state, -1));
@@ -301,13 +295,10 @@ ScriptPlace node_place(lua_State* state, int index) {
 void push_node_body(lua_State* state, int index) { lua_getfield(state, index, "body"); }
 
 void open_nodes(lua_State* state) {
-  lua_pushlightuserdata(state, const_cast<char*>(&node_key));
   lua_createtable(state, 0, 2);
   lua_pushcfunction(state, take_arguments);
   lua_setfield(state, -2, "__call");
-  lua_pushboolean(state, 0);
-  lua_setfield(state, -2, "__metatable");
-  lua_rawset(state, LUA_REGISTRYINDEX);
+  open_kind(state, node_key);
   constexpr NodeKind kinds[] = {NodeKind::behavior, NodeKind::state,       NodeKind::parallel,
                                 NodeKind::region,   NodeKind::final_state, NodeKind::history};
   for (const NodeKind kind : kinds) {

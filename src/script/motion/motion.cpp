@@ -4,12 +4,12 @@
 
 #include "engine/refusal_text.h"
 #include "script/bindings/bindings.h"
-#include "script/sandbox/sandbox.h"
+#include "script/sandbox/handle.h"
 
 namespace kadans {
 namespace {
 
-const char motion_key = 0;
+const HandleKey motion_key = 0;
 constexpr std::int64_t patience_ns = 1'000'000'000;  // beyond its duration, for a transaction that is never applied
 
 Motion* check_motion(lua_State* state, const char* method) {
@@ -58,11 +58,7 @@ int read_field(lua_State* state) {
     const char* why = failure(*motion);
     return lua_pushstring(state, why != nullptr ? why : motion->over() ? "done" : "moving"), 1;
   }
-  lua_settop(state, 2);
-  lua_pushvalue(state, 2);
-  lua_rawget(state, lua_upvalueindex(1));
-  if (lua_isnil(state, -1)) return raise_unknown_field(state, "a motion", lua_upvalueindex(1), 2);
-  return 1;
+  return push_method(state, "a motion");
 }
 
 }  // namespace
@@ -113,34 +109,17 @@ Motion* push_motion(lua_State* state, std::uint32_t count) {
   void* block = lua_newuserdata(state, sizeof(Motion) + count * sizeof(SetpointId));
   auto* motion = new (block) Motion{};
   motion->count = count;
-  lua_pushlightuserdata(state, const_cast<char*>(&motion_key));
-  lua_rawget(state, LUA_REGISTRYINDEX);
-  lua_setmetatable(state, -2);
+  set_kind(state, motion_key);
   return motion;
 }
 
 Motion* to_motion(lua_State* state, int index) {
-  if (lua_type(state, index) != LUA_TUSERDATA || lua_getmetatable(state, index) == 0) return nullptr;
-  lua_pushlightuserdata(state, const_cast<char*>(&motion_key));
-  lua_rawget(state, LUA_REGISTRYINDEX);
-  const bool same = lua_rawequal(state, -1, -2) != 0;
-  lua_pop(state, 2);
-  return same ? static_cast<Motion*>(lua_touserdata(state, index)) : nullptr;
+  return static_cast<Motion*>(to_handle(state, index, motion_key));
 }
 
 void open_motions(lua_State* state) {
-  lua_pushlightuserdata(state, const_cast<char*>(&motion_key));
-  lua_createtable(state, 0, 2);
-  lua_createtable(state, 0, 3);
-  lua_pushcfunction(state, wait_for_motion);
-  lua_setfield(state, -2, "wait");
-  lua_pushcfunction(state, cancel);
-  lua_setfield(state, -2, "cancel");
-  lua_pushcclosure(state, read_field, 1);
-  lua_setfield(state, -2, "__index");
-  lua_pushboolean(state, 0);
-  lua_setfield(state, -2, "__metatable");
-  lua_rawset(state, LUA_REGISTRYINDEX);
+  const luaL_Reg methods[] = {{"wait", wait_for_motion}, {"cancel", cancel}};
+  open_kind(state, motion_key, methods, read_field);
 }
 
 }  // namespace kadans

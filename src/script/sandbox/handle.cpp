@@ -1,0 +1,55 @@
+#include "handle.h"
+
+#include "sandbox.h"
+
+namespace kadans {
+
+void open_kind(lua_State* state, const HandleKey& key) {
+  lua_pushboolean(state, 0);
+  lua_setfield(state, -2, "__metatable");
+  lua_pushlightuserdata(state, const_cast<HandleKey*>(&key));
+  lua_insert(state, -2);
+  lua_rawset(state, LUA_REGISTRYINDEX);
+}
+
+void open_kind(lua_State* state, const HandleKey& key, std::span<const luaL_Reg> methods, lua_CFunction read_field) {
+  lua_createtable(state, 0, 2);
+  lua_createtable(state, 0, static_cast<int>(methods.size()));
+  for (const luaL_Reg& method : methods) {
+    lua_pushcfunction(state, method.func);
+    lua_setfield(state, -2, method.name);
+  }
+  lua_pushcclosure(state, read_field, 1);
+  lua_setfield(state, -2, "__index");
+  open_kind(state, key);
+}
+
+void set_kind(lua_State* state, const HandleKey& key) {
+  lua_pushlightuserdata(state, const_cast<HandleKey*>(&key));
+  lua_rawget(state, LUA_REGISTRYINDEX);
+  lua_setmetatable(state, -2);
+}
+
+bool is_kind(lua_State* state, int index, const HandleKey& key) noexcept {
+  if (lua_getmetatable(state, index) == 0) return false;
+  lua_pushlightuserdata(state, const_cast<HandleKey*>(&key));
+  lua_rawget(state, LUA_REGISTRYINDEX);
+  const bool same = lua_rawequal(state, -1, -2) != 0;
+  lua_pop(state, 2);
+  return same;
+}
+
+void* to_handle(lua_State* state, int index, const HandleKey& key) noexcept {
+  const bool is = lua_type(state, index) == LUA_TUSERDATA && is_kind(state, index, key);
+  return is ? lua_touserdata(state, index) : nullptr;
+}
+
+int push_method(lua_State* state, const char* what) {
+  lua_settop(state, 2);
+  lua_pushvalue(state, 2);
+  lua_rawget(state, lua_upvalueindex(1));
+  if (lua_isnil(state, -1)) return raise_unknown_field(state, what, lua_upvalueindex(1), 2);
+  return 1;
+}
+
+}  // namespace kadans
