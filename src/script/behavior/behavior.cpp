@@ -257,10 +257,15 @@ void Behavior::Parts::tell_dropped(bool at_once) noexcept {
 
 void Behavior::Parts::tell_refused() noexcept {
   while (const Refusal* refusal = bindings.next_refusal()) {
+    const std::string why = refusal_text(*refusal, catalog);
+    if (bindings.was_armed(refusal->sequence)) {  // tell_armed() counted it; the states' sets are as they were
+      log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name, "all its commands: " + why);
+      continue;
+    }
     ++transactions_refused;
     bindings.sets_lost = true;
     log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
-                "refused by the control engine, all commands of that tick: " + refusal_text(*refusal, catalog));
+                "refused by the control engine, all commands of that tick: " + why);
     bindings.forget_armed(refusal->sequence);
   }
 }

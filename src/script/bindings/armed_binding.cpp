@@ -367,6 +367,12 @@ bool Bindings::look_at_armed(ArmedHere& told, ArmedStatus& status) noexcept {
   return false;
 }
 
+bool Bindings::was_armed(std::uint32_t sequence) const noexcept {
+  return std::ranges::any_of(snapshot->armed, [sequence](const ArmedStatus& status) {
+    return status.sequence == sequence && status.state == ArmedState::refused;
+  });
+}
+
 void Bindings::forget_armed(std::uint32_t sequence) noexcept {
   for (std::uint32_t i = armed_count; i-- > 0;) {
     if (armed[i].sequence == sequence) drop_armed(i);

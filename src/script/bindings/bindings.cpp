@@ -12,15 +12,32 @@
 namespace kadans {
 
 void Bindings::want(SetMask sets, SetMask needed) noexcept {
-  wanted = (wanted & sets) | (needed & ~sets_now);
+  wanted &= sets;
+  bring_in(needed);
   bring_in_again();
 }
 
-void Bindings::bring_in_again() noexcept {
-  each_bit(wanted & ~sets_now, [&](std::uint32_t set) {
+void Bindings::bring_in(SetMask sets) noexcept {
+  each_bit(sets & ~sets_now, [&](std::uint32_t set) {
+    wanted |= set_bit(set);
     sets_now = partition->after(sets_now, set);
     (void)send({.kind = CommandKind::switch_set, .index = set});
   });
+}
+
+void Bindings::bring_in_again() noexcept {
+  each_bit(wanted, [&](std::uint32_t set) {
+    if (!must_wait(set)) bring_in(set_bit(set));
+  });
+}
+
+bool Bindings::must_wait(std::uint32_t set) const noexcept {
+  const SetMask leaving = sets_now & ~partition->after(sets_now, set);
+  bool dwells = false;
+  each_bit(partition->objects(leaving), [&](std::uint32_t object) {
+    dwells = dwells || (object < snapshot->object_count && snapshot->objects[object].dwell_s > 0);
+  });
+  return dwells;
 }
 
 void Bindings::go_on_after(const Bindings& other) noexcept {
@@ -75,7 +92,7 @@ bool Bindings::commit() noexcept {
   const std::uint32_t sequence = sender->commit();
   const bool taken = !refused && (sequence != 0 || sender->last_sequence() == 0);
   if (taken) {
-    wanted = 0;
+    wanted &= ~sets_now;
     sets_sent = sets_now;
     if (sender->last_switch() == sequence) switched = sequence;
   }

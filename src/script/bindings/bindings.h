@@ -70,10 +70,15 @@ struct Bindings {
   // states run on: switches to those of them that are `needed` and not active. The others were switched to when their
   // states were entered; since then a reflex or a person may have taken their joints.
   void want(SetMask sets, SetMask needed) noexcept;
-  // To be called after begin(): asks again for sets that could not be sent before.
+  // To be called after begin(): asks again for sets that could not be sent before, or were refused; for those in whose
+  // place a set or object still dwells (kadans/control/switch_dwell.h) once it does not dwell any more.
   void bring_in_again() noexcept;
+  void bring_in(SetMask sets) noexcept;  // those of them that are not active
+  bool must_wait(std::uint32_t set) const noexcept;
   // The next refusal in the snapshot of one of this behavior's transactions; nullptr when all have been returned.
   const Refusal* next_refusal() noexcept;
+  // Whether what was refused had been taken, and armed something that was refused when its condition was true.
+  bool was_armed(std::uint32_t sequence) const noexcept;
   // Notes the transaction that was just armed.
   const ArmedHere& note_armed(EventId event) noexcept;
   // A state was left: takes back what it armed.
