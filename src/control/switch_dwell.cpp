@@ -35,7 +35,7 @@ void SwitchDwell::declare(SignalTable& signals) const {
     for (const std::uint32_t object : catalog_.sets[set].objects) demands = demands || objects_[object].demanded_ns > 0;
     if (!demands) continue;
     signals.add({"composition." + catalog_.sets[set].name + ".dwell_s", "s",
-                 "For how long a switch away from it will still be refused in the next tick."},
+                 "For how long a switch to or away from it will still be refused in the next tick."},
                 &left_s_[set]);
   }
 }
@@ -44,8 +44,8 @@ void SwitchDwell::note(SetMask active, std::int64_t time_ns) noexcept {
   if (!demanded_) return;
   const ObjectMask running = partition_.objects(active);
   const auto begin = [time_ns](Stay& stay) { stay.until_ns = time_ns + stay.demanded_ns; };
-  each_bit(active & ~active_, [&](std::uint32_t set) { begin(sets_[set]); });
-  each_bit(running & ~running_, [&](std::uint32_t object) { begin(objects_[object]); });
+  each_bit(active ^ active_, [&](std::uint32_t set) { begin(sets_[set]); });
+  each_bit(running ^ running_, [&](std::uint32_t object) { begin(objects_[object]); });
   active_ = active;
   running_ = running;
 }
@@ -53,41 +53,39 @@ void SwitchDwell::note(SetMask active, std::int64_t time_ns) noexcept {
 void SwitchDwell::step(std::int64_t time_ns, double dt_s) noexcept {
   next_ns_ = time_ns + std::llround(1e9 * dt_s);
   for (std::uint32_t set = 0; set < sets_.size(); ++set) {
-    left_s_[set] = 0;
-    if ((active_ & set_bit(set)) == 0) continue;
-    std::int64_t left = left_ns(sets_[set], true, next_ns_);
+    std::int64_t left = left_ns(sets_[set], false, next_ns_);
     for (const std::uint32_t object : catalog_.sets[set].objects)
-      left = std::max(left, left_ns(objects_[object], true, next_ns_));
+      left = std::max(left, left_ns(objects_[object], false, next_ns_));
     left_s_[set] = 1e-9 * static_cast<double>(left);
   }
 }
 
-std::int64_t SwitchDwell::left_ns(const Stay& stay, bool active, std::int64_t time_ns) noexcept {
-  return active ? std::max<std::int64_t>(stay.until_ns - time_ns, 0) : stay.demanded_ns;
+std::int64_t SwitchDwell::left_ns(const Stay& stay, bool changed, std::int64_t time_ns) noexcept {
+  return changed ? stay.demanded_ns : std::max<std::int64_t>(stay.until_ns - time_ns, 0);
 }
 
 SwitchDwell::Dweller SwitchDwell::against(SetMask active, std::uint32_t set, std::int64_t time_ns) const noexcept {
   if (!demanded_) return {};
   const SetMask after = partition_.after(active, set);
-  const ObjectMask stopped = partition_.objects(active) & ~partition_.objects(after);
+  const ObjectMask before = partition_.objects(active), switched = before ^ partition_.objects(after);
   Dweller found;
-  each_bit(active & ~after, [&](std::uint32_t leaving) {
-    std::int64_t left = left_ns(sets_[leaving], (active_ & set_bit(leaving)) != 0, time_ns);
-    each_bit(stopped & partition_.objects(set_bit(leaving)), [&](std::uint32_t object) {
-      left = std::max(left, left_ns(objects_[object], (running_ >> object & 1U) != 0, time_ns));
+  each_bit(active ^ after, [&](std::uint32_t which) {
+    std::int64_t left = left_ns(sets_[which], ((active ^ active_) & set_bit(which)) != 0, time_ns);
+    each_bit(switched & partition_.objects(set_bit(which)), [&](std::uint32_t object) {
+      left = std::max(left, left_ns(objects_[object], ((before ^ running_) >> object & 1U) != 0, time_ns));
     });
     const double left_s = 1e-9 * static_cast<double>(left);
-    if (left_s > found.left_s) found = {leaving, left_s};
+    if (left_s > found.left_s) found = {which, left_s};
   });
   return found;
 }
 
 double SwitchDwell::left_s(std::uint32_t object) const noexcept {
-  std::int64_t left = (running_ >> object & 1U) != 0 ? left_ns(objects_[object], true, next_ns_) : 0;
-  each_bit(active_, [&](std::uint32_t set) {
+  std::int64_t left = left_ns(objects_[object], false, next_ns_);
+  for (std::uint32_t set = 0; set < sets_.size(); ++set) {
     if ((partition_.objects(set_bit(set)) >> object & 1U) != 0)
-      left = std::max(left, left_ns(sets_[set], true, next_ns_));
-  });
+      left = std::max(left, left_ns(sets_[set], false, next_ns_));
+  }
   return 1e-9 * static_cast<double>(left);
 }
 

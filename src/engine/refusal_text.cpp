@@ -67,8 +67,8 @@ std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
     case RefusalReason::armed_full:
       return "as many transactions as can wait are armed already";
     case RefusalReason::set_dwells:
-      return of + "control set " + (refusal.joint < catalog.sets.size() ? catalog.sets[refusal.joint].name : "?") +
-             " must stay for another " + seconds_text(refusal.value) + " (switch_dwell_s)";
+      return of + (refusal.joint < catalog.sets.size() ? catalog.sets[refusal.joint].name : "?") +
+             " cannot be switched for another " + seconds_text(refusal.value) + " (switch_dwell_s)";
   }
   return "";
 }

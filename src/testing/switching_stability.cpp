@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <ostream>
 
@@ -22,9 +23,27 @@ SetpointState reference(const SwitchingSearch& search, double time_s) {
           -gain * turn_rad_s * turn_rad_s * std::sin(angle)};
 }
 
+// Of the joint: kinetic, and that of its weight; 0 at rest where it hangs down.
+double energy_J(JointBench& bench) {
+  const OneJointPlant::Config& plant = bench.config().plant;
+  const double velocity_rad_s = bench.velocity_rad_s();
+  return 0.5 * (plant.inertia_kg_m2 + plant.rotor_inertia_kg_m2) * velocity_rad_s * velocity_rad_s +
+         plant.gravity_Nm * (1 - std::cos(bench.position_rad())) - plant.load_Nm * bench.position_rad();
+}
+
+struct Swing {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  void add(double value) {
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+  double size() const { return highest - lowest; }
+};
+
 bool second_is_due(const SwitchingPattern& pattern, double time_s) {
   if (!(pattern.period_s > 0)) return false;
-  return std::fmod(time_s + 1e-9, pattern.period_s) >= (1 - pattern.share) * pattern.period_s;
+  return std::fmod(time_s + pattern.phase * pattern.period_s + 1e-9, pattern.period_s) >=
+         (1 - pattern.share) * pattern.period_s;
 }
 
 class Search {
@@ -32,22 +51,28 @@ class Search {
   Search(const MakeBench& make, const SwitchingSearch& search, SwitchingStability& found)
       : make_(make), search_(search), found_(found) {}
 
-  void try_pattern(const SwitchingPattern& pattern) {
+  void try_pattern(SwitchingPattern pattern) {
+    pattern.period_s = std::max(pattern.period_s, 2 * search_.dwell_s);
+    const double least = search_.dwell_s / pattern.period_s;
+    pattern.share = std::clamp(pattern.share, least, 1 - least);
     const SwitchedMotion motion = switched_motion(make_, found_.first, found_.second, pattern, search_);
     ++found_.motions;
     // Positively, so that what is not finite is the worst.
     if (!(motion.energy_J <= found_.most_energy.energy_J)) found_.most_energy = motion;
     if (!(motion.rms_error_rad <= found_.most_error.rms_error_rad)) found_.most_error = motion;
+    if (!(motion.growth <= found_.most_growth.growth)) found_.most_growth = motion;
   }
   void try_grid() {
     const double ratio = search_.period_max_s / search_.period_min_s;
     for (int i = 0; i < search_.periods; ++i) {
       const double at = search_.periods > 1 ? static_cast<double>(i) / (search_.periods - 1) : 0;
-      for (const double share : shares) try_pattern({search_.period_min_s * std::pow(ratio, at), share});
+      for (const double share : shares) {
+        for (const double phase : {0.0, 0.5}) try_pattern({search_.period_min_s * std::pow(ratio, at), share, phase});
+      }
     }
     for (const double turns : {0.5, 1.0}) {  // in step with the motion
       const double period_s = turns / search_.frequency_Hz;
-      if (period_s >= search_.period_min_s && period_s <= search_.period_max_s) try_pattern({period_s, 0.5});
+      if (period_s >= search_.period_min_s && period_s <= search_.period_max_s) try_pattern({period_s, 0.5, 0.0});
     }
   }
   void refine() {
@@ -55,8 +80,8 @@ class Search {
     for (int i = 0; i < search_.refinements; ++i) {
       const SwitchingPattern& worst = (i % 2 == 0 ? found_.most_energy : found_.most_error).pattern;
       const double period_s = worst.period_s * std::exp(random.uniform(-0.3, 0.3));
-      try_pattern({std::clamp(period_s, search_.period_min_s, search_.period_max_s),
-                   std::clamp(worst.share + random.uniform(-0.2, 0.2), 0.1, 0.9)});
+      const double share = std::clamp(worst.share + random.uniform(-0.2, 0.2), 0.1, 0.9);
+      try_pattern({std::clamp(period_s, search_.period_min_s, search_.period_max_s), share, random.uniform()});
     }
   }
 
@@ -69,8 +94,8 @@ class Search {
 std::ostream& operator<<(std::ostream& out, const SwitchedMotion& motion) {
   if (motion.pattern.period_s > 0)
     out << "period " << motion.pattern.period_s << " s, share " << motion.pattern.share << ": ";
-  return out << "energy " << motion.energy_J << " J, error RMS " << motion.rms_error_rad << " rad, peak "
-             << motion.peak_error_rad << " rad";
+  return out << "energy " << motion.energy_J << " J, growth " << motion.growth << ", error RMS " << motion.rms_error_rad
+             << " rad, peak " << motion.peak_error_rad << " rad";
 }
 
 }  // namespace
@@ -78,12 +103,12 @@ std::ostream& operator<<(std::ostream& out, const SwitchedMotion& motion) {
 SwitchedMotion switched_motion(const MakeBench& make, std::string_view first, std::string_view second,
                                const SwitchingPattern& pattern, const SwitchingSearch& search) {
   const std::unique_ptr<JointBench> bench = make();
-  const OneJointPlant::Config& plant = bench->config().plant;
-  const double inertia_kg_m2 = plant.inertia_kg_m2 + plant.rotor_inertia_kg_m2;
   const auto ticks = std::llround(search.duration_s / bench->config().dt_s);
+  const double half_s = 0.5 * (search.settle_s + search.duration_s);
   SwitchedMotion motion{.pattern = pattern};
+  Swing first_half, second_half;
   bool second_active = false;
-  double squares = 0, energy_J = 0, judged = 0;
+  double squares = 0, judged = 0;
   bench->switch_to(first);
   for (long long i = 0; i < ticks; ++i) {
     const double time_s = bench->config().dt_s * static_cast<double>(i);
@@ -93,17 +118,19 @@ SwitchedMotion switched_motion(const MakeBench& make, std::string_view first, st
       second_active = due;
     }
     const double error_rad = wanted.value - bench->position_rad();
-    const double apart_rad_s = wanted.velocity - bench->velocity_rad_s();
     bench->lead(wanted);
     bench->tick();
     if (time_s < search.settle_s) continue;
     squares += error_rad * error_rad;
-    energy_J += 0.5 * inertia_kg_m2 * apart_rad_s * apart_rad_s;
-    if (!(std::abs(error_rad) <= motion.peak_error_rad)) motion.peak_error_rad = std::abs(error_rad);
     ++judged;
+    (time_s < half_s ? first_half : second_half).add(energy_J(*bench));
+    if (!(std::abs(error_rad) <= motion.peak_error_rad)) motion.peak_error_rad = std::abs(error_rad);
   }
   motion.rms_error_rad = judged > 0 ? std::sqrt(squares / judged) : 0;
-  motion.energy_J = judged > 0 ? energy_J / judged : 0;
+  motion.growth = second_half.size() / first_half.size();
+  first_half.add(second_half.lowest);
+  first_half.add(second_half.highest);
+  motion.energy_J = first_half.size();
   return motion;
 }
 
@@ -122,9 +149,8 @@ SwitchingStability switching_stability(const MakeBench& make, std::string_view f
 }
 
 bool operator<=(const SwitchingStability& found, const StabilityLimits& limits) noexcept {
-  const bool calm = found.most_energy.energy_J <= limits.energy_resolution_J;
   const bool exact = found.most_error.rms_error_rad <= limits.error_resolution_rad;
-  return (calm || found.energy_ratio <= limits.energy_ratio) && (exact || found.error_ratio <= limits.error_ratio);
+  return found.energy_ratio <= limits.energy_ratio && (exact || found.error_ratio <= limits.error_ratio);
 }
 
 std::ostream& operator<<(std::ostream& out, const SwitchingStability& found) {

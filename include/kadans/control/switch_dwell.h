@@ -1,7 +1,8 @@
-// The least time that a control set or a control object stays once it has come in (`switch_dwell_s`). Switching between
-// stable controllers can be unstable when it is fast (Liberzon, Switching in Systems and Control, 2003, sec. 3.2: dwell
-// time). A switch that comes too early is refused, not delayed. A set dwells from its own coming in; an object from its
-// start, in whatever sets it stays meanwhile. The sets of the start do not dwell.
+// The least time between two switches of a control set or a control object (`switch_dwell_s`): from its coming in to
+// its leaving, and from its leaving to its coming in. Switching between stable controllers can be unstable when it is
+// fast (Liberzon, Switching in Systems and Control, Birkhauser 2003, sec. 3.2: dwell time), and the fade of the switch
+// before needs its time. A switch that comes too early is refused, not delayed. An object is switched when it starts or
+// stops, in whatever sets; it goes on in a set that follows with the same object. The sets of the start do not dwell.
 //
 // One owner, the control thread; nothing here allocates after construction, locks or throws.
 #pragma once
@@ -31,17 +32,17 @@ class SwitchDwell {
     std::uint32_t set = 0;
     double left_s = 0;  // 0: none dwells
   };
-  // The set that dwells longest of those that `set` would take the place of. `active`: the sets before the switch; those
-  // that are not active yet come in with an earlier switch of the same tick.
+  // The set that must wait longest of those that the switch to `set` would switch. `active`: the sets before it; where
+  // they are not as in the last note(), an earlier switch of the same tick changed them.
   Dweller against(SetMask active, std::uint32_t set, std::int64_t time_ns) const noexcept;
-  // For how long the object, or an active set with it, will still dwell in the next tick.
+  // For how long the object, or a set with it, will still dwell in the next tick.
   double left_s(std::uint32_t object) const noexcept;
 
  private:
-  struct Stay {
+  struct Stay {  // between two switches
     std::int64_t demanded_ns = 0, until_ns = 0;
   };
-  static std::int64_t left_ns(const Stay& stay, bool active, std::int64_t time_ns) noexcept;
+  static std::int64_t left_ns(const Stay& stay, bool changed, std::int64_t time_ns) noexcept;
 
   const Catalog& catalog_;
   const SetPartition& partition_;

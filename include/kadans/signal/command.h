@@ -75,7 +75,7 @@ enum class RefusalReason : std::uint8_t {
   robot_held,
   joint_held,
   armed_full,  // too many wait already
-  set_dwells,  // a control set that would leave has not been active for its least time
+  set_dwells,  // a control set or object was switched too short a time ago
 };
 
 struct alignas(8) Refusal {

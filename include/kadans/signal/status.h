@@ -83,7 +83,7 @@ struct alignas(8) PowerStatus {
 // What the behaviors see of a control object.
 struct alignas(8) ObjectStatus {
   bool active = false;
-  float dwell_s = 0;                         // for how long a switch that takes it out will still be refused
+  float dwell_s = 0;                         // for how long a switch of it, or of a set with it, is still refused
   alignas(8) double motion_remaining_s = 0;  // until the last of its set-points is reached; 0 at rest
 };
 

@@ -10,7 +10,7 @@
 // parameters, of the objects that drive it; a switch of control sets that concerns it. A joint that damps or is off
 // causes no refusal, so that the others can go on; when it comes back, it starts from where it is.
 //
-// A switch that would take out a control set or object before its least time is over (kadans/control/switch_dwell.h) is
+// A switch of a control set or object whose least time is not over (kadans/control/switch_dwell.h) is
 // refused with the whole transaction, whoever sends it. The safety layer switches no sets, so nothing keeps it waiting.
 //
 // Orders to drives are carried out while the robot is held, because they can end the cause. Under the emergency stop,

@@ -251,10 +251,10 @@ int on(lua_State* state) {
   end_callback(state);
   const std::uint32_t flags = conditions.options | (options.every_time ? std::uint32_t{arm_every_time} : 0U);
   bool fits = bindings.send({.kind = CommandKind::arm,
-                        .index = conditions.count,
-                        .count = conditions.count + bindings.recorded_count,
-                        .sequence = flags,
-                        .duration_s = options.within_s});
+                             .index = conditions.count,
+                             .count = conditions.count + bindings.recorded_count,
+                             .sequence = flags,
+                             .duration_s = options.within_s});
   for (std::uint32_t i = 0; i < conditions.count; ++i) fits = fits && bindings.send(conditions.all[i]);
   for (std::uint32_t i = 0; i < bindings.recorded_count; ++i) fits = fits && bindings.send(bindings.recorded[i]);
   if (!fits) return queue_full(state);

@@ -70,8 +70,8 @@ struct Bindings {
   // states run on: switches to those of them that are `needed` and not active. The others were switched to when their
   // states were entered; since then a reflex or a person may have taken their joints.
   void want(SetMask sets, SetMask needed) noexcept;
-  // To be called after begin(): asks again for sets that could not be sent before, or were refused; for those in whose
-  // place a set or object still dwells (kadans/control/switch_dwell.h) once it does not dwell any more.
+  // To be called after begin(): asks again for sets that could not be sent before, or were refused. A switch of what
+  // still dwells (kadans/control/switch_dwell.h) waits until it does not.
   void bring_in_again() noexcept;
   void bring_in(SetMask sets) noexcept;  // those of them that are not active
   bool must_wait(std::uint32_t set) const noexcept;
