@@ -183,3 +183,28 @@ TEST_CASE("a mistake in m:on is told with its line, and nothing is recorded any 
   CHECK(stage.commands(CommandKind::set_point) == 1);
   CHECK(stage.commands(CommandKind::cancel_motion) == 0);
 }
+
+TEST_CASE(
+    "one that is refused when its condition is true is told with the reason, and does not bring the state's sets "
+    "back") {
+  ArmedStage stage(
+      "m:on('foot.right.contact', function(c) c:use('gesture') c.arms:set('l_shoulder_pitch.position_rad', 1) end, "
+      "{ within_s = 9 })");
+  stage.tick();
+  const std::size_t sent = stage.applied.size();
+  stage.snapshot.control_sets = 2;  // a person, or another reflex, switched to "gesture"
+  stage.tell(ArmedState::refused, 0);
+  stage.snapshot.refusals[0] = {.sequence = stage.sender.last_sequence(),
+                                .kind = CommandKind::switch_set,
+                                .reason = RefusalReason::set_dwells,
+                                .joint = 0,
+                                .index = 1,
+                                .value = 0.125};
+  stage.snapshot.transactions_refused = 1;
+  stage.tick(5);
+  CHECK(stage.applied.size() == sent);
+  CHECK(stage.behavior->transactions_refused() == 1);
+  CHECK(has(stage.said(),
+            "what a armed was refused when its condition was true\nall its commands: control set gesture: "
+            "posture cannot be switched for another 0.125 s (switch_dwell_s)\n"));
+}
