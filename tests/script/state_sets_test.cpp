@@ -307,64 +307,6 @@ TEST_CASE("sets of a transaction that was refused are asked for again as soon as
   CHECK(cast.switches() == Switches{legs});
 }
 
-TEST_CASE("a switch that came before the dwell was over is refused once, and asked for again once it is over") {
-  Cast cast;
-  play_alone(cast,
-             "return k.behavior 'main' { controls = 'posture', initial = 'a', k.state 'a' { { after = 0.02, to = 'b' } "
-             "}, k.state 'b' { controls = 'legs', endless = true,\n"
-             "enter = function(m) m.legs:move('lean', { time_s = 0.1 }) end } }");
-  cast.tick(2);
-  cast.applying = false;
-  cast.tick();
-  Command command;
-  while (cast.queue.try_pop(command)) {
-    if (command.kind == CommandKind::transaction)
-      cast.snapshot.refusals[0] = {
-          .sequence = command.sequence, .reason = RefusalReason::set_dwells, .joint = posture, .value = 0.05};
-  }
-  cast.snapshot.transactions_refused = 1;
-  cast.snapshot.object_count = 3;
-  cast.snapshot.objects[posture].dwell_s = 0.05F;
-  cast.applying = true;
-  const std::uint32_t sent = cast.sender.last_sequence();
-  cast.tick(5);
-  CHECK(cast.switches().empty());
-  CHECK(cast.sender.last_sequence() == sent);  // nothing that would be refused is sent meanwhile
-  CHECK(cast.host->behavior(0).state() == "b");
-  CHECK(cast.host->behavior(0).transactions_refused() == 1);
-  cast.snapshot.objects[posture].dwell_s = 0;
-  cast.tick();
-  CHECK(cast.switches() == Switches{legs});
-  cast.tick(5);
-  CHECK(cast.switches() == Switches{legs});
-}
-
-TEST_CASE("a switch that waits for the dwell is forgotten with its state, and what comes next is sent at once") {
-  Cast cast;
-  play_alone(cast,
-             "return k.behavior 'main' { controls = 'posture', initial = 'a', k.state 'a' { { after = 0.02, to = 'b' } "
-             "}, k.state 'b' { controls = 'legs', { after = 0.03, to = 'c' } },\n"
-             "k.state 'c' { endless = true, enter = function(m) m.posture:set_gains('soft') end } }");
-  cast.tick(2);
-  cast.applying = false;
-  cast.tick();
-  Command command;
-  while (cast.queue.try_pop(command)) {
-    if (command.kind == CommandKind::transaction)
-      cast.snapshot.refusals[0] = {.sequence = command.sequence, .reason = RefusalReason::set_dwells};
-  }
-  cast.snapshot.transactions_refused = 1;
-  cast.snapshot.object_count = 3;
-  cast.snapshot.objects[posture].dwell_s = 9;
-  cast.applying = true;
-  cast.tick(5);
-  CHECK(cast.host->behavior(0).state() == "c");
-  CHECK(last_transaction(cast) == Kinds{CommandKind::set_parameter});
-  cast.snapshot.objects[posture].dwell_s = 0;
-  cast.tick(5);
-  CHECK(cast.switches().empty());
-}
-
 TEST_CASE("a transition that cannot be sent, and the next that wants other sets: only the newest are switched to") {
   Cast cast;
   play_alone(cast,
