@@ -22,18 +22,9 @@ TEST_CASE("a switch that came before the dwell was over is refused once, and ask
        "}, k.state 'b' { controls = 'legs', endless = true,\n"
        "enter = function(m) m.legs:move('lean', { time_s = 0.1 }) end } }");
   cast.tick(2);
-  cast.applying = false;
-  cast.tick();
-  Command command;
-  while (cast.queue.try_pop(command)) {
-    if (command.kind == CommandKind::transaction)
-      cast.snapshot.refusals[0] = {
-          .sequence = command.sequence, .reason = RefusalReason::set_dwells, .joint = posture, .value = 0.05};
-  }
-  cast.snapshot.transactions_refused = 1;
+  cast.refuse_tick(RefusalReason::set_dwells);
   cast.snapshot.object_count = 3;
   cast.snapshot.objects[posture].dwell_s = 0.05F;
-  cast.applying = true;
   const std::uint32_t sent = cast.sender.last_sequence();
   cast.tick(5);
   CHECK(cast.switches().empty());
@@ -54,17 +45,9 @@ TEST_CASE("a switch that waits for the dwell is forgotten with its state, and wh
        "}, k.state 'b' { controls = 'legs', { after = 0.03, to = 'c' } },\n"
        "k.state 'c' { endless = true, enter = function(m) m.posture:set_gains('soft') end } }");
   cast.tick(2);
-  cast.applying = false;
-  cast.tick();
-  Command command;
-  while (cast.queue.try_pop(command)) {
-    if (command.kind == CommandKind::transaction)
-      cast.snapshot.refusals[0] = {.sequence = command.sequence, .reason = RefusalReason::set_dwells};
-  }
-  cast.snapshot.transactions_refused = 1;
+  cast.refuse_tick(RefusalReason::set_dwells);
   cast.snapshot.object_count = 3;
   cast.snapshot.objects[posture].dwell_s = 9;
-  cast.applying = true;
   cast.tick(5);
   CHECK(cast.host->behavior(0).state() == "c");
   CHECK(cast.commands(CommandKind::set_parameter) > 0);

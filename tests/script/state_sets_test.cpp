@@ -288,16 +288,8 @@ TEST_CASE("sets of a transaction that was refused are asked for again as soon as
              "return k.behavior 'main' { controls = 'posture', initial = 'a', k.state 'a' { { after = 0.02, to = 'b' } "
              "}, k.state 'b' { controls = 'legs', endless = true } }");
   cast.tick(2);
-  cast.applying = false;
-  cast.tick();
-  Command command;
-  while (cast.queue.try_pop(command)) {
-    if (command.kind == CommandKind::transaction)
-      cast.snapshot.refusals[0] = {.sequence = command.sequence, .reason = RefusalReason::robot_held};
-  }
-  cast.snapshot.transactions_refused = 1;
+  cast.refuse_tick(RefusalReason::robot_held);
   cast.snapshot.status.safety.level = SafetyLevel::hold;
-  cast.applying = true;
   cast.tick(3);
   CHECK(cast.switches().empty());
   cast.snapshot.status.safety.level = SafetyLevel::normal;
