@@ -150,8 +150,9 @@ TEST_CASE("Viewers get joint states, wrenches and the base of each robot, a furt
     messages.write(i, 0, played.robot.control().row(), message);
     bases.assign(reinterpret_cast<const char*>(message.bytes().data()), message.size());
   }
-  CHECK(topics == std::vector<std::string>{"/joint_states", "/tf", "/wrench/l_foot", "/wrench/r_foot",
-                                           "/left/joint_states", "/left/wrench/l_foot", "/left/wrench/r_foot"});
+  CHECK(topics == std::vector<std::string>{"/joint_states", "/tf", "/wrench/l_ankle_roll_link",
+                                           "/wrench/r_ankle_roll_link", "/left/joint_states",
+                                           "/left/wrench/l_ankle_roll_link", "/left/wrench/r_ankle_roll_link"});
   const std::string base = played.robot.robot().model.links.front().name;
   CHECK(bases.find("\"child_frame_id\":\"" + base + "\"") != std::string::npos);
   const std::size_t left = bases.find("\"child_frame_id\":\"left/" + base + "\"");
