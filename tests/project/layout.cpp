@@ -288,7 +288,7 @@ Findings check_words(std::string_view path, std::string_view text) {
       wrong = "an 'order' is asked of a running instance";
     if (speaks_of("Request") && name != "DriveRequest" && !in_one_of({"remote/", "script/process/"}))
       wrong = "a 'request' is an order that is not read yet";
-    if (speaks_of("Command") && !in_one_of({"kadans/signal/command.h", "engine/", "app/command"}))
+    if (speaks_of("Command") && !in_one_of({"signal/command.h", "engine/", "app/command"}))
       wrong = "a 'command' goes to the control engine, or stands on the command line";
     if (speaks_of("Log") && in_one_of({"telemetry/mcap/", "telemetry/reading/", "telemetry/plot/"}))
       wrong = "a 'log' is of lines, a run's file is a record";
