@@ -67,8 +67,7 @@ class RecordSide final : public Task, public LineSink {
  private:
   void carry_out(OrderCase& order);
   void make_recorder();
-  template <typename Record>
-  void describe(Record& record, std::int64_t time_ns) const;
+  void describe(RecordWriter& record, std::int64_t time_ns) const;
   void hand_over(bool at_once);
   void fly(const std::filesystem::path& file);
   void tell_timing();

@@ -138,6 +138,13 @@ Json parameters_of(const Catalog& catalog) {
 
 }  // namespace
 
+void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t time_ns) {
+  // A disk that fails is told when the record is closed.
+  if (!texts.urdf.empty()) (void)record.describe_robot(texts.name, texts.urdf, time_ns);
+  for (const RobotTexts::Other& other : texts.others) (void)record.describe_other(other.name, other.urdf, time_ns);
+  if (!texts.description.empty()) (void)record.describe_parts(texts.description, time_ns);
+}
+
 std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host) {
   const Json description{{"robot", robot_of(robot)},
                          {"sets", sets_of(catalog)},

@@ -144,7 +144,8 @@ Json status_json(const Instance& instance, const InstanceStatus& status) {
   }
   Json safety{
       {"level", name(status.safety.level)}, {"faults", status.safety.fault_count}, {"stopped", status.safety.stopped}};
-  if (status.safety.fault_count > 0) safety["first"] = fault_json(status.safety.first_fault, *catalog.model);
+  if (status.safety.fault_count > 0)
+    safety["first"] = fault_json(status.safety.first_fault, told(status.safety.first_fault, *catalog.model));
   return {{"ok", true},
           {"name", facts.name},
           {"mode", facts.mode},

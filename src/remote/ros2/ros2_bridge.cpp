@@ -26,7 +26,7 @@
 #include "realtime/posix_wait.h"
 #include "realtime/task_thread.h"
 #include "remote/instance/latest_row.h"
-#include "text_commands.h"
+#include "text_orders.h"
 
 namespace kadans {
 
@@ -322,7 +322,7 @@ struct Ros2Bridge::Inside final : Task {
   std::string urdf;
   std::uint32_t every_ticks;
   RobotReadings readings;
-  TextCommands commands;
+  TextOrders commands;
   std::optional<Ros2Topics> topics;
   std::promise<void> joined;
   std::atomic<bool> running{false};

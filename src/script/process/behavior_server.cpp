@@ -28,14 +28,18 @@ bool SpokenLines::push(const Line& line) {
 void SpokenLines::tell(const Line& line) {
   const bool fits = push(line);
   dropped_ += fits ? 0 : 1;
-  if (!fits || dropped_ == 0) return;
+  if (fits) tell_dropped(line.time_ns);
+}
+
+void SpokenLines::tell_dropped(std::int64_t time_ns) {
+  if (dropped_ == 0) return;
   const std::string text = std::to_string(dropped_) + " lines found no place";
-  if (push({line.time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
+  if (push({time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
 }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,
-                               const Catalog& catalog)
-    : link_(link), bell_(bell), host_(host), log_(log), commands_(link.commands) {
+                               SpokenLines& lines, const Catalog& catalog)
+    : link_(link), bell_(bell), host_(host), log_(log), lines_(lines), commands_(link.commands) {
   link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
     const std::string& name = host_.behavior(i).name();
@@ -56,6 +60,7 @@ int BehaviorServer::serve() {
 
 bool BehaviorServer::answer() {
   snapshot_ = link_.request.snapshot;
+  lines_.tell_dropped(snapshot_.time_ns);  // the lines of the tick before have been taken since
   commands_.follow(link_.request.last_sequence, link_.request.room);
   take_order();
   host_.tick(snapshot_, commands_);

@@ -104,10 +104,6 @@ std::string json_of(const ToldFault& fault) {
   return json_text(json);
 }
 
-nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model) {
-  return fault_json(fault, told(fault, model));
-}
-
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what) {
   nlohmann::ordered_json json{{"code", what.name}, {"tick", fault.tick}, {"text", fault_text(what)}};
   put_what(json, what);

@@ -38,7 +38,6 @@ std::string json_of(const ToldFault& fault);
 // The JSON that reports and ctl tell: {code, tick, text, joint, value, limit, words, key}; no joint and no words where
 // there are none, and the key is of the robot's configuration.
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what);
-nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model);
 extern const char* const log_schema;
 extern const char* const transition_schema;
 extern const char* const fault_schema;

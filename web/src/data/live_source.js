@@ -1,11 +1,11 @@
 // A session from a run that goes on: the Foxglove WebSocket protocol, as far as this page speaks it. Connects again when
 // the server was away.
-import { Session } from './session.js';
+import { is_robot_topic, Session } from './session.js';
 import { is_single, read_numbers } from './numbers.js';
 
 const text_of = new TextDecoder();
 const bytes_of = new TextEncoder();
-const wanted_texts = new Set(['/log', '/transitions', '/faults', '/timing', '/drives', '/description', '/robot_description']);
+const wanted_texts = new Set(['/log', '/transitions', '/faults', '/timing', '/drives', '/description']);
 const again_ms = 500;
 
 class Remote {
@@ -76,6 +76,7 @@ class Remote {
     if (session.id !== undefined && session.id !== sessionId) {
       session.topics.clear();
       session.signals.clear();
+      session.others.clear();
       session.begin_anew(0); // another run
     }
     session.id = sessionId;
@@ -93,7 +94,7 @@ class Remote {
     const subscriptions = [];
     for (const channel of channels) {
       const signals = this.metadata[`signals${channel.topic}`];
-      if (signals === undefined && !wanted_texts.has(channel.topic)) continue;
+      if (signals === undefined && !wanted_texts.has(channel.topic) && !is_robot_topic(channel.topic)) continue;
       if (signals !== undefined) this.session.add_topic(channel.topic, signals);
       const width = this.session.topics.get(channel.topic)?.width ?? 0;
       this.subscriptions.set(channel.id, { topic: channel.topic, width, single: is_single(channel.schema), numbers: signals !== undefined });

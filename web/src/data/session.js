@@ -6,6 +6,9 @@ const events_max = 5000;
 const json_topics = new Set(['/description', '/transitions', '/log', '/faults', '/timing', '/drives', '/parameters']);
 const text_of = new TextDecoder();
 
+const robot_topic = '/robot_description'; // of a further robot: /NAME/robot_description
+export const is_robot_topic = (topic) => topic.endsWith(robot_topic);
+
 const seconds = (stamp) => stamp.sec + stamp.nsec * 1e-9;
 
 function keep(list, entry) {
@@ -29,6 +32,7 @@ export class Session {
     this.drives = null; // of a live run: what they said last
     this.description = null;
     this.urdf = null;
+    this.others = new Map(); // further robots of the world: name, which begins their signals -> URDF
     this.parameters = new Map(); // name -> value now
     this.start_s = 0;
     this.end_s = 0;
@@ -92,9 +96,12 @@ export class Session {
   }
 
   add_text(topic, t, bytes) {
-    if (topic === '/robot_description') {
+    if (is_robot_topic(topic)) {
       const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(4, true);
-      this.urdf = text_of.decode(bytes.subarray(8, 8 + length - 1));
+      const urdf = text_of.decode(bytes.subarray(8, 8 + length - 1));
+      const other = topic.slice(1, -robot_topic.length);
+      if (other) this.others.set(other, urdf);
+      else this.urdf = urdf;
       return this.changed();
     }
     if (!json_topics.has(topic)) return; // for other viewers
