@@ -7,6 +7,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "lua_core.h"
+#include "script/check/syntax_hint.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/input_file.h"
 
@@ -55,6 +56,17 @@ int keep_error(lua_State* state) {
   luaL_traceback(state, state, nullptr, 1);
   error.set_traceback(lua_tostring(state, -1));
   return 1;
+}
+
+// The message of the compiler at the top of the stack goes on with what was meant, at the line to change.
+void explain(lua_State* state, const std::string& text) {
+  core_of(state).budget.charge(state, compiling_instructions(static_cast<double>(text.size())));
+  ScriptError error;
+  error.set_message(lua_tostring(state, -1));
+  const SyntaxHint hint = syntax_hint(text, error.line, error.message.data());
+  if (error.line == 0 || hint.text[0] == '\0') return;
+  lua_pop(state, 1);
+  lua_pushfstring(state, "%s:%d: %s: %s", error.file.data(), hint.line, error.message.data(), hint.text.data());
 }
 
 int enter(lua_State* state) { return core_of(state).entry(state); }
@@ -134,7 +146,9 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   }
   sources_.push_back(std::move(source));
   Pieces pieces{sources_.back().text};
-  if (lua_loadx(state, next_piece, &pieces, chunk.c_str(), "t") != 0) return false;
+  const int status = lua_loadx(state, next_piece, &pieces, chunk.c_str(), "t");
+  if (status == LUA_ERRSYNTAX) explain(state, sources_.back().text);
+  if (status != 0) return false;
   push_environment(lua_);
   lua_setfenv(state, -2);
   return true;

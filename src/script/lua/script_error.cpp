@@ -9,6 +9,7 @@
 
 #include "lua_core.h"
 #include "lua_state.h"
+#include "script/check/foreign_words.h"
 #include "script/check/hint.h"
 
 namespace kadans {
@@ -99,6 +100,11 @@ void check_keys(lua_State* state, int table, const ScriptPlace& place, const cha
   }
   meter.settle();
   if (wrong == nullptr) return;
+  if (names_a_list(wrong) && is_among("enter", names))
+    raise_at(state, place, wrong, "%s has no key '%s': states and transitions stand directly in the table", what, wrong);
+  const std::string_view here = foreign_key(wrong);
+  if (!here.empty() && is_among(here.data(), names))
+    raise_at(state, place, wrong, "%s has no key '%s', did you mean '%s'?", what, wrong, here.data());
   const Hint hint = make_hint(state, wrong, [&](auto& known) {
     for (const char* const* name = names; *name != nullptr; ++name) known.emplace_back(*name);
   });

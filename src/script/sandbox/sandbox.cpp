@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "script/check/foreign_words.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
@@ -152,12 +153,15 @@ int raise_unknown_field(lua_State* state, const char* name, int content, int key
   char shown[160];
   const char* text = lua_tostring(state, -1);
   std::snprintf(shown, sizeof shown, "%s", text != nullptr ? text : luaL_typename(state, key));
+  const std::string_view foreign = *name == '\0' ? foreign_name_hint(shown) : swapped_hint(name, shown);
+  if (*name == '\0' && !foreign.empty()) return luaL_error(state, "unknown name '%s'%s", shown, foreign.data());
   const Hint hint = make_hint(state, shown, [&](auto& names) {
     for (lua_pushnil(state); lua_next(state, copy) != 0; lua_pop(state, 1)) {
       if (lua_type(state, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -2));
     }
   });
   if (*name == '\0') return luaL_error(state, "unknown name '%s'%s", shown, hint.data());
+  if (!foreign.empty()) return luaL_error(state, "%s has no '%s'%s", name, shown, foreign.data());
   return luaL_error(state, "%s has no '%s'%s", name, shown, hint.data());
 }
 
