@@ -31,7 +31,11 @@ std::string outside(const std::string& name, double value, double min, double ma
   char text[256];
   std::snprintf(text, sizeof text, "%s = %.14g is outside its range %.14g..%.14g %s", name.c_str(), value, min, max,
                 unit.c_str());
-  return text;
+  constexpr double degree = 3.14159265358979323846 / 180;
+  if (unit != "rad" || !(value * degree >= min && value * degree <= max)) return text;
+  char hint[64];
+  std::snprintf(hint, sizeof hint, "; %.14g degrees are %.3f rad", value, value * degree);
+  return std::string(text) + hint;
 }
 
 // A text that is the whole argument.
@@ -53,6 +57,19 @@ std::vector<std::size_t> keys_of_table(const std::vector<SourceToken>& tokens, s
 bool has_key(const std::vector<SourceToken>& tokens, std::size_t at, std::string_view name) {
   const auto keys = keys_of_table(tokens, at);
   return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) { return tokens[key].text == name; });
+}
+
+bool has_value(const std::vector<SourceToken>& tokens, std::size_t at, std::string_view name, std::string_view text) {
+  const auto keys = keys_of_table(tokens, at);
+  return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) {
+    return tokens[key].text == name && tokens[key + 2].kind == Kind::text && tokens[key + 2].text == text;
+  });
+}
+
+// A text, a number or a flag that is the whole argument.
+bool whole_literal(const std::vector<SourceToken>& tokens, std::size_t at) {
+  double ignored = 0;
+  return whole_text(tokens, at) || number_at(tokens, at, ignored) || tokens[at].is("true") || tokens[at].is("false");
 }
 
 void append(Mistakes& problems, const Mistakes& more) { problems.insert(problems.end(), more.begin(), more.end()); }
@@ -89,7 +106,12 @@ Mistakes motion_table(const std::vector<SourceToken>& tokens, std::size_t at, Mo
   const auto tell = [&](const std::string& text) { problems.push_back({tokens[at].line, called + text}); };
   if (method == MotionOption::move && !has("time_s") && !has("profile")) tell(" needs { time_s = seconds } at the end");
   if (method == MotionOption::point && !has("time_s")) tell(" needs time_s > 0");
-  if (has("time_s") && has("velocity_max_rad_s")) tell(": a trapezoid takes time_s or limits, not both");
+  const bool limits = has("velocity_max_rad_s") || has("velocity_max_m_s");
+  const bool trapezoid = has_value(tokens, at, "profile", "trapezoid");
+  if (trapezoid && !limits && !has("time_s")) tell(": a trapezoid needs time_s, or velocity_max and acceleration_max");
+  if (limits && !has("profile") && method != MotionOption::follow)
+    tell(": velocity_max and acceleration_max need profile = \"trapezoid\"");
+  if (has("profile") && has("time_s") && limits) tell(": a trapezoid takes time_s or limits, not both");
   return problems;
 }
 
@@ -168,6 +190,8 @@ Mistakes ArgumentCheck::named_value(const ObjectInfo& object, const std::vector<
 }
 
 Mistakes ArgumentCheck::preset(const ObjectInfo& object, const Tokens& tokens, std::size_t at) const {
+  if (tokens[at].is("{") || (!whole_text(tokens, at) && whole_literal(tokens, at)))
+    return {{tokens[at].line, "set_gains takes the name of gains; one number goes by set_parameter(name, value)"}};
   if (!whole_text(tokens, at)) return {};
   std::vector<std::string> names;
   for (const Preset& known : object.presets) {
@@ -210,6 +234,11 @@ Mistakes ArgumentCheck::of_motion(const ObjectInfo& object, const MotionMethod& 
   } else {
     problems = pose(object, tokens, at, offsets);
   }
+  if (there && whole_literal(tokens, given[options]))
+    problems.push_back(
+        {tokens[given[options]].line,
+         std::string(method.name) + " takes its options in a table: { time_s = " +
+             (tokens[given[options]].kind == Kind::number ? tokens[given[options]].text : std::string("1")) + " }"});
   if (there) append(problems, motion_table(tokens, given[options], method.kind, method.name));
   if (!there && method.needs != nullptr) problems.push_back({tokens[at].line, std::string(method.name) + method.needs});
   return problems;

@@ -1,6 +1,7 @@
 #include "foreign_words.h"
 
 #include <algorithm>
+#include <cctype>
 #include <initializer_list>
 #include <iterator>
 
@@ -73,6 +74,8 @@ const ForeignKey foreign_keys[] = {
 constexpr std::string_view list_keys[] = {"states", "transitions", "children", "substates", "regions",
                                           "trans",  "finals",      "substate", "machines",  "transition"};
 
+constexpr std::string_view text_keys[] = {"to", "on", "initial", "outcome", "controls", "why"};  // values are texts
+
 constexpr std::string_view of_machine[] = {"vars", "args", "wait", "emit", "clear_faults"};
 constexpr std::string_view of_snapshot[] = {"base", "joints", "feet", "support", "safety", "joystick", "sensors"};
 
@@ -97,6 +100,22 @@ std::string_view foreign_key(std::string_view key) noexcept {
 }
 
 bool names_a_list(std::string_view key) noexcept { return std::ranges::find(list_keys, key) != std::end(list_keys); }
+
+std::string_view unquoted_value_key(std::string_view line, std::string_view name) noexcept {
+  const auto trim = [&](std::string_view text) { return text.substr(0, text.find_last_not_of(" \t") + 1); };
+  for (std::size_t at = line.find(name); at != std::string_view::npos; at = line.find(name, at + 1)) {
+    std::string_view before = trim(line.substr(0, at));
+    if (!before.ends_with('=')) continue;
+    before = trim(before.substr(0, before.size() - 1));
+    for (const std::string_view key : text_keys) {
+      if (!before.ends_with(key)) continue;
+      const std::size_t begin = before.size() - key.size();
+      const bool whole = begin == 0 || std::isalnum(static_cast<unsigned char>(before[begin - 1])) == 0;
+      if (whole && (begin == 0 || before[begin - 1] != '_')) return key;
+    }
+  }
+  return {};
+}
 
 std::string_view swapped_hint(std::string_view owner, std::string_view field) noexcept {
   const bool swapped = (owner == "s" && std::ranges::find(of_machine, field) != std::end(of_machine)) ||

@@ -53,6 +53,7 @@ int keep_error(lua_State* state) {
     error.set_message("the script raised a value that is not a string");
   }
   if (error.line == 0) note_place(state, error);
+  if (core_of(state).loading) error.add_load_hint();
   luaL_traceback(state, state, nullptr, 1);
   error.set_traceback(lua_tostring(state, -1));
   return 1;
@@ -170,6 +171,27 @@ std::filesystem::path LuaState::find_module(std::string_view name) const {
     if (std::filesystem::is_regular_file(folder / relative, ignored)) return folder / relative;
   }
   return {};
+}
+
+std::vector<std::string> LuaState::module_names() const {
+  constexpr std::size_t names_max = 64;
+  std::vector<std::string> names;
+  for (const auto& folder : {settings_.folder, settings_.root / "behaviors/lib"}) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+      if (names.size() == names_max) return names;
+      if (entry.path().extension() == ".lua") names.push_back(entry.path().stem().string());
+    }
+  }
+  return names;
+}
+
+std::string_view LuaState::line_text(std::string_view chunk, int line) const noexcept {
+  const auto source = std::ranges::find(sources_, chunk, &Source::chunk);
+  if (source == sources_.end()) return {};
+  std::string_view text = source->text;
+  for (int i = 1; i < line && !text.empty(); ++i) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  return text.substr(0, text.find('\n'));
 }
 
 int LuaState::line_of(std::string_view chunk, int from, std::string_view text) const {

@@ -45,6 +45,16 @@ void ScriptError::set_message(const char* text) noexcept {
   copy(message, rest, std::strlen(rest));
 }
 
+void ScriptError::add_load_hint() noexcept {
+  const auto says = [&](const char* text) { return std::strstr(message.data(), text) != nullptr; };
+  const char* hint = nullptr;
+  if (says("a nil value") && (says("local 's'") || says("local 'm'") || says("local 'c'")))
+    hint = ": this function is called while the file is loaded; under a key it stands without brackets";
+  if (says("compare") && says("userdata")) hint = ": a parameter has its value when the behavior runs";
+  const std::size_t length = std::strlen(message.data());
+  if (hint != nullptr) copy(std::span(message).subspan(length), hint, std::strlen(hint));
+}
+
 std::string ScriptError::text() const {
   if (line == 0) return message.data();
   return std::string(file.data()) + ':' + std::to_string(line) + ": " + message.data();
@@ -101,7 +111,8 @@ void check_keys(lua_State* state, int table, const ScriptPlace& place, const cha
   meter.settle();
   if (wrong == nullptr) return;
   if (names_a_list(wrong) && is_among("enter", names))
-    raise_at(state, place, wrong, "%s has no key '%s': states and transitions stand directly in the table", what, wrong);
+    raise_at(state, place, wrong, "%s has no key '%s': states and transitions stand directly in the table", what,
+             wrong);
   const std::string_view here = foreign_key(wrong);
   if (!here.empty() && is_among(here.data(), names))
     raise_at(state, place, wrong, "%s has no key '%s', did you mean '%s'?", what, wrong, here.data());
