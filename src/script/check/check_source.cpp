@@ -5,6 +5,7 @@
 #include <array>
 
 #include "check_arguments.h"
+#include "check_flow.h"
 #include "check_values.h"
 #include "foreign_words.h"
 #include "hint.h"
@@ -154,7 +155,8 @@ class SourceCheck final : public SourceListener {
         problems_(problems),
         machine_(known.machine),
         arguments_(parts),
-        values_(parts, known) {
+        values_(parts, known),
+        flow_(parts.catalog, known, known.vars.contains(source.chunk)) {
     const auto vars = known.vars.find(source.chunk);
     has_behavior_ = vars != known.vars.end();
     if (const auto own = known.machines.find(source.chunk); own != known.machines.end()) machine_ = own->second;
@@ -168,9 +170,11 @@ class SourceCheck final : public SourceListener {
     std::sort(vars_.begin(), vars_.end());
     scopes.tell(*this);
     tell(values_.of_literals(scopes.tokens()));
+    tell(flow_.run(scopes.tokens()));
   }
 
   void used(const SourceUse& use, const std::vector<SourceToken>& tokens) override {
+    flow_.note(use);
     tell(values_.of_use(use, tokens));
     if (!use.known) return unknown(use);
     if (use.guard) guard(use);
@@ -332,6 +336,23 @@ class SourceCheck final : public SourceListener {
     return 0;
   }
 
+  // A plain value, or one that is counted on, in a field of vars that nobody declared.
+  void undeclared(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+    const std::string& name = use.meaning.path[1];
+    const auto declared = known_.vars.find(source_.chunk);
+    if (declared == known_.vars.end() || name == "*" || !tokens[use.next].is("=")) return;
+    const std::vector<std::string>& names = declared->second;
+    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+    const SourceToken& value = tokens[use.next + 1];
+    const bool plain = value.kind == SourceToken::Kind::number || value.kind == SourceToken::Kind::text ||
+                       value.is("true") || value.is("false");
+    const std::size_t own = use.next - use.at;  // m.vars.n = m.vars.n + 1
+    bool itself = true;
+    for (std::size_t i = 0; i < own; ++i) itself = itself && tokens[use.next + 1 + i].text == tokens[use.at + i].text;
+    if (plain || itself)
+      problem(place(use), "m.vars has no '" + name + "'" + hint_text(name, names) + ": declare it in vars = { }");
+  }
+
   // The token behind '=' of an assignment.
   static bool gives_function(const SourceUse& use, const std::vector<SourceToken>& tokens) {
     return use.next + 1 < tokens.size() && tokens[use.next + 1].is("function");
@@ -348,6 +369,7 @@ class SourceCheck final : public SourceListener {
     if (use.assigned && (!free || path.size() == 1)) {
       return problem(place(use), "m is read-only: '" + path.front() + "' cannot be set; keep it in m.vars");
     }
+    if (use.assigned && path.front() == "vars" && path.size() == 2) undeclared(use, tokens);
     fields(use, machine_, "m");
     if (!has_behavior_ || path.front() != "vars" || path.size() < 2 || path[1] == "*" || use.assigned) return;
     if (std::binary_search(vars_.begin(), vars_.end(), path[1])) return;
@@ -387,6 +409,7 @@ class SourceCheck final : public SourceListener {
   KnownNames::Shape machine_;
   ArgumentCheck arguments_;
   ValueCheck values_;
+  FlowCheck flow_;
   std::vector<std::string> vars_;
   bool has_behavior_ = false;
 };

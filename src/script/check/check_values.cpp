@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "format_check.h"
 #include "hint.h"
 #include "script/bindings/api.h"
 #include "script/bindings/bindings.h"

@@ -45,4 +45,10 @@ class ValueCheck {
   std::vector<StatusField> fields_;
 };
 
+// Compares the formats of string.format and k.log with the values behind them, as far as they are written out. `at` is
+// the first token in the brackets of the call. "" when nothing is wrong.
+std::string format_mistake(const std::vector<SourceToken>& tokens, std::size_t at, const std::string& called);
+// print("x %d", 1)
+std::string print_mistake(const std::vector<SourceToken>& tokens, std::size_t at);
+
 }  // namespace kadans

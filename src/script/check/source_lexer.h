@@ -30,6 +30,12 @@ std::vector<SourceToken> lex_source(std::string_view text);
 // of a call without brackets.
 std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at);
 
+// The index of the token that closes what opens at `at`: a bracket, a function, an if, a loop's `do` or `repeat`.
+std::size_t end_of_block(const std::vector<SourceToken>& tokens, std::size_t at);
+
+// Whether the token opens a block or a bracket (1), closes one (-1), or neither (0).
+int opens(const SourceToken& token);
+
 // The first tokens of the parts in a bracket, which are separated by commas or semicolons. `at` is the first of all.
 std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::size_t at);
 

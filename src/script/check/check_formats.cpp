@@ -1,8 +1,8 @@
-#include "format_check.h"
-
-#include <cctype>
+#include <algorithm>
 #include <cstdlib>
 #include <string_view>
+
+#include "check_values.h"
 
 namespace kadans {
 namespace {
