@@ -31,11 +31,7 @@ std::string outside(const std::string& name, double value, double min, double ma
   char text[256];
   std::snprintf(text, sizeof text, "%s = %.14g is outside its range %.14g..%.14g %s", name.c_str(), value, min, max,
                 unit.c_str());
-  constexpr double degree = 3.14159265358979323846 / 180;
-  if (unit != "rad" || !(value * degree >= min && value * degree <= max)) return text;
-  char hint[64];
-  std::snprintf(hint, sizeof hint, "; %.14g degrees are %.3f rad", value, value * degree);
-  return std::string(text) + hint;
+  return text + std::string(degree_hint(unit, value, min, max).data());
 }
 
 // A text that is the whole argument.
@@ -235,10 +231,8 @@ Mistakes ArgumentCheck::of_motion(const ObjectInfo& object, const MotionMethod& 
     problems = pose(object, tokens, at, offsets);
   }
   if (there && whole_literal(tokens, given[options]))
-    problems.push_back(
-        {tokens[given[options]].line,
-         std::string(method.name) + " takes its options in a table: { time_s = " +
-             (tokens[given[options]].kind == Kind::number ? tokens[given[options]].text : std::string("1")) + " }"});
+    problems.push_back({tokens[given[options]].line,
+                        std::string(method.name) + ": the last argument must be a table { ... }: { time_s = 1 }"});
   if (there) append(problems, motion_table(tokens, given[options], method.kind, method.name));
   if (!there && method.needs != nullptr) problems.push_back({tokens[at].line, std::string(method.name) + method.needs});
   return problems;

@@ -53,7 +53,7 @@ int keep_error(lua_State* state) {
     error.set_message("the script raised a value that is not a string");
   }
   if (error.line == 0) note_place(state, error);
-  if (core_of(state).loading) error.add_load_hint();
+  error.add_hint(core_of(state).loading);
   luaL_traceback(state, state, nullptr, 1);
   error.set_traceback(lua_tostring(state, -1));
   return 1;

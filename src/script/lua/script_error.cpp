@@ -45,12 +45,19 @@ void ScriptError::set_message(const char* text) noexcept {
   copy(message, rest, std::strlen(rest));
 }
 
-void ScriptError::add_load_hint() noexcept {
+void ScriptError::add_hint(bool loading) noexcept {
   const auto says = [&](const char* text) { return std::strstr(message.data(), text) != nullptr; };
   const char* hint = nullptr;
-  if (says("a nil value") && (says("local 's'") || says("local 'm'") || says("local 'c'")))
+  if (loading && says("a nil value") && (says("local 's'") || says("local 'm'") || says("local 'c'")))
     hint = ": this function is called while the file is loaded; under a key it stands without brackets";
-  if (says("compare") && says("userdata")) hint = ": a parameter has its value when the behavior runs";
+  else if (loading && says("attempt to compare") && says("userdata"))
+    hint = ": a parameter has its value when the behavior runs";
+  else if (says("attempt to perform arithmetic on field") && says("a nil value"))
+    hint = ": nothing gave it a value; vars = { name = 0 } gives it one at the start";
+  else if (says("attempt to concatenate") && (says("a boolean value") || says("a nil value")))
+    hint = ": tostring(x) makes a text of it";
+  else if (says("attempt to compare number with string") || says("attempt to compare string with number"))
+    hint = ": tonumber(text) makes a number of it";
   const std::size_t length = std::strlen(message.data());
   if (hint != nullptr) copy(std::span(message).subspan(length), hint, std::strlen(hint));
 }
