@@ -9,10 +9,6 @@ namespace {
 using FlowTokens = std::vector<SourceToken>;
 using FlowKind = SourceToken::Kind;
 
-bool is_one_of(const SourceToken& token, std::initializer_list<const char*> words) {
-  return std::ranges::any_of(words, [&](const char* word) { return token.is(word); });
-}
-
 bool is_plain(const SourceToken& token) {
   return token.kind == FlowKind::number || token.kind == FlowKind::text || token.is("true") || token.is("false");
 }
@@ -65,8 +61,8 @@ FlowCheck::Body FlowCheck::body_of(const Tokens& tokens, std::size_t from, std::
   for (std::size_t i = from; i < to; ++i) {
     const SourceToken& token = tokens[i];
     body.unknown = body.unknown || token.is("function");
-    body.leaves = body.leaves || is_one_of(token, {"break", "return", "goto"});
-    const bool of_value = i > 0 && is_one_of(tokens[i - 1], {")", "]"});
+    body.leaves = body.leaves || token.is_any({"break", "return", "goto"});
+    const bool of_value = i > 0 && tokens[i - 1].is_any({")", "]"});
     if (of_value && (token.is("(") || token.is("{") || token.is(":") || token.kind == FlowKind::text))
       (token.is(":") && tokens[i + 1].text == "wait" ? body.waits : body.unknown) = true;
     const SourceUse* const use = use_at(i);
@@ -114,8 +110,8 @@ bool FlowCheck::never_changes(const Tokens& tokens, const Loop& loop) const {
       i = use->next - 1;
       continue;
     }
-    const bool sign = is_one_of(
-        token, {"and", "or", "not", "nil", "==", "~=", "<", ">", "<=", ">=", "+", "-", "*", "/", "(", ")", ".."});
+    const bool sign =
+        token.is_any({"and", "or", "not", "nil", "==", "~=", "<", ">", "<=", ">=", "+", "-", "*", "/", "(", ")", ".."});
     if (!is_plain(token) && !sign) return false;
   }
   const bool single = loop.condition_end == loop.condition + 1;
@@ -193,7 +189,7 @@ bool FlowCheck::is_move(const SourceUse& use) const {
 std::optional<std::set<std::string>> FlowCheck::joints_of(const Tokens& tokens, std::size_t pose,
                                                           bool numbers_only) const {
   std::set<std::string> joints;
-  if (tokens[pose].kind == FlowKind::text && is_one_of(tokens[pose + 1], {",", ")"})) {
+  if (tokens[pose].kind == FlowKind::text && tokens[pose + 1].is_any({",", ")"})) {
     for (const PoseInfo& known : catalog_.poses) {
       if (known.name != tokens[pose].text || catalog_.model == nullptr) continue;
       for (const auto& [joint, ignored] : known.position_rad) joints.insert(catalog_.model->joints[joint].name);
@@ -205,7 +201,7 @@ std::optional<std::set<std::string>> FlowCheck::joints_of(const Tokens& tokens, 
   for (const std::size_t part : parts_of(tokens, pose + 1)) {
     if (tokens[part].kind != FlowKind::name || !tokens[part + 1].is("=")) return std::nullopt;
     const std::size_t value = tokens[part + 2].is("-") ? part + 3 : part + 2;
-    const bool number = tokens[value].kind == FlowKind::number && is_one_of(tokens[value + 1], {",", "}", ";"});
+    const bool number = tokens[value].kind == FlowKind::number && tokens[value + 1].is_any({",", "}", ";"});
     if (numbers_only && !number) return std::nullopt;
     joints.insert(tokens[part].text);
   }
@@ -243,10 +239,7 @@ const SourceUse* FlowCheck::next_statement(const Tokens& tokens, std::size_t at)
 
 // A move that the next one replaces in the same tick, for it moves the same joints.
 void FlowCheck::replaced(const SourceUse& use, const Tokens& tokens) {
-  constexpr const char* inside[] = {"return", "(", ",", "{", "and", "or", "not"};
-  for (const char* word : inside) {
-    if (use.at > 0 && tokens[use.at - 1].is(word)) return;
-  }
+  if (use.at > 0 && tokens[use.at - 1].is_any({"return", "(", ",", "{", "and", "or", "not"})) return;
   const SourceUse* const next = next_statement(tokens, end_of_call(tokens, use.arguments));
   if (next == nullptr || !is_move(*next) || next->meaning.path != use.meaning.path) return;
   const std::vector<std::size_t> first = parts_of(tokens, use.arguments), second = parts_of(tokens, next->arguments);
@@ -262,7 +255,7 @@ void FlowCheck::replaced(const SourceUse& use, const Tokens& tokens) {
 void FlowCheck::begun_anew(const SourceUse& use, const Tokens& tokens) {
   constexpr double tick_s = 0.02;  // two ticks: it arrives
   const bool straight = !blocks_.empty() && tokens[blocks_.back().token].is("function") && !blocks_.back().returns;
-  const bool chosen = use.at > 0 && is_one_of(tokens[use.at - 1], {"and", "or"});
+  const bool chosen = use.at > 0 && tokens[use.at - 1].is_any({"and", "or"});
   if (use.at_once != "during" || !straight || chosen) return;
   const std::vector<std::size_t> given = parts_of(tokens, use.arguments);
   if (given.size() != 2 || !(time_of(tokens, given[1]) > tick_s) || !joints_of(tokens, given[0], true)) return;
@@ -273,7 +266,7 @@ void FlowCheck::begun_anew(const SourceUse& use, const Tokens& tokens) {
 // key = in the braces of a table
 void FlowCheck::key(const Tokens& tokens, std::size_t at) {
   if (blocks_.empty() || !tokens[blocks_.back().token].is("{")) return;
-  if (at == 0 || !is_one_of(tokens[at - 1], {"{", ",", ";"})) return;
+  if (at == 0 || !tokens[at - 1].is_any({"{", ",", ";"})) return;
   const bool bracket = tokens[at].is("[") && tokens[at + 1].kind == FlowKind::text && tokens[at + 2].is("]");
   const SourceToken& name = bracket ? tokens[at + 1] : tokens[at];
   if (!tokens[bracket ? at + 3 : at + 1].is("=") || (!bracket && name.kind != FlowKind::name)) return;
@@ -288,8 +281,8 @@ void FlowCheck::local_of_file(const SourceUse& use, const Tokens& tokens) {
   if (!of_behavior_ || !use.assigned || !use.outer || use.written != 0 || use.guard || use.states.empty()) return;
   if (!tokens[use.next].is("=") || locals_of_file_.erase(use.declared) == 0) return;
   const SourceToken& value = tokens[use.next + 1];
-  const bool flag = is_one_of(tokens[use.declared + 2], {"true", "false"});
-  if (is_one_of(value, {"function", "{"}) || (flag && !is_one_of(value, {"true", "false", "not"}))) return;
+  const bool flag = tokens[use.declared + 2].is_any({"true", "false"});
+  if (value.is_any({"function", "{"}) || (flag && !value.is_any({"true", "false", "not"}))) return;
   tell(use.line, "'" + use.name + "' is a local of the file, which a reload forgets: keep it in vars = { " + use.name +
                      " = " + tokens[use.declared + 2].text + " } as m.vars." + use.name);
 }

@@ -15,14 +15,11 @@ namespace {
 using TokenKind = SourceToken::Kind;
 using Tokens = std::vector<SourceToken>;
 
-bool is_any(const SourceToken& token, std::initializer_list<const char*> signs) {
-  return std::ranges::any_of(signs, [&](const char* sign) { return token.is(sign); });
-}
-bool compares(const SourceToken& token) { return is_any(token, {"==", "~=", "<", ">", "<=", ">="}); }
-bool calculates(const SourceToken& token) { return is_any(token, {"+", "-", "*", "/", "%", "^"}); }
+bool compares(const SourceToken& token) { return token.is_any({"==", "~=", "<", ">", "<=", ">="}); }
+bool calculates(const SourceToken& token) { return token.is_any({"+", "-", "*", "/", "%", "^"}); }
 // Whether the token makes another value of what stands beside it.
-bool changes(const SourceToken& token) { return calculates(token) || is_any(token, {"..", "#", "not"}); }
-bool goes_on(const SourceToken& token) { return changes(token) || is_any(token, {".", ":", "[", "("}); }
+bool changes(const SourceToken& token) { return calculates(token) || token.is_any({"..", "#", "not"}); }
+bool goes_on(const SourceToken& token) { return changes(token) || token.is_any({".", ":", "[", "("}); }
 
 const SourceToken& before(const Tokens& tokens, std::size_t at, std::size_t steps = 1) {
   static const SourceToken none;
@@ -260,7 +257,7 @@ std::string ValueCheck::armed(const SourceUse& use, const Tokens& tokens) const 
     return "m:on takes three things: m:on(condition, function(c) ... end, { within_s = 1 })";
   const std::vector<std::size_t> given = parts_of(tokens, use.arguments);
   const std::size_t end = end_of_call(tokens, use.arguments) - 1;
-  if (!given.empty() && tokens[given[0]].kind == TokenKind::text && is_any(tokens[given[0] + 1], {",", ")"})) {
+  if (!given.empty() && tokens[given[0]].kind == TokenKind::text && tokens[given[0] + 1].is_any({",", ")"})) {
     const std::string wrong = condition(tokens[given[0]].text);
     if (!wrong.empty()) return wrong;
   }
@@ -298,7 +295,7 @@ std::vector<ArgumentProblem> ValueCheck::of_literals(const Tokens& tokens) const
     if (nothing && (left.is("..") || right.is("..")))
       found.push_back({token.line, ".. joins texts and numbers, not " + token.text});
     if (token.kind != TokenKind::text || is_numeral(token.text)) continue;
-    const bool argument = left.kind == TokenKind::name || left.kind == TokenKind::text || is_any(left, {")", "]", "}"});
+    const bool argument = left.kind == TokenKind::name || left.kind == TokenKind::text || left.is_any({")", "]", "}"});
     if (argument) {  // f "text" + 1
       continue;
     } else if (right.is("%")) {

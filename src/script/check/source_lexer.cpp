@@ -135,6 +135,15 @@ bool may_end_value(const SourceToken& token) {
 
 }  // namespace
 
+std::string_view line_of_text(std::string_view text, int line) noexcept {
+  for (int i = 1; i < line; ++i) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  return text.substr(0, text.find('\n'));
+}
+
 std::vector<SourceToken> lex_source(std::string_view text) { return Lexer(text).run(); }
 
 std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at) {

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,12 @@ struct SourceToken {
   bool is(std::string_view wanted) const noexcept {
     return (kind == Kind::keyword || kind == Kind::symbol) && text == wanted;
   }
+  bool is_any(std::initializer_list<std::string_view> wanted) const noexcept {
+    for (const std::string_view one : wanted) {
+      if (is(one)) return true;
+    }
+    return false;
+  }
 };
 
 // Comments are left out; the last token is of kind `end`. The text has been compiled before, so it is well formed.
@@ -29,6 +36,9 @@ std::vector<SourceToken> lex_source(std::string_view text);
 // The index of the token after the arguments of a call. `at` is the first token in the bracket, or the string or table
 // of a call without brackets.
 std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at);
+
+// The text of a line, the first of which is 1, without its end.
+std::string_view line_of_text(std::string_view text, int line) noexcept;
 
 // The index of the token that closes what opens at `at`: a bracket, a function, an if, a loop's `do` or `repeat`.
 std::size_t end_of_block(const std::vector<SourceToken>& tokens, std::size_t at);

@@ -67,19 +67,17 @@ constexpr ForeignStart foreign_starts[] = {
     {"try", "Lua has no try: an error is raised by error(text)"},
 };
 
-bool opens_block(const SourceToken& token) {
-  return token.is("function") || token.is("if") || token.is("do") || token.is("repeat");
-}
-bool opens_bracket(const SourceToken& token) { return token.is("(") || token.is("{") || token.is("["); }
-bool closes_bracket(const SourceToken& token) { return token.is(")") || token.is("}") || token.is("]"); }
+bool opens_block(const SourceToken& token) { return token.is_any({"function", "if", "do", "repeat"}); }
+bool opens_bracket(const SourceToken& token) { return token.is_any({"(", "{", "["}); }
+bool closes_bracket(const SourceToken& token) { return token.is_any({")", "}", "]"}); }
 
 bool may_end_entry(const SourceToken& token) {
   return token.kind == Kind::name || token.kind == Kind::number || token.kind == Kind::text || closes_bracket(token) ||
-         token.is("end") || token.is("true") || token.is("false") || token.is("nil");
+         token.is_any({"end", "true", "false", "nil"});
 }
 bool may_begin_entry(const SourceToken& token) {
-  return token.kind == Kind::name || token.kind == Kind::number || token.kind == Kind::text || token.is("{") ||
-         token.is("[") || token.is("function") || token.is("true") || token.is("false") || token.is("not");
+  return token.kind == Kind::name || token.kind == Kind::number || token.kind == Kind::text ||
+         token.is_any({"{", "[", "function", "true", "false", "not"});
 }
 
 // An entry of a message: what stands between the quotes behind `near`.
@@ -180,23 +178,15 @@ class Explainer {
     });
   }
 
-  std::string_view line_text(int line) const {
-    std::size_t start = 0;
-    for (int i = 1; i < line && start != std::string_view::npos; ++i) {
-      start = text_.find('\n', start);
-      if (start != std::string_view::npos) ++start;
-    }
-    if (start == std::string_view::npos) return {};
-    return text_.substr(start, text_.find('\n', start) - start);
-  }
   std::size_t indent(int line) const {
-    const std::string_view text = line_text(line);
+    const std::string_view text = line_of_text(text_, line);
     return std::min(text.find_first_not_of(" \t"), text.size());
   }
 
   bool minus_minus() {
     const SourceToken& before = tokens_[at_ - 1];
-    if (before.kind != Kind::name || line_text(before.line).find(before.text + "--") == std::string_view::npos)
+    if (before.kind != Kind::name ||
+        line_of_text(text_, before.line).find(before.text + "--") == std::string_view::npos)
       return false;
     const std::string path = path_before(at_);
     return tell_line(before.line, "-- begins a comment, Lua has no --: write " + path + " = " + path + " - 1");
@@ -249,9 +239,7 @@ class Explainer {
   // The word of the line that wants `then` or `do` in it, or 0.
   std::size_t head_of_line(std::size_t at) const {
     for (std::size_t i = at; i > 1 && tokens_[i].line == tokens_[at].line; --i) {
-      for (const char* word : {"if", "elseif", "while", "for"}) {
-        if (tokens_[i].is(word)) return i;
-      }
+      if (tokens_[i].is_any({"if", "elseif", "while", "for"})) return i;
       if (tokens_[i].is("then") || tokens_[i].is("do")) return 0;
     }
     return 0;
@@ -290,12 +278,9 @@ class Explainer {
     return near_ == "=" && each_in_line([&](std::size_t at) {
              if (!tokens_[at].is("=")) return false;
              for (std::size_t i = at - 1; i > 1 && tokens_[i].line == tokens_[at].line; --i) {
-               for (const char* word : {"if", "elseif", "while", "until", "return", "and", "or", "not"}) {
-                 if (tokens_[i].is(word)) return tell(at, "= assigns, == compares");
-               }
-               for (const char* word : {"then", "do", "else", "end", "local", "{", "}", ",", ";"}) {
-                 if (tokens_[i].is(word)) return false;
-               }
+               if (tokens_[i].is_any({"if", "elseif", "while", "until", "return", "and", "or", "not"}))
+                 return tell(at, "= assigns, == compares");
+               if (tokens_[i].is_any({"then", "do", "else", "end", "local", "{", "}", ",", ";"})) return false;
              }
              return false;
            });

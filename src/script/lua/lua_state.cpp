@@ -7,6 +7,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "lua_core.h"
+#include "script/check/source_lexer.h"
 #include "script/check/syntax_hint.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/input_file.h"
@@ -188,10 +189,7 @@ std::vector<std::string> LuaState::module_names() const {
 
 std::string_view LuaState::line_text(std::string_view chunk, int line) const noexcept {
   const auto source = std::ranges::find(sources_, chunk, &Source::chunk);
-  if (source == sources_.end()) return {};
-  std::string_view text = source->text;
-  for (int i = 1; i < line && !text.empty(); ++i) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
-  return text.substr(0, text.find('\n'));
+  return source == sources_.end() ? std::string_view{} : line_of_text(source->text, line);
 }
 
 int LuaState::line_of(std::string_view chunk, int from, std::string_view text) const {
