@@ -224,6 +224,8 @@ const Row values_in_run[] = {
      "3: move: a trapezoid needs time_s, or velocity_max and acceleration_max"},
     {"m.posture:set_gains({ kp = 3 })", "3: set_gains takes the name of gains; one number goes by set_parameter"},
     {"m:on('foot.right.contct', function(c) c.posture:hold() end, { within_s = 1 })", "3: m:on: unknown signal 'foot."},
+    {"m:on('feet.right.contact', function(c) c.posture:hold() end, { within_s = 1 })",
+     "3: m:on: unknown signal 'feet.right.contact', did you mean 'foot.right.contact'?"},
     {"m:on('foot.right.force_N = 3', function(c) c.posture:hold() end, { within_s = 1 })",
      "3: m:on: a condition compares with < or >, not with ="},
     {"m:on('plant.base.height_m < 0.5', function(c) c.posture:hold() end, { within_s = 1 })",

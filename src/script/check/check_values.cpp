@@ -170,7 +170,11 @@ std::vector<ArgumentProblem> ValueCheck::of_use(const SourceUse& use, const Toke
   if (use.assigned) return found;
   const std::string wrong = call(use, tokens);
   if (!wrong.empty()) found.push_back({use.line, wrong});
-  const Type type = use.known ? type_of(use.meaning) : Type{};
+  SourceMeaning meaning = use.known ? use.meaning : SourceMeaning{};
+  const bool in_brackets = !meaning.path.empty() && meaning.path.back() == "*";  // s.joints[1]
+  if (in_brackets) meaning.path.pop_back();
+  const Type type = type_of(meaning);
+  if (in_brackets && type.kind != Kind::by_name) return found;
   if (type.kind == Kind::unknown || !use.method.empty()) return found;
   if (use.arguments == 0) {
     operands(use, type, tokens, found);
@@ -238,15 +242,24 @@ std::string ValueCheck::machine_call(const SourceUse& use, const Tokens& tokens)
   return "";
 }
 
-// A condition of m:on that is written out.
+// A condition of m:on that is written out. What is measured has a name in the table, if anything measured has.
 std::string ValueCheck::condition(const std::string& text) const {
-  if (parts_.catalog.signals.size() == 0) return "";
   const ConditionText read = read_condition_text(text);
   if (read.wrong != nullptr) return std::string("m:on: ") + read.wrong;
-  if (is_truth_of_simulation(read.signal))
-    return "m:on: '" + std::string(read.signal) + "' is the truth of a simulation, which no robot knows";
-  const SignalName known = condition_signal(parts_.bindings, read.signal);
-  if (parts_.catalog.signals.find_key(signal_key(known.data()))) return "";
+  const std::string given(read.signal);
+  if (is_truth_of_simulation(given)) return "m:on: '" + given + "' is the truth of a simulation, which no robot knows";
+  constexpr std::pair<const char*, const char*> in_snapshot[] = {{"feet.", "foot."}, {"joints.", "joint."}, {"s.", ""}};
+  for (const auto& [wrong, right] : in_snapshot) {
+    if (given.starts_with(wrong))
+      return "m:on: unknown signal '" + given + "', did you mean '" + right + given.substr(std::string(wrong).size()) +
+             "'?";
+  }
+  const SignalTable& signals = parts_.catalog.signals;
+  const SignalName known = condition_signal(parts_.bindings, given);
+  const std::string topic = given.substr(0, given.find('.') + 1);
+  constexpr std::string_view measured[] = {"joint.", "base.", "foot.", "support."};
+  const bool listed = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
+  if (!listed || signals.find_key(signal_key(known.data()))) return "";
   return std::string("m:on: unknown signal '") + known.data() + "'" +
          hint_text(known.data(), signals_near(parts_.bindings, known.data()));
 }
