@@ -67,7 +67,7 @@ const Row syntax_in_chart[] = {
     {"return k.behavior 't' { k.state 'a' {\n{ \"after\" = 1, to = 'a' } } }",
      "3: '}' expected near '=': a table is written { after = value }"},
     {"return k.behavior 't' { k.state 'a' {\nenter = (m) => m.posture:hold() } }",
-     "3: '}' expected near '=': Lua writes function(m) ... end"},
+     "3: '}' expected (to close '{' at line 2) near '=': Lua writes function(m) ... end"},
     {"return k.behavior 't' { k.state 'a' {\nenter = function(m): m.posture:hold() end } }",
      "3: unexpected symbol near ':': Lua writes function(m) ... end, without ':'"},
     {"return k.behavior 't' { k.state 'a' {\nenter = function(m) { m.posture:hold() } } }",
@@ -152,6 +152,12 @@ const Row in_chart[] = {
      "2: k.behavior \"t\" { ... } takes its table behind the name, without a comma"},
     {"return k.behavior 't' { k.state 'a' { endless = true,\ncontrols = { posture = true } } }",
      "3: 'controls' is a list of 1..32 names of control sets, not of 0: controls = { \"legs\", \"arms\" }"},
+    {"return k.behavior 't' { k.state 'a' { run = function(m) m:wait(1) end,\n{ on = 'run_done', to = 'a' } } }",
+     "3: nobody emits the event 'run_done' here, did you mean 'run.done'?"},
+    {"return k.behavior 't' { k.state 'a' { run = function(m) m:wait(1) end,\n{ on = 'done', to = 'a' } } }",
+     "3: nothing in 'a' ends with 'done'; there is: run.done"},
+    {"local P = k.params {\nt = { 1, min = 3, max = 0 } }\nreturn {}",
+     "3: parameter 't': min = 3 is greater than max = 0"},
     {"local arms = require 'arm'\nreturn k.behavior 't' { k.state 'a' { endless = true } }",
      "2: no module 'arm': it is neither \"kadans\", nor beside this script, nor in behaviors/lib, did you mean "
      "'arms'?"},
@@ -173,6 +179,9 @@ const Row in_chart[] = {
 };
 
 const Row values_in_run[] = {
+    {"m.vars = { n = 1 }", "3: m is read-only: 'vars' cannot be set; give its fields values: m.vars.name = 1"},
+    {"m.posture:move_to('stand', { time_s = 1 })", "3: a control object has no 'move_to', did you mean 'move'?"},
+    {"m.posture:move('stand', { time_s = '1' })", "3: move: time_s must be a number, without quotes"},
     {"if s.safety.level == 'HOLDING' then end",
      "3: s.safety.level is never \"HOLDING\"; it is normal, limited, hold, damp or off"},
     {"if s.safety.level == 'HOLD' then end", "3: s.safety.level is never \"HOLD\", did you mean 'hold'?; it is normal"},
@@ -219,7 +228,8 @@ const Row values_in_run[] = {
      "4: m:wait takes seconds; a motion waits for itself: a:wait()"},
     {"m.posture:move({ l_knee = 45 }, { time_s = 1 })",
      "3: posture.l_knee.position_rad = 45 is outside its range 0..2.35 rad; 45 degrees are 0.785 rad"},
-    {"m.posture:move('stand', 1):wait()", "3: move: the last argument must be a table { ... }: { time_s = 1 }"},
+    {"m.posture:move('stand', 1):wait()",
+     "3: move: the last argument must be a table { ... }, not a number: { time_s = 1 }"},
     {"m.posture:move('stand', { profile = 'trapezoid' }):wait()",
      "3: move: a trapezoid needs time_s, or velocity_max and acceleration_max"},
     {"m.posture:set_gains({ kp = 3 })", "3: set_gains takes the name of gains; one number goes by set_parameter"},

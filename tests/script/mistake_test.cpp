@@ -118,8 +118,8 @@ const Mistake in_a_tick[] = {
     {"string.format('%d', 'x')", "behaviors/test.lua:3: bad argument #2"},
     {"require 'legs'", "behaviors/test.lua:3: require 'legs' belongs at the top of the file"},
     // what behavior check cannot see before a run
-    {"m.vars.n = m.vars['n' .. ''] + 1",
-     "behaviors/test.lua:3: attempt to perform arithmetic on field '?' (a nil value): nothing gave it a value"},
+    {"local vars = m.vars\nlocal x = vars.n + 1",
+     "behaviors/test.lua:4: attempt to perform arithmetic on field 'n' (a nil value): nothing gave it a value"},
     {"local up = s.time_s >= 0\nlocal x = 'up ' .. up",
      "behaviors/test.lua:4: attempt to concatenate local 'up' (a boolean value): tostring(x) makes a text of it"},
     {"local limit = tostring(1)\nif s.time_s < limit then end",

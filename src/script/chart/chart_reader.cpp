@@ -251,9 +251,12 @@ int begin_node(lua_State* state) {
   if (!good_name(name)) {
     return raise_at(state, place, name, "%s: a name is letters, digits and '_', not \"%s\"", node_word(kind), name);
   }
-  if (lua_istable(state, 2))
-    return raise_at(state, place, nullptr, "%s \"%s\" { ... } takes its table behind the name, without a comma",
-                    node_word(kind), name);
+  if (lua_istable(state, 2)) {  // of `return k.behavior("t", { ... })` no place is left on the stack
+    const std::string& main_chunk = core_of(state).owner->sources().front().chunk;
+    const bool placed = place.line > 0;
+    return raise_at(state, placed ? place : ScriptPlace{main_chunk.c_str(), 1}, placed ? nullptr : node_word(kind) + 2,
+                    "%s \"%s\" { ... } takes its table behind the name, without a comma", node_word(kind), name);
+  }
   lua_settop(state, 1);
   lua_pushinteger(state, static_cast<int>(kind));
   lua_insert(state, 1);

@@ -305,6 +305,7 @@ void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::
     Ends ends = heard_ends(chart, transition.source);
     if (ends.contains(event)) continue;
     if (!end) ends.insert(emitted.events.begin(), emitted.events.end());
+    if (chart.states[transition.source].run != Chart::no_function) ends.insert("run.done");
     const Chart::State& source = chart.states[transition.source];
     const std::string told =
         end ? "nothing in '" + (source.name.empty() ? chart.name : source.name) + "' ends with '" + event + "'"

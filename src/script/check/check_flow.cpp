@@ -256,7 +256,8 @@ void FlowCheck::begun_anew(const SourceUse& use, const Tokens& tokens) {
   constexpr double tick_s = 0.02;  // two ticks: it arrives
   const bool straight = !blocks_.empty() && tokens[blocks_.back().token].is("function") && !blocks_.back().returns;
   const bool chosen = use.at > 0 && tokens[use.at - 1].is_any({"and", "or"});
-  if (use.at_once != "during" || !straight || chosen) return;
+  const bool waits = tokens[end_of_call(tokens, use.arguments)].is(":");  // which is told by itself
+  if (use.at_once != "during" || !straight || chosen || waits) return;
   const std::vector<std::size_t> given = parts_of(tokens, use.arguments);
   if (given.size() != 2 || !(time_of(tokens, given[1]) > tick_s) || !joints_of(tokens, given[0], true)) return;
   tell(use.line,

@@ -367,7 +367,9 @@ class SourceCheck final : public SourceListener {
       problem(place(use), "m.vars." + path[1] + " is given a function: vars hold plain data, which a reload keeps");
     const bool free = std::find(always_there.begin(), always_there.end(), path.front()) != always_there.end();
     if (use.assigned && (!free || path.size() == 1)) {
-      return problem(place(use), "m is read-only: '" + path.front() + "' cannot be set; keep it in m.vars");
+      const std::string where =
+          path.front() == "vars" ? "give its fields values: m.vars.name = 1" : "keep it in m.vars";
+      return problem(place(use), "m is read-only: '" + path.front() + "' cannot be set; " + where);
     }
     if (use.assigned && path.front() == "vars" && path.size() == 2) undeclared(use, tokens);
     fields(use, machine_, "m");

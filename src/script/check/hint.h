@@ -20,7 +20,8 @@ inline std::string hint_text(const std::string& wrong, const std::vector<std::st
   std::string near = did_you_mean(wrong, names);
   if (!near.empty() || names.empty()) return near;
   for (const std::string& name : names) {
-    if (wrong.size() >= 3 && name.starts_with(wrong)) return ", did you mean '" + name + "'?";
+    const bool begins = name.size() >= 4 && wrong.starts_with(name + "_");  // move_to
+    if (begins || (wrong.size() >= 3 && name.starts_with(wrong))) return ", did you mean '" + name + "'?";
   }
   if (names.size() > 8) return "";
   std::string all;
