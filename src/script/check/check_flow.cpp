@@ -75,11 +75,12 @@ FlowCheck::Body FlowCheck::body_of(const Tokens& tokens, std::size_t from, std::
   return body;
 }
 
-bool FlowCheck::is_assigned_in(std::size_t declared, std::size_t from, std::size_t to) const {
-  for (auto use = uses_.lower_bound(from); use != uses_.end() && use->first < to; ++use) {
-    if (use->second.assigned && use->second.declared == declared) return true;
+void FlowCheck::note_assigned(Loop& loop) const {
+  for (auto use = uses_.lower_bound(loop.body); use != uses_.end() && use->first < loop.body_end; ++use) {
+    if (!use->second.assigned) continue;
+    loop.assigned.insert(use->second.declared);
+    loop.assigns_field = loop.assigns_field || use->second.written > 0;
   }
-  return false;
 }
 
 // Whether what is read has the same value for as long as the loop does not wait.
@@ -88,8 +89,7 @@ bool FlowCheck::stays(const SourceUse& use, const Loop& loop) const {
   if (!use.known || !use.method.empty() || use.arguments != 0) return false;
   if (use.declared >= loop.body && use.declared < loop.body_end) return false;
   if (use.written == 0) {
-    return use.declared != 0 && use.meaning.role != SourceRole::table &&
-           !is_assigned_in(use.declared, loop.body, loop.body_end);
+    return use.declared != 0 && use.meaning.role != SourceRole::table && !loop.assigned.contains(use.declared);
   }
   if (path.empty() || path.back() == "*") return false;
   if (use.meaning.role == SourceRole::snapshot || use.meaning.role == SourceRole::motion ||
@@ -97,9 +97,7 @@ bool FlowCheck::stays(const SourceUse& use, const Loop& loop) const {
     return true;
   if (use.meaning.role != SourceRole::machine) return false;
   if (path[0] == "time_s") return true;
-  return path[0] == "vars" && path.size() == 2 && std::none_of(uses_.begin(), uses_.end(), [&](const auto& one) {
-           return one.second.assigned && one.first >= loop.body && one.first < loop.body_end;
-         });
+  return path[0] == "vars" && path.size() == 2 && !loop.assigns_field;
 }
 
 bool FlowCheck::never_changes(const Tokens& tokens, const Loop& loop) const {
@@ -142,7 +140,7 @@ const SourceUse* FlowCheck::stale(const Tokens& tokens, const Loop& loop) const 
     }
     const bool read = use->meaning.role == SourceRole::snapshot && use->meaning.path.size() > 1;
     const bool kept = use->declared != 0 && use->written == 0 && use->method.empty() && use->arguments == 0;
-    if (!read || !kept || is_assigned_in(use->declared, 0, tokens.size())) return nullptr;
+    if (!read || !kept || assigned_.contains(use->declared)) return nullptr;
     const KnownNames::Shape* shape = &known_.snapshot;  // a table of `s` is no copy
     for (const std::string& field : use->meaning.path) {
       const auto next = shape->fields.find(field);
@@ -157,7 +155,8 @@ const SourceUse* FlowCheck::stale(const Tokens& tokens, const Loop& loop) const 
 }
 
 void FlowCheck::loop(const Tokens& tokens, std::size_t head) {
-  Loop loop{.until = tokens[head].is("repeat")};
+  Loop loop;
+  loop.until = tokens[head].is("repeat");
   const std::size_t opens_at = loop.until ? head : do_of(tokens, head + 1);
   loop.body = opens_at + 1;
   loop.body_end = end_of_block(tokens, opens_at);
@@ -174,7 +173,9 @@ void FlowCheck::loop(const Tokens& tokens, std::size_t head) {
     return tell(local->line, "'" + local->name + "' was read before the loop and stays the same while it waits: ask " +
                                  path + " in the condition");
   }
-  if (body.unknown || !never_changes(tokens, loop)) return;
+  if (body.unknown) return;
+  note_assigned(loop);
+  if (!never_changes(tokens, loop)) return;
   tell(tokens[head].line,
        "this loop never ends: nothing changes until it waits; in run write m:wait(0.01) into it, elsewhere let a "
        "transition wait");

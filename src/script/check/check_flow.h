@@ -22,7 +22,10 @@ class FlowCheck {
       : catalog_(catalog), known_(known), of_behavior_(of_behavior) {}
 
   // First all uses of names in the file, then what is wrong.
-  void note(const SourceUse& use) { uses_.emplace(use.at, use); }
+  void note(const SourceUse& use) {
+    if (use.assigned) assigned_.insert(use.declared);
+    uses_.emplace(use.at, use);
+  }
   std::vector<ArgumentProblem> run(const Tokens& tokens);
 
  private:
@@ -33,6 +36,8 @@ class FlowCheck {
   struct Loop {
     std::size_t condition = 0, condition_end = 0, body = 0, body_end = 0;
     bool until = false;
+    std::set<std::size_t> assigned;  // the names that get a value in the body, by the tokens that declare them
+    bool assigns_field = false;
   };
   struct Block {
     std::size_t token = 0;
@@ -44,7 +49,7 @@ class FlowCheck {
   const SourceUse* use_at(std::size_t at) const;
   Call kind_of(const SourceUse& use, const Tokens& tokens) const;
   Body body_of(const Tokens& tokens, std::size_t from, std::size_t to) const;
-  bool is_assigned_in(std::size_t declared, std::size_t from, std::size_t to) const;
+  void note_assigned(Loop& loop) const;
   bool stays(const SourceUse& use, const Loop& loop) const;
   bool never_changes(const Tokens& tokens, const Loop& loop) const;
   const SourceUse* stale(const Tokens& tokens, const Loop& loop) const;
@@ -66,6 +71,7 @@ class FlowCheck {
   const KnownNames& known_;
   bool of_behavior_;
   std::map<std::size_t, SourceUse> uses_;
+  std::set<std::size_t> assigned_;  // the names that get a value anywhere but where they are declared
   std::vector<Block> blocks_;
   std::set<std::size_t> locals_of_file_;  // the tokens that declare them with a plain value
   std::vector<ArgumentProblem> found_;

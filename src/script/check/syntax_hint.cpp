@@ -67,6 +67,8 @@ constexpr ForeignStart foreign_starts[] = {
     {"try", "Lua has no try: an error is raised by error(text)"},
 };
 
+constexpr std::size_t look_back_max = 500;  // tokens: a line may be as long as a file
+
 bool opens_block(const SourceToken& token) { return token.is_any({"function", "if", "do", "repeat"}); }
 bool opens_bracket(const SourceToken& token) { return token.is_any({"(", "{", "["}); }
 bool closes_bracket(const SourceToken& token) { return token.is_any({")", "}", "]"}); }
@@ -96,6 +98,9 @@ class Explainer {
     tokens_.insert(tokens_.begin(), 2, SourceToken{Kind::end, "", 1});  // so that there is always one before
     tokens_.resize(tokens_.size() + 4, SourceToken{Kind::end, "", tokens_.back().line});
     at_ = place();
+    for (std::size_t start = 0; start < text.size(); start = std::min(text.find('\n', start), text.size() - 1) + 1)
+      indents_.push_back(text.substr(start, 256).find_first_not_of(" \t"));
+    indents_.resize(static_cast<std::size_t>(tokens_.back().line) + 2);
   }
 
   SyntaxHint run() {
@@ -178,10 +183,7 @@ class Explainer {
     });
   }
 
-  std::size_t indent(int line) const {
-    const std::string_view text = line_of_text(text_, line);
-    return std::min(text.find_first_not_of(" \t"), text.size());
-  }
+  std::size_t indent(int line) const { return indents_[static_cast<std::size_t>(line)]; }
 
   bool minus_minus() {
     const SourceToken& before = tokens_[at_ - 1];
@@ -224,7 +226,7 @@ class Explainer {
 
   std::size_t open_of(std::size_t close) const {
     int depth = 0;
-    for (std::size_t i = close; i > 1; --i) {
+    for (std::size_t i = close; i > 1 && close - i < look_back_max; --i) {
       depth += tokens_[i].is(")") ? 1 : tokens_[i].is("(") ? -1 : 0;
       if (depth == 0) return i;
     }
@@ -238,7 +240,7 @@ class Explainer {
   }
   // The word of the line that wants `then` or `do` in it, or 0.
   std::size_t head_of_line(std::size_t at) const {
-    for (std::size_t i = at; i > 1 && tokens_[i].line == tokens_[at].line; --i) {
+    for (std::size_t i = at; i > 1 && at - i < look_back_max && tokens_[i].line == tokens_[at].line; --i) {
       if (tokens_[i].is_any({"if", "elseif", "while", "for"})) return i;
       if (tokens_[i].is("then") || tokens_[i].is("do")) return 0;
     }
@@ -277,7 +279,7 @@ class Explainer {
   bool equals() {
     return near_ == "=" && each_in_line([&](std::size_t at) {
              if (!tokens_[at].is("=")) return false;
-             for (std::size_t i = at - 1; i > 1 && tokens_[i].line == tokens_[at].line; --i) {
+             for (std::size_t i = at - 1; i > 1 && at - i < look_back_max && tokens_[i].line == tokens_[at].line; --i) {
                if (tokens_[i].is_any({"if", "elseif", "while", "until", "return", "and", "or", "not"}))
                  return tell(at, "= assigns, == compares");
                if (tokens_[i].is_any({"then", "do", "else", "end", "local", "{", "}", ",", ";"})) return false;
@@ -413,7 +415,7 @@ class Explainer {
 
   bool word() {
     if (says("'then' expected") || says("'do' expected")) {
-      for (std::size_t i = at_; i > 1; --i) {
+      for (std::size_t i = at_; i > 1 && at_ - i < look_back_max; --i) {
         const bool braces = tokens_[i].is("{") && last_in_line(i);
         const std::size_t head = head_of_line(i);
         if (head != 0) return tell(head, head_written(head) + (braces ? ", without braces" : ""));
@@ -429,6 +431,7 @@ class Explainer {
   std::string_view message_, near_;
   Tokens tokens_;
   std::size_t at_ = 0;
+  std::vector<std::size_t> indents_{0};  // of each line, the first of which is 1
   SyntaxHint hint_;
 };
 
