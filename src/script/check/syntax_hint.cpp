@@ -153,8 +153,8 @@ class Explainer {
   template <typename Rule>
   bool each_in_line(Rule rule) {
     std::size_t first = at_;
-    while (first > 2 && tokens_[first - 1].line >= tokens_[at_ - 1].line) --first;
-    for (std::size_t i = first; !at_end(i) && tokens_[i].line <= tokens_[at_].line; ++i) {
+    while (first > 2 && at_ - first < look_back_max && tokens_[first - 1].line >= tokens_[at_ - 1].line) --first;
+    for (std::size_t i = first; !at_end(i) && i < at_ + look_back_max && tokens_[i].line <= tokens_[at_].line; ++i) {
       if (rule(i)) return true;
     }
     return false;
@@ -163,7 +163,7 @@ class Explainer {
   std::string path_before(std::size_t at) const {
     if (tokens_[at - 1].kind != Kind::name) return "n";
     std::string path = tokens_[at - 1].text;
-    for (std::size_t i = at - 2; tokens_[i].is(".") && tokens_[i - 1].kind == Kind::name; i -= 2)
+    for (std::size_t i = at - 2; path.size() < 64 && tokens_[i].is(".") && tokens_[i - 1].kind == Kind::name; i -= 2)
       path = tokens_[i - 1].text + "." + path;
     return path;
   }
