@@ -50,6 +50,7 @@ const Row syntax_in_run[] = {
     {"m.posture:move(\"stand\" { time_s = 1 })", "3: ')' expected near '{': a comma is missing behind \"stand\""},
     {"m.posture:move(\"stand\", { time_s = 1 }\nm:wait(1)",
      "3: ')' expected (to close '(' at line 3) near 'm': the '(' is not closed"},
+    {"local t = { print {}, \"x\" {} }", "3: '}' expected near '{': a comma is missing behind \"x\""},
     {"k.log.info(\"up)", "3: unfinished string near '\"up)': the quotes of a text close in its line"},
     {"m:wait(1) end", "4: '}' expected (to close '{' at line 2) near 'end': there is one end too many"},
 };
@@ -152,6 +153,8 @@ const Row in_chart[] = {
      "2: k.behavior \"t\" { ... } takes its table behind the name, without a comma"},
     {"return k.behavior 't' { k.state 'a' { endless = true,\ncontrols = { posture = true } } }",
      "3: 'controls' is a list of 1..32 names of control sets, not of 0: controls = { \"legs\", \"arms\" }"},
+    {"return k.behavior 't' { initial = 'a', k.state 'a' { { after = 1, to = 'a' } }\n{ after = 1, to = 'a' } }",
+     "3: only k.call takes arguments, in a table { ... }; is a comma missing before this table?"},
     {"return k.behavior 't' { k.state 'a' { run = function(m) m:wait(1) end,\n{ on = 'run_done', to = 'a' } } }",
      "3: nobody emits the event 'run_done' here, did you mean 'run.done'?"},
     {"return k.behavior 't' { k.state 'a' { run = function(m) m:wait(1) end,\n{ on = 'done', to = 'a' } } }",

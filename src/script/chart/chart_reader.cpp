@@ -280,7 +280,8 @@ int make_call(lua_State* state) {
 int take_arguments(lua_State* state) {  // (node, arguments)
   NodeKind kind{};
   const bool call = is_node(state, 1, &kind) && kind == NodeKind::call;
-  if (!call || !lua_istable(state, 2)) return luaL_error(state, "only k.call takes arguments, in a table { ... }");
+  if (!call || !lua_istable(state, 2))
+    return luaL_error(state, "only k.call takes arguments, in a table { ... }; is a comma missing before this table?");
   lua_settop(state, 2);
   lua_setfield(state, 1, "body");
   return 1;

@@ -125,10 +125,10 @@ Mistakes motion_table(const std::vector<SourceToken>& tokens, std::size_t at, Mo
   const auto tell = [&](const std::string& text) { problems.push_back({tokens[at].line, called + text}); };
   if (method == MotionOption::move && !has("time_s") && !has("profile")) tell(" needs { time_s = seconds } at the end");
   if (method == MotionOption::point && !has("time_s")) tell(" needs time_s > 0");
-  const bool velocity = has("velocity_max_rad_s") || has("velocity_max_m_s");
-  const bool acceleration = has("acceleration_max_rad_s2") || has("acceleration_max_m_s2");
-  const bool limits = velocity || acceleration;
-  const bool trapezoid = has_value(tokens, at, "profile", "trapezoid");
+  const bool lengths = has("velocity_max_m_s") || has("acceleration_max_m_s2");  // which may not fit the set-point
+  const bool velocity = has("velocity_max_rad_s"), acceleration = has("acceleration_max_rad_s2");
+  const bool limits = lengths || velocity || acceleration;
+  const bool trapezoid = has_value(tokens, at, "profile", "trapezoid") && !lengths;
   if (trapezoid && !(velocity && acceleration) && !has("time_s"))
     tell(": a trapezoid needs time_s, or velocity_max and acceleration_max");
   if (limits && !has("profile") && method != MotionOption::follow)
