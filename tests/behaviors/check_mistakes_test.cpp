@@ -50,6 +50,8 @@ const Row syntax_in_run[] = {
     {"m.posture:move(\"stand\" { time_s = 1 })", "3: ')' expected near '{': a comma is missing behind \"stand\""},
     {"m.posture:move(\"stand\", { time_s = 1 }\nm:wait(1)",
      "3: ')' expected (to close '(' at line 3) near 'm': the '(' is not closed"},
+    {"local t = s:time_s",
+     "3: function arguments expected near 'end': ':' calls a method with (...), a field is read by"},
     {"local t = { print {}, \"x\" {} }", "3: '}' expected near '{': a comma is missing behind \"x\""},
     {"k.log.info(\"up)", "3: unfinished string near '\"up)': the quotes of a text close in its line"},
     {"m:wait(1) end", "4: '}' expected (to close '{' at line 2) near 'end': there is one end too many"},
@@ -84,6 +86,8 @@ const Row syntax_in_chart[] = {
      "3: '}' expected (to close '{' at line 2) near '<eof>': the '{' of line 3 is not closed"},
     {"return k.behavior 't' { k.state 'a' {\n{ when = function(s) return s.time_s = 5 end, to = 'a' } } }",
      "3: 'end' expected near '=': = assigns, == compares"},
+    {"return k.behavior 't' { k.state 'a' {\n{ when = function(s) s.time_s > 5 end, to = 'a' } } }",
+     "3: '=' expected near '>': a condition alone does nothing: return it, or ask it by if"},
     {"return k.behavior 't' { k.state 'a' { endless = true } }\nlocal function go() end",
      "3: '<eof>' expected near 'local': return ends the file: what it uses stands above it"},
     {"return k.behavior 't' {\nlocal x = 1,\nk.state 'a' { endless = true } }",
@@ -365,4 +369,12 @@ TEST_CASE("behavior check leaves alone what looks like a mistake, but is right")
     CAPTURE(text);
     CHECK(project.problems(text) == "");
   }
+}
+
+TEST_CASE("a file that returns a behavior without its table is no module") {
+  const Project project;
+  CHECK(program::has(
+      Project::told(project.script("behaviors/t.lua", "local k = require 'kadans'\nreturn k.behavior 't'\n").problems),
+      "behaviors/t.lua:1: returns a k.behavior without its table: return k.behavior \"name\" { ... }"));
+  CHECK(project.script("behaviors/t.lua", "return function(m) return m end\n").problems.empty());
 }

@@ -421,6 +421,11 @@ class Explainer {
         if (head != 0) return tell(head, head_written(head) + (braces ? ", without braces" : ""));
       }
     }
+    const bool compares = tokens_[at_].is_any({"==", "~=", "<", ">", "<=", ">=", "and", "or"});
+    if (says("'=' expected") && compares)
+      return tell(at_, "a condition alone does nothing: return it, or ask it by if");
+    if (says("function arguments expected") && tokens_[at_ - 2].is(":"))
+      return tell(at_ - 1, "':' calls a method with (...), a field is read by '." + tokens_[at_ - 1].text + "'");
     if (says("unfinished string")) return tell_line(line_, "the quotes of a text close in its line");
     if (tokens_[at_ - 1].is("for") && tokens_[at_].is("(")) return tell(at_, "Lua writes for i = 1, n do ... end");
     return false;
