@@ -271,7 +271,7 @@ std::string ValueCheck::armed(const SourceUse& use, const Tokens& tokens) const 
   const std::vector<std::size_t> given = parts_of(tokens, use.arguments);
   const std::size_t end = end_of_call(tokens, use.arguments) - 1;
   if (!given.empty() && tokens[given[0]].kind == TokenKind::text && tokens[given[0] + 1].is_any({",", ")"})) {
-    const std::string wrong = condition(tokens[given[0]].text);
+    std::string wrong = condition(tokens[given[0]].text);
     if (!wrong.empty()) return wrong;
   }
   const std::size_t done = given.size() > 1 ? given[1] : end;
@@ -308,10 +308,9 @@ std::vector<ArgumentProblem> ValueCheck::of_literals(const Tokens& tokens) const
     if (nothing && (left.is("..") || right.is("..")))
       found.push_back({token.line, ".. joins texts and numbers, not " + token.text});
     if (token.kind != TokenKind::text || is_numeral(token.text)) continue;
-    const bool argument = left.kind == TokenKind::name || left.kind == TokenKind::text || left.is_any({")", "]", "}"});
-    if (argument) {  // f "text" + 1
-      continue;
-    } else if (right.is("%")) {
+    const bool of_call = left.kind == TokenKind::name || left.kind == TokenKind::text || left.is_any({")", "]", "}"});
+    if (of_call) continue;  // f "text" + 1
+    if (right.is("%")) {
       found.push_back({token.line, "% does not fill a text: write string.format(text, ...)"});
     } else if (right.is("+") || left.is("+")) {
       found.push_back({token.line, "+ adds numbers, .. joins texts"});

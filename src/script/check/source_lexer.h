@@ -1,6 +1,7 @@
 // Splits Lua source into tokens, for checks that read a script without running it.
 #pragma once
 
+#include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
@@ -23,10 +24,7 @@ struct SourceToken {
     return (kind == Kind::keyword || kind == Kind::symbol) && text == wanted;
   }
   bool is_any(std::initializer_list<std::string_view> wanted) const noexcept {
-    for (const std::string_view one : wanted) {
-      if (is(one)) return true;
-    }
-    return false;
+    return std::ranges::any_of(wanted, [&](std::string_view one) { return is(one); });
   }
 };
 

@@ -164,17 +164,21 @@ class Explainer {
     if (tokens_[at - 1].kind != Kind::name) return "n";
     std::string path = tokens_[at - 1].text;
     for (std::size_t i = at - 2; path.size() < 64 && tokens_[i].is(".") && tokens_[i - 1].kind == Kind::name; i -= 2)
-      path = tokens_[i - 1].text + "." + path;
+      path.insert(0, tokens_[i - 1].text + ".");
     return path;
+  }
+
+  // n += 1
+  bool tell_assigning(std::size_t at) {
+    const std::string path = path_before(at);
+    const std::string& sign = tokens_[at].text;
+    return tell(at, "Lua has no " + sign + "=: write " + path + " = " + path + " " + sign + " ...");
   }
 
   bool sign() {
     return each_in_line([&](std::size_t i) {
       for (const std::string_view sign : assigning) {
-        if (!tokens_[i].is(sign) || !tokens_[i + 1].is("=")) continue;
-        const std::string path = path_before(i), written(sign);
-        return tell_line(tokens_[i].line,
-                         "Lua has no " + written + "=: write " + path + " = " + path + " " + written + " ...");
+        if (tokens_[i].is(sign) && tokens_[i + 1].is("=")) return tell_assigning(i);
       }
       for (const ForeignSign& one : foreign_signs) {
         if (tokens_[i].is(one.first) && (one.second.empty() || tokens_[i + 1].is(one.second))) return tell(i, one.hint);
