@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <lua.hpp>
@@ -28,6 +29,16 @@ struct ArmedHere {
   EventId event = no_event;     // to be posted when it acts
   std::uint32_t fired = 0;      // as last seen
 };
+
+// The text of a condition of m:on, taken apart: "not foot.right.contact", "joint.l_knee.position_rad > 0.3".
+struct ConditionText {
+  std::string_view signal;
+  double value = 0.5;  // of a signal that is 0 or 1
+  bool below = false;
+  const char* wrong = nullptr;  // what is no condition in it
+};
+ConditionText read_condition_text(std::string_view text) noexcept;
+bool is_truth_of_simulation(std::string_view signal) noexcept;
 
 inline const std::vector<std::string> no_feet;
 
@@ -116,6 +127,12 @@ void open_armed(lua_State* state, const Chart& chart);
 void open_armed_handles(lua_State* state);
 
 // Makes `m` for each machine, and `s`. Stores their references in the runner's tables. Raises.
+// A signal as the table names it: a foot has the name of its link there, and that of `s.feet` here.
+using SignalName = std::array<char, 128>;
+SignalName condition_signal(const Bindings& bindings, std::string_view name) noexcept;
+// The signals that may have been meant by an unknown one.
+std::vector<std::string> signals_near(const Bindings& bindings, std::string_view wanted);
+
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables);
 // Gives a machine that is being entered its vars and arguments.
 void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tables, std::uint16_t machine);

@@ -111,7 +111,8 @@ const char* short_name(const ObjectInfo& object, const std::string& name) noexce
 
 void check_range(lua_State* state, const char* name, const char* unit, double value, double min, double max) {
   if (value >= min && value <= max) return;
-  luaL_error(state, "%s = %f is outside its range %f..%f %s", name, value, min, max, unit);
+  const auto degrees = degree_hint(unit, value, min, max);
+  luaL_error(state, "%s = %f is outside its range %f..%f %s%s", name, value, min, max, unit, degrees.data());
 }
 
 int queue_full(lua_State* state) { return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2; }

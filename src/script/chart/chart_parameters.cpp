@@ -70,6 +70,9 @@ Spec read_spec(lua_State* state, const char* name, const ScriptPlace& place) {
 }
 
 void add_parameter(lua_State* state, const Spec& spec, const ScriptPlace& place) {
+  if (spec.min > spec.max)
+    raise_at(state, place, spec.name, "parameter '%s': min = %f is greater than max = %f", spec.name, spec.min,
+             spec.max);
   if (!(spec.initial >= spec.min && spec.initial <= spec.max)) {
     raise_at(state, place, spec.name, "parameter '%s': the default %f is outside %f..%f", spec.name, spec.initial,
              spec.min, spec.max);

@@ -67,7 +67,12 @@ void check_types(lua_State* state, int table, const ScriptPlace& place, const ch
     lua_getfield(state, table, *names);
     const char* wanted = wanted_type(*names);
     if (!lua_isnil(state, -1) && wanted != nullptr && std::strcmp(luaL_typename(state, -1), wanted) != 0) {
-      raise_at(state, place, *names, "'%s' must be a %s, not a %s", *names, wanted, luaL_typename(state, -1));
+      std::size_t number = 0;
+      const char* given = is_parameter(state, lua_gettop(state), &number) ? "parameter: ask it in a function"
+                                                                          : luaL_typename(state, -1);
+      const bool quoted = lua_type(state, -1) == LUA_TSTRING && std::strcmp(wanted, "boolean") == 0;
+      raise_at(state, place, *names, "'%s' must be a %s, not a %s%s", *names, wanted, given,
+               quoted ? ": true has no quotes" : "");
     }
     if (lua_type(state, -1) == LUA_TSTRING && lua_objlen(state, -1) > text_max) {
       raise_at(state, place, *names, "'%s' is longer than %d characters", *names, static_cast<int>(text_max));
@@ -86,8 +91,8 @@ void check_controls(lua_State* state, int table, const ScriptPlace& place) {
     raise_at(state, place, "controls", "'controls' must be the name of a control set or a list of names, not a %s",
              luaL_typename(state, value));
   if (count < 1 || count > static_cast<int>(max_control_sets))
-    raise_at(state, place, "controls", "'controls' is a list of 1..%d names of control sets, not of %d",
-             static_cast<int>(max_control_sets), count);
+    raise_at(state, place, "controls", "'controls' is a list of 1..%d names of control sets, not of %d%s",
+             static_cast<int>(max_control_sets), count, count == 0 ? ": controls = { \"legs\", \"arms\" }" : "");
   for (int i = 1; list && i <= count; ++i) {
     lua_rawgeti(state, value, i);
     if (lua_type(state, -1) != LUA_TSTRING)
@@ -144,6 +149,7 @@ void check_transition(lua_State* state, int table, const ScriptPlace& place) {
   const char* to = lua_tostring(state, -1);
   ScriptPlace nearer = place;
   if (to == nullptr) {
+    check_keys(state, table, nearer, "a transition", transition_keys);  // `target` says more than a missing `to`
     lua_getfield(state, table, "on");
     const char* on = lua_tostring(state, -1);
     raise_at(state, place, on, "a transition needs 'to': the state it leads to");
@@ -192,6 +198,16 @@ void make_node(lua_State* state, NodeKind kind, const char* name, const ScriptPl
   set_kind(state, node_key);
 }
 
+// always = { when = ..., to = ... } would be an empty list.
+void check_list(lua_State* state, int list, const ScriptPlace& place) {
+  for (const char* const* key = transition_keys; *key != nullptr; ++key) {
+    lua_getfield(state, list, *key);
+    if (!lua_isnil(state, -1))
+      raise_at(state, place, "always", "'always' is a list of transitions: always = { { %s = ... } }", *key);
+    lua_pop(state, 1);
+  }
+}
+
 // Upvalues: kind, name, chunk, line. Takes the body.
 int finish_node(lua_State* state) {
   const auto kind = static_cast<NodeKind>(lua_tointeger(state, lua_upvalueindex(1)));
@@ -207,7 +223,10 @@ int finish_node(lua_State* state) {
   check_types(state, 1, place, keys_of(kind));
   check_controls(state, 1, place);
   check_transitions(state, 1, place, true);
+  if (kind == NodeKind::final_state && lua_objlen(state, 1) > 0)
+    raise_at(state, place, nullptr, "a k.final is an end: no transition leaves it, and no state is in it");
   lua_getfield(state, 1, "always");
+  if (lua_istable(state, 2)) check_list(state, 2, place);
   if (lua_istable(state, 2)) check_transitions(state, 2, place, false);
   lua_settop(state, 1);
   make_node(state, kind, name, place);
@@ -232,6 +251,12 @@ int begin_node(lua_State* state) {
   if (!good_name(name)) {
     return raise_at(state, place, name, "%s: a name is letters, digits and '_', not \"%s\"", node_word(kind), name);
   }
+  if (lua_istable(state, 2)) {  // of `return k.behavior("t", { ... })` no place is left on the stack
+    const std::string& main_chunk = core_of(state).owner->sources().front().chunk;
+    const bool placed = place.line > 0;
+    return raise_at(state, placed ? place : ScriptPlace{main_chunk.c_str(), 1}, placed ? nullptr : node_word(kind) + 2,
+                    "%s \"%s\" { ... } takes its table behind the name, without a comma", node_word(kind), name);
+  }
   lua_settop(state, 1);
   lua_pushinteger(state, static_cast<int>(kind));
   lua_insert(state, 1);
@@ -255,7 +280,8 @@ int make_call(lua_State* state) {
 int take_arguments(lua_State* state) {  // (node, arguments)
   NodeKind kind{};
   const bool call = is_node(state, 1, &kind) && kind == NodeKind::call;
-  if (!call || !lua_istable(state, 2)) return luaL_error(state, "only k.call takes arguments, in a table { ... }");
+  if (!call || !lua_istable(state, 2))
+    return luaL_error(state, "only k.call takes arguments, in a table { ... }; is a comma missing before this table?");
   lua_settop(state, 2);
   lua_setfield(state, 1, "body");
   return 1;

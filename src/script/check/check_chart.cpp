@@ -76,7 +76,7 @@ class ChartCheck {
   void never_entered(StateIndex index) {
     const Chart::State& state = chart_.states[index];
     if (reached_[index] || state.parent == no_state || !reached_[state.parent]) return;
-    problem(state, state.line, "state '" + state.name + "' is never entered: no transition leads to it");
+    problem(state, state.line, "state '" + state.name + "' is never entered: no transition leads to it, with to = \"" + state.name + "\"");
   }
 
   void no_way_out(StateIndex index) {
@@ -111,7 +111,7 @@ class ChartCheck {
     for (std::uint16_t i = 0; i < state.transition_count; ++i) {
       const Chart::Transition& transition = chart_.transitions[static_cast<std::size_t>(state.first_transition) + i];
       if (transition.on != run_done_event || state.run != Chart::no_function) continue;
-      problem(state, transition.line, "state '" + state.name + "' waits for \"run.done\", but it has no run");
+      problem(state, transition.line, "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");
     }
   }
 
@@ -305,6 +305,7 @@ void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::
     Ends ends = heard_ends(chart, transition.source);
     if (ends.contains(event)) continue;
     if (!end) ends.insert(emitted.events.begin(), emitted.events.end());
+    if (chart.states[transition.source].run != Chart::no_function) ends.insert("run.done");
     const Chart::State& source = chart.states[transition.source];
     const std::string told =
         end ? "nothing in '" + (source.name.empty() ? chart.name : source.name) + "' ends with '" + event + "'"

@@ -159,6 +159,7 @@ std::size_t SourceScopes::start_at(std::size_t at, SourceUse& use) const {
   use.line = tokens_[at].line;
   if (const std::size_t* declared = find(use.name, use.outer); declared != nullptr) {
     use.known = true;
+    use.declared = *declared;
     use.meaning = facts_->local({file_, *declared});
     use.lines.assign(use.meaning.path.size(), use.line);
     return at + 1;
@@ -527,6 +528,7 @@ std::size_t SourceScopes::name_at(std::size_t at) {
   }
   if (is_key(at)) return key_at(at);
   SourceUse use;
+  use.at = at;
   const std::size_t fields = start_at(at, use);
   for (const Block& block : blocks_) use.guard = use.guard || function(block.function).guard;
   use.at_once = at_once(at);

@@ -129,6 +129,8 @@ struct SourceUse {
   std::string method;              // after ':', or ""
   int line = 0;                    // of the name
   std::size_t arguments = 0;       // index of the token after the '(' of a call; 0: no call
+  std::size_t at = 0;              // index of the name's token
+  std::size_t declared = 0;        // index of the token that declares the name; 0: no local
   std::size_t next = 0;            // index of the token after the whole use, the '=' of an assignment
 };
 
