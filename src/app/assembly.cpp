@@ -68,6 +68,11 @@ class NamedLog final : public BehaviorLog, private LineSink {
     }
     log_.say(named);
   }
+  void tell_active(const ActiveStates& active) override {
+    ActiveStates named = active;
+    named.behavior.insert(0, prefix_);
+    log_.active(named);
+  }
 
   std::string prefix_;
   BehaviorLog& log_;

@@ -5,11 +5,13 @@
 // behaviors' log (telemetry/record/event_log.h). Real-time threads say nothing.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace spdlog::sinks {
 class sink;
@@ -25,6 +27,18 @@ struct Transition {
   std::string to;
   std::string why;
 };
+
+// The innermost active states of a behavior: those of all its regions and of the behaviors that it calls, by path, in
+// document order. Told when they have changed, at the end of a tick; none: the behavior is over.
+struct ActiveStates {
+  static constexpr std::size_t told_max = 64;  // of one behavior
+
+  std::int64_t time_ns = 0;
+  std::string behavior;
+  std::vector<std::string> states;
+};
+// "act.arm.wave, act.leg.step"
+std::string listed(const std::vector<std::string>& states);
 
 struct Line;
 class LineSink;
@@ -46,11 +60,13 @@ class BehaviorLog {
 
   void say(const Line& line);
   void transition(const Transition& transition);
+  void active(const ActiveStates& active);  // for sinks that read facts
   void message(std::int64_t time_ns, Severity severity, std::string_view behavior, std::string_view text);
 
  private:
   class Logger;
   std::unique_ptr<Logger> logger_;
+  std::vector<LineSink*> facts_;
 };
 
 // Valid while it is said.
@@ -68,6 +84,7 @@ class LineSink {
  public:
   virtual ~LineSink() = default;
   virtual void tell(const Line& line) = 0;
+  virtual void tell_active(const ActiveStates& active) { (void)active; }
 };
 
 // Text sinks write "     1.50 s  squat: on my way". They lock, so no real-time thread uses them.

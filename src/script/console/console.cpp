@@ -406,6 +406,7 @@ struct CommandInfo {
 constexpr CommandInfo commands[] = {
     {":help", "", "what can be typed here"},
     {":status", "", "what plays, and how what played ended"},
+    {":why", " [NAME]", "why transitions of the active states were not taken: events, times, guards"},
     {":play", " LIST", "adds behaviors behind what plays: squat{depth_m=0.08}, wave"},
     {":replace", " LIST", "the same, in place of what plays"},
     {":pause", "", "behaviors and motions stand still"},
@@ -490,7 +491,7 @@ Console::Reply Console::evaluate(std::string_view line, const View& view) noexce
     if (first == std::string_view::npos) return {};
     parts.pending_line = parts.line_number;
     if (line[first] == ':') {
-      const Reply reply = command(std::string(line));
+      const Reply reply = command(std::string(line), view);
       return parts.pending.empty() ? reply : run_lua(view);
     }
   } else {
@@ -555,15 +556,23 @@ std::string Console::status() const {
   std::string text = host.paused() ? "paused" : host.finished() ? "nothing plays" : "plays";
   for (std::size_t i = 0; i < host.size(); ++i) {
     const Behavior& behavior = host.behavior(i);
-    const std::string outcome = behavior.outcome(), state = behavior.state();
+    const std::string outcome = behavior.outcome(), active = listed(behavior.active());
     text += "\n  " + behavior.name() + ": ";
-    text += !outcome.empty() ? outcome : host.over(i) ? "stopped" : state.empty() ? "waits" : "in " + state;
+    text += !outcome.empty() ? outcome : host.over(i) ? "stopped" : active.empty() ? "waits" : "in " + active;
     if (behavior.failed()) text += ", " + behavior.error().text();
   }
   return text;
 }
 
-Console::Reply Console::command(const std::string& line) noexcept {
+Console::Reply Console::why(const std::string& name, const View& view) const noexcept {
+  try {
+    return {.text = reasons_text(parts_->host.why(name, view.snapshot))};
+  } catch (const std::exception& error) {
+    return {.text = error.what(), .error = true};
+  }
+}
+
+Console::Reply Console::command(const std::string& line, const View& view) noexcept {
   const std::size_t first = line.find(':');
   const std::size_t end = std::min(line.find_first_of(" \t\r", first), line.size());
   const std::string name = line.substr(first, end - first);
@@ -578,6 +587,7 @@ Console::Reply Console::command(const std::string& line) noexcept {
   if (*known->argument == '\0' && !argument.empty()) return {.text = name + " takes no argument", .error = true};
   if (name == ":help") return {.text = help()};
   if (name == ":status") return {.text = status()};
+  if (name == ":why") return why(argument, view);
   if (name == ":quit") return {.text = {}, .quit = true};
   if (name == ":clear_faults") {
     parts_->pending = "local asked = m:clear_faults()";

@@ -68,7 +68,8 @@ class Console {
   struct Parts;
 
  private:
-  Reply command(const std::string& line) noexcept;
+  Reply command(const std::string& line, const View& view) noexcept;
+  Reply why(const std::string& name, const View& view) const noexcept;
   Reply run_lua(const View& view) noexcept;
   Reply order(PlayOrder::Kind kind, const std::string& line, std::size_t begin) noexcept;
   std::string status() const;

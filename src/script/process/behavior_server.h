@@ -20,9 +20,11 @@ class SpokenLines final : public LineSink {
   explicit SpokenLines(BehaviorLink& link) : link_(link) {}
 
   void tell(const Line& line) override;
+  void tell_active(const ActiveStates& active) override;
 
  private:
   bool push(const Line& line);
+  bool push();  // line_, with its size
 
   BehaviorLink& link_;
   ByteWriter line_;
