@@ -22,9 +22,9 @@ function border(box, from) {
 }
 
 class Layout {
-  // `flow`: of states, `beside`: how regions lie; both as dagre's rankdir.
-  constructor({ states, transitions }, flow, beside) {
-    Object.assign(this, { states, flow, beside });
+  // As dagre's rankdir: how the outermost states follow each other, how those inside of others do, how regions lie.
+  constructor({ states, transitions }, outer, inner, beside) {
+    Object.assign(this, { states, outer, inner, beside });
     this.children = states.map(() => []);
     states.forEach((state, i) => i > 0 && this.children[state.parent].push(i));
     this.edges = states.map(() => []); // by the state in which they are laid out
@@ -65,7 +65,7 @@ class Layout {
   level(parent) {
     const { kind, initial } = this.states[parent];
     const graph = new Graph({ multigraph: true });
-    graph.setGraph({ rankdir: kind === 'parallel' ? this.beside : this.flow, nodesep: 20, ranksep: 32, edgesep: 12, marginx: 12, marginy: 8 });
+    graph.setGraph({ rankdir: kind === 'parallel' ? this.beside : parent === 0 ? this.outer : this.inner, nodesep: 20, ranksep: 32, edgesep: 12, marginx: 12, marginy: 8 });
     for (const child of this.children[parent]) graph.setNode(String(child), this.node_of(child));
     if (kind !== 'parallel' && !none(initial)) {
       graph.setNode('start', { id: `start${parent}`, width: 10, height: 10, start: true, label: '' });
@@ -102,12 +102,16 @@ class Layout {
 // Whichever way is shown largest in a place of this ratio, width to height; the first where they hardly differ.
 export function chart_layout(chart, ratio = 1) {
   const scale = ({ width, height }) => Math.min(ratio / width, 1 / height);
-  const several = chart.states.some((state) => state.kind === 'parallel');
+  const ways = (asked) => (asked ? ['TB', 'LR'] : ['TB']);
+  const nested = chart.states.some((state) => state.parent > 0);
+  const parallel = chart.states.some((state) => state.kind === 'parallel');
   let best = null;
-  for (const flow of ['TB', 'LR']) {
-    for (const beside of several ? ['TB', 'LR'] : ['TB']) {
-      const found = new Layout(chart, flow, beside).whole();
-      if (best === null || scale(found) > 1.1 * scale(best)) best = found;
+  for (const outer of ways(true)) {
+    for (const inner of ways(nested)) {
+      for (const beside of ways(parallel)) {
+        const found = new Layout(chart, outer, inner, beside).whole();
+        if (best === null || scale(found) > 1.1 * scale(best)) best = found;
+      }
     }
   }
   return best;
