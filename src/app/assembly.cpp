@@ -69,9 +69,8 @@ class NamedLog final : public BehaviorLog, private LineSink {
     log_.say(named);
   }
   void tell_active(const ActiveStates& active) override {
-    ActiveStates named = active;
-    named.behavior.insert(0, prefix_);
-    log_.active(named);
+    const std::string behavior = prefix_ + std::string(active.behavior);
+    log_.active({active.time_ns, behavior, active.states});
   }
 
   std::string prefix_;

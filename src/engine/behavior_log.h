@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,13 +30,16 @@ struct Transition {
 };
 
 // The innermost active states of a behavior: those of all its regions and of the behaviors that it calls, by path, in
-// document order. Told when they have changed, at the end of a tick; none: the behavior is over.
+// document order. Told when they have changed, at the end of a tick; none: the behavior is over. Valid while it is
+// told.
 struct ActiveStates {
   static constexpr std::size_t told_max = 64;  // of one behavior
 
   std::int64_t time_ns = 0;
-  std::string behavior;
-  std::vector<std::string> states;
+  std::string_view behavior;
+  std::span<const std::string_view> states;
+
+  std::vector<std::string> copies() const { return {states.begin(), states.end()}; }
 };
 // "act.arm.wave, act.leg.step"
 std::string listed(const std::vector<std::string>& states);

@@ -42,7 +42,7 @@ class RunLog final : public BehaviorLog, private LineSink {
 
  private:
   void tell(const Line& line) override;
-  void tell_active(const ActiveStates& active) override { active_[active.behavior] = active.states; }
+  void tell_active(const ActiveStates& active) override { active_[std::string(active.behavior)] = active.copies(); }
 
   std::size_t kept_max_;
   bool errors_ = false;

@@ -35,7 +35,7 @@ class LineEcho final : public LineSink {
     lines_.push_back({line.severity, std::string(line.behavior), std::string(line.text)});
   }
 
-  void tell_active(const ActiveStates& active) override { active_[active.behavior] = active.states; }
+  void tell_active(const ActiveStates& active) override { active_[std::string(active.behavior)] = active.copies(); }
   // What the behavior told last.
   std::vector<std::string> active(const std::string& behavior) const {
     const auto found = active_.find(behavior);

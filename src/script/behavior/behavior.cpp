@@ -469,9 +469,11 @@ void Behavior::tell_active(std::int64_t time_ns) noexcept {
   const auto now = failed() ? std::span<const StateIndex>() : parts_->runner->active_states();
   if (std::ranges::equal(now, told_)) return;
   told_.assign(now.begin(), now.end());
-  ActiveStates told{time_ns, name(), active()};
-  told.states.resize(std::min(told.states.size(), ActiveStates::told_max));
-  parts_->log.active(told);
+  told_paths_.clear();
+  for (std::size_t i = 0; i < now.size() && told_paths_.size() < ActiveStates::told_max; ++i) {
+    if (now[i] != 0 && parts_->runner->is_leaf(i)) told_paths_.push_back(chart().states[now[i]].path);
+  }
+  parts_->log.active({time_ns, name(), told_paths_});
 }
 
 // After its chart was loaded. A state that is new has the number of the one around it.
@@ -490,6 +492,8 @@ void Behavior::number_states() {
     region_states_.push_back(found == states.end() ? no_state : static_cast<StateIndex>(found - states.begin()));
   }
   told_.clear();
+  told_.reserve(states.size());
+  told_paths_.reserve(ActiveStates::told_max);
 }
 
 std::uint32_t Behavior::number_of(StateIndex state) const noexcept { return numbers_[state]; }

@@ -20,6 +20,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "behavior_status.h"
@@ -128,10 +129,11 @@ class Behavior {
   std::unique_ptr<Parts> parts_;
   std::unique_ptr<Past> past_;
   BehaviorStatus status_;
-  std::vector<std::string> first_paths_;   // of the states of its first chart; status_ numbers them
-  std::vector<std::uint32_t> numbers_;     // by state of another chart: the state of the first one; empty: the same
-  std::vector<StateIndex> region_states_;  // in the order of status_.region_paths
-  std::vector<StateIndex> told_;           // active states as they were told last
+  std::vector<std::string> first_paths_;      // of the states of its first chart; status_ numbers them
+  std::vector<std::uint32_t> numbers_;        // by state of another chart: the state of the first one; empty: the same
+  std::vector<StateIndex> region_states_;     // in the order of status_.region_paths
+  std::vector<StateIndex> told_;              // active states as they were told last
+  std::vector<std::string_view> told_paths_;  // of the innermost ones
 };
 
 }  // namespace kadans

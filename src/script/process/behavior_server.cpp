@@ -30,7 +30,7 @@ void SpokenLines::tell_active(const ActiveStates& active) {
   line_.put(active_line);
   line_.put_string(active.behavior);
   line_.put(static_cast<std::uint32_t>(active.states.size()));
-  for (const std::string& state : active.states) line_.put_string(state);
+  for (const std::string_view state : active.states) line_.put_string(state);
   dropped_ += push() ? 0 : 1;
 }
 

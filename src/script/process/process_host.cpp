@@ -134,11 +134,14 @@ bool ChildAnswer::tell_line(std::span<const std::byte> line, BehaviorLog& log, s
     const Transition transition{time_ns, behavior, fields.take_string(), fields.take_string(), fields.take_string()};
     if (fields.ok()) log.transition(transition);
   } else if (kind == active_line) {
-    ActiveStates active{time_ns, behavior, {}};
+    std::array<std::string_view, ActiveStates::told_max> states;
     const auto count = fields.take<std::uint32_t>();
-    if (count > ActiveStates::told_max) return false;
-    for (std::uint32_t i = 0; i < count && fields.ok(); ++i) active.states.push_back(fields.take_string());
-    if (fields.ok()) log.active(active);
+    if (count > states.size()) return false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto path = fields.take_bytes(fields.take<std::uint32_t>());
+      states[i] = {reinterpret_cast<const char*>(path.data()), path.size()};
+    }
+    if (fields.ok()) log.active({time_ns, behavior, std::span(states).first(count)});
   } else {
     const std::string text = fields.take_string();
     if (kind > static_cast<std::uint8_t>(BehaviorLog::Severity::error)) return false;

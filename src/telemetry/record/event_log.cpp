@@ -49,7 +49,7 @@ void EventLog::tell(const Line& line) {
 void EventLog::tell_active(const ActiveStates& active) {
   begin(Event::Kind::active, active.time_ns, active.behavior);
   outgoing_.put(static_cast<std::uint32_t>(active.states.size()));
-  for (const std::string& state : active.states) outgoing_.put_string(state);
+  for (const std::string_view state : active.states) outgoing_.put_string(state);
   push();
 }
 
@@ -96,6 +96,14 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
     event.text = fields.take_string();
   }
   return true;
+}
+
+void Event::say_to(BehaviorLog& log) const {
+  if (kind == Kind::active) {
+    const std::vector<std::string_view> paths(states.begin(), states.end());
+    return log.active({transition.time_ns, transition.behavior, paths});
+  }
+  log.say(line());
 }
 
 std::string json_of(const Event& event) {

@@ -31,6 +31,7 @@ struct Event {
   Line line() const noexcept {
     return {transition.time_ns, severity, transition.behavior, text, kind == Kind::transition ? &transition : nullptr};
   }
+  void say_to(BehaviorLog& log) const;
 };
 
 // The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition, kadans.Active and
