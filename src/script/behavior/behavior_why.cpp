@@ -279,8 +279,8 @@ std::vector<TransitionReason> Behavior::why(const Snapshot& snapshot) const {
 
 namespace {
 
-std::string reason_text(const std::string& behavior, const TransitionReason& reason) {
-  std::string text = "\n  " + (reason.from.empty() ? behavior : reason.from) + " -> " + reason.to;
+std::string reason_text(const TransitionReason& reason) {
+  std::string text = "\n  " + (reason.from.empty() ? "any state" : reason.from) + " -> " + reason.to;
   text += (reason.label.empty() ? "" : "  " + reason.label) + ": ";
   text += reason.free ? "nothing holds it back" : reason.why;
   if (reason.guard.file.empty()) return text;
@@ -296,7 +296,7 @@ std::string reasons_text(const std::vector<BehaviorReasons>& behaviors) {
   for (const BehaviorReasons& behavior : behaviors) {
     text += (text.empty() ? "" : "\n") + behavior.name;
     if (behavior.transitions.empty()) text += ": no transition waits";
-    for (const TransitionReason& reason : behavior.transitions) text += reason_text(behavior.name, reason);
+    for (const TransitionReason& reason : behavior.transitions) text += reason_text(reason);
   }
   return text.empty() ? "nothing plays" : text;
 }

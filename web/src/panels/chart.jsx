@@ -26,7 +26,7 @@ function Edge({ edge, lit, show, hide }) {
   const { transition } = edge;
   const line = path_of(edge.points);
   const kind = `edge${lit ? ' lit' : ''}${transition?.always ? ' always' : ''}`;
-  const hands = transition ? { tabIndex: 0, onPointerEnter: (event) => show(transition, event), onPointerLeave: hide, onFocus: (event) => show(transition, event), onBlur: hide } : {};
+  const hands = transition ? { tabindex: 0, onPointerEnter: (event) => show(transition, event), onPointerLeave: hide, onFocus: (event) => show(transition, event), onBlur: hide } : {};
   return (
     <g class={kind} data-transition={transition?.number} {...hands}>
       <path d={line} marker-end={lit ? 'url(#tip-lit)' : 'url(#tip)'} />

@@ -30,7 +30,7 @@ export function TransitionCard({ session, behavior, active, transition, at }) {
   const place = { top: `${Math.min(at.bottom + 6, innerHeight - 190)}px`, left: `${Math.max(8, Math.min(at.x, innerWidth - 428))}px` };
   return (
     <div class="transition-card" role="tooltip" style={place}>
-      <p><b>{states[transition.source].path || behavior.name}</b> → <b>{states[transition.target].path}</b></p>
+      <p><b>{states[transition.source].path || 'any state'}</b> → <b>{states[transition.target].path}</b></p>
       <p>{transition.always && <i>always </i>}{transition.label} <small>{transition.line}</small></p>
       {guard && <><pre>{guard.text}</pre><small>{guard.file}:{guard.line}</small></>}
       {reason && <p class={reason.free ? 'free' : 'held'}>{reason.free ? 'nothing holds it back' : reason.why}</p>}
