@@ -105,7 +105,7 @@ TEST_CASE("a record has the active states as a topic and a signal for each regio
 TEST_CASE("the console tells what the transitions of the active states wait for") {
   const auto project = greeting("active_why");
   write(project / "config/scenarios/greet.json", scenario("state('act')"));
-  write(project / "lines.txt", ":run 0.35\n:status\n:why\n:run 0.5\n:why greet\n:why gret\n");
+  write(project / "lines.txt", ":run 0.35\n:status\n:why\n:run 0.5\n:why greet\nbehaviors.greet.active\n:why gret\n");
   const Outcome outcome = run("repl config/scenarios/greet.json <lines.txt", project);
   CHECK(has(outcome.out, "greet: in act.arm.lift, act.look.ahead"));
   CHECK(has(outcome.out, "act.arm.lift -> act.arm.wave  after 0.3 s: 0.1"));
@@ -113,5 +113,6 @@ TEST_CASE("the console tells what the transitions of the active states wait for"
   CHECK(has(outcome.out, "act.arm.wave -> act.arm.lift  [when]: the guard gives false"));
   CHECK(has(outcome.out, "behaviors/tulip/greet.lua:8  { when = function(s) return s.base.height_m > 5 end"));
   CHECK(has(outcome.out, "s.base.height_m = "));
+  CHECK(has(outcome.out, "{ \"act.arm.wave\", \"act.look.ahead\" }"));
   CHECK(has(outcome.err, "did you mean 'greet'?"));
 }

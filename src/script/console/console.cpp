@@ -19,6 +19,7 @@ namespace kadans {
 
 struct ConsoleBehavior {
   std::string name, state, outcome, error;
+  std::vector<std::string> active;
   std::vector<ScriptParameter> parameters;
 };
 
@@ -134,7 +135,7 @@ void push_new_content(lua_State* state, Console::Parts& parts) {
   lua_settop(state, content);
 }
 
-// [-0 +1] { name = { state =, outcome =, error =, parameters = } }
+// [-0 +1] { name = { state =, active =, outcome =, error =, parameters = } }
 void push_behaviors(lua_State* state, const std::vector<ConsoleBehavior>& behaviors) {
   const auto text = [&](const char* name, const std::string& value) {
     lua_pushlstring(state, value.data(), value.size());
@@ -146,6 +147,12 @@ void push_behaviors(lua_State* state, const std::vector<ConsoleBehavior>& behavi
     text("state", behavior.state);
     text("outcome", behavior.outcome);
     text("error", behavior.error);
+    lua_createtable(state, static_cast<int>(behavior.active.size()), 0);
+    for (std::size_t i = 0; i < behavior.active.size(); ++i) {
+      lua_pushlstring(state, behavior.active[i].data(), behavior.active[i].size());
+      lua_rawseti(state, -2, static_cast<int>(i + 1));
+    }
+    lua_setfield(state, -2, "active");
     lua_newtable(state);
     for (const ScriptParameter& parameter : behavior.parameters) {
       lua_pushnumber(state, parameter.value);
@@ -391,7 +398,7 @@ std::vector<ConsoleBehavior> behaviors_of(const ScriptHost& host) {
   for (std::size_t i = 0; i < host.size(); ++i) {
     const Behavior& behavior = host.behavior(i);
     all.push_back({behavior.name(), behavior.state(), behavior.outcome(),
-                   behavior.failed() ? behavior.error().text() : "", behavior.parameters()});
+                   behavior.failed() ? behavior.error().text() : "", behavior.active(), behavior.parameters()});
   }
   return all;
 }
@@ -423,7 +430,7 @@ constexpr const char* help_head =
     "A line is Lua; what it gives is printed. There is\n"
     "  s                       the snapshot that behaviors see: s.base.pitch_rad, s.joints.l_knee.position_rad\n"
     "  signals, parameters     by name: signals.plant.base.height_m, parameters.posture.l_knee.kp_Nm_per_rad\n"
-    "  behaviors               by name: behaviors.squat.state, .outcome, .error, .parameters\n"
+    "  behaviors               by name: behaviors.squat.state, .active, .outcome, .error, .parameters\n"
     "  m, k                    control objects, after :write; k.pose(\"stand\")\n"
     "Commands:";
 

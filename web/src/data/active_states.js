@@ -48,6 +48,7 @@ export function regions_of(chart, paths) {
   const regions = new Map();
   for (const path of paths) {
     let inner = by_path.get(path) ?? null;
+    if (inner === null) regions.set('', path); // of another version of the chart
     for (let i = inner; i !== null; i = states[i].parent) {
       if (states[i].kind !== 'region') continue;
       regions.set(states[i].path, states[inner].path);
