@@ -32,7 +32,8 @@ export function TransitionCard({ session, behavior, active, transition, at }) {
     <div class="transition-card" role="tooltip" style={place}>
       <p><b>{states[transition.source].path || 'any state'}</b> → <b>{states[transition.target].path}</b></p>
       <p>{transition.always && <i>always </i>}{transition.label} <small>{transition.line}</small></p>
-      {guard && <><pre>{guard.text}</pre><small>{guard.file}:{guard.line}</small></>}
+      {guard && <pre>{guard.text}</pre>}
+      {guard && `${guard.file}:${guard.line}` !== transition.line && <small>{guard.file}:{guard.line}</small>}
       {reason && <p class={reason.free ? 'free' : 'held'}>{reason.free ? 'nothing holds it back' : reason.why}</p>}
       {reason?.saw && <p><code>{reason.saw}</code></p>}
       {!waits && <p class="muted">Its state is not active.</p>}
