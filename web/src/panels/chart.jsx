@@ -26,7 +26,7 @@ function Edge({ edge, lit, show, hide }) {
   const { transition } = edge;
   const line = path_of(edge.points);
   const kind = `edge${lit ? ' lit' : ''}${transition?.always ? ' always' : ''}`;
-  const hands = transition ? { tabindex: 0, onPointerEnter: (event) => show(transition, event), onPointerLeave: hide, onFocus: (event) => show(transition, event), onBlur: hide } : {};
+  const hands = transition ? { tabindex: -1, onPointerEnter: (event) => show(transition, event), onPointerLeave: hide, onFocus: (event) => show(transition, event), onBlur: hide } : {};
   return (
     <g class={kind} data-transition={transition?.number} {...hands}>
       <path d={line} marker-end={lit ? 'url(#tip-lit)' : 'url(#tip)'} />
@@ -121,7 +121,11 @@ export function Chart({ session, behavior }) {
     if (!event.currentTarget.hasPointerCapture(event.pointerId)) event.currentTarget.setPointerCapture(event.pointerId);
     move(event.movementX, event.movementY);
   };
-  const keys = { '+': () => zoom(1.25), '-': () => zoom(0.8), 0: fit, ArrowLeft: () => move(40, 0), ArrowRight: () => move(-40, 0), ArrowUp: () => move(0, 40), ArrowDown: () => move(0, -40) };
+  const step = (by) => {
+    const edges = [...box.current.querySelectorAll('.edge[tabindex]')];
+    edges.at((edges.indexOf(document.activeElement) + by) % edges.length)?.focus({ preventScroll: true });
+  };
+  const keys = { n: () => step(1), p: () => step(-1), '+': () => zoom(1.25), '-': () => zoom(0.8), 0: fit, ArrowLeft: () => move(40, 0), ArrowRight: () => move(-40, 0), ArrowUp: () => move(0, 40), ArrowDown: () => move(0, -40) };
   const press = (event) => {
     if (event.key === 'Escape' && wide) set_wide(false);
     else if (keys[event.key] && !event.ctrlKey && !event.metaKey) keys[event.key](), event.preventDefault();
