@@ -28,9 +28,10 @@ std::filesystem::path greeting(const std::string& name) {
 
 std::string scenario(const std::string& that) {
   return "{\n  \"name\": \"greet\", \"robot\": \"../tulip/robot.json\", \"plant\": \"ideal\", \"duration_s\": 1,\n"
-         "  \"behaviors\": [\"../../behaviors/tulip/greet.lua\"],\n"
-         "  \"checks\": [\n    { \"name\": \"waves\", \"eventually\": { \"that\": \"" +
-         that + "\" } } ]\n}\n";
+         "  \"behaviors\": [\"greet\"],\n"
+         "  \"checks\": [{ \"name\": \"waves\", \"kind\": \"eventually\",\n"
+         "    \"that\": \"" +
+         that + "\" }]\n}\n";
 }
 
 Outcome checked(const std::filesystem::path& project, const std::string& that) {
@@ -84,9 +85,9 @@ TEST_CASE("a misspelt state of a check is refused with file, line, column and wh
   const auto project = greeting("active_check_wrong");
   const Outcome plain = checked(project, "time_s > 0 and state('act.arm.waev')");
   CHECK(plain.exit_code == 2);
-  CHECK(has(plain.err, "greet.json:5:70: no behavior has the state 'act.arm.waev', did you mean 'act.arm.wave'?"));
+  CHECK(has(plain.err, "greet.json:5:36: no behavior has the state 'act.arm.waev', did you mean 'act.arm.wave'?"));
   const Outcome escaped = checked(project, "state(\\\"wait\\\") and state(\\\"act.arm.waev\\\")");
-  CHECK(has(escaped.err, "greet.json:5:75: no behavior has"));
+  CHECK(has(escaped.err, "greet.json:5:42: no behavior has"));
   CHECK(has(run("check config/scenarios/greet.json", project).err, "did you mean 'act.arm.wave'?"));
 }
 
