@@ -77,8 +77,8 @@ TEST_CASE("a check asks for states of any region, and its report names all that 
   const std::string text = run("sim config/scenarios/greet.json --no-record", project).out;
   CHECK(has(text, "at the end"));
   CHECK(has(text, "greet in act.arm.wave, act.look.ahead"));
-  (void)run("sim config/scenarios/greet.json --no-record --report page.html", project);
-  CHECK(has(read(project / "page.html"), "At the end greet was in act.arm.wave, act.look.ahead."));
+  (void)run("sim config/scenarios/greet.json --no-record --report pages", project);
+  CHECK(has(read(project / "pages/greet-1.html"), "At the end greet was in act.arm.wave, act.look.ahead."));
 }
 
 TEST_CASE("a misspelt state of a check is refused with file, line, column and what was meant") {
