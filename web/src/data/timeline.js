@@ -4,10 +4,17 @@ import { regions_of } from './active_states.js';
 
 const lanes_max = 12; // of one behavior
 
-function lanes_of(entries, chart) {
+// Where a behavior ended: the final state that its last transition led to.
+function end_of(session, behavior, chart, t) {
+  const last = session.last_transitions(t).get(behavior);
+  const final = last && chart?.states.some((state) => state.path === last.to && state.kind === 'final');
+  return new Map(final ? [['', last.to]] : []);
+}
+
+function lanes_of(session, behavior, entries, chart) {
   const lanes = new Map(); // region -> bands
   for (const { t, states } of entries) {
-    const now = chart ? regions_of(chart, states) : new Map(states.length > 0 ? [['', states.join(', ')]] : []);
+    const now = states.length === 0 ? end_of(session, behavior, chart, t) : chart ? regions_of(chart, states) : new Map([['', states.join(', ')]]);
     for (const [region, bands] of lanes) {
       const last = bands.at(-1);
       if (last.to === null && now.get(region) !== last.state) last.to = t;
@@ -32,7 +39,7 @@ function lane_of_transitions(session, behavior) {
 
 export function timeline(session) {
   const charts = new Map((session.description?.behaviors ?? []).map((behavior) => [behavior.name, behavior.chart]));
-  const rows = [...session.active].map(([behavior, entries]) => ({ behavior, lanes: lanes_of(entries, charts.get(behavior)) }));
+  const rows = [...session.active].map(([behavior, entries]) => ({ behavior, lanes: lanes_of(session, behavior, entries, charts.get(behavior)) }));
   const named = new Set(session.transitions.map((entry) => entry.behavior));
   for (const behavior of session.active.size === 0 ? named : []) rows.push({ behavior, lanes: lane_of_transitions(session, behavior) });
   return rows.filter((row) => row.lanes.length > 0);
