@@ -7,7 +7,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,6 +42,16 @@ struct ActiveStates {
   std::span<const std::string_view> states;
 
   std::vector<std::string> copies() const { return {states.begin(), states.end()}; }
+};
+// What is active now: the states by behavior, of at most behaviors_max of them; none that is over.
+class ActiveNow {
+ public:
+  static constexpr std::size_t behaviors_max = 64;
+  void take(const ActiveStates& told);
+  const std::map<std::string, std::vector<std::string>, std::less<>>& by_behavior() const noexcept { return all_; }
+
+ private:
+  std::map<std::string, std::vector<std::string>, std::less<>> all_;
 };
 // "act.arm.wave, act.leg.step"
 std::string listed(const std::vector<std::string>& states);

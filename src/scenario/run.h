@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -36,19 +35,18 @@ class RunLog final : public BehaviorLog, private LineSink {
 
   const std::vector<Transition>& transitions() const noexcept { return transitions_; }
   const std::vector<LogLine>& lines() const noexcept { return lines_; }
-  // The active states of each behavior, as they were told last; none: it is over.
-  const std::map<std::string, std::vector<std::string>>& active() const noexcept { return active_; }
+  const ActiveNow& active() const noexcept { return active_; }
   bool has_errors() const noexcept { return errors_; }  // also when their lines are no longer kept
 
  private:
   void tell(const Line& line) override;
-  void tell_active(const ActiveStates& active) override { active_[std::string(active.behavior)] = active.copies(); }
+  void tell_active(const ActiveStates& active) override { active_.take(active); }
 
   std::size_t kept_max_;
   bool errors_ = false;
   std::vector<Transition> transitions_;
   std::vector<LogLine> lines_;
-  std::map<std::string, std::vector<std::string>> active_;  // by behavior
+  ActiveNow active_;
 };
 
 struct RunParts {

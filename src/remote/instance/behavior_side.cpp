@@ -332,17 +332,19 @@ void BehaviorSide::tell_why(const std::string& name, Answer& answer) {
 // What a process tells of its behaviors while it plays.
 void BehaviorSide::report_process(Answer& answer) const {
   const ProcessHost& process = *p_.process;
+  const auto& active = p_.echo.active().by_behavior();
   answer.paused = process.paused();
-  for (std::size_t i = 0; i < process.names().size(); ++i) {
-    answer.behaviors.push_back(
-        {.name = process.names()[i],
-         .outcome = "",
-         .error = process.down() ? "its process stays down" : "",
-         .active = process.down() ? std::vector<std::string>() : p_.echo.active(process.names()[i]),
-         .lane = 0,
-         .over = process.down() || process.finished(),
-         .chart = 0,
-         .parameters = {}});
+  for (const std::string& name : process.names()) {
+    const auto told = active.find(name);
+    const bool silent = process.down() || told == active.end();
+    answer.behaviors.push_back({.name = name,
+                                .outcome = "",
+                                .error = process.down() ? "its process stays down" : "",
+                                .active = silent ? std::vector<std::string>() : told->second,
+                                .lane = 0,
+                                .over = process.down() || process.finished(),
+                                .chart = 0,
+                                .parameters = {}});
   }
 }
 

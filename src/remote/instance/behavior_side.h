@@ -35,12 +35,8 @@ class LineEcho final : public LineSink {
     lines_.push_back({line.severity, std::string(line.behavior), std::string(line.text)});
   }
 
-  void tell_active(const ActiveStates& active) override { active_[std::string(active.behavior)] = active.copies(); }
-  // What the behavior told last.
-  std::vector<std::string> active(const std::string& behavior) const {
-    const auto found = active_.find(behavior);
-    return found == active_.end() ? std::vector<std::string>() : found->second;
-  }
+  void tell_active(const ActiveStates& active) override { active_.take(active); }
+  const ActiveNow& active() const noexcept { return active_; }
 
   void listen() {
     if (!listens_) lines_.clear();
@@ -56,7 +52,7 @@ class LineEcho final : public LineSink {
   static constexpr std::size_t lines_max = 64;
   bool listens_ = false;
   std::vector<Heard> lines_;
-  std::map<std::string, std::vector<std::string>> active_;  // by behavior
+  ActiveNow active_;
 };
 
 class BehaviorSide final : public BesideTick {
