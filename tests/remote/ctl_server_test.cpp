@@ -211,29 +211,6 @@ TEST_CASE("estop damps and then switches off, orders are refused with the reason
   CHECK(live.ask({{"verb", "play"}, {"list", "nod"}})["ok"] == true);
 }
 
-TEST_CASE("why tells what the transitions of a behavior wait for, and an unknown behavior is refused") {
-  LiveInstance live;
-  live.start();
-  CHECK(live.ask({{"verb", "why"}})["text"] == "nothing plays");
-  (void)live.ask({{"verb", "play"}, {"list", "wait"}});
-  CHECK(live.ask({{"verb", "why"}}, Role::read)["text"] == "wait: no transition waits");
-  live.project.write(
-      "behaviors/bench/wait.lua",
-      "local k = require 'kadans'\nlocal P = k.params { level = { 1, min = 0, max = 5, unit = 'm', doc = 'a level' } }\n"
-      "return k.behavior 'wait' { initial = 'a', k.state 'a' { during = function() local x = P.level end,\n"
-      "  { when = function(s) return s.time_s < 0 end, to = 'b' } }, k.final 'b' {} }\n");
-  const Json before = live.ask({{"verb", "why"}});
-  CHECK(before["ok"] == false);
-  CHECK(says(before, "reload it first"));
-  (void)live.ask({{"verb", "reload"}});
-  const Json answer = live.ask({{"verb", "why"}, {"behavior", "wait"}});
-  REQUIRE(answer["reasons"].size() == 1);
-  CHECK(answer["reasons"][0]["why"] == "the guard gives false");
-  CHECK(answer["reasons"][0]["guard"]["line"] == 4);
-  CHECK(says(answer, "s.time_s = "));
-  CHECK(says(live.ask({{"verb", "why"}, {"behavior", "wiat"}}), "did you mean 'wait'"));
-}
-
 TEST_CASE("estop and status work although the behavior thread is dead, everything else says why not") {
   LiveInstance live({.answer_max_ns = 50'000'000, .report_max_ns = 50'000'000});
   live.start(false);
