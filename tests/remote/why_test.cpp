@@ -12,7 +12,7 @@ TEST_CASE("why tells what the transitions of a behavior wait for, and an unknown
   live.start();
   CHECK(live.ask({{"verb", "why"}})["text"] == "nothing plays");
   (void)live.ask({{"verb", "play"}, {"list", "wait"}});
-  CHECK(live.ask({{"verb", "why"}}, Role::read)["text"] == "wait: no transition waits");
+  CHECK(live.ask({{"verb", "why"}})["text"] == "wait: no transition waits");
   live.project.write(
       "behaviors/bench/wait.lua",
       "local k = require 'kadans'\nlocal P = k.params { level = { 1, min = 0, max = 5, unit = 'm', doc = 'a level' } "
@@ -29,4 +29,5 @@ TEST_CASE("why tells what the transitions of a behavior wait for, and an unknown
   CHECK(answer["reasons"][0]["guard"]["line"] == 4);
   CHECK(has(answer, "s.time_s = "));
   CHECK(has(live.ask({{"verb", "why"}, {"behavior", "wiat"}}), "did you mean 'wait'"));
+  CHECK(live.ask({{"verb", "why"}}, Role::read)["ok"] == false);  // it costs the behavior thread time
 }

@@ -141,7 +141,7 @@ inline constexpr OrderInfo orders[] = {
     {"why",
      "why",
      all,
-     Role::read,
+     Role::operate,
      "Why the transitions of the active states were not taken: events, times, guards",
      Is::why,
      {{{.name = "behavior",
