@@ -68,6 +68,10 @@ class NamedLog final : public BehaviorLog, private LineSink {
     }
     log_.say(named);
   }
+  void tell_active(const ActiveStates& active) override {
+    const std::string behavior = prefix_ + std::string(active.behavior);
+    log_.active({active.time_ns, behavior, active.states});
+  }
 
   std::string prefix_;
   BehaviorLog& log_;

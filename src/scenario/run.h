@@ -36,15 +36,18 @@ class RunLog final : public BehaviorLog, private LineSink {
 
   const std::vector<Transition>& transitions() const noexcept { return transitions_; }
   const std::vector<LogLine>& lines() const noexcept { return lines_; }
+  const ActiveNow& active() const noexcept { return active_; }
   bool has_errors() const noexcept { return errors_; }  // also when their lines are no longer kept
 
  private:
   void tell(const Line& line) override;
+  void tell_active(const ActiveStates& active) override { active_.take(active); }
 
   std::size_t kept_max_;
   bool errors_ = false;
   std::vector<Transition> transitions_;
   std::vector<LogLine> lines_;
+  ActiveNow active_;
 };
 
 struct RunParts {

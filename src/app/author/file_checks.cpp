@@ -171,7 +171,7 @@ std::string FileChecks::check_scenario(const fs::path& file) {
   scenario.plugins = gate_;
   RunLog log;
   const Assembly assembly(scenario, scenario.seed, log);
-  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
+  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file, assembly.signal_states());
   std::vector<InputProblem> problems = problems_of_named(scenario, assembly.catalog());
   for (const auto& robot : assembly.others()) {
     std::ranges::move(problems_of_named(robot->scenario(), robot->catalog()), std::back_inserter(problems));

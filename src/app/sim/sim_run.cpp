@@ -51,9 +51,11 @@ SimRun::SimRun(const SimOptions& options, const RunChoices& choices, std::option
       seed_(choices.seed.value_or(scenario_.seed)),
       duration_s_(choices.duration_s.value_or(scenario_.duration_s)),
       assembly_(scenario_, seed_, log_),
-      checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file),
+      checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file,
+              assembly_.signal_states()),
       metrics_(assembly_.catalog().signals,
-               options.metrics.empty() ? std::vector<MetricConfig>() : read_metrics(options.metrics), options.metrics),
+               options.metrics.empty() ? std::vector<MetricConfig>() : read_metrics(options.metrics), options.metrics,
+               assembly_.signal_states()),
       height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
       record_plan_(record_plan(assembly_, options.recording, false)),
       continuation_(std::move(continuation)) {

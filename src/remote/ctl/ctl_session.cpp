@@ -170,6 +170,9 @@ std::string CtlRequests::told(const CtlSession& session, const OrderRequest& req
   } else if (request.is("complete")) {
     json["begin"] = answer.begin;
     json["words"] = answer.words;
+  } else if (request.is("why")) {
+    json["text"] = answer.text;
+    json["reasons"] = reasons_json(answer);
   } else if (request.is("line")) {
     json.update({{"text", answer.text},
                  {"incomplete", answer.incomplete},

@@ -141,6 +141,7 @@ class Instance final : public LineSink {
   // Supervisor.
   void publish(const InstanceStatus& status) noexcept;
   void tell(const Line& line) override;
+  void tell_active(const ActiveStates& active) override;
   void tell(const Fault& fault) noexcept;
 
  private:

@@ -55,6 +55,9 @@ class RecordSide final : public Task, public LineSink {
   void tell(const Line& line) override {
     if (LineSink* events = events_.load(std::memory_order_acquire); events != nullptr) events->tell(line);
   }
+  void tell_active(const ActiveStates& active) override {
+    if (LineSink* events = events_.load(std::memory_order_acquire); events != nullptr) events->tell_active(active);
+  }
 
   // Supervisor.
   void tell(const Fault& fault) noexcept {

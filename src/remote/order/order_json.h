@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 std::string refusal(const std::string& why);
 
 Json behaviors_json(const Answer& report);
+Json reasons_json(const Answer& answer);
 Json status_json(const Instance& instance, const InstanceStatus& status);
 // {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
 Json drives_json(const PowerStatus& power, const RobotModel& model);

@@ -55,6 +55,7 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
   for (const ViewerChannel& channel : viewers_.channels()) add_viewer(channel);
   log_ = add_json("/log", "foxglove.Log", log_schema, true);
   transitions_ = add_json("/transitions", "kadans.Transition", transition_schema, true);
+  active_ = add_json("/active", "kadans.Active", active_schema, true);
   faults_ = add_json("/faults", "kadans.Fault", fault_schema, true);
   timing_ = add_json("/timing", "kadans.Timing", timing_schema, false);
   drives_ = add_json("/drives", "kadans.Drives", drives_schema, false);
@@ -110,7 +111,10 @@ void LiveChannels::take(const LatestRow::View& row) {
 }
 
 void LiveChannels::take(const Event& event) {
-  put_json(event.kind == Event::Kind::transition ? transitions_ : log_, event.transition.time_ns, json_of(event));
+  const std::size_t channel = event.kind == Event::Kind::transition ? transitions_
+                              : event.kind == Event::Kind::active   ? active_
+                                                                    : log_;
+  put_json(channel, event.transition.time_ns, json_of(event));
 }
 
 void LiveChannels::take(const Fault& fault, std::int64_t time_ns) {

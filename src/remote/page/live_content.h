@@ -71,7 +71,7 @@ class LiveChannels {
   std::map<std::string, std::string> signals_;
   ViewerSubjects subjects_;
   ViewerMessages viewers_;
-  std::size_t first_viewer_, log_, transitions_, faults_, timing_, drives_, described_;
+  std::size_t first_viewer_, log_, transitions_, active_, faults_, timing_, drives_, described_;
   std::string description_, drives_told_;
   ByteWriter message_;
   std::vector<std::byte> payload_;

@@ -72,9 +72,9 @@ class Check {
 class Checks {
  public:
   // Looks the signals up and compiles the conditions. Throws InputError with all mistakes. `file` is the file from
-  // which the checks were read, for messages. The table must outlive this object.
+  // which the checks were read, for messages. The table and the states must outlive this object.
   explicit Checks(const SignalTable& signals, const std::vector<ScenarioCheck>& checks = {},
-                  const std::string& file = {});
+                  const std::string& file = {}, std::span<const SignalState> states = {});
 
   // To be called after each control tick.
   void update(double time_s, std::span<const double> row) noexcept;

@@ -322,6 +322,12 @@ bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
 Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
     : parts_(std::make_unique<Parts>(settings, catalog, log)), past_(std::make_unique<Past>()) {
   load_behavior(*parts_);
+  for (const Chart::State& state : chart().states) {
+    first_paths_.push_back(state.path);
+    const bool shown = state.kind == Chart::Kind::region && BehaviorStatus::is_region_path(state.path);
+    if (shown && status_.region_paths.size() < BehaviorStatus::regions_max) status_.region_paths.push_back(state.path);
+  }
+  number_states();
   publish_status();
 }
 
@@ -356,6 +362,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
     parts.error = parts.lua->error();
     parts.tell_dropped(true);
     if (parts.error.breach == ScriptBreach::none) stop(snapshot, commands);
+    tell_active(snapshot.time_ns);
     return false;
   }
   if (!bindings.commit()) {
@@ -365,6 +372,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   }
   parts.tell_dropped(finished());
   publish_status();
+  tell_active(snapshot.time_ns);
   return !finished();
 }
 
@@ -379,7 +387,12 @@ void Behavior::publish_status() noexcept {
   parts.lua->collect();
   store(status_.gc_pause_ns, wall ? static_cast<std::uint64_t>(WallClock{}.now_ns() - began_ns) : 0);
   store(status_.heap_bytes, parts.lua->used_bytes());
-  store(status_.state, parts.runner->innermost());
+  store(status_.state, number_of(parts.runner->innermost()));
+  for (std::size_t i = 0; i < region_states_.size(); ++i) {
+    const StateIndex region = region_states_[i];
+    const bool active = region != no_state && parts.runner->active(region);
+    store(status_.regions[i], active ? number_of(parts.runner->innermost(region)) : 0);
+  }
 }
 
 void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -394,6 +407,8 @@ void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept 
     parts.bindings.begin(commands, snapshot, snapshot.time_ns);
     if (parts.lua->call(stop_chart, &parts, left, left_ns)) {
       (void)parts.bindings.commit();
+      publish_status();
+      tell_active(snapshot.time_ns);
       return;
     }
     commands.discard();
@@ -443,6 +458,50 @@ std::string Behavior::outcome() const {
 }
 
 std::string Behavior::state() const { return parts_->chart.states[parts_->runner->innermost()].path; }
+
+std::vector<std::string> Behavior::active() const {
+  std::vector<std::string> paths;
+  const auto active = parts_->runner->active_states();
+  for (std::size_t i = 0; i < active.size() && !failed(); ++i) {
+    if (active[i] != 0 && parts_->runner->is_leaf(i)) paths.push_back(chart().states[active[i]].path);
+  }
+  return paths;
+}
+
+bool Behavior::active(StateIndex state) const noexcept { return !failed() && parts_->runner->active(state); }
+
+void Behavior::tell_active(std::int64_t time_ns) noexcept {
+  const auto now = failed() ? std::span<const StateIndex>() : parts_->runner->active_states();
+  if (std::ranges::equal(now, told_)) return;
+  told_.assign(now.begin(), now.end());
+  told_paths_.clear();
+  for (std::size_t i = 0; i < now.size() && told_paths_.size() < ActiveStates::told_max; ++i) {
+    if (now[i] != 0 && parts_->runner->is_leaf(i)) told_paths_.push_back(chart().states[now[i]].path);
+  }
+  parts_->log.active({time_ns, name(), told_paths_});
+}
+
+// After its chart was loaded. A state that is new has the number of the one around it.
+void Behavior::number_states() {
+  const std::vector<Chart::State>& states = chart().states;
+  numbers_.clear();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const auto first = std::ranges::find(first_paths_, states[i].path);
+    const std::uint32_t around = i == 0 ? 0 : numbers_[states[i].parent];
+    numbers_.push_back(first == first_paths_.end() ? around : static_cast<std::uint32_t>(first - first_paths_.begin()));
+  }
+  region_states_.clear();
+  for (const std::string& path : status_.region_paths) {
+    const auto is_it = [&](const Chart::State& s) { return s.kind == Chart::Kind::region && s.path == path; };
+    const auto found = std::ranges::find_if(states, is_it);
+    region_states_.push_back(found == states.end() ? no_state : static_cast<StateIndex>(found - states.begin()));
+  }
+  told_.clear();
+  told_.reserve(states.size());
+  told_paths_.reserve(ActiveStates::told_max);
+}
+
+std::uint32_t Behavior::number_of(StateIndex state) const noexcept { return numbers_[state]; }
 
 SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets; }
 
@@ -505,14 +564,27 @@ void BehaviorStatus::declare(SignalTable& signals, const std::string& name) cons
   signals.add({prefix + "gc_pause_ns", "ns", "Pause of the collector after its last tick; 0 in virtual time."},
               &gc_pause_ns);
   signals.add({prefix + "state", "", "Number of its innermost active state; 0: the behavior itself."}, &state);
+  for (std::size_t i = 0; i < region_paths.size(); ++i) {
+    signals.add({prefix + "region." + region_paths[i], "", "Number of the region's innermost active state; 0: none."},
+                &regions[i]);
+  }
   signals.add({prefix + "reloads", "", "New versions taken since the start."}, &reloads);
 }
 
-void BehaviorStatus::declare_numbered(SignalTable& signals, const std::string& name) const {
+bool BehaviorStatus::is_region_path(std::string_view path) noexcept {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
+  };
+  return !path.empty() && path.size() <= region_path_max && path.front() != '.' && path.back() != '.' &&
+         path.find("..") == std::string_view::npos && std::ranges::all_of(path, fits);
+}
+
+std::string BehaviorStatus::declare_numbered(SignalTable& signals, const std::string& name) const {
   std::string free = name;
   for (int number = 2; signals.find("behavior." + free + ".state"); ++number)
     free = name + "_" + std::to_string(number);
   declare(signals, free);
+  return free;
 }
 
 }  // namespace kadans

@@ -497,6 +497,7 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
     past_->parts = std::move(parts_);
   }
   parts_ = std::move(fresh);
+  number_states();
   status_.reloads.fetch_add(1, std::memory_order_relaxed);
   parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(),
                       "reloaded " + parts_->lua->sources().front().chunk);
@@ -515,6 +516,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
   old.bindings.go_on_after(failing.bindings);
   old.want_sets();
   parts_ = std::move(past_->parts);
+  number_states();
   parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "new version taken back, the old one goes on: " + error.text());
   return true;

@@ -351,8 +351,8 @@ void ChartRunner::report(std::uint16_t number) noexcept {
   sink_.transitioned(chart_.states[from].path, chart_.states[transition.target].path, transition.why);
 }
 
-StateIndex ChartRunner::innermost() const noexcept {
-  StateIndex at = 0;
+StateIndex ChartRunner::innermost(StateIndex around) const noexcept {
+  StateIndex at = around;
   for (const StateIndex index : active_) {
     if (index != 0 && chart_.states[index].parent == at) at = index;
   }

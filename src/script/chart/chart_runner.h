@@ -22,6 +22,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "chart.h"
@@ -85,6 +86,8 @@ class ChartRunner {
   [[nodiscard]] bool restore(ByteReader& bytes);
   void start_runs(lua_State* state);
   void be_at(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
+  // [-0 +1] The value of the transition's `when`. Raises what it raises.
+  void call_guard(lua_State* state, std::uint16_t transition);
   // Evaluates the guards of all active states to find errors that they raise.
   void try_guards(lua_State* state);
   // Leaves these states, `exit` innermost first.
@@ -100,8 +103,12 @@ class ChartRunner {
   bool finished() const noexcept { return finished_; }
   EventId outcome() const noexcept { return run_[0].outcome; }
   bool active(StateIndex state) const noexcept { return run_[state].active; }
-  StateIndex innermost() const noexcept;  // active state, the first when there are several; 0 before the first tick
+  std::span<const StateIndex> active_states() const noexcept { return active_; }  // in document order
+  bool is_leaf(std::size_t position) const noexcept;                              // among them: none inside is active
+  // The active state in `around`, the first when there are several; `around` itself when none in it is.
+  StateIndex innermost(StateIndex around = 0) const noexcept;
   double state_time_s(StateIndex state) const noexcept;
+  bool run_done(StateIndex state) const noexcept { return run_[state].run_done; }
   // The control sets that its innermost active states run on, those that are being entered with them or alone.
   enum class Asking : std::uint8_t { all, entering };
   SetMask sets_asked(Asking asking = Asking::all) const noexcept;
@@ -137,7 +144,6 @@ class ChartRunner {
   std::uint16_t select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf, const WaitingEvent* event);
   std::uint16_t select_passed_over(lua_State* state, StepMeter& meter, StateIndex outer);
   void note_passed_over(lua_State* state, StepMeter& meter);
-  bool is_leaf(std::size_t position) const noexcept;
   bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
   bool happened(const Chart::Transition& transition, const WaitingEvent* event) const noexcept;
   bool due(lua_State* state, const Chart::Transition& transition) const noexcept;

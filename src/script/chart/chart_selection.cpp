@@ -14,17 +14,22 @@ constexpr std::size_t transition_steps = 6, selected_steps = 6;  // to look at o
 
 }  // namespace
 
+void ChartRunner::call_guard(lua_State* state, std::uint16_t number) {
+  const Chart::Transition& transition = chart_.transitions[number];
+  set_time(state, transition.source);
+  core_of(state).called = transition.when;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, transition.when);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[transition.source].machine].handle);
+  lua_call(state, 2, 1);
+}
+
 bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
   const Chart::Transition& transition = chart_.transitions[number];
   if (transition.when == Chart::no_function) return true;
   Guard& guard = guards_[number];
   if (guard.look != look_) {  // several innermost states may ask
-    set_time(state, transition.source);
-    core_of(state).called = transition.when;
-    lua_rawgeti(state, LUA_REGISTRYINDEX, transition.when);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[transition.source].machine].handle);
-    lua_call(state, 2, 1);
+    call_guard(state, number);
     guard = {look_, lua_toboolean(state, -1) != 0};
     lua_pop(state, 1);
   }

@@ -21,6 +21,20 @@ bool SpokenLines::push(const Line& line) {
   } else {
     line_.put_string(line.text);
   }
+  return push();
+}
+
+void SpokenLines::tell_active(const ActiveStates& active) {
+  line_.clear();
+  line_.put(std::uint32_t{0});
+  line_.put(active_line);
+  line_.put_string(active.behavior);
+  line_.put(static_cast<std::uint32_t>(active.states.size()));
+  for (const std::string_view state : active.states) line_.put_string(state);
+  dropped_ += push() ? 0 : 1;
+}
+
+bool SpokenLines::push() {
   line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
   return link_.lines.try_push(line_.bytes());
 }
@@ -44,6 +58,8 @@ BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& h
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
     const std::string& name = host_.behavior(i).name();
     std::copy_n(name.begin(), std::min(name.size(), BehaviorLink::name_bytes - 1), link_.ready.names[i].begin());
+    const std::vector<std::string>& regions = host_.behavior(i).status().region_paths;
+    for (std::size_t r = 0; r < regions.size(); ++r) std::ranges::copy(regions[r], link_.ready.regions[i][r].begin());
   }
   link_.ready.fingerprint = fingerprint_of(catalog);
 }
@@ -93,6 +109,7 @@ void BehaviorServer::tell_status() {
     const BehaviorStatus& status = host_.behavior(i).status();
     link_.answer.status[i] = {number(status.heap_bytes), number(status.instructions), number(status.gc_pause_ns),
                               number(status.state), number(status.reloads)};
+    for (std::size_t r = 0; r < status.region_paths.size(); ++r) link_.answer.regions[i][r] = number(status.regions[r]);
   }
 }
 

@@ -21,9 +21,11 @@ class SpokenLines final : public LineSink {
 
   void tell(const Line& line) override;
   void tell_dropped(std::int64_t time_ns);
+  void tell_active(const ActiveStates& active) override;
 
  private:
   bool push(const Line& line);
+  bool push();  // line_, with its size
 
   BehaviorLink& link_;
   ByteWriter line_;

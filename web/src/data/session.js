@@ -3,7 +3,7 @@
 import { Topic } from './topic.js';
 
 const events_max = 5000;
-const json_topics = new Set(['/description', '/transitions', '/log', '/faults', '/timing', '/drives', '/parameters']);
+const json_topics = new Set(['/description', '/transitions', '/active', '/log', '/faults', '/timing', '/drives', '/parameters']);
 const text_of = new TextDecoder();
 
 const robot_topic = '/robot_description'; // of a further robot: /NAME/robot_description
@@ -26,6 +26,7 @@ export class Session {
     this.topics = new Map();
     this.signals = new Map(); // name -> {topic, column, unit, doc}
     this.transitions = [];
+    this.active = new Map(); // behavior -> [{t, states}]: the innermost active states from that time on
     this.log = [];
     this.faults = [];
     this.timing = null;
@@ -89,6 +90,7 @@ export class Session {
   begin_anew(t) {
     for (const topic of this.topics.values()) topic.count = 0;
     this.transitions = [];
+    this.active = new Map();
     this.log = [];
     this.faults = [];
     this.start_s = this.end_s = this.cursor_s = t;
@@ -111,6 +113,9 @@ export class Session {
       for (const p of json.parameters) if (!this.parameters.has(p.name)) this.parameters.set(p.name, p.value);
     } else if (topic === '/transitions') {
       keep(this.transitions, { t: seconds(json.timestamp), ...json });
+    } else if (topic === '/active') {
+      if (!this.active.has(json.behavior)) this.active.set(json.behavior, []);
+      keep(this.active.get(json.behavior), { t: seconds(json.timestamp), states: json.states });
     } else if (topic === '/log') {
       keep(this.log, { t: seconds(json.timestamp), ...json });
     } else if (topic === '/faults') {
