@@ -115,6 +115,7 @@ class IdealStage final : public TestStage {
   const Catalog& catalog() const override { return assembly_.catalog(); }
   std::string state() const override { return behavior().state(); }
   std::string outcome() const override { return behavior().outcome(); }
+  std::string result() const override { return behavior().result(); }
   std::string error() const override { return behavior().failed() ? behavior().error().text() : ""; }
   std::string control_sets() const override {
     std::string all;

@@ -309,6 +309,7 @@ void BehaviorSide::report(Answer& answer) const {
                                 .state = behavior.state(),
                                 .outcome = behavior.outcome(),
                                 .error = behavior.failed() ? behavior.error().text() : "",
+                                .result = behavior.result(),
                                 .lane = host.lane(i),
                                 .over = host.over(i),
                                 .chart = chart_sign(behavior.chart()),

@@ -14,6 +14,7 @@ namespace kadans {
 
 struct BehaviorReport {
   std::string name, state, outcome, error;
+  std::string result{};  // with the outcome
   std::uint32_t lane = 0;
   bool over = false;
   std::uint64_t chart = 0;  // a number that changes when the chart's states or transitions change

@@ -113,6 +113,7 @@ Json behaviors_json(const Answer& report) {
     Json one{{"name", behavior.name}, {"plays", !behavior.over}, {"lane", behavior.lane}};
     if (!behavior.state.empty()) one["state"] = behavior.state;
     if (!behavior.outcome.empty()) one["outcome"] = behavior.outcome;
+    if (!behavior.result.empty()) one["result"] = behavior.result;
     if (!behavior.error.empty()) one["error"] = behavior.error;
     all.push_back(std::move(one));
   }

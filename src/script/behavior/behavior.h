@@ -85,10 +85,11 @@ class Behavior {
 
   const std::string& name() const noexcept;
   const Chart& chart() const noexcept;
-  bool finished() const noexcept;             // reached a final state
-  bool failed() const noexcept;               // error() says why
-  std::string outcome() const;                // outcome of the final state; "error" when it failed; "" while it runs
-  std::string state() const;                  // path of the innermost active state; the first when there are several
+  bool finished() const noexcept;  // reached a final state
+  bool failed() const noexcept;    // error() says why
+  std::string result() const;      // once it is finished: that of its final state, { steps = 3 }; "" when it has none
+  std::string outcome() const;     // outcome of the final state; "error" when it failed; "" while it runs
+  std::string state() const;       // path of the innermost active state; the first when there are several
   const ScriptError& error() const noexcept;  // of the last failure
   std::uint64_t transactions_refused() const noexcept;
   std::uint64_t events_unhandled() const noexcept;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "chart_calls.h"
 #include "chart_reader.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/handle.h"
@@ -87,7 +88,7 @@ int read_parameter(lua_State* state) {  // (proxy, key); upvalue: name -> handle
   lua_rawget(state, lua_upvalueindex(1));
   std::size_t number = 0;
   if (!is_parameter(state, 3, &number)) return raise_unknown_field(state, "k.params", lua_upvalueindex(1), 2);
-  if (!core_of(state).loading) lua_pushnumber(state, core_of(state).parameters[number].value);
+  if (!core_of(state).loading) lua_pushnumber(state, value_here(state, number));
   return 1;
 }
 

@@ -334,6 +334,11 @@ class SourceCheck final : public SourceListener {
     if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
     if (tokens[at - 1].is("(") && !tokens[at + 1].is(")")) return;  // a part of it
     const EventId id = parts_.chart.find_event(tokens[at].text);
+    if (parts_.chart.is_report(id)) {
+      return problem(tokens[at].line, "'" + tokens[at].text +
+                                          "' reports what happened to the behavior, it cannot be emitted: give the "
+                                          "event another name");
+    }
     if (id != no_event && parts_.chart.made_by_runner(id)) {
       return problem(tokens[at].line, "'" + tokens[at].text +
                                           "' says how a state or a run ended, it cannot be emitted: give the event "
