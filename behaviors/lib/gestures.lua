@@ -13,7 +13,7 @@ gestures.through = k.skill "through" {
     rest_s = { 0.2, min = 0, max = 10, unit = "s", doc = "time to rest in each pose" },
   },
   make = function(a)
-    if #a.poses == 0 then error("gestures.through: poses is empty") end
+    if #a.poses == 0 then error("gestures.through: poses is empty", 3) end
     return k.state "poses" {
       initial = "going",
       k.state "going" {

@@ -245,3 +245,21 @@ TEST_CASE("what calls have given is kept over a reload and in another process, a
   cast.tick();
   CHECK(cast.log.joined() == "0.05 w1\n0.05 w1\nreloaded behaviors/main.lua\n0.05 w1\n0.05 w1\n");
 }
+
+TEST_CASE("the result of a region that has ended is kept until the others end") {
+  Called cast;
+  cast.open_with(
+      "local function region(name, n) return k.region(name) { initial = 'i', k.state 'i' { { after = n / 100, to = 'f' "
+      "} },\n"
+      "k.final 'f' { outcome = 'done', result = function() return { n = n } end } } end\n"
+      "return k.behavior 'main' { initial = 'p', k.parallel 'p' { region('l', 1), region('r', 5),\n"
+      "{ on = 'done', to = 'q', action = function(m, s) print(s.event.data.results.l.n) end } }, k.state 'q' {} }");
+  cast.tick(3);
+  ByteWriter kept;
+  REQUIRE(cast.host->keep(kept, cast.snapshot.time_ns) == "");
+  const std::vector<std::byte> bytes(kept.bytes().begin(), kept.bytes().end());
+  cast.host.reset();
+  cast.open({.kept = bytes});
+  cast.tick(5);
+  CHECK(cast.log.joined() == "1\n");
+}

@@ -306,6 +306,35 @@ void take_event_data(lua_State* state, const Behavior::Parts& parts, ByteReader&
   }
 }
 
+// The results of final states that are active: the end of a parallel may need them later.
+void put_results(Behavior::Parts& parts, ByteWriter& bytes) {
+  lua_State* state = parts.lua->get();
+  const int top = lua_gettop(state);
+  std::string why;
+  for (StateIndex i = 0; i < parts.chart.size() && lua_checkstack(state, 8) != 0; ++i) {
+    if (!parts.runner->active(i) || parts.chart.states[i].result == Chart::no_function) continue;
+    bytes.put<std::uint8_t>(1);
+    bytes.put_string(parts.chart.states[i].path);
+    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
+    lua_rawgeti(state, -1, i + 1);
+    (void)put_value(state, top + 2, bytes, why);  // plain data: it was checked when it was made
+    lua_settop(state, top);
+  }
+  bytes.put<std::uint8_t>(0);
+}
+
+void take_results(lua_State* state, const Behavior::Parts& parts, ByteReader& bytes) {
+  luaL_checkstack(state, 8, "results");
+  while (bytes.take<std::uint8_t>() != 0) {
+    const auto found = std::ranges::find(parts.chart.states, text_of(bytes), &Chart::State::path);
+    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
+    push_value(state, bytes, parts.catalog);
+    const auto index = static_cast<int>(found - parts.chart.states.begin());
+    if (found != parts.chart.states.end() && lua_istable(state, -1)) lua_rawseti(state, -2, index + 1);
+    lua_settop(state, 1);
+  }
+}
+
 // What calls have given by now, but for constants: those are in the text. Each value behind a 1, the path of the
 // machine's root, and its name.
 void put_given(Behavior::Parts& parts, ByteWriter& bytes) {
@@ -412,6 +441,7 @@ int take_machines(lua_State* state) {
   const GoingOn& going_on = *static_cast<const GoingOn*>(lua_touserdata(state, 1));
   Behavior::Parts& parts = going_on.parts;
   take_event_data(state, parts, going_on.bytes);
+  take_results(state, parts, going_on.bytes);
   ByteReader again = going_on.bytes;
   parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
   renew_machines(state, parts, going_on.bytes);
@@ -438,6 +468,7 @@ std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
   put_armed(parts, bytes);
   parts.runner->keep(bytes);
   put_event_data(parts, bytes);
+  put_results(parts, bytes);
   put_given(parts, bytes);
   return put_machines(parts, bytes);
 }
