@@ -142,9 +142,9 @@ TEST_CASE("wrong declarations of arguments are told with their line") {
   };
   CHECK(error("x = { 1, mni = 0 }") == "behaviors/test.lua:3: an argument has no key 'mni', did you mean 'min'?");
   CHECK(error("x = { 5, max = 2 }") ==
-        "behaviors/test.lua:3: argument 'x' of its own default = 5 is outside its range -inf..2");
+        "behaviors/test.lua:3: the default: argument 'x' of k.args = 5 is outside its range -inf..2");
   CHECK(error("x = { 'a', one_of = { 'b' } }") ==
-        "behaviors/test.lua:3: argument 'x' of its own default cannot be 'a'; there is: b");
+        "behaviors/test.lua:3: the default: argument 'x' of k.args cannot be 'a', did you mean 'b'?");
   CHECK(error("x = { 'a', min = 2 }") ==
         "behaviors/test.lua:3: argument 'x': 'min' is a number, beside a default that is one");
   CHECK(error("x = { 2, one_of = { 'b' } }") ==
@@ -160,8 +160,7 @@ TEST_CASE("k.args at the top of a file declares its behavior's arguments, and it
       "return k.behavior 'main' { k.state 'a' { enter = function(m) print(A.side, m.args.side, A.sied) end } }";
   cast.open_with(text, {{"side", std::string("right")}});
   cast.tick();
-  CHECK(cast.host->behavior(0).error().text() ==
-        "behaviors/main.lua:3: k.args has no field 'sied', did you mean 'side'?");
+  CHECK(cast.host->behavior(0).error().text() == "behaviors/main.lua:3: k.args has no 'sied', did you mean 'side'?");
   cast.write("main", text);
   auto items = cast.list({"main"});
   items[0].arguments = {{"side", std::string("rigth")}};
@@ -183,8 +182,8 @@ TEST_CASE("the result of a final state is data of the end, in the caller and aro
       "end "
       "} }");
   cast.tick(5);
-  CHECK(cast.log.joined() == "x\n3\nresult { list = { 1, \"two\" }, ok = true, [\"a b\"] = 0.1 }\n");
-  CHECK(cast.host->behavior(0).result() == "{ list = { 1, \"two\" }, ok = true, [\"a b\"] = 0.1 }");
+  CHECK(cast.log.joined() == "0.12 left 1 false\nx\n3\nresult { [\"a b\"] = 0.1, list = { 1, \"two\" }, ok = true }\n");
+  CHECK(cast.host->behavior(0).result() == "{ [\"a b\"] = 0.1, list = { 1, \"two\" }, ok = true }");
 }
 
 TEST_CASE("the end of a parallel has the results of its regions") {

@@ -53,7 +53,7 @@ TEST_CASE("mistakes with a skill are told at the caller's line") {
   CHECK(cast.refused("arms.wave 'a' {\ntimes = 30 }") ==
         "behaviors/main.lua:5: argument 'times' of skill 'wave' = 30 is outside its range 1..9");
   CHECK(cast.refused("arms.wave 'a' {\n{ on = 'done', to = 'nowhere' } }") ==
-        "behaviors/main.lua:5: unknown state 'nowhere' in 'to', did you mean 'w'?");
+        "behaviors/main.lua:5: unknown state 'nowhere' in 'to'; there is: a, waving, w, f");
   CHECK(cast.refused("arms.wave 'a' {\n{ on = 'done' } }").find("behaviors/main.lua:") == 0);
   CHECK(cast.refused("arms.wave 'a b' {}") ==
         "behaviors/main.lua:4: a skill's state: a name is letters, digits and '_', not \"a b\"");

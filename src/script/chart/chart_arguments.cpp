@@ -126,8 +126,8 @@ void push_declaration(lua_State* state, int index, const char* name, const Scrip
   for (const char* key : {"unit", "doc"}) check_text(state, made, key, name, place);
   check_choices(state, made, type == LUA_TSTRING, name, place);
   lua_rawgeti(state, made, 1);
-  if (push_refusal(state, made, lua_gettop(state), name, "its own default"))
-    raise_at(state, place, name, "%s", lua_tostring(state, -1));
+  if (push_refusal(state, made, lua_gettop(state), name, "k.args"))
+    raise_at(state, place, name, "the default: %s", lua_tostring(state, -1));
   lua_settop(state, made);
 }
 
