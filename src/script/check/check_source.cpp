@@ -358,7 +358,8 @@ class SourceCheck final : public SourceListener {
     }
     const auto& names = declared->second;
     if (name == "*" || std::find(names.begin(), names.end(), name) != names.end()) return;
-    problem(place(use), "k.params has no '" + name + "'" + hint_text(name, names));
+    problem(place(use), (use.meaning.place.token == 1 ? "k.args has no '" : "k.params has no '") + name + "'" +
+                            hint_text(name, names));
   }
 
   const Behavior::Parts& parts_;

@@ -278,7 +278,7 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
   const SourceMeaning& meaning = use.meaning;
   if (meaning.role == SourceRole::module && meaning.path.size() == 1 &&
       (meaning.path[0] == "params" || meaning.path[0] == "args"))
-    return {SourceRole::parameters, {}, {file_, 0}};
+    return {SourceRole::parameters, {}, {file_, meaning.path[0] == "args" ? std::size_t{1} : 0}};
   if (is_motion(use)) return {SourceRole::motion};
   if (use.arguments != 0 || !use.method.empty() || use.written > 4 || !ends_value(tokens_[next])) return {};
   return meaning.path.empty() || meaning.path.back() != "*" ? meaning : SourceMeaning{};
