@@ -197,6 +197,19 @@ TEST_CASE("a fault is an event when it is noted, once, and not one from before t
   CHECK(stage.behavior->events_unhandled() == 0);
 }
 
+TEST_CASE("a fault that no active state waits for is no event, not even for the state that is entered in its tick") {
+  Stage stage(
+      head +
+      R"(return k.behavior 't' { initial = 'a', k.state 'a' { { when = function(s) return s.safety.faults > 0 end, to = 'b' } },
+    k.state 'b' { { on = 'fault.tilt', to = 'c' } }, k.state 'c' {} })");
+  stage.tick(2);
+  SafetyStatus& safety = stage.snapshot.status.safety;
+  safety.new_faults[safety.faults_raised++] = {FaultCode::tilt, no_joint, 2, 1};
+  safety.fault_count = 1;
+  stage.tick(2);
+  CHECK(stage.behavior->state() == "b");
+}
+
 TEST_CASE("reports cannot be emitted, and faults that do not exist and outcomes of their names are refused") {
   CHECK(played(failing("enter = function(m) m:emit 'error' end")) ==
         told("'error' reports what happened to the behavior, it cannot be emitted: give the event another name",

@@ -246,7 +246,7 @@ void Behavior::Parts::tell_refused() noexcept {
   while (const Refusal* refusal = bindings.next_refusal()) {
     ++transactions_refused;
     bindings.sets_lost = true;
-    if (reports.refused_count < reports.refused.size()) reports.refused[reports.refused_count++] = *refusal;
+    reports.note(*refusal);
     log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
                 "refused by the control engine, all commands of that tick: " + refusal_text(*refusal, catalog));
     bindings.forget_armed(refusal->sequence);
@@ -265,6 +265,7 @@ void Behavior::Parts::tell_armed() noexcept {
     }
     if (status.state == ArmedState::refused) {
       ++transactions_refused;
+      reports.note({.reason = status.reason});
       log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
                   of + "was refused when its condition was true");
     }

@@ -461,7 +461,6 @@ std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
   bytes.put(parts.transactions_refused);
   put_parameters(parts.lua->core(), bytes);
   bytes.put<std::uint8_t>(parts.reports.queue_full);
-  bytes.put<std::uint8_t>(parts.reports.seen_any);
   bytes.put(parts.reports.faults_seen);
   bytes.put(std::as_bytes(std::span(&parts.lua->core().random, 1)));
   put_bindings(parts.bindings, bytes);
@@ -480,7 +479,6 @@ bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snaps
   parts.transactions_refused = bytes.take<std::uint64_t>();
   take_parameters(core, bytes);
   parts.reports.queue_full = bytes.take<std::uint8_t>() != 0;
-  parts.reports.seen_any = bytes.take<std::uint8_t>() != 0;
   parts.reports.faults_seen = bytes.take<std::uint64_t>();
   GoingOn going_on{parts, bytes, core.random, guards_tried};
   const auto kept = bytes.take_bytes(sizeof going_on.random);

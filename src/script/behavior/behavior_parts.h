@@ -90,8 +90,10 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   struct Reports {  // what is going to be an event in the next step of the chart (chart_reports.h)
     std::array<Refusal, refusals_shown> refused{};
     std::uint32_t refused_count = 0;
+    void note(const Refusal& refusal) noexcept {
+      if (refused_count < refused.size()) refused[refused_count++] = refusal;
+    }
     bool queue_full = false;  // a transaction found no place
-    bool seen_any = false;
     std::uint64_t faults_seen = 0;
   } reports;
   ScriptError error;

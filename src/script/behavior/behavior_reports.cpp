@@ -61,11 +61,11 @@ void post_fault(lua_State* state, Behavior::Parts& parts, const NewFault& fault,
   post(state, parts, event);
 }
 
-// Those since the last tick, as far as the snapshot shows them; of those before the first tick none.
+// Those since the last tick, as far as the snapshot shows them. In the first tick nobody waits yet.
 void post_faults(lua_State* state, Behavior::Parts& parts) {
   const SafetyStatus& safety = parts.bindings.snapshot->status.safety;
   std::uint64_t& seen = parts.reports.faults_seen;
-  if (!std::exchange(parts.reports.seen_any, true) || safety.faults_raised < seen) seen = safety.faults_raised;
+  if (safety.faults_raised < seen) seen = 0;  // another control engine
   seen = std::max(seen, safety.faults_raised - std::min<std::uint64_t>(safety.faults_raised, new_faults_shown));
   for (; seen < safety.faults_raised; ++seen) {
     const NewFault& fault = safety.new_faults[seen % new_faults_shown];
