@@ -266,11 +266,7 @@ bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
 
 // [-0 +1 when true]
 bool ChartRunner::push_given_by(lua_State* state, StateIndex caller, int function) {
-  set_time(state, caller);
-  core_of(state).called = function;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, function);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[caller].machine].handle);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
+  push_call(state, function, caller);
   if (recoverable_) return call_recoverably(state, caller, 2, 1);
   lua_call(state, 2, 1);
   return true;

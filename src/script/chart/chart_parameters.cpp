@@ -126,16 +126,7 @@ int params(lua_State* state) {
     lua_rawset(state, 2);
   }
   lua_settop(state, 2);
-  lua_newtable(state);
-  lua_createtable(state, 0, 3);
-  lua_pushvalue(state, 2);
-  lua_pushcclosure(state, read_parameter, 1);
-  lua_setfield(state, -2, "__index");
-  lua_pushcfunction(state, refuse_write);
-  lua_setfield(state, -2, "__newindex");
-  lua_pushboolean(state, 0);
-  lua_setfield(state, -2, "__metatable");
-  lua_setmetatable(state, -2);
+  push_reader(state, read_parameter, refuse_write);
   return 1;
 }
 

@@ -4,7 +4,6 @@
 #include <lua.hpp>
 
 #include "chart_runner.h"
-#include "script/lua/lua_core.h"
 
 namespace kadans {
 
@@ -12,13 +11,9 @@ namespace kadans {
 bool ChartRunner::make_result(lua_State* state, StateIndex index) {
   const int function = chart_.states[index].result;
   if (function == Chart::no_function) return true;
-  set_time(state, index);
-  core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.results);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.make_result);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, function);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].handle);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
+  push_call(state, function, index);
   bool made = true;
   if (recoverable_) {
     made = call_recoverably(state, index, 3, 1);

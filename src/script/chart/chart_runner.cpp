@@ -414,12 +414,16 @@ void ChartRunner::set_time(lua_State* state, StateIndex index) {
   lua_pop(state, 1);
 }
 
-bool ChartRunner::call(lua_State* state, int function, StateIndex index) {
+void ChartRunner::push_call(lua_State* state, int function, StateIndex index) {
   set_time(state, index);
   core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, function);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].handle);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
+}
+
+bool ChartRunner::call(lua_State* state, int function, StateIndex index) {
+  push_call(state, function, index);
   if (recoverable_) return call_recoverably(state, index, 2, 0);
   lua_call(state, 2, 0);
   return true;

@@ -206,6 +206,8 @@ class ChartRunner {
   bool evaluate_call(lua_State* state, std::uint16_t machine);
   bool push_given_by(lua_State* state, StateIndex caller, int function);
   void set_time(lua_State* state, StateIndex index);
+  // [-0 +3] The function and its arguments, m and s.
+  void push_call(lua_State* state, int function, StateIndex index);
   // False: an error waits that is going to be an event.
   bool call(lua_State* state, int function, StateIndex index);
   void start_run(lua_State* state, StateIndex index);

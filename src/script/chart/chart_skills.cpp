@@ -72,24 +72,11 @@ int read_given_argument(lua_State* state) {  // (proxy, key)
   return 1;
 }
 
-// [-0 +1]
-void push_readable(lua_State* state) {
-  lua_newtable(state);
-  lua_createtable(state, 0, 3);
-  lua_pushvalue(state, at_given);
-  lua_pushcclosure(state, read_given_argument, 1);
-  lua_setfield(state, -2, "__index");
-  lua_pushcfunction(state, refuse_change);
-  lua_setfield(state, -2, "__newindex");
-  lua_pushboolean(state, 0);
-  lua_setfield(state, -2, "__metatable");
-  lua_setmetatable(state, -2);
-}
-
 // [-0 +1] What `make` returns.
 void push_made(lua_State* state, const char* name, const ScriptPlace& place) {
   lua_getfield(state, at_skill, "make");
-  push_readable(state);
+  lua_pushvalue(state, at_given);
+  push_reader(state, read_given_argument, refuse_change);
   lua_call(state, 1, 1);
   NodeKind kind{};
   const bool good = is_node(state, lua_gettop(state), &kind) && kind != NodeKind::behavior &&
