@@ -50,19 +50,13 @@ bool ChartRunner::waits_for(EventId event) const noexcept {
   return std::ranges::any_of(active_, [&](StateIndex index) { return has_transition_for(index, event); });
 }
 
-// Whether a state around the function has a transition for its error.
-bool ChartRunner::takes_errors(StateIndex index) const noexcept {
-  while (index != no_state && !has_transition_for(index, chart_.error_event)) index = chart_.states[index].parent;
-  return index != no_state;
-}
-
 ChartRunner::Attempt ChartRunner::begin_attempt(lua_State* state) const noexcept {
   const LuaCore& core = core_of(state);
   return {bindings_of(state).mark(), queue_.size(), core.depth, core.coroutines};
 }
 
 bool ChartRunner::call_recoverably(lua_State* state, StateIndex index, int arguments, int results) {
-  if (!takes_errors(index)) return lua_call(state, arguments, results), true;
+  if (!chart_.takes_errors[index]) return lua_call(state, arguments, results), true;
   const Attempt attempt = begin_attempt(state);
   const int function = lua_gettop(state) - arguments;
   lua_rawgeti(state, LUA_REGISTRYINDEX, core_of(state).handler);
@@ -81,7 +75,7 @@ int ChartRunner::resume_recoverably(lua_State* state, StateIndex index, int argu
   const Attempt attempt = begin_attempt(state);
   lua_State* thread = run_[index].thread;
   const int status = lua_resume(thread, arguments);
-  if (status == 0 || status == LUA_YIELD || !takes_errors(index)) return status;
+  if (status == 0 || status == LUA_YIELD || !chart_.takes_errors[index]) return status;
   core_of(state).running = nullptr;
   core_of(state).budget.raise_again(state);
   keep_run_error(state, thread);
@@ -121,7 +115,7 @@ void ChartRunner::note_failure(lua_State* state, StateIndex index, const Attempt
 
 // [-1 +0] The text at the top, with its place, is an error in this state.
 void ChartRunner::fail(lua_State* state, StateIndex index) {
-  if (!recoverable_ || !takes_errors(index)) lua_error(state);
+  if (!recoverable_ || !chart_.takes_errors[index]) lua_error(state);
   core_of(state).error.clear();
   core_of(state).error.set_message(lua_tostring(state, -1));
   note_failure(state, index, begin_attempt(state));

@@ -191,7 +191,6 @@ class ChartRunner {
   // What is taken back when a function raises; chart_recovery.cpp.
   struct Attempt;
   Attempt begin_attempt(lua_State* state) const noexcept;
-  bool takes_errors(StateIndex index) const noexcept;
   // [-arguments-1 +results when true] Calls the function below its arguments.
   bool call_recoverably(lua_State* state, StateIndex index, int arguments, int results);
   int resume_recoverably(lua_State* state, StateIndex index, int arguments);
