@@ -176,7 +176,7 @@ void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
   now_ns_ = now_ns;
   finished_ = true;
   recoverable_ = failed_ = false;
-  if (run_[0].outcome != no_event) finished_by_ = final_in(0);
+  if (run_[0].outcome != no_event && finished_by_ == no_state) finished_by_ = final_in(0);
   list_active();
   while (!active_.empty()) {  // an exit that raises is not run again
     const StateIndex innermost = active_.back();
