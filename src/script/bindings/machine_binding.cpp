@@ -5,6 +5,7 @@
 
 #include "bindings.h"
 #include "machine_sets.h"
+#include "script/chart/chart_reports.h"
 #include "script/check/hint.h"
 #include "script/motion/motion_options.h"
 #include "script/sandbox/handle.h"
@@ -261,11 +262,11 @@ void push_event_data(lua_State* state, int index, int depth, int& fields) {
 void push_plain_copy(lua_State* state, int index) { push_copy(state, index, 0); }
 
 EventId check_event(lua_State* state, const Chart& chart, const char* name) {
-  const EventId event = chart.find_event(name);
-  if (event == no_event) luaL_error(state, "nothing in this behavior waits for the event '%s'", name);
-  if (chart.is_report(event))
+  if (reserved_for_reports(name))
     luaL_error(state, "'%s' reports what happened to the behavior, it cannot be emitted: give the event another name",
                name);
+  const EventId event = chart.find_event(name);
+  if (event == no_event) luaL_error(state, "nothing in this behavior waits for the event '%s'", name);
   if (chart.made_by_runner(event))
     luaL_error(state, "'%s' says how a state or a run ended, it cannot be emitted: give the event another name", name);
   return event;
