@@ -6,6 +6,7 @@
 
 #include "check_arguments.h"
 #include "hint.h"
+#include "script/chart/chart_reports.h"
 #include "script/bindings/machine_sets.h"
 #include "source_scopes.h"
 
@@ -334,7 +335,7 @@ class SourceCheck final : public SourceListener {
     if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
     if (tokens[at - 1].is("(") && !tokens[at + 1].is(")")) return;  // a part of it
     const EventId id = parts_.chart.find_event(tokens[at].text);
-    if (parts_.chart.is_report(id)) {
+    if (reserved_for_reports(tokens[at].text)) {
       return problem(tokens[at].line, "'" + tokens[at].text +
                                           "' reports what happened to the behavior, it cannot be emitted: give the "
                                           "event another name");
