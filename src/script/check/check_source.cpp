@@ -6,8 +6,8 @@
 
 #include "check_arguments.h"
 #include "hint.h"
-#include "script/chart/chart_reports.h"
 #include "script/bindings/machine_sets.h"
+#include "script/chart/chart_reports.h"
 #include "source_scopes.h"
 
 namespace kadans {
