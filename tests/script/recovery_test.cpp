@@ -177,6 +177,16 @@ TEST_CASE("a refused transaction is an event for who waits for it, with the reas
   CHECK(stage.behavior->events_unhandled() == 0);  // nobody waits for it any more
 }
 
+TEST_CASE("a tick whose commands found no place is told as refused in the next one") {
+  Stage stage(head + R"(return k.behavior 't' { controls = 'posture', initial = 'a', k.state 'a' {
+    during = function(m) m.posture:set_gains('stiff') end,
+    { on = 'refused', to = 'b', action = function(m, s) print(s.event.data.reason) end } }, k.state 'b' { endless = true } })");
+  stage.applying = false;
+  stage.tick(1000);
+  CHECK(stage.said() == "queue_full: the commands of this tick were refused, all of them\nqueue_full\n");
+  CHECK(stage.behavior->state() == "b");
+}
+
 TEST_CASE("a fault is an event when it is noted, once, and not one from before the start") {
   Stage stage(head +
               "return k.behavior 't' { initial = 'a', k.state 'a' {\n"
