@@ -163,7 +163,7 @@ constexpr const char* rehearsal_text =
 int tick_chart(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
-  post_reports(state, parts);
+  if (parts.chart.waits_for_reports) post_reports(state, parts);
   parts.runner->tick(state, parts.bindings.now_ns);
   return 0;
 }
@@ -352,12 +352,16 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
     parts.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "queue_full: the commands of this tick were refused, all of them");
   }
-  parts.tell_dropped(finished());
-  if (const std::string text = result(); !text.empty()) {
-    parts.log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(), "result " + text);
-  }
+  const bool over = finished();
+  parts.tell_dropped(over);
+  if (over) tell_result(snapshot.time_ns);
   publish_status();
-  return !finished();
+  return !over;
+}
+
+void Behavior::tell_result(std::int64_t time_ns) noexcept {
+  const std::string text = result();
+  if (!text.empty()) parts_->log.message(time_ns, BehaviorLog::Severity::info, name(), "result " + text);
 }
 
 void Behavior::publish_status() noexcept {

@@ -114,6 +114,7 @@ class Behavior {
   std::int64_t clock_ns(const Snapshot& snapshot) const noexcept;
   void forget_past(std::int64_t now_ns) noexcept;
   void publish_status() noexcept;
+  void tell_result(std::int64_t time_ns) noexcept;
 
   std::unique_ptr<Parts> parts_;
   std::unique_ptr<Past> past_;

@@ -94,6 +94,7 @@ struct Chart {
   // transition waits for them.
   EventId error_event = no_event, refused_event = no_event;
   std::vector<std::pair<FaultCode, EventId>> fault_events;
+  bool waits_for_reports = false;  // for refusals or faults
   std::vector<bool> takes_errors;  // by state: it, or a state around it, has a transition for "error"
 
   bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // true also for the ancestor itself

@@ -32,6 +32,7 @@ void find_reports(Chart& chart, std::vector<InputProblem>& problems) {
     const EventId event = chart.find_event(names[code]);
     if (event != no_event) chart.fault_events.emplace_back(static_cast<FaultCode>(code + 1), event);
   }
+  chart.waits_for_reports = chart.refused_event != no_event || !chart.fault_events.empty();
   chart.takes_errors.assign(chart.states.size(), false);
   for (const Chart::Transition& transition : chart.transitions) {
     if (transition.on == no_event || problems.size() >= reported_max) continue;

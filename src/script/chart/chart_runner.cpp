@@ -36,7 +36,7 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
 void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   now_ns_ = now_ns;
   if (finished_) return;
-  recoverable_ = chart_.error_event != no_event;
+  if (chart_.error_event != no_event) recoverable_ = true;
   first_step(state);
   std::uint32_t steps = 1;
   for (; run_[0].outcome == no_event && steps < steps_max; ++steps) {
@@ -44,7 +44,7 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
       recover(state);
       continue;
     }
-    if (select_event(state)) {
+    if (queue_.size() > 0 && select_event(state)) {
       take_step(state);
       forget_data(state, shown_);
     } else if (!failed_) {
