@@ -333,8 +333,8 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   status.level = worst;
   status.fault_count = fault_count_;
   status.first_fault = first_fault_;
+  if (status.faults_raised != faults_raised_) status.new_faults = new_faults_;
   status.faults_raised = faults_raised_;
-  status.new_faults = new_faults_;
   status.stopped = stopped_;
   status.lifts = lifts_;
   level_number_ = static_cast<std::uint32_t>(worst);
