@@ -127,22 +127,11 @@ struct alignas(8) Snapshot {
   PowerStatus power;
 };
 
-inline void copy_used(const SafetyStatus& from, SafetyStatus& to) noexcept {
-  to.level = from.level;
-  to.stopped = from.stopped;
-  to.lifts = from.lifts;
-  to.fault_count = from.fault_count;
-  to.first_fault = from.first_fault;
-  if (to.faults_raised == from.faults_raised) return;
-  to.faults_raised = from.faults_raised;
-  to.new_faults = from.new_faults;
-}
-
 inline void copy_used(const RobotStatus& from, RobotStatus& to) noexcept {
   to.base = from.base;
   to.foot_count = from.foot_count;
   copy_first(from.feet, from.foot_count, to.feet);
-  copy_used(from.safety, to.safety);
+  to.safety = from.safety;
   to.support = from.support;
   to.channel_count = from.channel_count;
   copy_first(from.channels, from.channel_count, to.channels);
