@@ -38,6 +38,10 @@ class Project {
     lib("says", "require 'kadans'.log.info('loaded')\n");
     lib("number", "return 7\n");
     lib("call", "return function(m) m.posture:set_gains 'soft' end\n");
+    lib("takes",
+        "local k = require 'kadans' return k.behavior 'takes' { args = { how_m = { 1, min = 0, max = 3 }, far_m = 0 "
+        "},\n"
+        "k.final 'a' { outcome = 'done', result = function(m) return { x = m.args.how_m } end } }\n");
     lib("over", "local k = require 'kadans' return k.behavior 'over' { k.final 'a' { outcome = 'tired' } }\n");
   }
 

@@ -127,6 +127,7 @@ class IdealStage final : public TestStage {
     return all;
   }
   std::string outcome() const override { return behavior().outcome(); }
+  std::string result() const override { return behavior().result(); }
   std::string error() const override { return behavior().failed() ? behavior().error().text() : ""; }
   std::string control_sets() const override {
     std::string all;

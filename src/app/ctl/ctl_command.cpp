@@ -67,7 +67,9 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 std::string behavior_text(const Json& behavior) {
   const std::string name = behavior.at("name");
   if (behavior.contains("error")) return name + ": " + behavior.at("error").get<std::string>();
-  if (behavior.contains("outcome")) return name + ": " + behavior.at("outcome").get<std::string>();
+  if (behavior.contains("outcome"))
+    return name + ": " + behavior.at("outcome").get<std::string>() +
+           (behavior.contains("result") ? " " + behavior.at("result").get<std::string>() : "");
   if (!behavior.value("plays", false)) return name + ": stopped";
   return name + (behavior.contains("active") ? " in " + listed(behavior.at("active")) : " waits");
 }

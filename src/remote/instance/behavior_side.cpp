@@ -311,6 +311,7 @@ void BehaviorSide::report(Answer& answer) const {
                                 .outcome = behavior.outcome(),
                                 .error = behavior.failed() ? behavior.error().text() : "",
                                 .active = behavior.active(),
+                                .result = behavior.result(),
                                 .lane = host.lane(i),
                                 .over = host.over(i),
                                 .chart = chart_sign(behavior.chart()),

@@ -15,6 +15,7 @@ namespace kadans {
 
 struct BehaviorReport {
   std::string name, outcome, error;
+  std::string result{};             // with the outcome
   std::vector<std::string> active;  // all innermost active states, by path
   std::uint32_t lane = 0;
   bool over = false;

@@ -116,6 +116,7 @@ Json behaviors_json(const Answer& report) {
       one["active"] = behavior.active;
     }
     if (!behavior.outcome.empty()) one["outcome"] = behavior.outcome;
+    if (!behavior.result.empty()) one["result"] = behavior.result;
     if (!behavior.error.empty()) one["error"] = behavior.error;
     all.push_back(std::move(one));
   }

@@ -93,6 +93,7 @@ class Behavior {
   const Chart& chart() const noexcept;
   bool finished() const noexcept;  // reached a final state
   bool failed() const noexcept;    // error() says why
+  std::string result() const;      // once it is finished: that of its final state, { steps = 3 }; "" when it has none
   std::string outcome() const;     // outcome of the final state; "error" when it failed; "" while it runs
   std::string state() const;       // path of the innermost active state; the first when there are several
   // The paths of all innermost active states, in document order; none when it has not begun, is over or failed.
@@ -125,6 +126,7 @@ class Behavior {
   void tell_active(std::int64_t time_ns) noexcept;
   void number_states();
   std::uint32_t number_of(StateIndex state) const noexcept;
+  void tell_result(std::int64_t time_ns) noexcept;
 
   std::unique_ptr<Parts> parts_;
   std::unique_ptr<Past> past_;

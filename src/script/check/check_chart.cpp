@@ -275,6 +275,18 @@ void look_at(lua_State* state, Looking& looking, int reference, const char* name
   lua_pop(state, 1);
 }
 
+void look_at_defaults(lua_State* state, Looking& looking, int declared) {
+  if (declared == Chart::no_function) return;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, declared);
+  const int all = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, all) != 0; lua_pop(state, 2)) {
+    lua_rawgeti(state, -1, 1);
+    const std::string name = lua_tostring(state, all + 1);
+    look_into(state, looking, "args." + name, name, 1);
+  }
+  lua_settop(state, all - 1);
+}
+
 int look(lua_State* state) {
   auto& looking = *static_cast<Looking*>(lua_touserdata(state, 1));
   const Chart& chart = looking.parts.chart;
@@ -282,7 +294,7 @@ int look(lua_State* state) {
     looking.chunk = chart.states[machine.root].chunk;
     looking.line = chart.states[machine.root].line;
     look_at(state, looking, machine.vars, "vars");
-    look_at(state, looking, machine.arguments, "args");
+    look_at_defaults(state, looking, machine.arguments);
     looking.chunk = machine.call_chunk;
     looking.line = machine.call_line;
     if (!machine.call_chunk.empty()) look_at(state, looking, machine.given, "args");
@@ -298,7 +310,7 @@ void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::
   Emitted emitted;
   for (const ReadSource& one : read) add_emitted(one.scopes.tokens(), emitted);
   for (const Chart::Transition& transition : chart.transitions) {
-    if (transition.on == no_event || transition.on == run_done_event) continue;
+    if (transition.on == no_event || transition.on == run_done_event || chart.is_report(transition.on)) continue;
     const std::string& event = chart.events[static_cast<std::size_t>(transition.on)];
     const bool end = chart.made_by_runner(transition.on);
     if (!end && emitted.may_be(event)) continue;

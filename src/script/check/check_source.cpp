@@ -10,6 +10,7 @@
 #include "foreign_words.h"
 #include "hint.h"
 #include "script/bindings/machine_sets.h"
+#include "script/chart/chart_reports.h"
 #include "source_scopes.h"
 
 namespace kadans {
@@ -382,6 +383,11 @@ class SourceCheck final : public SourceListener {
     if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
     if (tokens[at - 1].is("(") && !tokens[at + 1].is(")")) return;  // a part of it
     const EventId id = parts_.chart.find_event(tokens[at].text);
+    if (reserved_for_reports(tokens[at].text)) {
+      return problem(tokens[at].line, "'" + tokens[at].text +
+                                          "' reports what happened to the behavior, it cannot be emitted: give the "
+                                          "event another name");
+    }
     if (id != no_event && parts_.chart.made_by_runner(id)) {
       return problem(tokens[at].line, "'" + tokens[at].text +
                                           "' says how a state or a run ended, it cannot be emitted: give the event "
@@ -401,7 +407,8 @@ class SourceCheck final : public SourceListener {
     }
     const auto& names = declared->second;
     if (name == "*" || std::find(names.begin(), names.end(), name) != names.end()) return;
-    problem(place(use), "k.params has no '" + name + "'" + hint_text(name, names));
+    problem(place(use), (use.meaning.place.token == 1 ? "k.args has no '" : "k.params has no '") + name + "'" +
+                            hint_text(name, names));
   }
 
   const Behavior::Parts& parts_;

@@ -43,7 +43,7 @@ struct SourcePlace {
 struct SourceMeaning {
   SourceRole role = SourceRole::none;
   std::vector<std::string> path{};
-  SourcePlace place{};  // where a function or table is written; for parameters: their file
+  SourcePlace place{};  // where a function or table is written; for parameters: their file, and 1 for arguments
   bool operator==(const SourceMeaning&) const = default;
 };
 

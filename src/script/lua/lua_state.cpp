@@ -77,6 +77,8 @@ int enter(lua_State* state) { return core_of(state).entry(state); }
 enum Foot : int { handler = 1, entrance = 2 };
 
 int open(lua_State* state) {
+  lua_pushcfunction(state, keep_error);
+  core_of(state).handler = luaL_ref(state, LUA_REGISTRYINDEX);
   open_sandbox(state);
   return 0;
 }

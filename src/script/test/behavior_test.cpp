@@ -150,6 +150,13 @@ int is_in(lua_State* state) {
   return 2;
 }
 
+int push_result(lua_State* state, Testing& testing, const TestStage& stage) {
+  testing.text = "return " + stage.result();
+  if (luaL_loadbuffer(state, testing.text.data(), testing.text.size(), "=result") != 0) return lua_error(state);
+  lua_call(state, 0, 1);
+  return 1;
+}
+
 // read(number, key): what the behavior is in, or a field of the snapshot.
 int read(lua_State* state) {
   Played* played = played_in(state);
@@ -161,6 +168,7 @@ int read(lua_State* state) {
     return 1;
   }
   if (std::strcmp(key, "active") == 0) return push_active(state, testing, *played->stage), 1;
+  if (std::strcmp(key, "result") == 0) return push_result(state, testing, *played->stage);
   const Snapshot& snapshot = played->stage->snapshot();
   played->tables.refill(state, snapshot, snapshot.time_ns);
   lua_rawgeti(state, LUA_REGISTRYINDEX, played->snapshot);

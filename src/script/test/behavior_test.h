@@ -33,6 +33,7 @@ class TestStage {
   virtual std::vector<std::string> paths() const = 0;  // of all states
   virtual std::string outcome() const = 0;
   virtual std::string error() const = 0;
+  virtual std::string result() const = 0;        // as text that Lua can read; "" when there is none
   virtual std::string control_sets() const = 0;  // names of the active ones
   virtual std::string said() const = 0;          // the lines that the behavior logged
   virtual std::string went() const = 0;          // the states that it went through, "settle squat rest"
