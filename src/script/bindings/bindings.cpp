@@ -34,9 +34,9 @@ void Bindings::bring_in_again() noexcept {
 }
 
 bool Bindings::must_wait(std::uint32_t set) const noexcept {
-  const SetMask switched = sets_now ^ partition->after(sets_now, set);
+  const SetMask changed = sets_now ^ partition->after(sets_now, set);
   bool dwells = false;
-  each_bit(partition->objects(switched), [&](std::uint32_t object) {
+  each_bit(partition->objects(changed), [&](std::uint32_t object) {
     dwells = dwells || (object < snapshot->object_count && snapshot->objects[object].dwell_s > 0);
   });
   return dwells;
