@@ -150,7 +150,8 @@ TEST_CASE("regions that could be active together on sets with a common joint are
   CHECK(regions("", "controls = 'leg',", "") ==
         "behaviors/main.lua:2: unknown control set 'leg' in 'controls', did you mean 'legs'?");
   CHECK(regions("", "controls = {},", "") ==
-        "behaviors/main.lua:2: 'controls' is a list of 1..32 names of control sets, not of 0");
+        "behaviors/main.lua:2: 'controls' is a list of 1..32 names of control sets, not of 0: controls = { \"legs\", "
+        "\"arms\" }");
   CHECK(regions("", "controls = { 1 },", "") ==
         "behaviors/main.lua:2: 'controls' lists names of control sets, not a number");
   CHECK(regions("", "controls = true,", "") ==

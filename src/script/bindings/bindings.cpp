@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "script/chart/chart_arguments.h"
 #include "script/chart/chart_reader.h"
+#include "script/chart/chart_skills.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
@@ -88,6 +90,20 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
   to.begin(time_ns);
 }
 
+Bindings::Mark Bindings::mark() const noexcept {
+  return {sender->mark(), refused, motion_count, armed_count, armed_in_tick};
+}
+
+void Bindings::take_back_to(const Mark& mark) noexcept {
+  sender->take_back_to(mark.sent);
+  refused = mark.refused;
+  recording = false;
+  for (std::uint32_t i = mark.motions; i < motion_count; ++i) motions[i]->state = MotionState::cancelled;
+  motion_count = mark.motions;
+  armed_count = mark.armed;
+  armed_in_tick = mark.armed_in_tick;
+}
+
 bool Bindings::commit() noexcept {
   const std::uint32_t sequence = sender->commit();
   const bool taken = !refused && (sequence != 0 || sender->last_sequence() == 0);
@@ -149,6 +165,8 @@ int pose(lua_State* state) {
 void open_kadans_module(lua_State* state) {
   lua_newtable(state);
   open_parameters(state);
+  open_arguments(state);
+  open_skills(state);
   open_nodes(state);
   lua_pushcfunction(state, budget);
   lua_setfield(state, -2, "budget");
