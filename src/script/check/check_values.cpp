@@ -45,7 +45,7 @@ std::string written(const Tokens& tokens, std::size_t from, std::size_t to) {
   return text;
 }
 
-std::string listed(const std::vector<std::string>& texts) {
+std::string all_of_them(const std::vector<std::string>& texts) {
   std::string all;
   for (std::size_t i = 0; i < texts.size(); ++i)
     all += (i == 0 ? "" : i + 1 == texts.size() ? " or " : ", ") + texts[i];
@@ -126,12 +126,12 @@ std::string ValueCheck::compared(const SourceUse& use, const Type& type, const T
   if (type.kind == Kind::flag && !is_truth(other))
     return name + " is true or false, it is compared with " + what + ": write " + name + " or not " + name;
   if (type.kind != Kind::choice) return "";
-  const std::string choices = name + " is " + listed(type.texts);
+  const std::string choices = name + " is " + all_of_them(type.texts);
   if (!text) return choices + ", it is compared with " + what;
   if (!sign.is("==") && !sign.is("~=")) return choices + ": texts are compared with == or ~=";
   if (std::ranges::find(type.texts, other.text) != type.texts.end()) return "";
   return name + " is never \"" + other.text + "\"" + did_you_mean(other.text, type.texts) + "; it is " +
-         listed(type.texts);
+         all_of_them(type.texts);
 }
 
 void ValueCheck::operands(const SourceUse& use, const Type& type, const Tokens& tokens,
@@ -258,8 +258,8 @@ std::string ValueCheck::condition(const std::string& text) const {
   const SignalName known = condition_signal(parts_.bindings, given);
   const std::string topic = given.substr(0, given.find('.') + 1);
   constexpr std::string_view measured[] = {"joint.", "base.", "foot.", "support."};
-  const bool listed = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
-  if (!listed || signals.find_key(signal_key(known.data()))) return "";
+  const bool named = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
+  if (!named || signals.find_key(signal_key(known.data()))) return "";
   return std::string("m:on: unknown signal '") + known.data() + "'" +
          hint_text(known.data(), signals_near(parts_.bindings, known.data()));
 }
