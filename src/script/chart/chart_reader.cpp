@@ -261,7 +261,8 @@ int begin_node(lua_State* state) {
     const std::string& main_chunk = core_of(state).owner->sources().front().chunk;
     const bool placed = place.line > 0;
     return raise_at(state, placed ? place : ScriptPlace{main_chunk.c_str(), 1}, placed ? nullptr : node_word(kind) + 2,
-                    "%s \"%s\" { ... } takes its table behind the name, without a comma", node_word(kind), lua_tostring(state, 1));
+                    "%s \"%s\" { ... } takes its table behind the name, without a comma", node_word(kind),
+                    lua_tostring(state, 1));
   }
   push_node_maker(state, kind, 1, place);
   return 1;

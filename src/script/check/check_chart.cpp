@@ -76,7 +76,8 @@ class ChartCheck {
   void never_entered(StateIndex index) {
     const Chart::State& state = chart_.states[index];
     if (reached_[index] || state.parent == no_state || !reached_[state.parent]) return;
-    problem(state, state.line, "state '" + state.name + "' is never entered: no transition leads to it, with to = \"" + state.name + "\"");
+    problem(state, state.line,
+            "state '" + state.name + "' is never entered: no transition leads to it, with to = \"" + state.name + "\"");
   }
 
   void no_way_out(StateIndex index) {
@@ -111,7 +112,8 @@ class ChartCheck {
     for (std::uint16_t i = 0; i < state.transition_count; ++i) {
       const Chart::Transition& transition = chart_.transitions[static_cast<std::size_t>(state.first_transition) + i];
       if (transition.on != run_done_event || state.run != Chart::no_function) continue;
-      problem(state, transition.line, "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");
+      problem(state, transition.line,
+              "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");
     }
   }
 
