@@ -46,9 +46,13 @@ Json chart_of(const Behavior& behavior) {
   }
   for (const Chart::Transition& transition : chart.transitions) {
     if (transition.target == no_state) continue;
-    transitions.push_back({{"source", transition.source},
-                           {"target", transition.target},
-                           {"label", transition_label(chart, transition, parameters)}});
+    const auto arrow = [&](StateIndex target) {
+      transitions.push_back({{"source", transition.source},
+                             {"target", target},
+                             {"label", transition_label(chart, transition, parameters)}});
+    };
+    arrow(transition.target);
+    for (const StateIndex target : transition.also) arrow(target);
   }
   return {{"states", states}, {"transitions", transitions}};
 }

@@ -186,7 +186,7 @@ struct Options {
   EventId event = no_event;
 };
 
-Options read_options(lua_State* state, int index, const Chart& chart) {
+Options read_options(lua_State* state, int index, Chart& chart) {
   Options options;
   if (!lua_istable(state, index)) luaL_error(state, "m:on needs { within_s = seconds }: for how long it may wait");
   bool timed = false;
@@ -233,7 +233,7 @@ void push_handle(lua_State* state, std::uint32_t sequence, std::uint16_t which) 
 
 // m:on(condition, function(c) ... end, { within_s = }) -> handle | nil, "queue_full". Upvalue: the chart.
 int on(lua_State* state) {
-  const auto& chart = *static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
+  auto& chart = *static_cast<Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
   Bindings& bindings = bindings_of(state);
   lua_settop(state, 4);
   core_of(state).budget.charge(state, arm_instructions);
@@ -251,10 +251,10 @@ int on(lua_State* state) {
   end_callback(state);
   const std::uint32_t flags = conditions.options | (options.every_time ? std::uint32_t{arm_every_time} : 0U);
   bool fits = bindings.send({.kind = CommandKind::arm,
-                        .index = conditions.count,
-                        .count = conditions.count + bindings.recorded_count,
-                        .sequence = flags,
-                        .duration_s = options.within_s});
+                             .index = conditions.count,
+                             .count = conditions.count + bindings.recorded_count,
+                             .sequence = flags,
+                             .duration_s = options.within_s});
   for (std::uint32_t i = 0; i < conditions.count; ++i) fits = fits && bindings.send(conditions.all[i]);
   for (std::uint32_t i = 0; i < bindings.recorded_count; ++i) fits = fits && bindings.send(bindings.recorded[i]);
   if (!fits) return queue_full(state);

@@ -32,25 +32,36 @@ bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
 }
 
 // The end of a coroutine is no event that waits: it is looked at as a guard is.
-bool ChartRunner::happened(const Chart::Transition& transition, const WaitingEvent* event) const noexcept {
+bool ChartRunner::happened(std::uint16_t number, const WaitingEvent* event) const noexcept {
+  const Chart::Transition& transition = chart_.transitions[number];
   if (event == nullptr) {
-    return transition.on == no_event || (transition.on == run_done_event && run_[transition.source].run_done);
+    if (transition.on == no_event) return true;
+    return transition.on == run_done_event && run_[transition.source].run_done && !acted(number);
   }
-  if (transition.on != event->id) return false;
+  if (transition.on != event->id) return event->from == no_state && chart_.takes_by_pattern(transition, event->id);
   return event->from == no_state || chart_.hears_end(transition.source, event->from);
 }
 
-bool ChartRunner::due(lua_State* state, const Chart::Transition& transition) const noexcept {
+// Whether it came already since its state was entered, and comes once.
+bool ChartRunner::acted(std::uint16_t number) const noexcept {
+  const Chart::Transition& transition = chart_.transitions[number];
+  return transition.once && guards_[number].acted_ns == run_[transition.source].entered_ns;
+}
+
+bool ChartRunner::due(lua_State* state, std::uint16_t number) const noexcept {
+  const Chart::Transition& transition = chart_.transitions[number];
   if (!transition.timed) return true;
-  const double after_s = transition.after_parameter != Chart::no_parameter
-                             ? core_of(state).parameters[static_cast<std::size_t>(transition.after_parameter)].value
-                             : transition.after_s;
-  return state_time_s(transition.source) >= after_s;
+  return state_time_s(transition.source) >= after_s(state, transition) && !acted(number);
+}
+
+double ChartRunner::after_s(lua_State* state, const Chart::Transition& transition) const noexcept {
+  return transition.after_parameter != Chart::no_parameter
+             ? core_of(state).parameters[static_cast<std::size_t>(transition.after_parameter)].value
+             : transition.after_s;
 }
 
 bool ChartRunner::enabled(lua_State* state, std::uint16_t number, const WaitingEvent* event) {
-  const Chart::Transition& transition = chart_.transitions[number];
-  return happened(transition, event) && due(state, transition) && guard(state, number);
+  return happened(number, event) && due(state, number) && guard(state, number);
 }
 
 std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, StateIndex leaf,
@@ -64,8 +75,8 @@ std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, Sta
     for (std::uint16_t i = 0; i < outer.always_count; ++i) {
       const auto number = static_cast<std::uint16_t>(outer.first_always + i);
       meter.spend(transition_steps);
-      if (run_[chart_.transitions[number].target].active) continue;  // it is there already
-      if (enabled(state, number, event)) return number;
+      if (there_already(chart_.transitions[number])) continue;
+      if (enabled(state, number, event) && !lets_pass(number, event)) return number;
     }
     const std::uint16_t found = passed_over ? select_passed_over(state, meter, around) : none;
     if (found != none) return found;
@@ -78,7 +89,8 @@ std::uint16_t ChartRunner::select_passed_over(lua_State* state, StepMeter& meter
   for (std::uint16_t i = 0; i < at.transition_count; ++i) {
     meter.spend(transition_steps);
     const auto number = static_cast<std::uint16_t>(at.first_transition + i);
-    if (chart_.transitions[number].timed && enabled(state, number, nullptr)) return number;
+    if (chart_.transitions[number].timed && enabled(state, number, nullptr) && !lets_pass(number, nullptr))
+      return number;
   }
   return none;
 }
@@ -90,10 +102,22 @@ std::uint16_t ChartRunner::select_ordinary(lua_State* state, StepMeter& meter, S
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
       meter.spend(transition_steps);
       const auto number = static_cast<std::uint16_t>(at.first_transition + i);
-      if (enabled(state, number, event)) return number;
+      if (enabled(state, number, event) && !lets_pass(number, event)) return number;
     }
   }
   return none;
+}
+
+bool ChartRunner::there_already(const Chart::Transition& transition) const noexcept {
+  if (transition.target == no_state || !run_[transition.target].active) return false;
+  return std::ranges::all_of(transition.also, [&](StateIndex target) { return run_[target].active; });
+}
+
+// An action alone, without an event that it would use up, is taken beside what else is found.
+bool ChartRunner::lets_pass(std::uint16_t number, const WaitingEvent* event) noexcept {
+  if (chart_.transitions[number].target != no_state || event != nullptr) return false;
+  add_selected(number);
+  return true;
 }
 
 // After the first step's selection: each `after` that is due and is not taken, for what is taken leaves the same
@@ -104,18 +128,27 @@ void ChartRunner::note_passed_over(lua_State* state, StepMeter& meter) {
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
       const auto number = static_cast<std::uint16_t>(at.first_transition + i);
       const Chart::Transition& transition = chart_.transitions[number];
-      if (!transition.timed || transition.on != no_event || !due(state, transition)) continue;
+      if (!transition.timed || transition.on != no_event || !due(state, number)) continue;
       meter.spend(selected_steps * selected_.size());
       for (const std::uint16_t taken : selected_) {
-        if (taken != number && conflict(taken, number)) run_[index].passed_over = true;
+        if (taken != number && passes_over(taken, number)) run_[index].passed_over = true;
       }
     }
     meter.spend(transition_steps * at.transition_count);
   }
 }
 
+// A transition with a target that was found further inside hides an action alone, which conflicts with nothing.
+bool ChartRunner::passes_over(std::uint16_t taken, std::uint16_t due) const noexcept {
+  const Chart::Transition &one = chart_.transitions[taken], &other = chart_.transitions[due];
+  if (other.target != no_state) return conflict(taken, due);
+  return one.target != no_state && chart_.inside(one.source, other.source) &&
+         std::ranges::find(selected_, due) == selected_.end();
+}
+
 bool ChartRunner::conflict(std::uint16_t one, std::uint16_t other) const noexcept {
   const StateIndex domain = chart_.transitions[one].domain, its = chart_.transitions[other].domain;
+  if (domain == no_state || its == no_state) return false;  // one of them leaves nothing
   return chart_.inside(domain, its) || chart_.inside(its, domain);
 }
 

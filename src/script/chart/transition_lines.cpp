@@ -22,14 +22,23 @@ std::size_t body_of(const Tokens& tokens, int line, const std::string& name) {
   return 0;
 }
 
-// Of the transition { ... to = "name" ... } at `at`; 0 when it is none.
+// The name of the first target of the transition { ... to = "name" ... } at `at`; the brace when it has no `to`; 0 when
+// it is none, or its target is not written so.
 std::size_t target_of(const Tokens& tokens, std::size_t at) {
   if (!tokens[at].is("{")) return 0;
   for (const std::size_t part : parts_of(tokens, at + 1)) {
     if (tokens[part].kind != SourceToken::Kind::name || tokens[part].text != "to") continue;
-    return tokens[part + 1].is("=") && tokens[part + 2].kind == SourceToken::Kind::text ? part + 2 : 0;
+    if (!tokens[part + 1].is("=")) return 0;
+    const std::size_t first = tokens[part + 2].is("{") ? part + 3 : part + 2;
+    return tokens[first].kind == SourceToken::Kind::text ? first : 0;
   }
-  return 0;
+  return at;
+}
+
+// Whether the one of this chart may be written there.
+bool fits(const Chart::Transition& transition, const SourceToken& target) {
+  const bool none = target.is("{");
+  return transition.target_names.empty() ? none : !none && transition.target_names.front() == target.text;
 }
 
 // Gives the transitions from `first` on their lines, those written in the braces at `at`, in their order.
@@ -38,8 +47,7 @@ void place(const Tokens& tokens, std::size_t at, Chart& chart, std::uint16_t fir
   for (const std::size_t part : parts_of(tokens, at + 1)) {
     const std::size_t target = target_of(tokens, part);
     for (std::uint16_t i = 0; target != 0 && i < count; ++i) {
-      Chart::Transition& transition = chart.transitions[static_cast<std::size_t>(first + i)];
-      if (placed[i] || transition.target_name != tokens[target].text) continue;
+      if (placed[i] || !fits(chart.transitions[static_cast<std::size_t>(first + i)], tokens[target])) continue;
       do {
         placed[i] = true;
         chart.transitions[static_cast<std::size_t>(first + i)].line = tokens[target].line;

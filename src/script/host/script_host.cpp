@@ -10,7 +10,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::uint32_t kept_format = 1;
+constexpr std::uint32_t kept_format = 2;
 
 }  // namespace
 
