@@ -12,6 +12,10 @@ TEST_CASE("every file of the guide is right, every command of it works and print
   document::check_page("behaviors.md", "guide");
 }
 
+TEST_CASE("every file of the page on what charts mean is right") {
+  document::check_page("behaviors_semantics.md", "semantics");
+}
+
 TEST_CASE("every file of the page on reflexes is right, every command of it works and prints what it shows") {
   document::check_page("reflexes.md", "reflexes");
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
+#include <iterator>
 #include <string>
 
 #include "kadans/signal/capacity.h"
@@ -327,6 +328,10 @@ ScriptPlace node_place(lua_State* state, int index) {
   const ScriptPlace place{lua_tostring(state, -2), static_cast<int>(lua_tointeger(state, -1))};
   lua_pop(state, 2);
   return place;
+}
+
+std::vector<std::string> transition_key_names() {
+  return {std::begin(transition_keys), std::prev(std::end(transition_keys))};
 }
 
 void push_node_body(lua_State* state, int index) { lua_getfield(state, index, "body"); }
