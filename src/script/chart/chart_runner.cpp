@@ -179,7 +179,9 @@ void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
 void ChartRunner::take_step(lua_State* state) {
   if (selected_.empty() && !entering_) return;
   StepMeter meter(state);
-  meter.spend(state_steps * selected_.size() * (active_.size() + chart_.size()));
+  std::size_t targets = selected_.size();
+  for (const std::uint16_t number : selected_) targets += chart_.transitions[number].also.size();
+  meter.spend(state_steps * targets * (active_.size() + chart_.size()));
   meter.settle();
   const SetMask sets_before = bindings_of(state).all_sets != 0 ? sets_asked() : 0;
   for (const std::uint16_t number : selected_) report(state, number);

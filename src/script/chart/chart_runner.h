@@ -155,7 +155,7 @@ class ChartRunner {
   bool guard(lua_State* state, std::uint16_t transition);
   bool there_already(const Chart::Transition& transition) const noexcept;
   bool acted(std::uint16_t transition) const noexcept;
-  bool lets_pass(std::uint16_t transition, const WaitingEvent* event) noexcept;
+  bool lets_pass(StepMeter& meter, std::uint16_t transition, const WaitingEvent* event);
   void add_selected(std::uint16_t transition) noexcept;
   bool passes_over(std::uint16_t taken, std::uint16_t due) const noexcept;
   bool conflict(std::uint16_t one, std::uint16_t other) const noexcept;

@@ -76,7 +76,7 @@ std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, Sta
       const auto number = static_cast<std::uint16_t>(outer.first_always + i);
       meter.spend(transition_steps);
       if (there_already(chart_.transitions[number])) continue;
-      if (enabled(state, number, event) && !lets_pass(number, event)) return number;
+      if (enabled(state, number, event) && !lets_pass(meter, number, event)) return number;
     }
     const std::uint16_t found = passed_over ? select_passed_over(state, meter, around) : none;
     if (found != none) return found;
@@ -89,7 +89,7 @@ std::uint16_t ChartRunner::select_passed_over(lua_State* state, StepMeter& meter
   for (std::uint16_t i = 0; i < at.transition_count; ++i) {
     meter.spend(transition_steps);
     const auto number = static_cast<std::uint16_t>(at.first_transition + i);
-    if (chart_.transitions[number].timed && enabled(state, number, nullptr) && !lets_pass(number, nullptr))
+    if (chart_.transitions[number].timed && enabled(state, number, nullptr) && !lets_pass(meter, number, nullptr))
       return number;
   }
   return none;
@@ -102,7 +102,7 @@ std::uint16_t ChartRunner::select_ordinary(lua_State* state, StepMeter& meter, S
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
       meter.spend(transition_steps);
       const auto number = static_cast<std::uint16_t>(at.first_transition + i);
-      if (enabled(state, number, event) && !lets_pass(number, event)) return number;
+      if (enabled(state, number, event) && !lets_pass(meter, number, event)) return number;
     }
   }
   return none;
@@ -114,8 +114,9 @@ bool ChartRunner::there_already(const Chart::Transition& transition) const noexc
 }
 
 // An action alone, without an event that it would use up, is taken beside what else is found.
-bool ChartRunner::lets_pass(std::uint16_t number, const WaitingEvent* event) noexcept {
+bool ChartRunner::lets_pass(StepMeter& meter, std::uint16_t number, const WaitingEvent* event) {
   if (chart_.transitions[number].target != no_state || event != nullptr) return false;
+  meter.spend(selected_steps * selected_.size());
   add_selected(number);
   return true;
 }
@@ -130,8 +131,9 @@ void ChartRunner::note_passed_over(lua_State* state, StepMeter& meter) {
       const Chart::Transition& transition = chart_.transitions[number];
       if (!transition.timed || transition.on != no_event || !due(state, number)) continue;
       meter.spend(selected_steps * selected_.size());
+      if (std::ranges::find(selected_, number) != selected_.end()) continue;
       for (const std::uint16_t taken : selected_) {
-        if (taken != number && passes_over(taken, number)) run_[index].passed_over = true;
+        if (passes_over(taken, number)) run_[index].passed_over = true;
       }
     }
     meter.spend(transition_steps * at.transition_count);
@@ -142,8 +144,7 @@ void ChartRunner::note_passed_over(lua_State* state, StepMeter& meter) {
 bool ChartRunner::passes_over(std::uint16_t taken, std::uint16_t due) const noexcept {
   const Chart::Transition &one = chart_.transitions[taken], &other = chart_.transitions[due];
   if (other.target != no_state) return conflict(taken, due);
-  return one.target != no_state && chart_.inside(one.source, other.source) &&
-         std::ranges::find(selected_, due) == selected_.end();
+  return one.target != no_state && chart_.inside(one.source, other.source);
 }
 
 bool ChartRunner::conflict(std::uint16_t one, std::uint16_t other) const noexcept {
