@@ -171,6 +171,12 @@ void ChartRunner::restore_history(ByteReader& bytes) {
     if (history == no_state || state == no_state || histories_[history].empty()) continue;
     const StateIndex around = chart_.states[history].parent, its = chart_.states[state].parent;
     if (state == around || !chart_.inside(state, around) || (its != around && !histories_[history][its])) continue;
+    bool alone = true;
+    for (StateIndex other = static_cast<StateIndex>(its + 1); other < chart_.states[its].end;
+         other = chart_.states[other].end) {
+      alone = alone && (other == state || !histories_[history][other]);
+    }
+    if (!alone && chart_.states[its].kind != Chart::Kind::parallel) continue;
     histories_[history][state] = remembered_[history] = true;
   }
 }
