@@ -165,16 +165,13 @@ TEST_CASE("initial names a state further inside, or one for each of some regions
 }
 
 TEST_CASE("the history of a parallel brings back the states of all its regions") {
-  const auto back = [](const std::string& to) {
-    return played(
-        "return k.behavior 't' { initial = 'p', k.parallel 'p' { k.history 'h' { deep = true" + to +
-            " }, k.region 'l' { initial = 'a', k.state 'a' { enter = log 'a', { on = 'x', to = 'b' } }, "
-            "k.state 'b' { enter = log 'b' } }, k.region 'r' { initial = 'c', k.state 'c' { enter = log 'c' }, "
-            "k.state 'd' { enter = log 'd' } }, { after = 0.03, to = 'pause' } }, "
-            "k.state 'pause' { { to = 'h' } } })",
-        6, {"x"});
-  };
-  CHECK(back() == "a c b b c ");
+  const std::string left =
+      "return k.behavior 't' { initial = 'p', k.parallel 'p' { k.history 'h' { deep = true }, "
+      "k.region 'l' { initial = 'a', k.state 'a' { enter = log 'a', { on = 'x', to = 'b' } }, "
+      "k.state 'b' { enter = log 'b' } }, k.region 'r' { initial = 'c', k.state 'c' { enter = log "
+      "'c' }, k.state 'd' { enter = log 'd' } }, { after = 0.03, to = 'pause' } }, "
+      "k.state 'pause' { { to = 'h' } } }";
+  CHECK(played(left, 6, {"x"}) == "a c b b c ");
   const std::string first =
       "return k.behavior 't' { initial = 'o', k.state 'o' { { on = 'x', to = 'h' } }, "
       "k.parallel 'p' { k.history 'h' { deep = true, to = { 'l.b', 'd' } }, "
