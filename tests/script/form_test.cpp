@@ -75,7 +75,7 @@ TEST_CASE("a transition to a state inside its own leaves that state, with intern
   const auto to_b = [](const char* internal) {
     return played(std::string("return k.behavior 't' { k.state 'w' { enter = log 'w+', exit = log 'w-', initial = 'a', "
                               "{ on = 'x', to = 'b'") +
-                      internal + "}, k.state 'a' { exit = log 'a-' }, k.state 'b' { enter = log 'b+' } } })",
+                      internal + "}, k.state 'a' { exit = log 'a-' }, k.state 'b' { enter = log 'b+' } } }",
                   3, {"x"});
   };
   CHECK(to_b("") == "w+ a- w- w+ b+ ");
@@ -91,7 +91,7 @@ TEST_CASE("a region's transition inwards leaves the whole parallel, with interna
             "to = 'b'") +
             internal +
             "}, k.state 'a' { exit = log 'a-' }, k.state 'b' { enter = log 'b+' } }, "
-            "k.region 'r' { enter = log 'r+', k.state 'c' {} } } })",
+            "k.region 'r' { enter = log 'r+', k.state 'c' {} } } }",
         3, {"x"});
   };
   CHECK(to_b("") == "r+ a- p- b+ r+ ");
@@ -154,7 +154,7 @@ TEST_CASE("initial names a state further inside, or one for each of some regions
             "k.state 'v' {}, k.parallel 'p' { " + parallel +
             "k.region 'l' { initial = 'a', k.state 'a' { enter = log 'a' }, k.state 'b' { enter = log 'b' } }, "
             "k.region 'r' { k.state 'c' { initial = 'd', k.state 'd' { enter = log 'd' }, k.state 'e' { enter "
-            "= log 'e' } } } } } })",
+            "= log 'e' } } } } } }",
         2);
   };
   CHECK(begins("'w.p'", "") == "w a d ");
@@ -216,7 +216,7 @@ TEST_CASE("a path of a target begins at the root, or where it leads anywhere, ne
         std::string("return k.behavior 't' { initial = 'u', k.state 'u' { initial = 'i', k.state 'i' { { to = '") + to +
             "' } }, k.state 'w' { initial = 'y', k.state 'x' { enter = log 'u.w.x' }, k.state 'y' {} } }, "
             "k.state 'w' { initial = 'y', k.state 'x' { enter = log 'w.x' }, k.state 'z' { k.state 'q' { enter "
-            "= log 'q' } }, k.state 'y' {} } })",
+            "= log 'q' } }, k.state 'y' {} } }",
         2);
   };
   CHECK(leads("w.x") == "w.x ");  // the whole path counts first

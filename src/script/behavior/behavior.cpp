@@ -312,7 +312,7 @@ void Behavior::Parts::out_of_steps(const char* chunk, int line) noexcept {
 
 void Behavior::Parts::restless(const Chart::State& from, const Chart::State& to, int line,
                                std::uint32_t ticks) noexcept {
-  char text[512];
+  char text[640];
   std::snprintf(text, sizeof text,
                 "%.200s:%d: for %u ticks a state followed another at once, now '%.80s' after '%.80s': nothing takes "
                 "time. Should one wait, for a condition, an event or after > 0? (told once)",

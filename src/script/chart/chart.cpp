@@ -218,6 +218,8 @@ struct Resolver {
     };
     state.defaults = targets(state, state.line, state.initial_names, find);
     if (state.initial_names.empty()) state.defaults = chart.states[state.parent].defaults;
+    if (state.initial_names.empty() && chart.states[state.parent].kind == Chart::Kind::parallel)
+      chart.each_region(state.parent, [&](StateIndex region) { state.defaults.push_back(region); });
     for (const StateIndex target : state.defaults) {
       if (chart.states[target].kind == Chart::Kind::history && chart.states[target].parent == state.parent)
         problem(state, state.line,
