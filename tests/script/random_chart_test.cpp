@@ -11,8 +11,8 @@ using namespace kadans::script_test;
 
 namespace {
 
-constexpr std::uint32_t charts = 3000;
-constexpr int ticks = 24;
+constexpr std::uint32_t charts = 2000;
+constexpr int ticks = 20;
 
 // What was printed since `from`. The `during` of the behavior prints what all functions said since it did so before.
 std::string said_since(const Log& log, std::size_t from) {

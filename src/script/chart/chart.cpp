@@ -289,9 +289,9 @@ struct Resolver {
               "k.history '" + state.name +
                   "' remembers a state that is left; a behavior is not: put "
                   "it into the state whose states it shall remember");
-    bool regions = false;
-    for (StateIndex i = index + 1; i < state.end; ++i) regions = regions || chart.states[i].kind == Chart::Kind::region;
-    if (state.kind == Chart::Kind::parallel && !regions)
+    bool empty = true;
+    for (StateIndex i = index + 1; i < state.end; ++i) empty = empty && chart.states[i].kind == Chart::Kind::history;
+    if (state.kind == Chart::Kind::parallel && empty)
       problem(state, state.line, "k.parallel '" + state.name + "' has no k.region");
   }
 };

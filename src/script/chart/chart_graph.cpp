@@ -95,7 +95,9 @@ class Graph {
   StateIndex leaf(StateIndex state) const {
     while (has_children(state)) {
       const StateIndex initial = chart_.states[state].initial;
-      state = initial != no_state ? initial : static_cast<StateIndex>(state + 1);
+      auto first = static_cast<StateIndex>(state + 1);
+      while (first + 1 < chart_.states[state].end && chart_.states[first].kind == Chart::Kind::history) ++first;
+      state = initial != no_state ? initial : first;
     }
     return state;
   }
@@ -178,7 +180,9 @@ void write_mermaid_state(const Graph& graph, StateIndex state, const std::string
   const Chart::State& s = graph.chart().states[state];
   const bool history = s.kind == Chart::Kind::history;
   if (s.kind == Chart::Kind::region) {
-    if (state != s.parent + 1) text += indent + "--\n";  // between regions
+    bool first = true;
+    graph.chart().each_region(s.parent, [&](StateIndex region) { first = first && region >= state; });
+    if (!first) text += indent + "--\n";  // between regions
   } else if (state != 0) {
     text += indent + "state " + quoted(graph.full_title(state, "<br/>")) + " as " + id(state);
     text += graph.has_children(state) ? " {\n" : "\n";

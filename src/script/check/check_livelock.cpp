@@ -187,10 +187,10 @@ class LivelockCheck {
       names += (names.empty() ? "'" : number == circle.back() ? " and '" : ", '") + chart_.states[leaf].path + "'";
     }
     const Chart::Transition& first = chart_.transitions[circle.front()];
-    const std::string what =
-        circle.size() == 1 ? "state " + names + " leads to itself" : "states " + names + " lead to each other";
+    const std::string what = circle.size() == 1 ? "state " + names + " leads to itself and takes"
+                                                : "states " + names + " lead to each other and take";
     problems_.push_back({chart_.states[first.source].chunk, first.line, 0,
-                         what + " and take no time" + (held ? " while their condition holds" : "") +
+                         what + " no time" + (held ? " while their condition holds" : "") +
                              ": give one of these transitions a condition of its own, an event or after > 0"});
   }
 
