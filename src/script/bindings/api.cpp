@@ -140,9 +140,9 @@ constexpr ApiEntry written[] = {
      "The target, or states in several regions of a k.parallel; none: action alone"},
     {"transition", "on", "string|string[]?",
      "The event, or one of several; \"fault.*\": all that begin so, \"*\": all"},
-    {"transition", "when", "fun(s: kadans.Snapshot, m: kadans.Machine): any", "The condition"},
+    {"transition", "when", "(fun(s: kadans.Snapshot, m: kadans.Machine): any)?", "The condition"},
     {"transition", "after", "number|table?", "Seconds in the state, a number or a parameter"},
-    {"transition", "action", "fun(m: kadans.Machine, s: kadans.Snapshot)", "Runs between the exits and the entries"},
+    {"transition", "action", "(fun(m: kadans.Machine, s: kadans.Snapshot))?", "Runs between the exits and the entries"},
     {"transition", "internal", "boolean?", "true: leads to a state inside its own, which is not left"},
     {"transition", "why", "string?", "A word for the log"},
 
