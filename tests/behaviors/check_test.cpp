@@ -50,7 +50,7 @@ const Mistake in_a_function[] = {
     {"print(maths.pi)", "5: unknown name 'maths', did you mean 'math'?"},
     {"count = 1", "5: 'count' would be a global: write local count"},
     {"helper(m, s)", "2: s.base has no 'roll', did you mean 'roll_rad'?"},
-    {"m.vars.tries = m.vars.tries + 1\nm.vars.new = 2\nprint(m.vars.new, m.args.x, m.time_s, P.settle_s)", ""},
+    {"m.vars.tries = m.vars.tries + 1\nm.vars.new = { 2 }\nprint(m.vars.new, m.args.x, m.time_s, P.settle_s)", ""},
     {"for i, v in ipairs({ 1 }) do print(i, v) end\nrepeat local done = true until done\ngoto out\n::out::", ""},
     {"local a, b = 1, 2\nlocal function f(x, ...) return x + a + b, ... end\nprint(f(1), #s.safety.level, math.pi)",
      ""},
@@ -82,10 +82,10 @@ const Mistake in_the_chart[] = {
      "end,\n{ "
      "on = 'go', to = 'b' } },\nk.state 'b' { { to = 'a' } } }",
      ""},
-    {"return k.behavior 't' { k.state 'a' { endless = true, enter = function(m) m:emit 'fault.knee' m:emit 'faulty' "
+    {"return k.behavior 't' { k.state 'a' { endless = true, enter = function(m) m:emit 'heat.knee' m:emit 'heated' "
      "end,\n"
-     "{ on = { 'fault.*', 'faulty' }, action = function() end },\n{ on = 'falut.*', to = 'a' } } }",
-     "4: nobody emits an event like 'falut.*' here"},
+     "{ on = { 'heat.*', 'heated' }, action = function() end },\n{ on = 'haet.*', to = 'a' } } }",
+     "4: nobody emits an event like 'haet.*' here"},
     {"return k.behavior 't' {\nk.state 'a' { { after = 1, action = function() end } } }",
      "3: state 'a' has no way out: give it a transition, or say endless = true"},
     {"return k.behavior 't' { initial = 'a',\nk.state 'a' { { after = 1, to = 'b' } },\nk.state 'b' {} }",

@@ -101,40 +101,40 @@ TEST_CASE("a region's transition inwards leaves the whole parallel, with interna
 TEST_CASE("a name with a star takes the events that begin with its words, a star alone all; neither takes an end") {
   const auto taken = [](const std::string& on, const std::string& event) {
     return played("return k.behavior 't' { initial = 'a', k.state 'a' { { on = '" + on +
-                      "', to = 'b', action = function(_, s) print(s.event.name) end }, { on = { 'fault', 'fault.hot', "
-                      "'faulty', 'fault.hot.knee' }, to = 'b' } }, k.state 'b' {} }",
+                      "', to = 'b', action = function(_, s) print(s.event.name) end }, { on = { 'heat', 'heat.hot', "
+                      "'heaty', 'heat.hot.knee' }, to = 'b' } }, k.state 'b' {} }",
                   3, {event});
   };
-  CHECK(taken("fault.*", "fault") == "fault ");
-  CHECK(taken("fault.*", "fault.hot") == "fault.hot ");
-  CHECK(taken("fault.*", "fault.hot.knee") == "fault.hot.knee ");
-  CHECK(taken("fault.*", "faulty") == "");
-  CHECK(taken("fault.hot.*", "fault") == "");
-  CHECK(taken("*", "faulty") == "faulty ");
+  CHECK(taken("heat.*", "heat") == "heat ");
+  CHECK(taken("heat.*", "heat.hot") == "heat.hot ");
+  CHECK(taken("heat.*", "heat.hot.knee") == "heat.hot.knee ");
+  CHECK(taken("heat.*", "heaty") == "");
+  CHECK(taken("heat.hot.*", "heat") == "");
+  CHECK(taken("*", "heaty") == "heaty ");
   CHECK(played(R"(return k.behavior 't' { k.state 'w' { initial = 'f', { on = '*', action = log 'star' },
-      { on = 'fault.*', action = log 'words' }, { on = 'fault.end', action = log 'end' },
-      k.state 'f' { { on = 'go', to = 'g' } }, k.final 'g' { outcome = 'fault.end' } } })",
+      { on = 'heat.*', action = log 'words' }, { on = 'heat.end', action = log 'end' },
+      k.state 'f' { { on = 'go', to = 'g' } }, k.final 'g' { outcome = 'heat.end' } } })",
                3, {"go"}) == "end ");
 }
 
 TEST_CASE("a name with a star takes events whose names nobody wrote down, up to 64 of them") {
-  Stage stage(head + R"(return k.behavior 't' { k.state 'a' { { on = 'fault.*',
+  Stage stage(head + R"(return k.behavior 't' { k.state 'a' { { on = 'heat.*',
     action = function(m, s) print(s.event.name, s.event.data and s.event.data.n) end },
-    enter = function(m) local which = 'knee' m:emit('fault.' .. which, { n = 3 }) end } })");
+    enter = function(m) local which = 'knee' m:emit('heat.' .. which, { n = 3 }) end } })");
   stage.tick();
-  CHECK(stage.said() == "fault.knee 3\n");
-  CHECK(stage.behavior->post("fault.hip"));
+  CHECK(stage.said() == "heat.knee 3\n");
+  CHECK(stage.behavior->post("heat.hip"));
   stage.tick();
-  CHECK(stage.said() == "fault.knee 3\nfault.hip nil\n");
+  CHECK(stage.said() == "heat.knee 3\nheat.hip nil\n");
   CHECK_FALSE(stage.behavior->post("warning.hip"));
-  CHECK_FALSE(stage.behavior->post("fault.*"));
-  CHECK_FALSE(stage.behavior->post("fault." + std::string(60, 'x')));
+  CHECK_FALSE(stage.behavior->post("heat.*"));
+  CHECK_FALSE(stage.behavior->post("heat." + std::string(60, 'x')));
   for (int i = 2; i < 64; ++i)
-    CHECK(stage.behavior->post("fault." + std::to_string(i)) == (i < 34));  // the queue has 32
+    CHECK(stage.behavior->post("heat." + std::to_string(i)) == (i < 34));  // the queue has 32
   stage.tick();
-  CHECK(stage.behavior->post("fault.63"));
-  CHECK_FALSE(stage.behavior->post("fault.64"));
-  CHECK(output_of("m:emit 'fault.*'").find("nothing in this behavior waits") != std::string::npos);
+  CHECK(stage.behavior->post("heat.63"));
+  CHECK_FALSE(stage.behavior->post("heat.64"));
+  CHECK(output_of("m:emit 'heat.*'").find("nothing in this behavior waits") != std::string::npos);
 }
 
 TEST_CASE("a transition leads into several regions; the others begin as ever") {

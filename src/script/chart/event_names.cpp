@@ -3,13 +3,15 @@
 #include <algorithm>
 
 #include "chart.h"
+#include "chart_reports.h"
 
 namespace kadans {
 namespace {
 
-// SCXML, section 3.12.1: by whole words. "fault.*" takes "fault" and "fault.motor_hot", not "faulty".
+// SCXML, section 3.12.1: by whole words. "fault.*" takes "fault" and "fault.motor_hot", not "faulty". Ours: "*" takes
+// what is sent, but no reports of the runner.
 bool matches(std::string_view pattern, std::string_view event) noexcept {
-  if (pattern == "*") return true;
+  if (pattern == "*") return !reserved_for_reports(event);
   const std::string_view words = pattern.substr(0, pattern.size() - 2);
   return event.starts_with(words) && (event.size() == words.size() || event[words.size()] == '.');
 }
