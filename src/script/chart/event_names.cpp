@@ -10,7 +10,7 @@ namespace {
 
 // SCXML, section 3.12.1: by whole words. "fault.*" takes "fault" and "fault.motor_hot", not "faulty". Ours: "*" takes
 // what is sent, but no reports of the runner.
-bool matches(std::string_view pattern, std::string_view event) noexcept {
+bool pattern_takes(std::string_view pattern, std::string_view event) noexcept {
   if (pattern == "*") return !reserved_for_reports(event);
   const std::string_view words = pattern.substr(0, pattern.size() - 2);
   return event.starts_with(words) && (event.size() == words.size() || event[words.size()] == '.');
@@ -29,7 +29,7 @@ EventId Chart::intern(std::string_view event) {
   events.emplace_back(event);
   ends_.push_back(false);
   for (Pattern& pattern : patterns)
-    pattern.takes.push_back(matches(events[static_cast<std::size_t>(pattern.event)], event));
+    pattern.takes.push_back(pattern_takes(events[static_cast<std::size_t>(pattern.event)], event));
   return static_cast<EventId>(events.size() - 1);
 }
 
@@ -41,13 +41,13 @@ std::int16_t Chart::intern_pattern(std::string_view text) {
   if (known != patterns.end()) return number;
   Pattern& made = patterns.emplace_back();
   made.event = event;
-  for (const std::string& one : events) made.takes.push_back(matches(text, one));
+  for (const std::string& one : events) made.takes.push_back(pattern_takes(text, one));
   return number;
 }
 
 bool Chart::any_pattern_takes(std::string_view event) const noexcept {
   return std::ranges::any_of(
-      patterns, [&](const Pattern& one) { return matches(events[static_cast<std::size_t>(one.event)], event); });
+      patterns, [&](const Pattern& one) { return pattern_takes(events[static_cast<std::size_t>(one.event)], event); });
 }
 
 EventId Chart::find_or_learn(std::string_view event) {
