@@ -28,7 +28,8 @@ class Layout {
     this.children = states.map(() => []);
     states.forEach((state, i) => i > 0 && this.children[state.parent].push(i));
     this.edges = states.map(() => []); // by the state in which they are laid out
-    transitions.forEach((transition) => this.add_edge(transition.source, transition.target, { transition, label: short(transition.label, label_max), key: `t${transition.number}` }));
+    // One with several targets is an arrow for each.
+    transitions.forEach((transition, i) => this.add_edge(transition.source, transition.target, { transition, label: short(transition.label, label_max), key: `t${i}` }));
     states.forEach((state, i) => {
       if (state.kind === 'history' && !none(state.initial)) this.add_edge(i, state.initial, { label: '', key: `default${i}` });
     });
