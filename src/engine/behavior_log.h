@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace spdlog::sinks {
 class sink;
@@ -24,6 +25,16 @@ struct Transition {
   std::string from;  // path of the state, "stand.wait"; "" when entering
   std::string to;
   std::string why;
+};
+
+// An event from outside that behaviors got, for the record.
+struct EmittedEvent {
+  std::int64_t time_ns = 0;
+  std::uint64_t tick = 0;  // of the control engine, whose snapshot the behaviors saw
+  std::string event{};
+  std::string data{};  // a JSON object
+  std::string who{};
+  bool ordered = false;  // given while the run went on: only the record knows of it
 };
 
 struct Line;
@@ -46,11 +57,13 @@ class BehaviorLog {
 
   void say(const Line& line);
   void transition(const Transition& transition);
+  void emitted(const EmittedEvent& event);  // for sinks that read facts
   void message(std::int64_t time_ns, Severity severity, std::string_view behavior, std::string_view text);
 
  private:
   class Logger;
   std::unique_ptr<Logger> logger_;
+  std::vector<LineSink*> facts_;
 };
 
 // Valid while it is said.
@@ -68,6 +81,7 @@ class LineSink {
  public:
   virtual ~LineSink() = default;
   virtual void tell(const Line& line) = 0;
+  virtual void tell_emitted(const EmittedEvent& event) { (void)event; }
 };
 
 // Text sinks write "     1.50 s  squat: on my way". They lock, so no real-time thread uses them.

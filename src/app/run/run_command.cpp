@@ -383,7 +383,12 @@ class WallClockRun {
   // Reports the messages of behaviors, and faults except late ticks, which the final report counts.
   void tell(std::int64_t time_ns) {
     Event event;
-    while (told_.pop(time_ns, event)) said_.say(event.line());
+    while (told_.pop(time_ns, event)) {
+      if (event.kind == Event::Kind::emitted)
+        said_.emitted(event.emitted);
+      else
+        said_.say(event.line());
+    }
     if (joystick_ != nullptr) {
       const auto snapshot = parts_.control.exchange().snapshot.read(1);
       joystick_->tell_news(*snapshot, said_);

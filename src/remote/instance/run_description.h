@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "config/robot/robot_config.h"
 #include "kadans/control/catalog.h"
 #include "script/host/script_host.h"
@@ -21,6 +23,9 @@ struct RobotTexts {
   std::string description;
   ViewerSubjects subjects;
 };
+
+// An event that a behavior declares: {name, doc, fields: [{name, type, unit, doc, min, max, optional}]}.
+nlohmann::ordered_json event_json(const ScriptEvent& event);
 
 // Call it before the loop or between two behavior ticks, because it reads the values of parameters and the charts.
 // Without a host (behaviors in a process of their own) the charts are left out.

@@ -8,6 +8,7 @@
 
 #include "order.h"
 #include "order_queue.h"
+#include "script/host/script_event.h"
 #include "script/host/script_parameter.h"
 
 namespace kadans {
@@ -18,6 +19,7 @@ struct BehaviorReport {
   bool over = false;
   std::uint64_t chart = 0;  // a number that changes when the chart's states or transitions change
   std::vector<ScriptParameter> parameters;
+  std::vector<ScriptEvent> events{};  // that it takes now
 };
 
 struct Answer {

@@ -105,6 +105,7 @@ void LiveChannels::take(const LatestRow::View& row) {
 }
 
 void LiveChannels::take(const Event& event) {
+  if (event.kind == Event::Kind::emitted) return;  // a line tells people of it
   put_json(event.kind == Event::Kind::transition ? transitions_ : log_, event.transition.time_ns, json_of(event));
 }
 

@@ -132,6 +132,7 @@ int pose(lua_State* state) {
 void open_kadans_module(lua_State* state) {
   lua_newtable(state);
   open_parameters(state);
+  open_events(state);
   open_nodes(state);
   lua_pushcfunction(state, budget);
   lua_setfield(state, -2, "budget");

@@ -38,6 +38,7 @@ struct BehaviorLink {
   static constexpr std::size_t behaviors_max = 32, name_bytes = 64, order_bytes = 8192;
   using Name = std::array<char, name_bytes>;
   using Numbers = std::array<std::uint32_t, 5>;
+  using PlayNumbers = std::array<std::uint32_t, 7>;
 
   // Written by the runtime before the process starts.
   struct Setup {
@@ -60,12 +61,12 @@ struct BehaviorLink {
     std::uint32_t last_sequence = 0;  // the answer's transactions are numbered from the next number on
     std::uint32_t room = 0;           // for commands, headers included
     std::uint32_t order_size = 0;
-    std::array<std::byte, order_bytes> order{};
+    std::array<std::byte, order_bytes> order{};  // one, or several events, one after the other
     Snapshot snapshot;
   };
   struct Answer {
     Turn<> number;                                // number of the request
-    Numbers play{};                               // the numbers of PlayStatus, in its order
+    PlayNumbers play{};                           // the numbers of PlayStatus, in its order
     std::array<Numbers, behaviors_max> status{};  // the numbers of BehaviorStatus, in its order
     std::uint32_t kept_changed = 0;
     KeptState kept;
@@ -80,8 +81,9 @@ struct BehaviorLink {
 };
 static_assert(std::is_trivially_copyable_v<BehaviorLink>);
 
-// The first byte of a line that is a transition; other lines have a severity of BehaviorLog there.
-inline constexpr std::uint8_t transition_line = 16;
+// The first byte of a line that is a transition, or an event from outside. Other lines have a severity of BehaviorLog
+// there.
+inline constexpr std::uint8_t transition_line = 16, emitted_line = 17;
 
 // A fingerprint by which two processes check that they use the same numbers for parameters, set-points, control sets
 // and objects. Each process reads the robot's files itself, and the files may have changed in between. Ranges and poses

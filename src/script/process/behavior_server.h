@@ -20,6 +20,7 @@ class SpokenLines final : public LineSink {
   explicit SpokenLines(BehaviorLink& link) : link_(link) {}
 
   void tell(const Line& line) override;
+  void tell_emitted(const EmittedEvent& event) override;
 
  private:
   bool push(const Line& line);
@@ -40,7 +41,7 @@ class BehaviorServer {
 
  private:
   bool answer();
-  void take_order();
+  void take_orders();
   void tell_status();
   void keep(std::int64_t time_ns);
 

@@ -36,17 +36,33 @@ EventLog::EventLog() : ring_(std::make_unique<Bytes>()) {}
 
 void EventLog::tell(const Line& line) {
   const Transition* t = line.transition;
-  outgoing_.clear();
-  outgoing_.put(std::uint32_t{0});
-  outgoing_.put(line.time_ns);
-  outgoing_.put(static_cast<std::uint8_t>(t != nullptr ? Event::Kind::transition : Event::Kind::message));
-  outgoing_.put_string(line.behavior);
+  begin(t != nullptr ? Event::Kind::transition : Event::Kind::message, line.time_ns, line.behavior);
   if (t != nullptr) {
     for (const std::string* text : {&t->from, &t->to, &t->why}) outgoing_.put_string(*text);
   } else {
     outgoing_.put(static_cast<std::uint8_t>(line.severity));
     outgoing_.put_string(line.text);
   }
+  push();
+}
+
+void EventLog::tell_emitted(const EmittedEvent& event) {
+  begin(Event::Kind::emitted, event.time_ns, "");
+  outgoing_.put(event.tick);
+  outgoing_.put<std::uint8_t>(event.ordered);
+  for (const std::string* text : {&event.event, &event.data, &event.who}) outgoing_.put_string(*text);
+  push();
+}
+
+void EventLog::begin(Event::Kind kind, std::int64_t time_ns, std::string_view behavior) {
+  outgoing_.clear();
+  outgoing_.put(std::uint32_t{0});
+  outgoing_.put(time_ns);
+  outgoing_.put(static_cast<std::uint8_t>(kind));
+  outgoing_.put_string(behavior);
+}
+
+void EventLog::push() noexcept {
   outgoing_.set(0, static_cast<std::uint32_t>(outgoing_.size() - head_bytes));
   if (!ring_->try_push(outgoing_.bytes())) dropped_.fetch_add(1, std::memory_order_relaxed);
 }
@@ -71,6 +87,11 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
     event.transition.from = fields.take_string();
     event.transition.to = fields.take_string();
     event.transition.why = fields.take_string();
+  } else if (event.kind == Event::Kind::emitted) {
+    event.emitted = {.time_ns = event_time_ns, .tick = fields.take<std::uint64_t>()};
+    event.emitted.ordered = fields.take<std::uint8_t>() != 0;
+    for (std::string* text : {&event.emitted.event, &event.emitted.data, &event.emitted.who})
+      *text = fields.take_string();
   } else {
     event.severity = static_cast<BehaviorLog::Severity>(fields.take<std::uint8_t>());
     event.text = fields.take_string();
@@ -86,6 +107,13 @@ std::string json_of(const Event& event) {
     json["from"] = transition.from;
     json["to"] = transition.to;
     json["why"] = transition.why;
+  } else if (event.kind == Event::Kind::emitted) {
+    const EmittedEvent& emitted = event.emitted;
+    json["tick"] = emitted.tick;
+    json["event"] = emitted.event;
+    json["data"] = read_foreign_json(emitted.data).value_or(nlohmann::ordered_json::object());
+    json["who"] = emitted.who;
+    json["ordered"] = emitted.ordered;
   } else {
     json["level"] = foxglove_level(event.severity);
     json["message"] = event.text;
@@ -167,6 +195,17 @@ const char* const transition_schema = R"({
     "to": { "type": "string", "description": "Path of the state that was entered" },
     "why": { "type": "string" }
   }
+})";
+
+const char* const emitted_schema = R"({
+  "title": "kadans.Event", "type": "object",
+  "description": "An event from outside that behaviors got",
+  "properties": { "timestamp": { "type": "object", "title": "time",
+      "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
+    "tick": { "type": "integer", "description": "Tick of the control engine" },
+    "event": { "type": "string" }, "data": { "type": "object" },
+    "who": { "type": "string", "description": "Who sent it" },
+    "ordered": { "type": "boolean", "description": "Given while the run went on: a replay takes it from here" } }
 })";
 
 const char* const fault_schema = R"({

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -20,11 +21,12 @@
 namespace kadans {
 
 struct Event {
-  enum class Kind : std::uint8_t { message, transition };
+  enum class Kind : std::uint8_t { message, transition, emitted };
   Kind kind = Kind::message;
-  Transition transition;  // both kinds use its time_ns and behavior
+  Transition transition;  // all kinds use its time_ns and behavior
   BehaviorLog::Severity severity = BehaviorLog::Severity::info;
   std::string text;
+  EmittedEvent emitted{};
 
   // Valid as long as the event.
   Line line() const noexcept {
@@ -40,6 +42,7 @@ std::string json_of(const ToldFault& fault);
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what);
 nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model);
 extern const char* const log_schema;
+extern const char* const emitted_schema;  // kadans.Event
 extern const char* const transition_schema;
 extern const char* const fault_schema;
 
@@ -48,6 +51,7 @@ class EventLog final : public LineSink {
   EventLog();
 
   void tell(const Line& line) override;  // filling thread only
+  void tell_emitted(const EmittedEvent& event) override;
 
   // Draining thread only. False when no event up to `time_ns` is waiting.
   [[nodiscard]] bool pop(std::int64_t time_ns, Event& event);
@@ -55,6 +59,9 @@ class EventLog final : public LineSink {
   std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }  // any thread
 
  private:
+  void begin(Event::Kind kind, std::int64_t time_ns, std::string_view behavior);
+  void push() noexcept;
+
   using Bytes = Ring<std::byte, std::size_t{1} << 18U>;
   static constexpr std::size_t head_bytes = sizeof(std::uint32_t) + sizeof(std::int64_t);
 
