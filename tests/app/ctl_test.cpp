@@ -73,6 +73,56 @@ TEST_CASE("ctl looks into a run, commands it and tunes it, and the run ends as i
   CHECK(has(read(project / "err"), "ctl: uid "));  // every change is told
 }
 
+TEST_CASE("ctl emits events into a simulation, and its replay and its checkpoint repeat them bit for bit") {
+  const auto project = project_copy("ctl_emit");
+  write(project / "behaviors/tulip/listen.lua", R"(local k = require "kadans"
+k.events { swing = { "swing the arm", to_rad = { "rad", min = -1, max = 1 } }, ["arm.rest"] = {} }
+return k.behavior "listen" {
+  controls = "posture",
+  k.state "wait" {
+    endless = true,
+    { on = "swing", to = "wait", action = function(m, s)
+      m.posture:move({ l_shoulder_pitch = s.event.data.to_rad }, { time_s = 0.2 })
+    end },
+    { on = "arm.rest", to = "wait", action = function(m) m.posture:move("stand", { time_s = 0.2 }) end },
+  },
+})");
+  write(project / "config/scenarios/listen.json",
+        R"({ "name": "listen", "robot": "config/tulip/robot.json", "plant": "ideal", "duration_s": 1000,
+             "behaviors": ["listen"] })");
+  REQUIRE(beside(project, "sim config/scenarios/listen.json --realtime --record run.mcap --checkpoint 3=here.mcap",
+                 "ctl list events; ctl list events --names\n"
+                 "ctl emit swing to_rad=0.3\n"
+                 "ctl emit arm.rest --json\n"
+                 "ctl emit swing '{\"to_rad\": 0.123456789}'\n"
+                 "ctl emit swing to_rad=3; echo $?\n"
+                 "ctl emit swng; echo $?\n"
+                 "ctl emit 'a b' x=1; echo $?\n"
+                 "ctl pause; ctl emit arm.rest; echo $?; ctl resume\n"
+                 "until [ -e here.mcap ]; do ctl status >/dev/null; done\n") == 0);
+  const std::string said = read(project / "said"), wrong = read(project / "wrong");
+  CAPTURE(said);
+  CAPTURE(wrong);
+  CHECK(has(said, "swing     swing the arm; to_rad: a number in rad, -1..1"));
+  CHECK(has(said, "\narm.rest\nswing\n"));
+  CHECK(has(said, "event swing {\"to_rad\":0.3} from uid "));
+  CHECK(has(said, "\"ok\":true"));
+  CHECK(has(said, "\n1\n1\n1\n"));
+  CHECK(has(wrong, "event 'swing': field 'to_rad' = 3 is outside its range -1..1 rad"));
+  CHECK(has(wrong, "unknown event 'swng' for what plays, did you mean 'swing'?"));
+  CHECK(has(wrong, "the behaviors are paused"));
+  const std::string events = run("log cat run.mcap --topic /events", project).out;
+  CAPTURE(events);
+  CHECK(has(events, "\"event\":\"swing\",\"data\":{\"to_rad\":0.123456789},\"who\":\"uid "));
+  CHECK(has(events, "\"ordered\":true"));
+  const Outcome replayed = run("replay run.mcap --from-record", project);
+  CHECK_MESSAGE(replayed.exit_code == 0, replayed.out);
+  CHECK(has(replayed.out, "run.mcap: the same, "));
+  const Outcome on = run("sim --from here.mcap --duration 3.2 --record on.mcap", project);
+  CHECK_MESSAGE(on.exit_code == 0, on.err);
+  CHECK(run("replay on.mcap --from-record", project).exit_code == 0);
+}
+
 TEST_CASE("what ctl save wrote counts in the next run, and what a preset makes otherwise is said") {
   const auto project = project_copy("ctl_save");
   REQUIRE(beside(project, live,

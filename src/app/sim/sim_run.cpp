@@ -36,6 +36,12 @@ RunInputs inputs_for(RunRequest request, const ScenarioConfig& scenario, const A
   return inputs;
 }
 
+ScenarioConfig scenario_of(const RunRequest& request, const std::optional<SimContinuation>& continuation) {
+  ScenarioConfig scenario = read_scenario(request);
+  if (continuation) add_ordered_events(continuation->from.inputs, "", scenario);
+  return scenario;
+}
+
 std::vector<CheckpointOrder> checkpoints_of(const SimOptions& options) {
   std::vector<CheckpointOrder> orders;
   for (const std::string& text : options.checkpoints) orders.push_back(parse_checkpoint(text));
@@ -47,7 +53,7 @@ std::vector<CheckpointOrder> checkpoints_of(const SimOptions& options) {
 SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::optional<SimContinuation> continuation)
     : options_(options),
       request_(request),
-      scenario_(read_scenario(request)),
+      scenario_(scenario_of(request, continuation)),
       seed_(request.seed.value_or(scenario_.seed)),
       duration_s_(request.duration_s.value_or(scenario_.duration_s)),
       assembly_(scenario_, seed_, log_),
@@ -72,7 +78,7 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
   if (!continuation_) make_reachable();
   if (options_.hash_every_s) trail_ = std::make_unique<HashTrail>(*options_.hash_every_s);
   if (!options_.checkpoints.empty())
-    checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_), assembly_);
+    checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_), assembly_, ordered_);
 }
 
 void SimRun::make_reachable() {

@@ -49,8 +49,9 @@ bool is_event_name(std::string_view name) noexcept {
 
 void check_event_name(const PlacedName& name, Problems& problems) {
   if (name.name.empty() || is_event_name(name.name)) return;
-  problems.add(name.place, in_quotes(name.name) + " is no name of an event: words of letters, digits and '_' with dots "
-                                                  "between them, at most " +
+  problems.add(name.place, in_quotes(name.name) +
+                               " is no name of an event: words of letters, digits and '_' with dots "
+                               "between them, at most " +
                                std::to_string(EventBounds::name_bytes) + " characters");
 }
 
@@ -107,8 +108,7 @@ PlayedEvent read_event(std::string_view text, const std::string& source) {
     problems.throw_if_any();
   } else {
     const bool braces = data.size() >= 2 && data.front() == '{' && data.back() == '}';
-    event.data = 
-        read_play_arguments(braces ? data.substr(1, data.size() - 2) : data, EventBounds::fields, source);
+    event.data = read_play_arguments(braces ? data.substr(1, data.size() - 2) : data, EventBounds::fields, source);
   }
   if (std::string why = out_of_bounds(event.data); !why.empty()) refuse(std::move(why));
   return event;
@@ -116,8 +116,7 @@ PlayedEvent read_event(std::string_view text, const std::string& source) {
 
 std::string data_json(const std::vector<PlayArgument>& data) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const PlayArgument& field : data)
-    std::visit([&](const auto& value) { json[field.name] = value; }, field.value);
+  for (const PlayArgument& field : data) std::visit([&](const auto& value) { json[field.name] = value; }, field.value);
   return json_text(json);
 }
 

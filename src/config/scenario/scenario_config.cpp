@@ -109,13 +109,15 @@ void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, P
   f.string("file", file, "for reload: the file with which it continues, from the project root");
   f.string("event", order.event.name, "for emit: name of an event that a behavior declares");
   f.object("data", "for emit: the event's data", [&](Fields& data) {
-    if (const JsonValue* given = data.plain_entries("value of the field")) order.event.data = read_event_data(*given, problems);
+    if (const JsonValue* given = data.plain_entries("value of the field"))
+      order.event.data = read_event_data(*given, problems);
   });
   if (!f.reading() || !known) return;
   using Kind = PlayOrder::Kind;
-  verify(f, event,
-         {order.kind == Kind::play || order.kind == Kind::replace, order.kind == Kind::reload, order.kind == Kind::emit},
-         problems);
+  verify(
+      f, event,
+      {order.kind == Kind::play || order.kind == Kind::replace, order.kind == Kind::reload, order.kind == Kind::emit},
+      problems);
   order.event.place = f.place("event");
   order.event.who = "scenario";
   check_event_name({order.event.name, order.event.place}, problems);

@@ -70,10 +70,8 @@ Json behaviors_of(const ScriptHost* host) {
     }
     Json events = Json::array();
     for (const ScriptEvent& event : behavior.events()) events.push_back(event_json(event));
-    behaviors.push_back({{"name", behavior.name()},
-                         {"chart", chart_of(behavior)},
-                         {"parameters", parameters},
-                         {"events", events}});
+    behaviors.push_back(
+        {{"name", behavior.name()}, {"chart", chart_of(behavior)}, {"parameters", parameters}, {"events", events}});
   }
   return behaviors;
 }

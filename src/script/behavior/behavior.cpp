@@ -311,7 +311,8 @@ void Behavior::Parts::out_of_steps(const char* chunk, int line) noexcept {
 }
 
 bool Behavior::Parts::run(int (*function)(lua_State*), void* argument) noexcept {
-  return lua->call(function, argument != nullptr ? argument : this, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
+  return lua->call(function, argument != nullptr ? argument : this, settings.limits.tick_instructions,
+                   settings.limits.tick_wall_ns);
 }
 
 Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)

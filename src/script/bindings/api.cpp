@@ -131,7 +131,8 @@ constexpr ApiEntry written[] = {
     {"kadans", "call(name)", "fun(arguments: table): kadans.Node", "A state that plays another behavior"},
     {"kadans", "params(table)", "table", "Declares parameters: { name = { default, min =, max =, unit =, doc = } }"},
     {"kadans", "events(table)", "nil",
-     "Declares events that may come from outside or from another behavior: { name = { \"a sentence\", field = \"m\" } }; a "
+     "Declares events that may come from outside or from another behavior: { name = { \"a sentence\", field = \"m\" } "
+     "}; a "
      "field is a unit for a number, k.flag, k.text, or { one of them, min =, max =, optional =, doc = }"},
     {"kadans", "flag", "kadans.FieldType", "In k.events: the field is true or false"},
     {"kadans", "text", "kadans.FieldType", "In k.events: the field is a text"},

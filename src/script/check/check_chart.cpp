@@ -249,9 +249,8 @@ bool waits_for(const Chart& chart, const ScriptEvent& event) {
 
 // Declared where a behavior is. What a module declares is for several behaviors, which need not wait for all of it.
 bool is_own(const Chart& chart, const ScriptEvent& event) {
-  return std::ranges::any_of(chart.machines, [&](const Chart::Machine& machine) {
-    return chart.states[machine.root].chunk == event.chunk;
-  });
+  return std::ranges::any_of(
+      chart.machines, [&](const Chart::Machine& machine) { return chart.states[machine.root].chunk == event.chunk; });
 }
 
 struct Looking {

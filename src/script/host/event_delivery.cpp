@@ -32,7 +32,8 @@ std::string EventDelivery::refusal(const PlayedEvent& event, PlayList& list, boo
   });
   if (fits || !wrong.empty()) return fits ? "" : wrong;
   if (!waits.empty())
-    return "'" + waits + "' does not let the event '" + event.name + "' in: it lacks k.events { " + event.name + " = {} }";
+    return "'" + waits + "' does not let the event '" + event.name + "' in: it lacks k.events { " + event.name +
+           " = {} }";
   if (known.empty()) return "no behavior that plays declares events (k.events)";
   std::ranges::sort(known);
   known.erase(std::unique(known.begin(), known.end()), known.end());

@@ -19,6 +19,7 @@
 #include "engine/behavior_log.h"
 #include "kadans/signal/status.h"
 #include "play_list.h"
+#include "script/chart/event_queue.h"
 
 namespace kadans {
 

@@ -18,11 +18,11 @@ namespace kadans {
 
 // The status for the record: relaxed atomics as in BehaviorStatus.
 struct PlayStatus {
-  std::atomic<std::uint32_t> phase{0};     // 0: nothing plays, 1: something plays, 2: paused
-  std::atomic<std::uint32_t> playing{0};   // behaviors whose turn it is
-  std::atomic<std::uint32_t> waiting{0};   // behaviors whose turn comes later
-  std::atomic<std::uint32_t> done{0};      // behaviors that ended with "done"
-  std::atomic<std::uint32_t> not_done{0};  // behaviors that ended otherwise
+  std::atomic<std::uint32_t> phase{0};                      // 0: nothing plays, 1: something plays, 2: paused
+  std::atomic<std::uint32_t> playing{0};                    // behaviors whose turn it is
+  std::atomic<std::uint32_t> waiting{0};                    // behaviors whose turn comes later
+  std::atomic<std::uint32_t> done{0};                       // behaviors that ended with "done"
+  std::atomic<std::uint32_t> not_done{0};                   // behaviors that ended otherwise
   std::atomic<std::uint32_t> events{0}, events_refused{0};  // from outside, and between behaviors
   void declare(SignalTable& signals) const;
 };

@@ -64,7 +64,8 @@ WrongData wrong_data(const ScriptEvent& declared, const PlayedEvent& event) {
   }
   for (const Field& field : declared.fields) {
     const bool given = std::ranges::find(event.data, field.name, &PlayArgument::name) != event.data.end();
-    if (!given && !field.optional) return {of + "field '" + field.name + "' is missing; " + field_text(field), event.place};
+    if (!given && !field.optional)
+      return {of + "field '" + field.name + "' is missing; " + field_text(field), event.place};
   }
   return {};
 }

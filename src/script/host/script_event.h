@@ -32,8 +32,8 @@ struct ScriptEvent {
 // An event that a behavior sends to others: by m:emit(name, data, { to = }).
 struct SentEvent {
   PlayedEvent event;
-  std::string to;              // name of a behavior, or "all"
-  std::uint32_t lane = 0;      // of the sender
+  std::string to;          // name of a behavior, or "all"
+  std::uint32_t lane = 0;  // of the sender
 };
 
 const char* type_text(ScriptEvent::Field::Type type) noexcept;  // "a number", "true or false", "a text"

@@ -17,7 +17,12 @@ constexpr std::uint32_t kept_format = 2;
 }  // namespace
 
 ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
-    : settings_(settings), catalog_(catalog), log_(log), pause_(catalog), safe_(settings.safe, catalog), delivery_(log, settings.inputs) {
+    : settings_(settings),
+      catalog_(catalog),
+      log_(log),
+      pause_(catalog),
+      safe_(settings.safe, catalog),
+      delivery_(log, settings.inputs) {
   std::vector<InputProblem> problems;
   std::vector<PlayList::Entry> first =
       settings.kept.empty() ? load(settings.play, true, problems) : load_kept(problems);
@@ -187,8 +192,8 @@ void ScriptHost::order(const PlayOrder& order) {
 }
 
 void ScriptHost::check_event(const PlayOrder& order) {
-  const auto waiting = std::ranges::count(
-      orders_, PlayOrder::Kind::emit, [](const Due& due) { return due.order.kind; });
+  const auto waiting =
+      std::ranges::count(orders_, PlayOrder::Kind::emit, [](const Due& due) { return due.order.kind; });
   std::string why = out_of_bounds(order.event.data);
   if (why.empty()) why = EventDelivery::refusal(order.event, list_, pause_.paused());
   if (why.empty() && static_cast<std::size_t>(waiting) >= EventDelivery::ordered_max)

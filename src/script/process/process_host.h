@@ -34,6 +34,7 @@
 #include "kadans/control/catalog.h"
 #include "realtime/machine/child_process.h"
 #include "script/behavior/behavior_status.h"
+#include "script/chart/event_queue.h"
 #include "script/host/play_list.h"
 #include "script/host/safe_posture.h"
 
@@ -175,7 +176,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   std::deque<BehaviorStatus> behaviors_;
   std::deque<std::vector<std::byte>> orders_;
   std::size_t asked_orders_ = 0;  // the first of them are in the request
-  bool stopping_ = false;  // the last order was to stop
+  bool stopping_ = false;         // the last order was to stop
   WallClock clock_;
 
   std::int64_t now_ns_ = 0;         // on the engine's clock

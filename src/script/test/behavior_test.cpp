@@ -159,8 +159,7 @@ int emit(lua_State* state, Testing& testing, Played& played) {
     if (type == LUA_TSTRING) field.value = lua_tostring(state, -1);
   }
   testing.text = played.stage->emit(testing.event);
-  testing.text.empty() ? lua_pushboolean(state, 1)
-                       : lua_pushlstring(state, testing.text.data(), testing.text.size());
+  testing.text.empty() ? lua_pushboolean(state, 1) : lua_pushlstring(state, testing.text.data(), testing.text.size());
   return 1;
 }
 
