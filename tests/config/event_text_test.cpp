@@ -1,6 +1,7 @@
 // Events as people and programs outside write them.
 #include "config/scenario/event_text.h"
 
+#include <cmath>
 #include <string>
 
 #include <doctest/doctest.h>

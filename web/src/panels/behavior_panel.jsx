@@ -3,6 +3,7 @@ import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { active_states, time_in_state } from '../data/active_states.js';
 import { chart_layout, path_of } from '../data/chart_layout.js';
 import { clock, useSession } from '../watching.js';
+import { EventForm } from './event_form.jsx';
 
 const least_scale = 0.72;
 
@@ -116,6 +117,7 @@ export function BehaviorPanel({ session }) {
         </nav>
       )}
       {behavior ? <><Now {...{ session, behavior }} /><ChartBox {...{ session, behavior }} /></> : <p class="hint">{session.description ? 'No behavior plays.' : 'No chart yet.'}</p>}
+      <EventForm session={session} />
       <h3>Transitions</h3>
       <TransitionLog session={session} />
     </div>
