@@ -103,9 +103,9 @@ struct OrderInfo {
   Faces faces;
   Role role;
   const char* doc;
-  std::optional<Order::Kind> kind;  // the order that it becomes; nullopt: the server answers by itself
-  std::array<OrderArgument, 2> arguments{};
-  const char* examples = "";  // command lines for its --help, where the words alone do not do
+  std::optional<Order::Kind> kind;           // the order that it becomes; nullopt: the server answers by itself
+  std::array<OrderArgument, 2> arguments{};  // a second text stands behind the first, after a blank
+  const char* examples = "";                 // command lines for its --help, where the words alone do not do
 
   bool is_brief() const noexcept { return faces == Faces::all || faces == Faces::paced; }
   // The first argument of this kind; nullptr: there is none.
