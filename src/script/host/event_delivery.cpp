@@ -26,7 +26,8 @@ std::string EventDelivery::refusal(const PlayedEvent& event, PlayList& list, boo
       const std::string why = wrong_data(*declared, event).why;
       fits = fits || why.empty();
       if (wrong.empty()) wrong = why;
-    } else if (behavior.chart().find_event(event.name) != no_event) {
+    } else if (const EventId id = behavior.chart().find_event(event.name);
+               id != no_event && !behavior.chart().made_by_runner(id)) {
       waits = behavior.name();
     }
   });

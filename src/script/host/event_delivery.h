@@ -4,7 +4,8 @@
 //
 // In a tick come first what behaviors sent in the tick before, in the order of the list and of their calls; then what
 // inputs say, in the order of the configuration; then what is due by time, then orders, each in their order. In a pause
-// an event from outside is refused, because it would be old when the charts go on; what behaviors have sent waits.
+// an event from outside is refused, because it would be old when the charts go on. What behaviors sent in the tick
+// before waits in their queues.
 //
 // Behavior thread only.
 #pragma once
@@ -37,7 +38,6 @@ class EventDelivery {
   // To be called after the tick of a behavior.
   void collect(PlayList::Entry& sender);
   void deliver_sent(PlayList& list, const Snapshot& snapshot);
-  void forget_sent() noexcept { sent_.clear(); }
 
   // For another process.
   void keep(ByteWriter& bytes) const;

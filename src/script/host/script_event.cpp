@@ -11,7 +11,7 @@ namespace {
 
 using Field = ScriptEvent::Field;
 
-Field::Type type_of(const PlayValue& value) noexcept {
+Field::Type kind_of(const PlayValue& value) noexcept {
   constexpr Field::Type types[] = {Field::Type::number, Field::Type::flag, Field::Type::text};
   return types[value.index()];
 }
@@ -29,7 +29,7 @@ std::string field_text(const Field& field) {
 }
 
 std::string wrong_value(const Field& field, const PlayValue& value) {
-  if (type_of(value) != field.type)
+  if (kind_of(value) != field.type)
     return "must be " + std::string(type_text(field.type)) + (field.unit.empty() ? "" : " in " + field.unit);
   const auto* number = std::get_if<double>(&value);
   if (number == nullptr || (*number >= field.min && *number <= field.max)) return "";

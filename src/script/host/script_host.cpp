@@ -204,7 +204,7 @@ void ScriptHost::check_event(const PlayOrder& order) {
 }
 
 void ScriptHost::take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept {
-  if (!pause_.paused()) delivery_.deliver_sent(list_, snapshot);
+  delivery_.deliver_sent(list_, snapshot);
   delivery_.look_at_inputs(list_, snapshot, pause_.paused());
   for (; events_done_ < events_.size() && events_[events_done_].at_ns <= snapshot.time_ns; ++events_done_) {
     carry_out(events_[events_done_], snapshot, commands);
