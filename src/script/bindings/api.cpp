@@ -132,8 +132,7 @@ constexpr ApiEntry written[] = {
     {"kadans", "params(table)", "table", "Declares parameters: { name = { default, min =, max =, unit =, doc = } }"},
     {"kadans", "events(table)", "nil",
      "Declares events that may come from outside or from another behavior: { name = { \"a sentence\", field = \"m\" } "
-     "}; a "
-     "field is a unit for a number, k.flag, k.text, or { one of them, min =, max =, optional =, doc = }"},
+     "}; a field is a unit for a number, k.flag, k.text, or { one of them, min =, max =, optional =, doc = }"},
     {"kadans", "flag", "kadans.FieldType", "In k.events: the field is true or false"},
     {"kadans", "text", "kadans.FieldType", "In k.events: the field is a text"},
     {"kadans", "pose(name)", "table<string, number>", "A copy of a pose of the robot, joint = position in rad"},
@@ -198,7 +197,7 @@ constexpr ApiEntry written[] = {
     {"s", "safety", "kadans.Safety", "State of the safety layer"},
     {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
     {"event", "name", "string?", "Its name"},
-    {"event", "data", "table?", "What m:emit gave it; of the end of a k.parallel: { outcomes = { region = outcome } }"},
+    {"event", "data", "table?", "What its sender gave it; of the end of a k.parallel: { outcomes = { region = outcome } }"},
     {"base", "angular_velocity_rad_s", "kadans.Rate", "In the base frame"},
     {"s", "sensors", "kadans.Sensors",
      "What the robot's configuration names under `sensors`; NaN before the first reading"},
