@@ -33,6 +33,20 @@ int beside(const fs::path& project, const std::string& started, const std::strin
   return std::system(("cd '" + project.string() + "' && bash beside.sh >said 2>wrong").c_str());  // NOLINT: the point
 }
 
+// Moves an arm by the events that it gets.
+const char* const listener = R"(local k = require "kadans"
+k.events { swing = { "swing the arm", to_rad = { "rad", min = -1, max = 1 } }, ["arm.rest"] = {} }
+return k.behavior "listen" {
+  controls = "posture",
+  k.state "wait" {
+    endless = true,
+    { on = "swing", to = "wait", action = function(m, s)
+      m.posture:move({ l_shoulder_pitch = s.event.data.to_rad }, { time_s = 0.2 })
+    end },
+    { on = "arm.rest", to = "wait", action = function(m) m.posture:move("stand", { time_s = 0.2 }) end },
+  },
+})";
+
 const std::string live = "run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time -v";
 
 }  // namespace
@@ -75,18 +89,7 @@ TEST_CASE("ctl looks into a run, commands it and tunes it, and the run ends as i
 
 TEST_CASE("ctl emits events into a simulation, and its replay and its checkpoint repeat them bit for bit") {
   const auto project = project_copy("ctl_emit");
-  write(project / "behaviors/tulip/listen.lua", R"(local k = require "kadans"
-k.events { swing = { "swing the arm", to_rad = { "rad", min = -1, max = 1 } }, ["arm.rest"] = {} }
-return k.behavior "listen" {
-  controls = "posture",
-  k.state "wait" {
-    endless = true,
-    { on = "swing", to = "wait", action = function(m, s)
-      m.posture:move({ l_shoulder_pitch = s.event.data.to_rad }, { time_s = 0.2 })
-    end },
-    { on = "arm.rest", to = "wait", action = function(m) m.posture:move("stand", { time_s = 0.2 }) end },
-  },
-})");
+  write(project / "behaviors/tulip/listen.lua", listener);
   write(project / "config/scenarios/listen.json",
         R"({ "name": "listen", "robot": "config/tulip/robot.json", "plant": "ideal", "duration_s": 1000,
              "behaviors": ["listen"] })");
@@ -121,6 +124,29 @@ return k.behavior "listen" {
   const Outcome on = run("sim --from here.mcap --duration 3.2 --record on.mcap", project);
   CHECK_MESSAGE(on.exit_code == 0, on.err);
   CHECK(run("replay on.mcap --from-record", project).exit_code == 0);
+}
+
+TEST_CASE("events reach behaviors in a process of their own, and it tells why it refuses one") {
+  const auto project = project_copy("ctl_emit_process");
+  write(project / "behaviors/tulip/listen.lua", listener);
+  REQUIRE(beside(project,
+                 "run config/tulip/robot.json --plant ideal --play listen --behaviors process "
+                 "--threads-on-virtual-time -v --record run.mcap",
+                 "ctl emit swing to_rad=0.3; echo $?\n"
+                 "ctl emit swing to_rad=3; echo $?\n"
+                 "ctl emit swng; echo $?\n"
+                 "ctl pause; ctl emit arm.rest; echo $?; ctl resume\n"
+                 "ctl emit arm.rest; echo $?\n") == 0);
+  const std::string said = read(project / "said"), wrong = read(project / "wrong");
+  CAPTURE(said);
+  CAPTURE(wrong);
+  CHECK(has(said, "event swing {\"to_rad\":0.3} from uid "));
+  CHECK(has(said, " to listen\n0\n1\n1\n"));
+  CHECK(has(said, "event arm.rest from uid "));
+  CHECK(has(wrong, "event 'swing': field 'to_rad' = 3 is outside its range -1..1 rad"));
+  CHECK(has(wrong, "did you mean 'swing'?"));
+  CHECK(has(wrong, "the behaviors are paused"));
+  CHECK(has(run("log cat run.mcap --topic /events", project).out, "\"event\":\"swing\",\"data\":{\"to_rad\":0.3}"));
 }
 
 TEST_CASE("what ctl save wrote counts in the next run, and what a preset makes otherwise is said") {

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "behavior_link.h"
+#include "config/json/problems.h"
 #include "kadans/signal/input_error.h"
 #include "script/host/play_list.h"
 
@@ -90,8 +91,10 @@ void BehaviorServer::take_orders() {
     try {
       host_.order(order);
     } catch (const InputError& error) {
+      const std::string whose =
+          event ? "event " + in_quotes(order.event.name) + " from " + order.event.who + " was refused: " : "";
       log_.message(snapshot_.time_ns, event ? BehaviorLog::Severity::warning : BehaviorLog::Severity::error,
-                   "supervisor", error.what());
+                   "supervisor", whose + error.what());
     }
   }
 }
