@@ -57,14 +57,14 @@ TEST_CASE("an event from outside reaches what plays and declares it, with its da
   theatre.host->order(emit("ball_seen", {{"distance_m", 1.5}, {"left", true}, {"label", std::string("orange")}}));
   CHECK(lines_of(theatre, "one").empty());
   theatre.tick();
-  CHECK(lines_of(theatre, "one") == "ball_seen\t1.5\ttrue\torange\n");
-  CHECK(lines_of(theatre, "two") == "ball_seen\t1.5\ttrue\torange\n");
+  CHECK(lines_of(theatre, "one") == "ball_seen 1.5 true orange\n");
+  CHECK(lines_of(theatre, "two") == "ball_seen 1.5 true orange\n");
   CHECK(has(lines_of(theatre, "supervisor"),
             "event ball_seen {\"distance_m\":1.5,\"left\":true,\"label\":\"orange\"} from uid 1 to one, two\n"));
   theatre.tick();
   theatre.host->order(emit("whistle"));
   theatre.tick();
-  CHECK(has(lines_of(theatre, "one"), "whistle\tnil\n"));
+  CHECK(has(lines_of(theatre, "one"), "whistle nil\n"));
   CHECK(taken(theatre) == 2);
   CHECK(refused(theatre) == 0);
 }
@@ -151,8 +151,8 @@ TEST_CASE("behaviors send each other events, which come in the next tick in the 
     { on = 'ball_seen', to = 'a', action = function(_, s) print(s.time_s, s.event.data.label, s.event.data.distance_m) end } } })";
   Theatre theatre({sender("one", "hearer"), hearer, sender("two", "all")}, {0, 1, 2});
   theatre.tick(5);
-  CHECK(lines_of(theatre, "one") == "sends\t0.02\n");
-  CHECK(lines_of(theatre, "hearer") == "0.03\tone\t1\n0.03\tone\t2\n0.03\ttwo\t1\n0.03\ttwo\t2\n");
+  CHECK(lines_of(theatre, "one").starts_with("sends 0.02\n"));
+  CHECK(lines_of(theatre, "hearer") == "0.03 one 1\n0.03 one 2\n0.03 two 1\n0.03 two 2\n");
   CHECK(taken(theatre) == 4);
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("a caller and what it calls are one chart: each takes the other's even
   theatre.open({.play = theatre.list({"outer"})});
   theatre.tick();
   CHECK(theatre.log.transitions.back() == "p.l.call.inner.i>p.l.call.inner.j:down");
-  CHECK(theatre.log.transitions.size() == 3);  // its start, up, down
+  CHECK(theatre.log.transitions.size() == 2);  // up, down
 }
 
 TEST_CASE("m:emit of a declared event raises on wrong data, with the line and a hint") {
@@ -219,7 +219,7 @@ TEST_CASE("an event to others is bounded like one from outside: 32 in a tick, th
                    listener("two")},
                   {0, 1});
   theatre.tick(2);
-  CHECK(lines_of(theatre, "one") == "33\tqueue_full\n");
+  CHECK(lines_of(theatre, "one") == "33 queue_full\n");
   CHECK(taken(theatre) == 32);
 }
 
@@ -262,6 +262,7 @@ TEST_CASE("buttons and sensors send their events on each rise and fall, not for 
     return k.behavior 'one' { k.state 'a' { { on = { 'kick', 'rest', 'bumped' }, to = 'a',
       action = function(_, s) print(s.event.name, s.time_s) end } } })");
   theatre.snapshot.status.channel_count = 1;
+  theatre.snapshot.status.channels[0] = std::numeric_limits<double>::quiet_NaN();
   theatre.snapshot.joystick.buttons[2] = true;
   theatre.open(
       {.play = theatre.list({"one"}),
@@ -285,9 +286,9 @@ TEST_CASE("buttons and sensors send their events on each rise and fall, not for 
   theatre.tick();
   const std::string said = lines_of(theatre, "one");
   CAPTURE(said);
-  CHECK(has(said, "kick\t0.01\n"));
-  CHECK(has(said, "rest\t0.04\n"));
-  CHECK(has(said, "bumped\t0.05\n"));
+  CHECK(has(said, "kick 0.01\n"));
+  CHECK(has(said, "rest 0.04\n"));
+  CHECK(has(said, "bumped 0.05\n"));
   CHECK(std::ranges::count(said, '\n') == 3);
   CHECK(has(lines_of(theatre, "supervisor"), "event kick from joystick.button_1 to one\n"));
   CHECK(has(lines_of(theatre, "supervisor"),
@@ -315,6 +316,6 @@ TEST_CASE("a host that goes on after another one gets what was sent and has not 
   theatre.open({.inputs = inputs, .kept = kept});
   theatre.tick();
   CHECK(theatre.host->lost() == "");
-  CHECK(has(lines_of(theatre, "two"), "ball_seen\t4\t"));
+  CHECK(has(lines_of(theatre, "two"), "ball_seen 4 "));
   CHECK(taken(theatre) == before + 1);
 }

@@ -153,7 +153,6 @@ int events(lua_State* state) {
   const ScriptPlace place = calling_place(state);
   if (!lua_istable(state, 1))
     return raise_at(state, place, nullptr, "k.events needs a table { name = { field = type } }");
-  if (!core_of(state).loading) return raise_at(state, place, nullptr, "k.events belongs at the top of the file");
   lua_settop(state, 1);
   each_in_order(state, 1, [&](int key, int value) {
     if (lua_type(state, key) != LUA_TSTRING)
