@@ -55,11 +55,12 @@ TEST_CASE("a scenario emits events at their times, and a replay of its record is
   CAPTURE(sim.out);
   CAPTURE(sim.err);
   CHECK(sim.exit_code == 0);
-  CHECK(has(sim.out, "turn at 0.50 s"));
-  CHECK(has(sim.out, "pressed at 1.50 s"));
-  CHECK(has(sim.out, "event turn {\"pan_rad\":0.25} from scenario to listen"));
+  CHECK(has(sim.out + sim.err, "turn at 0.50 s"));
+  CHECK(has(sim.out + sim.err, "pressed at 1.50 s"));
+  CHECK(has(sim.out + sim.err, "event turn {\"pan_rad\":0.25} from scenario to listen"));
   CHECK(has(run("replay run.mcap", folder).out, "the same"));
-  CHECK(has(run("log cat run.mcap --topic /events", folder).out, "\"event\":\"turn\""));
+  CHECK(has(run("log cat run.mcap --topic /events", folder).out,
+            "\"event\":\"turn\",\"ordered\":false,\"tick\":500,\"who\":\"scenario\""));
 }
 
 TEST_CASE("an event of a scenario is checked against the behaviors that play, with its place in the file") {
@@ -75,15 +76,15 @@ TEST_CASE("an event of a scenario is checked against the behaviors that play, wi
   };
   const std::string where = "listen.json:4:";
   CHECK(has(error("\"event\": \"turn\"", "\"event\": \"trun\""),
-            where + "46: unknown event 'trun' of the behaviors here, did you mean 'turn'?"));
+            where + "43: unknown event 'trun' of the behaviors here, did you mean 'turn'?"));
   CHECK(has(error("\"pan_rad\": 0.25", "\"pan_rad\": 1.5"),
-            where + "76: event 'turn': field 'pan_rad' = 1.5 is outside its range -1..1 rad"));
+            where + "72: event 'turn': field 'pan_rad' = 1.5 is outside its range -1..1 rad"));
   CHECK(has(error("\"pan_rad\": 0.25", "\"pan_rad\": true"),
-            where + "76: event 'turn': field 'pan_rad' must be a number"));
-  CHECK(has(error("\"pan_rad\": 0.25", "\"pan\": 1"), where + "72: event 'turn': no field 'pan'"));
+            where + "72: event 'turn': field 'pan_rad' must be a number"));
+  CHECK(has(error("\"pan_rad\": 0.25", "\"pan\": 1"), where + "68: event 'turn': no field 'pan'"));
   CHECK(has(error("\"pan_rad\": 0.25", ""), "event 'turn': field 'pan_rad' is missing"));
   CHECK(
-      has(error("\"pan_rad\": 0.25", "\"pan_rad\": [1]"), where + "76: field 'pan_rad' must be a number, true, false"));
+      has(error("\"pan_rad\": 0.25", "\"pan_rad\": [1]"), where + "72: field 'pan_rad' must be a number, true, false"));
   CHECK(
       has(error("\"do\": \"emit\", \"event\": \"pressed\"", "\"do\": \"emit\""), "event is missing: to emit needs it"));
   CHECK(has(error("\"do\": \"emit\", \"event\": \"pressed\"", "\"do\": \"stop\", \"event\": \"pressed\""),
@@ -102,11 +103,11 @@ TEST_CASE("a button of a joystick's recording and a sensor send the events that 
   CAPTURE(sim.out);
   CAPTURE(sim.err);
   CHECK(sim.exit_code == 0);
-  CHECK(has(sim.out, "pressed at 0.3"));
-  CHECK(has(sim.out, "released at 0.7"));
-  CHECK(has(sim.out, "lid.opened at 1.0"));
-  CHECK(has(sim.out, "lid.closed at 1.2"));
-  CHECK(has(sim.out, "event pressed from joystick.button_1 to listen"));
+  CHECK(has(sim.out + sim.err, "pressed at 0.3"));
+  CHECK(has(sim.out + sim.err, "released at 0.7"));
+  CHECK(has(sim.out + sim.err, "lid.opened at 1.0"));
+  CHECK(has(sim.out + sim.err, "lid.closed at 1.2"));
+  CHECK(has(sim.out + sim.err, "event pressed from joystick.button_1 to listen"));
   CHECK(has(run("replay run.mcap", folder).out, "the same"));
   REQUIRE(edit(folder / "config/jiwiy/robot.json", "\"button_1\": { \"press\"", "\"button_9\": { \"press\""));
   CHECK(has(run("check config/jiwiy/robot.json", folder).err, "unknown button 'button_9'"));
