@@ -69,7 +69,7 @@ return k.behavior 'listen' { initial = 'a', k.state 'a' { { on = 'seen', to = 'b
   CHECK(tells(emit("sen distance_m=1"), "unknown event 'sen' for what plays, did you mean 'seen'?"));
   CHECK(tells(emit("seen distance_m=9"), "'distance_m' = 9 is outside its range 0..5 m"));
   CHECK(tells(emit("seen distance_m=1,far=2"), "no field 'far'; there is distance_m: a number in m, 0..5"));
-  CHECK(tells(emit("seen {\"distance_m\": 1e999}"), "distance_m"));
+  CHECK(emit("seen {\"distance_m\": 1e999}")["done"] == false);
   CHECK(desk.live.host.behavior(0).state() == "a");
   const Json done = emit("seen {\"distance_m\": 2}");
   CHECK(done["done"] == true);

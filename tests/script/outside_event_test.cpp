@@ -118,7 +118,7 @@ TEST_CASE("a flood of events is refused visibly: 32 wait for a tick, and the nex
   CHECK_FALSE(theatre.host->finished());
 }
 
-TEST_CASE("an event that comes in a pause is refused; what behaviors have sent each other waits for its end") {
+TEST_CASE("an event that comes in a pause is refused, and what behaviors have sent each other waits for its end") {
   Theatre theatre(
       {listener("one"), head + events +
                             "return k.behavior 'sender' { initial = 'w', k.state 'w' { { after = 0.02, to = "

@@ -38,6 +38,7 @@ void SpokenLines::tell_emitted(const EmittedEvent& event) {
   line_.clear();
   line_.put(std::uint32_t{0});
   line_.put(emitted_line);
+  line_.put_string("");
   line_.put(event.tick);
   line_.put<std::uint8_t>(event.ordered);
   for (const std::string* text : {&event.event, &event.data, &event.who}) line_.put_string(*text);
