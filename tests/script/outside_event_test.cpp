@@ -256,6 +256,20 @@ TEST_CASE("a mistake in k.events is found when the file is loaded, with its line
                    "k.state 'a' {} }") == "");
 }
 
+TEST_CASE("tables that run code when they are read run none in k.events and m:emit") {
+  const std::string reads =
+      "local t = setmetatable({ 'm' }, { __index = function() k.events { more = {} } return 1 end })\n";
+  CHECK(load_error(
+            head + reads +
+            "k.events { seen = { far = t } }\nreturn k.behavior 't' { k.state 'a' { { on = 'seen', to = 'a' } } }") ==
+        "");
+  Stage stage(head + events + R"(local t = setmetatable({}, { __index = function(_, key) print(key) return 1 end })
+    return k.behavior 't' { k.state 'a' { enter = function(m) m:emit('ball_seen', t) end, { on = 'ball_seen', to = 'a' } } })");
+  stage.tick();
+  CHECK(has(stage.behavior->error().text(), "field 'distance_m' is missing"));
+  CHECK(stage.said() == "");
+}
+
 TEST_CASE("buttons and sensors send their events on each rise and fall, not for what was on at the start") {
   Theatre theatre;
   theatre.scripts.write("behaviors/one.lua", head + R"(k.events { kick = {}, rest = {}, bumped = {} }

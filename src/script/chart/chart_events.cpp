@@ -21,7 +21,7 @@ using Field = ScriptEvent::Field;
 
 const HandleKey type_key = 0;
 constexpr std::size_t events_max = 256, doc_max = 512, unit_max = 32;
-constexpr double event_instructions = 200, field_instructions = 40;
+constexpr double event_instructions = 300, field_instructions = 200, checked_instructions = 40;
 constexpr const char* field_keys[] = {"min", "max", "optional", "doc", nullptr};
 constexpr const char* emit_keys[] = {"to", nullptr};
 
@@ -63,8 +63,14 @@ bool read_type(lua_State* state, int index, Field& field, const ScriptPlace& pla
   return type != nullptr;
 }
 
+// [-0 +1] Without metamethods, so that no script runs in between: what is checked is what counts.
+void push_raw(lua_State* state, int table, const char* key) {
+  lua_pushstring(state, key);
+  lua_rawget(state, table);
+}
+
 double limit_at(lua_State* state, int table, const char* key, double otherwise, const ScriptPlace& place) {
-  lua_getfield(state, table, key);
+  push_raw(state, table, key);
   if (!lua_isnil(state, -1) && lua_type(state, -1) != LUA_TNUMBER)
     raise_at(state, place, key, "'%s' must be a number, not a %s", key, luaL_typename(state, -1));
   const double value = lua_isnil(state, -1) ? otherwise : lua_tonumber(state, -1);
@@ -80,9 +86,9 @@ void read_options(lua_State* state, int table, Field& field, const ScriptPlace& 
   if (!(field.min <= field.max) || (bounded && field.type != Field::Type::number))
     raise_at(state, place, field.name.c_str(), "field '%s': min and max are a number's, and min is not above max",
              field.name.c_str());
-  lua_getfield(state, table, "optional");
+  push_raw(state, table, "optional");
   field.optional = lua_toboolean(state, -1) != 0;
-  lua_getfield(state, table, "doc");
+  push_raw(state, table, "doc");
   if (!lua_isnil(state, -1)) field.doc = text_at(state, lua_gettop(state), doc_max, "doc", place);
   lua_pop(state, 2);
 }
@@ -168,12 +174,6 @@ void add_type(lua_State* state, const char* name, Field::Type type) {
   lua_setfield(state, -2, name);
 }
 
-// [-0 +1] Without metamethods: what is checked is what is sent.
-void push_raw(lua_State* state, int table, const Field& field) {
-  lua_pushlstring(state, field.name.data(), field.name.size());
-  lua_rawget(state, table);
-}
-
 PlayValue value_at_top(lua_State* state, Field::Type type) {
   std::size_t length = 0;
   if (type == Field::Type::flag) return lua_toboolean(state, -1) != 0;
@@ -215,7 +215,7 @@ void open_events(lua_State* state) {
 }
 
 void check_event_data(lua_State* state, const ScriptEvent& event, int index) {
-  core_of(state).budget.charge(state, field_instructions * static_cast<double>(event.fields.size() + 1));
+  core_of(state).budget.charge(state, checked_instructions * static_cast<double>(event.fields.size() + 1));
   const bool given = !lua_isnoneornil(state, index);
   std::array<const char*, EventBounds::fields + 1> names{};
   for (std::size_t i = 0; i < event.fields.size(); ++i) names[i] = event.fields[i].name.c_str();
@@ -224,7 +224,7 @@ void check_event_data(lua_State* state, const ScriptEvent& event, int index) {
   if (given) check_keys(state, index, calling_place(state), what, names.data());
   if (given && lua_objlen(state, index) > 0) luaL_error(state, "%s: every field needs a name", what);
   for (const Field& field : event.fields) {
-    given ? push_raw(state, index, field) : lua_pushnil(state);
+    given ? push_raw(state, index, field.name.c_str()) : lua_pushnil(state);
     check_field(state, event, field);
     lua_pop(state, 1);
   }
@@ -234,7 +234,7 @@ void check_event_data(lua_State* state, const ScriptEvent& event, int index) {
 int send_away(lua_State* state, const ScriptEvent* declared, const char* name, int data, int options) {
   if (!lua_istable(state, options)) return luaL_error(state, "the last argument of m:emit is { to = \"behavior\" }");
   check_keys(state, options, calling_place(state), "m:emit", emit_keys);
-  lua_getfield(state, options, "to");
+  push_raw(state, options, "to");
   const int to = lua_gettop(state);
   if (lua_type(state, to) != LUA_TSTRING || lua_objlen(state, to) > EventBounds::name_bytes)
     return luaL_error(state, "m:emit: 'to' must be the name of a behavior, or \"all\"");
@@ -249,7 +249,7 @@ int send_away(lua_State* state, const ScriptEvent* declared, const char* name, i
   event.event.name = name;
   for (const Field& field : declared->fields) {
     if (lua_isnoneornil(state, data)) break;
-    push_raw(state, data, field);
+    push_raw(state, data, field.name.c_str());
     if (!lua_isnil(state, -1))
       event.event.data.push_back({.name = field.name, .value = value_at_top(state, field.type)});
     lua_pop(state, 1);
