@@ -93,10 +93,17 @@ void read_options(lua_State* state, int table, Field& field, const ScriptPlace& 
   lua_pop(state, 2);
 }
 
+// Names that are too long are not repeated in a message.
+void check_length(lua_State* state, const char* name, const ScriptPlace& place) {
+  if (std::strlen(name) > EventBounds::name_bytes)
+    raise_at(state, place, nullptr, "k.events: a name has at most %d characters",
+             static_cast<int>(EventBounds::name_bytes));
+}
+
 void read_field(lua_State* state, const char* name, int value, ScriptEvent& event, const ScriptPlace& place) {
   core_of(state).budget.charge(state, field_instructions);
-  const bool good = std::strlen(name) <= EventBounds::name_bytes && is_event_name(name) && !std::strchr(name, '.') &&
-                    std::strcmp(name, "doc") != 0;
+  check_length(state, name, place);
+  const bool good = is_event_name(name) && !std::strchr(name, '.') && std::strcmp(name, "doc") != 0;
   if (!good)
     raise_at(state, place, name, "event '%s': a field is named with letters, digits and '_', and not 'doc'; not '%s'",
              event.name.c_str(), name);
@@ -125,6 +132,7 @@ bool is_reserved(const char* name) noexcept {
 void read_event(lua_State* state, const char* name, int value, const ScriptPlace& place) {
   core_of(state).budget.charge(state, event_instructions);
   std::vector<ScriptEvent>& events = core_of(state).events;
+  check_length(state, name, place);
   if (!is_event_name(name))
     raise_at(state, place, name, "an event's name is words of letters, digits and '_' with dots between them, not '%s'",
              name);
