@@ -361,7 +361,7 @@ void BehaviorSide::give(Pending& pending, PlayOrder::Kind kind) {
   PlayOrder given{.kind = kind, .behavior = {kind == PlayOrder::Kind::reload ? order.text : "", {}}};
   if (plays) given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
   if (kind == PlayOrder::Kind::emit) {
-    given.event = read_event(order.text, "");
+    given.event = read_event(order.text, "event");
     given.event.who = order.who;
     given.event.ordered = true;
   }
