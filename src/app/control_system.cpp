@@ -172,7 +172,8 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
                     .setpoints = {},
                     .presets = {},
                     .divisor = object.divisor,
-                    .high_level_divisor = object.high_level_divisor};
+                    .high_level_divisor = object.high_level_divisor,
+                    .switch_dwell_s = object.switch_dwell_s};
     for (ParameterId id = first_parameter; id < catalog.parameters.size(); ++id) info.parameters.push_back(id);
     for (SetpointId id = first_setpoint; id < catalog.setpoints.size(); ++id) info.setpoints.push_back(id);
     catalog.objects.push_back(std::move(info));

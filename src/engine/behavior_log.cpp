@@ -150,6 +150,23 @@ void BehaviorLog::emitted(const EmittedEvent& event) {
   for (LineSink* sink : facts_) sink->tell_emitted(event);
 }
 
+void BehaviorLog::active(const ActiveStates& active) {
+  for (LineSink* sink : facts_) sink->tell_active(active);
+}
+
+void ActiveNow::take(const ActiveStates& told) {
+  const auto known = all_.find(told.behavior);
+  if (told.states.empty() && known != all_.end()) all_.erase(known);
+  if (told.states.empty() || (known == all_.end() && all_.size() == behaviors_max)) return;
+  all_.insert_or_assign(std::string(told.behavior), told.copies());
+}
+
+std::string listed(const std::vector<std::string>& states) {
+  std::string text;
+  for (const std::string& state : states) text += (text.empty() ? "" : ", ") + state;
+  return text;
+}
+
 // systemd.exec(5): the device and inode of the stream that it connected.
 bool stderr_is_journal() {
   struct stat is {};

@@ -54,6 +54,13 @@ void EventLog::tell_emitted(const EmittedEvent& event) {
   push();
 }
 
+void EventLog::tell_active(const ActiveStates& active) {
+  begin(Event::Kind::active, active.time_ns, active.behavior);
+  outgoing_.put(static_cast<std::uint32_t>(active.states.size()));
+  for (const std::string_view state : active.states) outgoing_.put_string(state);
+  push();
+}
+
 void EventLog::begin(Event::Kind kind, std::int64_t time_ns, std::string_view behavior) {
   outgoing_.clear();
   outgoing_.put(std::uint32_t{0});
@@ -83,6 +90,7 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
   event.kind = static_cast<Event::Kind>(fields.take<std::uint8_t>());
   event.transition = {.time_ns = event_time_ns, .behavior = fields.take_string(), .from = {}, .to = {}, .why = {}};
   event.text.clear();
+  event.states.clear();
   if (event.kind == Event::Kind::transition) {
     event.transition.from = fields.take_string();
     event.transition.to = fields.take_string();
@@ -92,11 +100,23 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
     event.emitted.ordered = fields.take<std::uint8_t>() != 0;
     for (std::string* text : {&event.emitted.event, &event.emitted.data, &event.emitted.who})
       *text = fields.take_string();
+  } else if (event.kind == Event::Kind::active) {
+    for (auto left = fields.take<std::uint32_t>(); left > 0 && fields.ok(); --left) {
+      event.states.push_back(fields.take_string());
+    }
   } else {
     event.severity = static_cast<BehaviorLog::Severity>(fields.take<std::uint8_t>());
     event.text = fields.take_string();
   }
   return true;
+}
+
+void Event::say_to(BehaviorLog& log) const {
+  if (kind == Kind::active) {
+    const std::vector<std::string_view> paths(states.begin(), states.end());
+    return log.active({transition.time_ns, transition.behavior, paths});
+  }
+  log.say(line());
 }
 
 std::string json_of(const Event& event) {
@@ -114,6 +134,9 @@ std::string json_of(const Event& event) {
     json["data"] = read_foreign_json(emitted.data).value_or(nlohmann::ordered_json::object());
     json["who"] = emitted.who;
     json["ordered"] = emitted.ordered;
+  } else if (event.kind == Event::Kind::active) {
+    json["behavior"] = transition.behavior;
+    json["states"] = event.states;
   } else {
     json["level"] = foxglove_level(event.severity);
     json["message"] = event.text;
@@ -130,10 +153,6 @@ std::string json_of(const ToldFault& fault) {
                               {"name", fault.name}};
   put_what(json, fault);
   return json_text(json);
-}
-
-nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model) {
-  return fault_json(fault, told(fault, model));
 }
 
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what) {
@@ -206,6 +225,16 @@ const char* const emitted_schema = R"({
     "event": { "type": "string" }, "data": { "type": "object" },
     "who": { "type": "string", "description": "Who sent it" },
     "ordered": { "type": "boolean", "description": "Given while the run went on: a replay takes it from here" } }
+})";
+
+const char* const active_schema = R"({
+  "title": "kadans.Active", "type": "object",
+  "description": "All innermost active states of a behavior, told when they change",
+  "properties": { "timestamp": { "type": "object", "title": "time",
+      "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
+    "behavior": { "type": "string" },
+    "states": { "type": "array", "items": { "type": "string" },
+      "description": "Their paths, in document order; none: the behavior is over" } }
 })";
 
 const char* const fault_schema = R"({

@@ -21,37 +21,41 @@
 namespace kadans {
 
 struct Event {
-  enum class Kind : std::uint8_t { message, transition, emitted };
+  enum class Kind : std::uint8_t { message, transition, active, emitted };
   Kind kind = Kind::message;
   Transition transition;  // all kinds use its time_ns and behavior
   BehaviorLog::Severity severity = BehaviorLog::Severity::info;
   std::string text;
+  std::vector<std::string> states;  // the active ones
   EmittedEvent emitted{};
 
-  // Valid as long as the event.
+  // Of a message or transition; valid as long as the event.
   Line line() const noexcept {
     return {transition.time_ns, severity, transition.behavior, text, kind == Kind::transition ? &transition : nullptr};
   }
+  void say_to(BehaviorLog& log) const;
 };
 
-// The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition and kadans.Fault.
+// The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition, kadans.Active and
+// kadans.Fault.
 std::string json_of(const Event& event);
 std::string json_of(const ToldFault& fault);
 // The JSON that reports and ctl tell: {code, tick, text, joint, value, limit, words, key}; no joint and no words where
 // there are none, and the key is of the robot's configuration.
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what);
-nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model);
 extern const char* const log_schema;
 extern const char* const emitted_schema;  // kadans.Event
 extern const char* const transition_schema;
+extern const char* const active_schema;
 extern const char* const fault_schema;
 
 class EventLog final : public LineSink {
  public:
   EventLog();
 
-  void tell(const Line& line) override;  // filling thread only
-  void tell_emitted(const EmittedEvent& event) override;
+  void tell(const Line& line) override;                   // filling thread only
+  void tell_active(const ActiveStates& active) override;  // likewise
+  void tell_emitted(const EmittedEvent& event) override;  // likewise
 
   // Draining thread only. False when no event up to `time_ns` is waiting.
   [[nodiscard]] bool pop(std::int64_t time_ns, Event& event);
