@@ -68,6 +68,11 @@ class NamedLog final : public BehaviorLog, private LineSink {
     }
     log_.say(named);
   }
+  void tell_emitted(const EmittedEvent& event) override {
+    EmittedEvent named = event;
+    named.event.insert(0, prefix_);
+    log_.emitted(named);
+  }
   void tell_active(const ActiveStates& active) override {
     const std::string behavior = prefix_ + std::string(active.behavior);
     log_.active({active.time_ns, behavior, active.states});
@@ -84,6 +89,9 @@ void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
     const PlacedName& behavior = event.order.behavior;
     if (event.order.kind == PlayOrder::Kind::reload && std::ranges::find(names, behavior.name) == names.end())
       refuse_unknown(scenario.file, behavior, "behavior", names);
+    if (event.order.kind != PlayOrder::Kind::emit || event.order.event.ordered) continue;
+    const WrongData wrong = host.wrong_event(event.order.event);
+    if (!wrong.why.empty()) refuse(scenario.file, wrong.place, wrong.why);
   }
 }
 
@@ -99,6 +107,7 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
   for (const ScenarioEvent& event : scenario.events) {
     settings.events.push_back({std::llround(event.at_s * 1e9), event.order});
   }
+  settings.inputs = robot.input_events;
   settings.safe = safe_posture_of(robot.safe);
   if (scenario.on_wall_clock) settings.limits = limits_on_wall_clock(robot.engine);
   settings.kept = kept;

@@ -146,6 +146,10 @@ void BehaviorLog::message(std::int64_t time_ns, Severity severity, std::string_v
   say({.time_ns = time_ns, .severity = severity, .behavior = behavior, .text = text});
 }
 
+void BehaviorLog::emitted(const EmittedEvent& event) {
+  for (LineSink* sink : facts_) sink->tell_emitted(event);
+}
+
 void BehaviorLog::active(const ActiveStates& active) {
   for (LineSink* sink : facts_) sink->tell_active(active);
 }

@@ -31,6 +31,15 @@ struct Transition {
   std::string why;
 };
 
+// An event from outside that behaviors got, for the record.
+struct EmittedEvent {
+  std::int64_t time_ns = 0;
+  std::uint64_t tick = 0;  // of the control engine, whose snapshot the behaviors saw
+  std::string event{};
+  std::string data{};  // a JSON object
+  std::string who{};
+  bool ordered = false;  // given while the run went on: only the record knows of it
+};
 // The innermost active states of a behavior: those of all its regions and of the behaviors that it calls, by path, in
 // document order. Told when they have changed, at the end of a tick; none: the behavior is over. Valid while it is
 // told.
@@ -76,6 +85,7 @@ class BehaviorLog {
 
   void say(const Line& line);
   void transition(const Transition& transition);
+  void emitted(const EmittedEvent& event);  // for sinks that read facts
   void active(const ActiveStates& active);  // for sinks that read facts
   void message(std::int64_t time_ns, Severity severity, std::string_view behavior, std::string_view text);
 
@@ -100,6 +110,7 @@ class LineSink {
  public:
   virtual ~LineSink() = default;
   virtual void tell(const Line& line) = 0;
+  virtual void tell_emitted(const EmittedEvent& event) { (void)event; }
   virtual void tell_active(const ActiveStates& active) { (void)active; }
 };
 

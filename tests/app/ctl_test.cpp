@@ -33,6 +33,20 @@ int beside(const fs::path& project, const std::string& started, const std::strin
   return std::system(("cd '" + project.string() + "' && bash beside.sh >said 2>wrong").c_str());  // NOLINT: the point
 }
 
+// Moves an arm by the events that it gets.
+const char* const listener = R"(local k = require "kadans"
+k.events { swing = { "swing the arm", to_rad = { "rad", min = -1, max = 1 } }, ["arm.rest"] = {} }
+return k.behavior "listen" {
+  controls = "posture",
+  k.state "wait" {
+    endless = true,
+    { on = "swing", to = "wait", action = function(m, s)
+      m.posture:move({ l_shoulder_pitch = s.event.data.to_rad }, { time_s = 0.2 })
+    end },
+    { on = "arm.rest", to = "wait", action = function(m) m.posture:move("stand", { time_s = 0.2 }) end },
+  },
+})";
+
 const std::string live = "run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time -v";
 
 }  // namespace
@@ -71,6 +85,67 @@ TEST_CASE("ctl looks into a run, commands it and tunes it, and the run ends as i
   CHECK(has(saved, "l_knee.kp_Nm_per_rad\": 123"));
   CHECK(run("check config/tulip/robot.json", project).exit_code == 0);
   CHECK(has(read(project / "err"), "ctl: uid "));  // every change is told
+}
+
+// A pause would not be repeated, so there is none.
+TEST_CASE("ctl emits events into a simulation, and its replay and its checkpoint repeat them bit for bit") {
+  const auto project = project_copy("ctl_emit");
+  write(project / "behaviors/tulip/listen.lua", listener);
+  write(project / "config/scenarios/listen.json",
+        R"({ "name": "listen", "robot": "config/tulip/robot.json", "plant": "ideal", "duration_s": 1000,
+             "behaviors": ["listen"] })");
+  REQUIRE(beside(project, "sim config/scenarios/listen.json --realtime --record run.mcap --checkpoint 3=here.mcap",
+                 "ctl list events; ctl list events --names\n"
+                 "ctl emit swing to_rad=0.3\n"
+                 "ctl emit arm.rest --json\n"
+                 "ctl emit swing '{\"to_rad\": 0.123456789}'\n"
+                 "ctl emit swing to_rad=3; echo $?\n"
+                 "ctl emit swng; echo $?\n"
+                 "ctl emit 'a b' x=1; echo $?\n"
+                 "until [ -e here.mcap ]; do ctl status >/dev/null; done\n") == 0);
+  const std::string said = read(project / "said"), wrong = read(project / "wrong");
+  CAPTURE(said);
+  CAPTURE(wrong);
+  CHECK(has(said, "swing     swing the arm; to_rad: a number in rad, -1..1"));
+  CHECK(has(said, "\narm.rest\nswing\n"));
+  CHECK(has(said, "event swing {\"to_rad\":0.3} from uid "));
+  CHECK(has(said, "\"ok\":true"));
+  CHECK(has(said, "\n1\n1\n1\n"));
+  CHECK(has(wrong, "event 'swing': field 'to_rad' = 3 is outside its range -1..1 rad"));
+  CHECK(has(wrong, "unknown event 'swng' for what plays, did you mean 'swing'?"));
+  const std::string events = run("log cat run.mcap --topic /events", project).out;
+  CAPTURE(events);
+  CHECK(has(events, "\"data\":{\"to_rad\":0.123456789},\"event\":\"swing\",\"ordered\":true,\"tick\":"));
+  CHECK(has(events, "\"who\":\"uid "));
+  const Outcome replayed = run("replay run.mcap --from-record", project);
+  CHECK_MESSAGE(replayed.exit_code == 0, replayed.out);
+  CHECK(has(replayed.out, "run.mcap: the same, "));
+  const Outcome on = run("sim --from here.mcap --duration 3.2 --record on.mcap", project);
+  CHECK_MESSAGE(on.exit_code == 0, on.err);
+  CHECK(run("replay on.mcap --from-record", project).exit_code == 0);
+}
+
+TEST_CASE("events reach behaviors in a process of their own, and it tells why it refuses one") {
+  const auto project = project_copy("ctl_emit_process");
+  write(project / "behaviors/tulip/listen.lua", listener);
+  REQUIRE(beside(project,
+                 "run config/tulip/robot.json --plant ideal --play listen --behaviors process "
+                 "--threads-on-virtual-time -v --record run.mcap",
+                 "ctl emit swing to_rad=0.3; echo $?\n"
+                 "ctl emit swing to_rad=3; echo $?\n"
+                 "ctl emit swng; echo $?\n"
+                 "ctl pause; ctl emit arm.rest; echo $?; ctl resume\n"
+                 "ctl emit arm.rest; echo $?\n") == 0);
+  const std::string said = read(project / "said"), wrong = read(project / "wrong");
+  CAPTURE(said);
+  CAPTURE(wrong);
+  CHECK(has(said, "event swing {\"to_rad\":0.3} from uid "));
+  CHECK(has(said, " to listen\n0\n1\n1\n"));
+  CHECK(has(said, "event arm.rest from uid "));
+  CHECK(has(wrong, "event 'swing': field 'to_rad' = 3 is outside its range -1..1 rad"));
+  CHECK(has(wrong, "did you mean 'swing'?"));
+  CHECK(has(wrong, "the behaviors are paused"));
+  CHECK(has(run("log cat run.mcap --topic /events", project).out, "\"data\":{\"to_rad\":0.3},\"event\":\"swing\""));
 }
 
 TEST_CASE("what ctl save wrote counts in the next run, and what a preset makes otherwise is said") {

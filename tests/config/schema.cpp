@@ -67,6 +67,9 @@ void add_type(Json& schema, const FieldInfo& info) {
       if (info.required) schema["minLength"] = 1;
       if (!info.choices.empty()) schema["enum"] = info.choices;
       return;
+    case Kind::plain:
+      schema["type"] = {"boolean", "number", "string"};
+      return;
     case Kind::object:
       schema["type"] = "object";
       return add_object(schema, info);

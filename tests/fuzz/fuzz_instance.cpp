@@ -26,7 +26,8 @@ local P = k.params { hold_s = { 0.5, min = 0.1, max = 2, unit = 's', doc = 'how 
 return k.behavior 'nod' { initial = 'a', k.state 'a' { { after = P.hold_s, to = 'b' } }, k.final 'b' {} }
 )";
 constexpr const char* wait = R"(local k = require 'kadans'
-return k.behavior 'wait' { initial = 'a', k.state 'a' { endless = true } }
+k.events { seen = { far_m = { 'm', min = 0, max = 5 }, left = { k.flag, optional = true }, word = { k.text, optional = true } } }
+return k.behavior 'wait' { initial = 'a', k.state 'a' { endless = true, { on = 'seen', to = 'a' } } }
 )";
 
 Catalog& with_parameters_by_object(Catalog& catalog) {

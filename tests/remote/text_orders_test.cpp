@@ -12,6 +12,10 @@ using namespace kadans::remote_test;
 
 namespace {
 
+bool tells(const Json& answer, const std::string& part) {
+  return answer["text"].get<std::string>().find(part) != std::string::npos;
+}
+
 struct Desk {
   LiveInstance live;
   LivePace pace;
@@ -51,6 +55,26 @@ TEST_CASE("an order as a text is carried out and answered under its own id") {
   CHECK(unknown["id"] == "a");
   CHECK(unknown["done"] == false);
   CHECK(unknown["text"].get<std::string>().find("did you mean 'wait'") != std::string::npos);
+}
+
+TEST_CASE("a text emits an event into what plays, and is told in a sentence why it is refused") {
+  Desk desk;
+  desk.live.project.write("behaviors/bench/listen.lua", R"(local k = require 'kadans'
+k.events { seen = { distance_m = { 'm', min = 0, max = 5 } } }
+return k.behavior 'listen' { initial = 'a', k.state 'a' { { on = 'seen', to = 'b' } }, k.state 'b' { endless = true } })");
+  CHECK(desk.later(R"({"verb": "play", "text": "listen"})")["done"] == true);
+  const auto emit = [&](const std::string& event) {
+    return desk.later(Json{{"verb", "emit"}, {"text", event}}.dump());
+  };
+  CHECK(tells(emit("sen distance_m=1"), "unknown event 'sen' for what plays, did you mean 'seen'?"));
+  CHECK(tells(emit("seen distance_m=9"), "'distance_m' = 9 is outside its range 0..5 m"));
+  CHECK(tells(emit("seen distance_m=1,far=2"), "no field 'far'; there is distance_m: a number in m, 0..5"));
+  CHECK(emit("seen {\"distance_m\": 1e999}")["done"] == false);
+  CHECK(desk.live.host.behavior(0).state() == "a");
+  const Json done = emit("seen {\"distance_m\": 2}");
+  CHECK(done["done"] == true);
+  CHECK(done["text"] == "event seen {\"distance_m\":2.0} from a topic to listen");
+  CHECK(desk.live.host.behavior(0).state() == "b");
 }
 
 TEST_CASE("the pace of a simulation is set by texts too") {

@@ -175,6 +175,10 @@ constexpr ChargeCase cases[] = {
     {"k.params",
      "local t = {} for i = 1, 900 do t['p' .. i] = { 1, min = 0, max = 2, doc = ('x'):rep(500) } end\n"
      "return k.params, t"},
+    {"k.events",
+     "local f, t = {}, {} for i = 1, 60 do f['f' .. i] = { 'm', min = 0, max = 2, doc = ('x'):rep(500) } end\n"
+     "for i = 1, 40 do t['e' .. i] = f end return k.events, t"},
+    {"k.events", "return pcall, k.events, { [('x'):rep(60000)] = {} }"},
     {"k.args",
      "local t = {} for i = 1, 90 do t['p' .. i] = { 1, min = 0, max = 2, doc = ('x'):rep(500) } end\n"
      "return k.args, t"},

@@ -145,7 +145,19 @@ class IdealStage final : public TestStage {
     for (const Transition& transition : log_.transitions()) all += " " + transition.to;
     return all;
   }
-  bool emit(const std::string& event) override { return assembly_.host().behavior(0).post(event); }
+  // One that is not declared is sent between states of the chart; a test may send it, too.
+  std::string emit(const PlayedEvent& event) override {
+    ScriptHost& host = assembly_.host();
+    Behavior& behavior = host.behavior(0);
+    if (event.data.empty() && find_event(behavior.events(), event.name) == nullptr)
+      return behavior.post(event.name) ? "" : "nothing waits for the event '" + event.name + "'";
+    try {
+      host.order({.kind = PlayOrder::Kind::emit, .event = event});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
   bool set_parameter(const std::string& name, double value) override {
     return assembly_.host().behavior(0).set_parameter(name, value);
   }

@@ -47,7 +47,8 @@ std::string names_function() {
     if (!lines.empty()) text += "    'ctl " + std::string(order.words) + "')" + lines + ";\n";
   }
   return text +
-         "    'ctl list') echo 'behaviors sets objects parameters signals';;\n    'completion') echo 'bash zsh';;\n"
+         "    'ctl list') echo 'behaviors sets objects parameters signals events';;\n    'completion') echo 'bash "
+         "zsh';;\n"
          "  esac 2>/dev/null\n}\n";
 }
 

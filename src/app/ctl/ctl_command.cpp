@@ -416,7 +416,7 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
   ctl->add_subcommand(console, console_doc)->fallthrough();
   ctl->get_subcommand("list")->add_flag("--names", options.names, "Print only names, one a line");
   ctl->get_subcommand("list")->get_option("what")->check(
-      CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals", "joints"}));
+      CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals", "joints", "events"}));
   ctl->get_subcommand("watch")
       ->add_option("--count", options.count, "End after N samples")
       ->type_name("N")

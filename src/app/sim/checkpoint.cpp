@@ -94,6 +94,7 @@ void CheckpointWriter::between_ticks(const RunMark& mark) {
   trail_.between_ticks(mark);
   std::erase_if(planned_, [&](const PlannedCheckpoint& planned) {
     if (mark.time_ns < std::llround(planned.at_s * 1e9)) return false;
+    if (!ordered_.fact().empty()) inputs_.run["events"] = ordered_.fact();
     write_checkpoint({inputs_, mark, trail_.marks(), object_states(assembly_)}, planned.file);
     return true;
   });

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "hash_trail.h"
+#include "ordered_events.h"
 #include "telemetry/record/run_inputs.h"
 
 namespace kadans {
@@ -54,8 +55,9 @@ PlannedCheckpoint parse_checkpoint(const std::string& text);
 // Writes checkpoints while a run goes.
 class CheckpointWriter final : public RunObserver {
  public:
-  CheckpointWriter(RunInputs inputs, std::vector<PlannedCheckpoint> planned, Assembly& assembly)
-      : inputs_(std::move(inputs)), planned_(std::move(planned)), assembly_(assembly) {}
+  CheckpointWriter(RunInputs inputs, std::vector<PlannedCheckpoint> planned, Assembly& assembly,
+                   const OrderedEvents& ordered)
+      : inputs_(std::move(inputs)), planned_(std::move(planned)), assembly_(assembly), ordered_(ordered) {}
   void tick(double, std::span<const double>) override {}
   void between_ticks(const RunMark& mark) override;
 
@@ -65,6 +67,7 @@ class CheckpointWriter final : public RunObserver {
   RunInputs inputs_;
   std::vector<PlannedCheckpoint> planned_;
   Assembly& assembly_;
+  const OrderedEvents& ordered_;
   HashTrail trail_{checkpoint_trail_s};
 };
 

@@ -11,6 +11,7 @@
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
 #include "input_files.h"
+#include "ordered_events.h"
 #include "run_branches.h"
 #include "signal/number_text.h"
 #include "telemetry/reading/record_comparison.h"
@@ -50,13 +51,19 @@ RunInputs read_front(const std::string& record) {
   return inputs;
 }
 
+ScenarioConfig repeated_scenario(const std::string& record, const RunInputs& inputs, const RunChoices& choices) {
+  ScenarioConfig scenario = read_scenario(choices);
+  add_ordered_events(inputs, record, scenario);
+  return scenario;
+}
+
 // The repeated run; it is compared with the record while it goes.
 class Replay final : public RunObserver {
  public:
   Replay(const std::string& record, const RunInputs& inputs, const RunChoices& choices)
       : inputs_(inputs),
         reader_(record),
-        scenario_(read_scenario(choices)),
+        scenario_(repeated_scenario(record, inputs, choices)),
         duration_s_(*choices.duration_s),
         assembly_(scenario_, *choices.seed, log_),
         comparison_(reader_, assembly_.catalog().signals),
@@ -210,7 +217,8 @@ std::vector<std::string> notes_of(const Replay& replay, const RunInputs& inputs)
   if (!inputs.fact("watched").empty())
     notes.emplace_back("recorded with --watch: what was saved and reloaded meanwhile is not repeated");
   if (!inputs.fact("ctl").empty() && !replay.same())
-    notes.emplace_back("recorded while 'kadans ctl' could reach it: what was ordered meanwhile is not repeated");
+    notes.emplace_back(
+        "recorded while 'kadans ctl' could reach it: of what was ordered meanwhile only events are repeated");
   return notes;
 }
 

@@ -36,6 +36,12 @@ RunInputs inputs_for(RunChoices choices, const ScenarioConfig& scenario, const A
   return inputs;
 }
 
+ScenarioConfig scenario_of(const RunChoices& choices, const std::optional<SimContinuation>& continuation) {
+  ScenarioConfig scenario = read_scenario(choices);
+  if (continuation) add_ordered_events(continuation->from.inputs, "", scenario);
+  return scenario;
+}
+
 std::vector<PlannedCheckpoint> checkpoints_of(const SimOptions& options) {
   std::vector<PlannedCheckpoint> planned;
   for (const std::string& text : options.checkpoints) planned.push_back(parse_checkpoint(text));
@@ -47,7 +53,7 @@ std::vector<PlannedCheckpoint> checkpoints_of(const SimOptions& options) {
 SimRun::SimRun(const SimOptions& options, const RunChoices& choices, std::optional<SimContinuation> continuation)
     : options_(options),
       choices_(choices),
-      scenario_(read_scenario(choices)),
+      scenario_(scenario_of(choices, continuation)),
       seed_(choices.seed.value_or(scenario_.seed)),
       duration_s_(choices.duration_s.value_or(scenario_.duration_s)),
       assembly_(scenario_, seed_, log_),
@@ -74,7 +80,7 @@ SimRun::SimRun(const SimOptions& options, const RunChoices& choices, std::option
   if (!continuation_) make_reachable();
   if (options_.hash_every_s) trail_ = std::make_unique<HashTrail>(*options_.hash_every_s);
   if (!options_.checkpoints.empty())
-    checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_), assembly_);
+    checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_), assembly_, ordered_);
 }
 
 void SimRun::make_reachable() {

@@ -13,6 +13,7 @@
 #include "app/run/process_split.h"
 #include "checkpoint.h"
 #include "hash_trail.h"
+#include "ordered_events.h"
 #include "run_branches.h"
 #include "scenario/report/report.h"
 #include "telemetry/record/recorder.h"
@@ -65,7 +66,8 @@ class SimRun final : public RunObserver {
   std::uint64_t seed_;
   double duration_s_;
   LineEcho echo_;
-  RunLog log_{std::initializer_list<LineSink*>{&echo_}};
+  OrderedEvents ordered_;
+  RunLog log_{std::initializer_list<LineSink*>{&echo_, &ordered_}};
   Assembly assembly_;
   Checks checks_;
   Metrics metrics_;

@@ -144,6 +144,14 @@ void Fields::number_entries(std::vector<NumberEntry>& entries, NumberRange range
   }
 }
 
+const JsonValue* Fields::plain_entries(std::string_view doc) {
+  any_key_ = true;
+  if (value_ != nullptr) return value_;
+  described_->kind = FieldInfo::Kind::map;
+  described_->fields.assign(1, {.kind = FieldInfo::Kind::plain, .doc = std::string(doc)});
+  return nullptr;
+}
+
 void Fields::text_entries(std::vector<TextEntry>& entries, std::string_view doc) {
   any_key_ = true;
   if (value_ == nullptr) {

@@ -65,7 +65,7 @@ struct TextEntry {
 
 // The description of a field, for the schema and the manual.
 struct FieldInfo {
-  enum class Kind : std::uint8_t { boolean, integer, number, string, object, list, map };
+  enum class Kind : std::uint8_t { boolean, integer, number, string, plain, object, list, map };
   Kind kind = Kind::object;
   std::string name;
   std::string doc;
@@ -99,6 +99,9 @@ class Fields {
                    std::string_view doc, Need need = Need::optional);
   // Reads the members of this object itself: keys are free, each value is a number.
   void number_entries(std::vector<NumberEntry>& entries, NumberRange range, std::string_view doc);
+  // The same with numbers, booleans and strings as values: the object itself, for another reader; nullptr while the
+  // fields are only described.
+  const JsonValue* plain_entries(std::string_view doc);
   // The same with strings as values.
   void text_entries(std::vector<TextEntry>& entries, std::string_view doc);
 

@@ -16,6 +16,7 @@
 #include "config/json/fields.h"
 #include "engine/settings.h"
 #include "estimate/settings.h"
+#include "input_event.h"
 #include "kadans/control/catalog.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/plant_type.h"
@@ -73,6 +74,7 @@ struct RobotConfig {
   std::string start_pose;
   SafeConfig safe;
   RecordConfig record;
+  std::vector<InputEvent> input_events;
 };
 
 // Throws InputError with all mistakes, those of the URDF included. `object_types` are the types of control objects that

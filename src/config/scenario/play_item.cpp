@@ -29,7 +29,8 @@ bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c))
 
 class PlayText {
  public:
-  explicit PlayText(std::string_view text) : text_(text) {}
+  explicit PlayText(std::string_view text, std::size_t arguments_max = SIZE_MAX)
+      : text_(text), arguments_max_(arguments_max) {}
 
   // Throws Mistake.
   std::vector<WrittenItem> read() {
@@ -82,6 +83,8 @@ class PlayText {
   void add_argument(WrittenItem& item) {
     skip_space();
     const std::size_t begin = at_;
+    if (item.arguments.size() == arguments_max_)
+      throw Mistake{begin, "there are more than " + std::to_string(arguments_max_)};
     PlayArgument argument;
     while (continues_name(next())) argument.name += text_[at_++];
     if (argument.name.empty() || std::isdigit(static_cast<unsigned char>(argument.name[0])) != 0)
@@ -125,6 +128,7 @@ class PlayText {
   }
 
   std::string_view text_;
+  std::size_t arguments_max_;
   std::size_t at_ = 0;
 };
 
@@ -157,6 +161,20 @@ fs::path find_by_name(const std::string& name, TextPlace place, const PlayFolder
 }
 
 }  // namespace
+
+std::vector<PlayArgument> read_play_arguments(std::string_view text, std::size_t count_max, const std::string& source) {
+  constexpr std::string_view head = "x{";
+  const std::string whole = std::string(head) + std::string(text) + "}";
+  std::vector<PlayArgument> arguments;
+  try {
+    const std::vector<WrittenItem> items = PlayText(whole, count_max).read();
+    if (items.size() != 1) throw Mistake{head.size(), "wanted name=value,name=value"};
+    for (const auto& [argument, at] : items.front().arguments) arguments.push_back(argument);
+  } catch (const Mistake& mistake) {
+    throw InputError({.file = source, .message = mistake.message});
+  }
+  return arguments;
+}
 
 std::vector<std::string> playable_names(const PlayFolders& folders) {
   std::vector<std::string> names;

@@ -38,6 +38,16 @@ struct PlayItem {
   TextPlace place{};
 };
 
+// An event from outside the chart that takes it. Whether its data is right is checked by the declaration of each
+// behavior that takes it (k.events).
+struct PlayedEvent {
+  std::string name;                  // words of letters, digits and '_', separated by dots
+  std::vector<PlayArgument> data{};  // its fields, each name once
+  std::string who{};                 // who sent it: "scenario", "uid 1000 (develop)", "joystick.button_1"
+  bool ordered = false;              // given while the run went on: only the record knows of it
+  TextPlace place{};                 // of the name
+};
+
 // The folders in which names and paths are looked up.
 struct PlayFolders {
   std::filesystem::path project_file;  // any file of the project; paths start at the project's root
@@ -53,6 +63,9 @@ std::vector<PlayItem> read_play_items(std::string_view text, TextPlace start, co
 // Throws InputError. `source` names the text in messages, such as "--play".
 std::vector<PlayItem> read_play_items(std::string_view text, const std::string& source, const PlayFolders& folders);
 
+// Reads `name=value,name=value`, arguments as in an item, at most count_max. Throws InputError.
+std::vector<PlayArgument> read_play_arguments(std::string_view text, std::size_t count_max, const std::string& source);
+
 // An order of the supervisor to the behaviors that play.
 struct PlayOrder {
   enum class Kind : std::uint8_t {
@@ -62,11 +75,13 @@ struct PlayOrder {
     resume,   // charts and motions continue
     stop,     // the playing behaviors leave their states
     reload,   // `behavior` continues with the program text of `file`
+    emit,     // `event` goes to what plays and declares it
   };
   Kind kind = Kind::play;
   std::vector<PlayItem> list{};
   PlacedName behavior{};
   std::filesystem::path file{};
+  PlayedEvent event{};
 };
 
 // Takes such orders.
@@ -79,6 +94,7 @@ class OrderTaker {
 };
 
 // The kinds as they are written in files and on the console.
-inline const std::array<std::string, 6> play_order_names{"play", "replace", "pause", "resume", "stop", "reload"};
+inline const std::array<std::string, 7> play_order_names{"play", "replace", "pause", "resume",
+                                                         "stop", "reload",  "emit"};
 
 }  // namespace kadans

@@ -9,6 +9,7 @@
 #include "based_on.h"
 #include "config/robot/project_root.h"
 #include "config/robot/robot_config.h"
+#include "event_text.h"
 #include "kadans/plant/plant_type.h"
 
 namespace kadans {
@@ -18,7 +19,7 @@ constexpr double time_max_s = 1e6;
 
 // Which of the other fields an event has to have.
 struct Wants {
-  bool list = false, reload = false;
+  bool list = false, reload = false, event = false;
 };
 
 void verify(const Fields& f, const ScenarioEvent& event, Wants wants, Problems& problems) {
@@ -31,6 +32,8 @@ void verify(const Fields& f, const ScenarioEvent& event, Wants wants, Problems& 
   field("list", wants.list);
   field("behavior", wants.reload);
   field("file", wants.reload);
+  field("event", wants.event);
+  if (!wants.event) field("data", false);
 }
 
 using FaultKind = ScenarioFault::Kind;
@@ -99,13 +102,25 @@ void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, P
   std::string list, file;
   PlayOrder& order = event.order;
   f.number("at_s", event.at_s, {0, time_max_s, "s"}, "time of the event", Need::required);
-  const bool known = f.choice("do", order.kind, play_order_names, "change to the list of behaviors", Need::required);
+  const bool known = f.choice("do", order.kind, play_order_names,
+                              "change to the list of behaviors, or emit: an event for them", Need::required);
   f.string("list", list, "for play and replace: the behaviors, such as \"squat{depth_m=0.08}, wave\"");
   f.string("behavior", order.behavior.name, "for reload: name of a behavior that plays");
   f.string("file", file, "for reload: the file with which it continues, from the project root");
+  f.string("event", order.event.name, "for emit: name of an event that a behavior declares");
+  f.object("data", "for emit: the event's data", [&](Fields& data) {
+    if (const JsonValue* given = data.plain_entries("value of the field"))
+      order.event.data = read_event_data(*given, problems);
+  });
   if (!f.reading() || !known) return;
   using Kind = PlayOrder::Kind;
-  verify(f, event, {order.kind == Kind::play || order.kind == Kind::replace, order.kind == Kind::reload}, problems);
+  verify(
+      f, event,
+      {order.kind == Kind::play || order.kind == Kind::replace, order.kind == Kind::reload, order.kind == Kind::emit},
+      problems);
+  order.event.place = f.place("event");
+  order.event.who = "scenario";
+  check_event_name({order.event.name, order.event.place}, problems);
   order.behavior.place = f.place("behavior");
   if (!file.empty()) order.file = resolve_file(file, f.place("file"), "reload", problems);
   if (list.empty()) return;

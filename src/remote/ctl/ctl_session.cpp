@@ -103,7 +103,7 @@ bool CtlRequests::known_here(const OrderRequest& request) const {
   const std::string name = request.text("name"), what = request.text("what");
   const Catalog& catalog = instance_.catalog();
   if (request.is("get")) return catalog.signals.find(name) || catalog.parameters.find(name);
-  return request.is("list") && what != "behaviors" && what != "parameters";
+  return request.is("list") && what != "behaviors" && what != "parameters" && what != "events";
 }
 
 bool CtlRequests::reports(const CtlSession& session) const {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "config/json/fields.h"
+#include "config/scenario/event_text.h"
 #include "engine/refusal_text.h"
 #include "run_description.h"
 #include "signal/nearest_name.h"
@@ -54,6 +55,12 @@ std::string undone_text(DriveOrder order, JointMask joints, const PowerStatus& p
     if (order == DriveOrder::brake || order == DriveOrder::release) text += drive.braked ? ", braked" : ", not braked";
   });
   return text;
+}
+
+// Whether the line is about the event of this order: others may have come in the same tick.
+bool tells_of(const std::string& line, const Order& order) {
+  const std::string name = order.text.substr(0, order.text.find_first_of(" \t{"));
+  return line.find(name) != std::string::npos && line.find(order.who) != std::string::npos;
 }
 
 bool names_transaction(const Snapshot& snapshot, std::uint32_t sequence, Refusal& refusal) {
@@ -119,6 +126,8 @@ bool BehaviorSide::begin(Pending& pending) {
       return give(pending, PlayOrder::Kind::stop), false;
     case Order::Kind::reload:
       return give(pending, PlayOrder::Kind::reload), false;
+    case Order::Kind::emit:
+      return give(pending, PlayOrder::Kind::emit), false;
     case Order::Kind::switch_set: {
       const std::uint32_t set = p_.instance.set_named(order.text);
       return send(pending, std::array{Command{.kind = CommandKind::switch_set, .index = set}}), false;
@@ -316,6 +325,7 @@ void BehaviorSide::report(Answer& answer) const {
                                 .over = host.over(i),
                                 .chart = chart_sign(behavior.chart()),
                                 .parameters = behavior.parameters()});
+    if (!host.over(i)) answer.behaviors.back().events = behavior.events();
   }
 }
 
@@ -367,6 +377,11 @@ void BehaviorSide::give(Pending& pending, PlayOrder::Kind kind) {
         {.message = "the emergency stop keeps the robot down: clear the faults first (kadans ctl fault clear)"});
   PlayOrder given{.kind = kind, .behavior = {kind == PlayOrder::Kind::reload ? order.text : "", {}}};
   if (plays) given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
+  if (kind == PlayOrder::Kind::emit) {
+    given.event = read_event(order.text, "event");
+    given.event.who = order.who;
+    given.event.ordered = true;
+  }
   orders().order(given);
   p_.echo.listen();
 }
@@ -379,11 +394,12 @@ std::string BehaviorSide::told(const Pending& pending, bool& done) {
   for (const LineEcho::Heard& line : lines_) {
     const bool supervisor = line.behavior == "supervisor";
     if (reload ? supervisor || (!order.text.empty() && line.behavior != order.text) : !supervisor) continue;
+    if (pending.given == PlayOrder::Kind::emit && !tells_of(line.text, order)) continue;
     if (line.severity != BehaviorLog::Severity::info) done = false;
     text += (text.empty() ? "" : "\n") + (supervisor ? "" : line.behavior + ": ") + line.text;
   }
   if (reload && text.empty()) return "no new version: the files are as they were loaded";
-  if (!order.who.empty() && !reload)
+  if (!order.who.empty() && !reload && pending.given != PlayOrder::Kind::emit)
     say(time_ns_, order.who, "asked for " + play_order_names[static_cast<std::size_t>(pending.given)]);
   return text;
 }

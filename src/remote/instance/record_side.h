@@ -59,6 +59,10 @@ class RecordSide final : public Task, public LineSink {
     if (LineSink* events = events_.load(std::memory_order_acquire); events != nullptr) events->tell_active(active);
   }
 
+  void tell_emitted(const EmittedEvent& event) override {
+    if (LineSink* events = events_.load(std::memory_order_acquire); events != nullptr) events->tell_emitted(event);
+  }
+
   // Supervisor.
   void tell(const Fault& fault) noexcept {
     if (Recorder* recorder = told_.load(std::memory_order_acquire); recorder != nullptr) recorder->fault(fault);

@@ -1,6 +1,7 @@
 #include "run_description.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -81,7 +82,10 @@ Json behaviors_of(const ScriptHost* host) {
                             {"value", p.value},
                             {"doc", p.doc}});
     }
-    behaviors.push_back({{"name", behavior.name()}, {"chart", chart_of(behavior)}, {"parameters", parameters}});
+    Json events = Json::array();
+    for (const ScriptEvent& event : behavior.events()) events.push_back(event_json(event));
+    behaviors.push_back(
+        {{"name", behavior.name()}, {"chart", chart_of(behavior)}, {"parameters", parameters}, {"events", events}});
   }
   return behaviors;
 }
@@ -151,6 +155,21 @@ Json parameters_of(const Catalog& catalog) {
 }
 
 }  // namespace
+
+Json event_json(const ScriptEvent& event) {
+  constexpr const char* types[] = {"number", "flag", "text"};
+  Json fields = Json::array();
+  for (const ScriptEvent::Field& field : event.fields) {
+    Json one{{"name", field.name}, {"type", types[static_cast<std::size_t>(field.type)]}};
+    if (!field.unit.empty()) one["unit"] = field.unit;
+    if (!field.doc.empty()) one["doc"] = field.doc;
+    if (field.type == ScriptEvent::Field::Type::number && std::isfinite(field.min)) one["min"] = field.min;
+    if (field.type == ScriptEvent::Field::Type::number && std::isfinite(field.max)) one["max"] = field.max;
+    if (field.optional) one["optional"] = true;
+    fields.push_back(std::move(one));
+  }
+  return {{"name", event.name}, {"doc", event.doc}, {"fields", fields}};
+}
 
 void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t time_ns) {
   // A disk that fails is told when the record is closed.

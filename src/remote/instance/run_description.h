@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "config/robot/robot_config.h"
 #include "kadans/control/catalog.h"
 #include "script/host/script_host.h"
@@ -25,6 +27,8 @@ struct RobotTexts {
   std::vector<Other> others{};  // the further robots of the world
 };
 
+// An event that a behavior declares: {name, doc, fields: [{name, type, unit, doc, min, max, optional}]}.
+nlohmann::ordered_json event_json(const ScriptEvent& event);
 // Writes the texts that there are into a record that has just been opened.
 void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t time_ns);
 

@@ -9,6 +9,7 @@
 #include "order.h"
 #include "order_queue.h"
 #include "script/behavior/behavior_why.h"
+#include "script/host/script_event.h"
 #include "script/host/script_parameter.h"
 
 namespace kadans {
@@ -21,6 +22,7 @@ struct BehaviorReport {
   bool over = false;
   std::uint64_t chart = 0;  // a number that changes when the chart's states or transitions change
   std::vector<ScriptParameter> parameters;
+  std::vector<ScriptEvent> events{};  // that it takes now
 };
 
 struct Answer {

@@ -34,6 +34,7 @@ struct Order {
     resume,
     stop,
     reload,         // `text` = name; "": all playing behaviors
+    emit,           // `text` = an event, as read_event() reads it
     switch_set,     // `text` = name
     set_point,      // `text` = "gaze.x_m=1.2,gaze.y_m=0.3", in one transaction; `value` = duration in s
     set_parameter,  // `text` = name in the table, or BEHAVIOR.NAME; `value`
@@ -103,9 +104,9 @@ struct OrderInfo {
   Faces faces;
   Role role;
   const char* doc;
-  std::optional<Order::Kind> kind;  // the order that it becomes; nullopt: the server answers by itself
-  std::array<OrderArgument, 2> arguments{};
-  const char* examples = "";  // command lines for its --help, where the words alone do not do
+  std::optional<Order::Kind> kind;           // the order that it becomes; nullopt: the server answers by itself
+  std::array<OrderArgument, 2> arguments{};  // a second text stands behind the first, after a blank
+  const char* examples = "";                 // command lines for its --help, where the words alone do not do
 
   bool is_brief() const noexcept { return faces == Faces::all || faces == Faces::paced; }
   // The first argument of this kind; nullptr: there is none.
@@ -160,7 +161,7 @@ inline constexpr OrderInfo orders[] = {
      {{{.name = "what",
         .kind = text,
         .shown = "KIND",
-        .doc = "behaviors, sets, objects, parameters, signals or joints",
+        .doc = "behaviors, sets, objects, parameters, signals, joints or events",
         .required = true}}},
      "  kadans ctl list behaviors\n"
      "  kadans ctl list parameters --names\n"},
@@ -275,6 +276,19 @@ inline constexpr OrderInfo orders[] = {
     {"pause", "pause", all, Role::operate, "Pause behaviors and motions", Is::pause},
     {"resume", "resume", all, Role::operate, "Resume behaviors and motions", Is::resume},
     {"stop", "stop", all, Role::operate, "Stop the behaviors that play", Is::stop},
+    {"emit",
+     "emit",
+     all,
+     Role::operate,
+     "Send an event to the behaviors that play and declare it",
+     Is::emit,
+     {{{.name = "event", .kind = text, .shown = "NAME", .lists = "events", .required = true},
+       {.name = "data",
+        .kind = text,
+        .shown = "DATA",
+        .doc = "its data: name=value,name=value, or a JSON object (default: none)"}}},
+     "  kadans ctl emit whistle\n"
+     "  kadans ctl emit ball_seen distance_m=1.2,left=true\n"},
     {"switch",
      "switch",
      all,

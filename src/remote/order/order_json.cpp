@@ -9,6 +9,7 @@
 #include "config/json/foreign_json.h"
 #include "config/json/problems.h"
 #include "kadans/control/set_partition.h"
+#include "remote/instance/run_description.h"
 
 namespace kadans {
 namespace {
@@ -69,6 +70,21 @@ Json sets_json(const Catalog& catalog, SetMask active) {
     Json one{{"name", catalog.sets[set].name}, {"active", (active & set_bit(set)) != 0}, {"objects", Json::array()}};
     for (const std::uint32_t object : catalog.sets[set].objects) one["objects"].push_back(catalog.objects[object].name);
     all.push_back(std::move(one));
+  }
+  return all;
+}
+
+// Those that somebody who plays declares, each once.
+Json events_json(const Answer& report) {
+  Json all = Json::array();
+  for (const BehaviorReport& behavior : report.behaviors) {
+    for (const ScriptEvent& event : behavior.events) {
+      const bool there = std::ranges::any_of(all, [&](const Json& one) { return one["name"] == event.name; });
+      const std::string fields = fields_text(event);
+      if (there) continue;
+      all.push_back(event_json(event));
+      all.back()["doc"] = event.doc + (event.doc.empty() || fields.empty() ? "" : "; ") + fields;
+    }
   }
   return all;
 }
@@ -188,7 +204,8 @@ Json list_json(const std::string& what, const Instance& instance, const Instance
   if (what == "objects") return objects_json(catalog);
   if (what == "sets") return sets_json(catalog, status.control_sets);
   if (what == "joints") return joints_json(*catalog.model);
-  const std::vector<std::string> kinds{"behaviors", "sets", "objects", "parameters", "signals", "joints"};
+  if (what == "events") return events_json(report);
+  const std::vector<std::string> kinds{"behaviors", "sets", "objects", "parameters", "signals", "joints", "events"};
   throw InputError({.message = unknown_name("kind of list", what, kinds)});
 }
 
@@ -277,6 +294,9 @@ Order OrderRequest::order(const std::string& who, std::uint64_t client) const {
   Order order{.kind = *info->kind, .who = who, .client = client};
   if (json.value("replace", false)) order.kind = Order::Kind::replace;
   if (const OrderArgument* of = info->argument(OrderArgument::Kind::text)) order.text = text(of->name);
+  if (const OrderArgument& second = info->arguments[1]; second.kind == OrderArgument::Kind::text) {
+    if (const std::string more = text(second.name); !more.empty()) order.text += " " + more;
+  }
   if (const OrderArgument* of = info->argument(OrderArgument::Kind::number)) order.value = number(of->name, 0);
   return order;
 }

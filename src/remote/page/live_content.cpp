@@ -111,6 +111,7 @@ void LiveChannels::take(const LatestRow::View& row) {
 }
 
 void LiveChannels::take(const Event& event) {
+  if (event.kind == Event::Kind::emitted) return;  // a line tells people of it
   const std::size_t channel = event.kind == Event::Kind::transition ? transitions_
                               : event.kind == Event::Kind::active   ? active_
                                                                     : log_;

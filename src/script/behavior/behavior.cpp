@@ -318,8 +318,9 @@ void Behavior::Parts::recovered(const ScriptError& taken) noexcept {
   say_with(BehaviorLog::Severity::warning, ("error taken as an event: " + taken.text()).c_str());
 }
 
-bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
-  return lua->call(function, this, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
+bool Behavior::Parts::run(int (*function)(lua_State*), void* argument) noexcept {
+  return lua->call(function, argument != nullptr ? argument : this, settings.limits.tick_instructions,
+                   settings.limits.tick_wall_ns);
 }
 
 Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
@@ -349,6 +350,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   forget_past(clock_ns(snapshot));
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
+  bindings.sent_events.clear();
   if (bindings.armed_count > 0) parts.tell_armed();
   bindings.take_back_orphans();
   if (snapshot.transactions_refused != bindings.refusals_seen) parts.tell_refused();
@@ -360,6 +362,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   if (bindings.wanted != 0) bindings.bring_in_again();
   if (!parts.run(tick_chart)) {
     commands.discard();
+    bindings.sent_events.clear();
     if (take_back(snapshot, commands)) return true;
     parts.failed = true;
     parts.error = parts.lua->error();
@@ -450,6 +453,43 @@ std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
 bool Behavior::post(const std::string& event) noexcept {
   const EventId id = parts_->chart.find_or_learn(event);
   return id != no_event && !parts_->chart.made_by_runner(id) && parts_->runner->post(id);
+}
+
+const std::vector<ScriptEvent>& Behavior::events() const noexcept { return parts_->lua->core().events; }
+std::vector<SentEvent>& Behavior::sent_events() noexcept { return parts_->bindings.sent_events; }
+
+namespace {
+
+struct Posting {
+  Behavior::Parts& parts;
+  const PlayedEvent& event;
+  EventId id;
+  bool taken = false;
+};
+
+int post_event(lua_State* state) {
+  Posting& posting = *static_cast<Posting*>(lua_touserdata(state, 1));
+  ChartRunner& runner = *posting.parts.runner;
+  const bool with_data = !posting.event.data.empty();
+  lua_rawgeti(state, LUA_REGISTRYINDEX, posting.parts.tables.event_data);
+  if (with_data) push_event_data(state, posting.event);
+  const std::int8_t place = with_data ? runner.events().free_place() : std::int8_t{-1};
+  posting.taken = runner.post(posting.id, place);
+  if (posting.taken && with_data) lua_rawseti(state, -2, place + 1);
+  return 0;
+}
+
+}  // namespace
+
+std::string Behavior::post(const PlayedEvent& event) {
+  Parts& parts = *parts_;
+  const ScriptEvent* declared = find_event(events(), event.name);
+  const EventId id = parts.chart.find_event(event.name);
+  if (failed() || finished() || declared == nullptr || id == no_event) return "'" + name() + "' does not declare it";
+  if (WrongData wrong = wrong_data(*declared, event); !wrong.why.empty()) return wrong.why;
+  Posting posting{parts, event, id};
+  if (!parts.run(post_event, &posting)) return "'" + name() + "' has no memory for it";
+  return posting.taken ? "" : "'" + name() + "' has as many events waiting as a tick may have";
 }
 
 const std::string& Behavior::name() const noexcept { return parts_->chart.name; }
@@ -554,7 +594,13 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
     throw InputError(problem_of(parts.lua->error()));
   }
   find_transition_lines(parts.lua->sources(), parts.chart);
+  for (const ScriptEvent& event : parts.lua->core().events) parts.chart.intern(event.name);
   parts.chart.resolve(parts.problems);
+  for (const ScriptEvent& event : parts.lua->core().events) {
+    if (parts.chart.made_by_runner(parts.chart.find_event(event.name)))
+      parts.problems.push_back(
+          {event.chunk, event.line, 0, "event '" + event.name + "' is how a state ends: give it another name"});
+  }
   find_control_sets(parts);
   if (!parts.problems.empty()) throw InputError(parts.problems);
   give_robot_values(parts);

@@ -30,6 +30,7 @@
 #include "kadans/control/set_partition.h"
 #include "kadans/signal/status.h"
 #include "script/chart/chart.h"
+#include "script/host/script_event.h"
 #include "script/host/script_parameter.h"
 #include "script/lua/budget.h"
 #include "script/lua/script_error.h"
@@ -86,6 +87,12 @@ class Behavior {
   // behind the engine's clock.
   void hold_clock(std::int64_t held_ns) noexcept;
 
+  // Its events that may come from outside, and those of the behaviors that it calls (k.events).
+  const std::vector<ScriptEvent>& events() const noexcept;
+  // Behavior thread, between ticks. The event waits for the next tick. Returns "", or why it is refused.
+  std::string post(const PlayedEvent& event);
+  // What it sent to other behaviors in its last tick; the caller takes it.
+  std::vector<SentEvent>& sent_events() noexcept;
   // False: the behavior does not know the event, or its queue is full.
   [[nodiscard]] bool post(const std::string& event) noexcept;
 

@@ -69,8 +69,8 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void tell_armed() noexcept;    // logs what became of armed transactions since the last call, and posts their events
   // Asks in the next tick for the control sets of the active states that are not active.
   void want_sets() noexcept;
-  // Runs one of the functions below under the tick's budget.
-  bool run(int (*function)(lua_State*)) noexcept;
+  // Runs a function under the tick's budget, with the parts or with another argument.
+  bool run(int (*function)(lua_State*), void* argument = nullptr) noexcept;
 
   Settings settings;
   const Catalog& catalog;

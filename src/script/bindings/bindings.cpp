@@ -91,7 +91,7 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
 }
 
 Bindings::Mark Bindings::mark() const noexcept {
-  return {sender->mark(), refused, motion_count, armed_count, armed_in_tick};
+  return {sender->mark(), refused, motion_count, armed_count, armed_in_tick, sent_events.size()};
 }
 
 void Bindings::take_back_to(const Mark& mark) noexcept {
@@ -102,6 +102,7 @@ void Bindings::take_back_to(const Mark& mark) noexcept {
   motion_count = mark.motions;
   armed_count = mark.armed;
   armed_in_tick = mark.armed_in_tick;
+  sent_events.erase(sent_events.begin() + static_cast<std::ptrdiff_t>(mark.events), sent_events.end());
 }
 
 bool Bindings::commit() noexcept {
@@ -165,6 +166,7 @@ int pose(lua_State* state) {
 void open_kadans_module(lua_State* state) {
   lua_newtable(state);
   open_parameters(state);
+  open_events(state);
   open_arguments(state);
   open_skills(state);
   open_nodes(state);

@@ -74,6 +74,7 @@ struct Bindings {
   std::uint32_t refused_last = 0;  // the newest transaction of this behavior that was refused
   std::uint32_t switched = 0;      // the newest one that brings sets in
   bool begun = false;
+  std::vector<SentEvent> sent_events{};  // by this tick, for other behaviors
 
   bool has_object(std::size_t machine, std::uint32_t object) const noexcept {
     return machine >= machine_objects.size() || (machine_objects[machine] >> object & 1U) != 0;
@@ -107,6 +108,7 @@ struct Bindings {
     bool refused = false;
     std::uint32_t motions = 0, armed = 0;
     std::uint16_t armed_in_tick = 0;
+    std::size_t events = 0;  // for other behaviors
   };
   Mark mark() const noexcept;
   void take_back_to(const Mark& mark) noexcept;  // motions that begin behind it are cancelled
@@ -156,6 +158,12 @@ void push_plain_copy(lua_State* state, int index);
 const std::uint32_t* to_object(lua_State* state, int index) noexcept;
 // The event of this name, when scripts may send it. Raises.
 EventId check_event(lua_State* state, Chart& chart, const char* name);
+// Raises when the data at `index`, a table or nothing, is not what the event declares.
+void check_event_data(lua_State* state, const ScriptEvent& event, int index);
+// For m:emit with options: notes the event for other behaviors. `declared` may be nullptr. Raises.
+int send_away(lua_State* state, const ScriptEvent* declared, const char* name, int data, int options);
+// [-0 +1] Pushes data of an event from outside as a table.
+void push_event_data(lua_State* state, const PlayedEvent& event);
 // The object on which the method was called; `number` is its index in the catalog. Raises.
 const ObjectInfo& check_object(lua_State* state, std::uint32_t& number);
 // The name without the prefix of the object's name.

@@ -158,7 +158,8 @@ int wait(lua_State* state) {
   return lua_yield(state, 0);
 }
 
-// m:emit(event, data?) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the next.
+// m:emit(event, data?, { to = }?) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the
+// next. With `to` it goes to other behaviors, which get it in their next tick.
 int emit(lua_State* state);  // upvalues: the chart, the reference of the events' data
 
 // Reading what m does not have; upvalues: its content, its number.
@@ -261,6 +262,15 @@ void push_event_data(lua_State* state, int index, int depth, int& fields) {
 }  // namespace
 
 void push_plain_copy(lua_State* state, int index) { push_copy(state, index, 0); }
+void push_event_data(lua_State* state, const PlayedEvent& event) {
+  lua_createtable(state, 0, static_cast<int>(event.data.size()));
+  for (const PlayArgument& field : event.data) {
+    if (const auto* number = std::get_if<double>(&field.value)) lua_pushnumber(state, *number);
+    if (const auto* flag = std::get_if<bool>(&field.value)) lua_pushboolean(state, *flag ? 1 : 0);
+    if (const auto* text = std::get_if<std::string>(&field.value)) lua_pushlstring(state, text->data(), text->size());
+    lua_setfield(state, -2, field.name.c_str());
+  }
+}
 
 EventId check_event(lua_State* state, Chart& chart, const char* name) {
   if (reserved_for_reports(name))
@@ -280,12 +290,16 @@ int emit(lua_State* state) {
   if (bindings_of(state).recording)
     return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
   auto& chart = *static_cast<Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
-  const EventId event = check_event(state, chart, luaL_checkstring(state, 2));
-  ChartRunner& runner = *bindings_of(state).runner;
+  const char* name = luaL_checkstring(state, 2);
   const bool with_data = !lua_isnoneornil(state, 3);
   if (with_data && !lua_istable(state, 3)) {
     return luaL_error(state, "the data of an event is a table { name = value }, not a %s", luaL_typename(state, 3));
   }
+  const ScriptEvent* declared = find_event(core_of(state).events, name);
+  if (!lua_isnoneornil(state, 4)) return send_away(state, declared, name, 3, 4);
+  const EventId event = check_event(state, chart, name);
+  if (declared != nullptr) check_event_data(state, *declared, 3);
+  ChartRunner& runner = *bindings_of(state).runner;
   int fields = 0;
   if (with_data) push_event_data(state, 3, 1, fields);
   const std::int8_t place = with_data ? runner.events().free_place() : std::int8_t{-1};

@@ -35,6 +35,8 @@ void open_nodes(lua_State* state);
 
 // [-1 +1] Adds params to the module's table at the top of the stack.
 void open_parameters(lua_State* state);
+// [-1 +1] Adds events, flag and text to the module's table at the top of the stack.
+void open_events(lua_State* state);
 // True when the value at `index` is a parameter; then `number` is its index in LuaCore::parameters.
 bool is_parameter(lua_State* state, int index, std::size_t* number);
 

@@ -37,8 +37,8 @@ std::size_t target_of(const Tokens& tokens, std::size_t at) {
 
 // Whether the one of this chart may be written there.
 bool fits(const Chart::Transition& transition, const SourceToken& target) {
-  const bool none = target.is("{");
-  return transition.target_names.empty() ? none : !none && transition.target_names.front() == target.text;
+  const bool without = target.is("{");
+  return transition.target_names.empty() ? without : !without && transition.target_names.front() == target.text;
 }
 
 // Gives the transitions from `first` on their lines, those written in the braces at `at`, in their order.

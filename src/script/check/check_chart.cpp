@@ -257,6 +257,27 @@ Ends heard_ends(const Chart& chart, StateIndex index) {
   return ends;
 }
 
+std::vector<std::string> waited_for(const Chart& chart) {
+  std::set<std::string> names;
+  for (const Chart::Transition& transition : chart.transitions) {
+    const bool sent = transition.on != no_event && !chart.made_by_runner(transition.on);
+    if (sent) names.insert(chart.events[static_cast<std::size_t>(transition.on)]);
+  }
+  return {names.begin(), names.end()};
+}
+
+bool waits_for(const Chart& chart, const ScriptEvent& event) {
+  const EventId id = chart.find_event(event.name);
+  return std::ranges::find(chart.transitions, id, &Chart::Transition::on) != chart.transitions.end() ||
+         chart.any_pattern_takes(event.name);
+}
+
+// Declared where a behavior is. What a module declares is for several behaviors, which need not wait for all of it.
+bool is_own(const Chart& chart, const ScriptEvent& event) {
+  return std::ranges::any_of(
+      chart.machines, [&](const Chart::Machine& machine) { return chart.states[machine.root].chunk == event.chunk; });
+}
+
 struct Looking {
   Behavior::Parts& parts;
   std::vector<InputProblem>& problems;
@@ -330,9 +351,17 @@ int look(lua_State* state) {
 
 void check_chart(const Chart& chart, std::vector<InputProblem>& problems) { ChartCheck(chart, problems).run(); }
 
-void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::vector<InputProblem>& problems) {
+void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, const std::vector<ReadSource>& read,
+                  std::vector<InputProblem>& problems) {
   Emitted emitted;
   for (const ReadSource& one : read) add_emitted(one.scopes.tokens(), emitted);
+  for (const ScriptEvent& event : declared) {
+    if (!waits_for(chart, event) && !emitted.may_be(event.name) && is_own(chart, event))
+      problems.push_back({event.chunk, event.line, 0,
+                          "the event '" + event.name + "' is declared, but no transition waits for it" +
+                              hint_text(event.name, waited_for(chart))});
+  }
+  for (const ScriptEvent& event : declared) emitted.events.insert(event.name);
   for (const Chart::Transition& transition : chart.transitions) {
     if (transition.on == no_event || transition.on == run_done_event || chart.is_report(transition.on)) continue;
     const std::string& event = chart.events[static_cast<std::size_t>(transition.on)];

@@ -441,7 +441,7 @@ void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<
   for (ReadSource& one : read) SourceCheck(parts, known, *one.source, problems).run(one.scopes);
   check_module_values(read, *parts.lua, problems);
   check_guard_values(read, known, problems);
-  check_events(parts.chart, read, problems);
+  check_events(parts.chart, parts.lua->core().events, read, problems);
 }
 
 }  // namespace kadans

@@ -51,7 +51,9 @@ void check_chart(const Chart& chart, std::vector<InputProblem>& problems);
 
 // Finds transitions on an event that is never emitted: neither by a function of the behavior or of the files that it
 // requires and calls, nor by a final state inside the waiting state.
-void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::vector<InputProblem>& problems);
+// Finds also events that a behavior's own file declares in k.events, and that nothing waits for or emits.
+void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, const std::vector<ReadSource>& read,
+                  std::vector<InputProblem>& problems);
 
 // Finds states that lead to each other for ever and take no time.
 void check_livelocks(Behavior::Parts& parts, std::vector<InputProblem>& problems);

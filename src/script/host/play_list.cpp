@@ -10,6 +10,8 @@ void PlayStatus::declare(SignalTable& signals) const {
   signals.add({"play.waiting", "", "Behaviors of the list that wait"}, &waiting);
   signals.add({"play.done", "", "Behaviors that ended with the outcome done"}, &done);
   signals.add({"play.not_done", "", "Behaviors that ended with another outcome"}, &not_done);
+  signals.add({"play.events", "", "Events from outside or from another behavior that a behavior got"}, &events);
+  signals.add({"play.events_refused", "", "Such events that were refused, or that nobody got"}, &events_refused);
 }
 
 void PlayList::append(std::vector<Entry>& entries) {
@@ -47,6 +49,11 @@ void PlayList::end_all() noexcept {
 void PlayList::count(std::uint32_t done, std::uint32_t not_done) noexcept {
   status_.done.store(done, std::memory_order_relaxed);
   status_.not_done.store(not_done, std::memory_order_relaxed);
+}
+
+void PlayList::count_events(std::uint32_t taken, std::uint32_t refused) noexcept {
+  status_.events.store(taken, std::memory_order_relaxed);
+  status_.events_refused.store(refused, std::memory_order_relaxed);
 }
 
 void PlayList::publish(bool paused) noexcept {
@@ -107,12 +114,30 @@ PlayItem take_item(ByteReader& bytes) {
   return item;
 }
 
+void put_event(const PlayedEvent& event, ByteWriter& bytes) {
+  bytes.put_string(event.name);
+  bytes.put_string(event.who);
+  bytes.put<std::uint8_t>(event.ordered);
+  bytes.put(static_cast<std::uint32_t>(event.data.size()));
+  for (const PlayArgument& field : event.data) put_argument(field, bytes);
+}
+
+PlayedEvent take_event(ByteReader& bytes) {
+  PlayedEvent event{.name = bytes.take_string()};
+  event.who = bytes.take_string();
+  event.ordered = bytes.take<std::uint8_t>() != 0;
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left)
+    event.data.push_back(take_argument(bytes));
+  return event;
+}
+
 void put_order(const PlayOrder& order, ByteWriter& bytes) {
   bytes.put(static_cast<std::uint8_t>(order.kind));
   bytes.put_string(order.behavior.name);
   bytes.put_string(order.file.string());
   bytes.put(static_cast<std::uint32_t>(order.list.size()));
   for (const PlayItem& item : order.list) put_item(item, bytes);
+  if (order.kind == PlayOrder::Kind::emit) put_event(order.event, bytes);
 }
 
 PlayOrder take_order(ByteReader& bytes) {
@@ -120,6 +145,7 @@ PlayOrder take_order(ByteReader& bytes) {
   order.behavior.name = bytes.take_string();
   order.file = bytes.take_string();
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) order.list.push_back(take_item(bytes));
+  if (order.kind == PlayOrder::Kind::emit) order.event = take_event(bytes);
   return order;
 }
 

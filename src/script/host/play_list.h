@@ -18,11 +18,12 @@ namespace kadans {
 
 // The status for the record: relaxed atomics as in BehaviorStatus.
 struct PlayStatus {
-  std::atomic<std::uint32_t> phase{0};     // 0: nothing plays, 1: something plays, 2: paused
-  std::atomic<std::uint32_t> playing{0};   // behaviors whose turn it is
-  std::atomic<std::uint32_t> waiting{0};   // behaviors whose turn comes later
-  std::atomic<std::uint32_t> done{0};      // behaviors that ended with "done"
-  std::atomic<std::uint32_t> not_done{0};  // behaviors that ended otherwise
+  std::atomic<std::uint32_t> phase{0};                      // 0: nothing plays, 1: something plays, 2: paused
+  std::atomic<std::uint32_t> playing{0};                    // behaviors whose turn it is
+  std::atomic<std::uint32_t> waiting{0};                    // behaviors whose turn comes later
+  std::atomic<std::uint32_t> done{0};                       // behaviors that ended with "done"
+  std::atomic<std::uint32_t> not_done{0};                   // behaviors that ended otherwise
+  std::atomic<std::uint32_t> events{0}, events_refused{0};  // from outside, and between behaviors
   void declare(SignalTable& signals) const;
 };
 
@@ -51,6 +52,10 @@ class PlayList {
   void end_all() noexcept;
 
   void count(std::uint32_t done, std::uint32_t not_done) noexcept;  // sets the counts of an earlier process
+  void count_event(bool taken) noexcept {
+    (taken ? status_.events : status_.events_refused).fetch_add(1, std::memory_order_relaxed);
+  }
+  void count_events(std::uint32_t taken, std::uint32_t refused) noexcept;  // as count()
 
   bool over() const noexcept {
     return std::all_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.over; });
@@ -71,6 +76,8 @@ class PlayList {
 // as zero or empty, and then the reader is not ok().
 void put_item(const PlayItem& item, ByteWriter& bytes);
 PlayItem take_item(ByteReader& bytes);
+void put_event(const PlayedEvent& event, ByteWriter& bytes);
+PlayedEvent take_event(ByteReader& bytes);
 void put_order(const PlayOrder& order, ByteWriter& bytes);
 PlayOrder take_order(ByteReader& bytes);
 

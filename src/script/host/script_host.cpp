@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "config/json/problems.h"
+#include "config/scenario/event_text.h"
 #include "kadans/signal/input_error.h"
 #include "play_list.h"
 #include "script/bindings/machine_sets.h"
@@ -29,7 +31,12 @@ void add_states(const Chart& chart, const std::string& name, const SignalTable& 
 }  // namespace
 
 ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
-    : settings_(settings), catalog_(catalog), log_(log), pause_(catalog), safe_(settings.safe, catalog) {
+    : settings_(settings),
+      catalog_(catalog),
+      log_(log),
+      pause_(catalog),
+      safe_(settings.safe, catalog),
+      delivery_(log, settings.inputs) {
   std::vector<InputProblem> problems;
   std::vector<PlayList::Entry> first =
       settings.kept.empty() ? load(settings.play, true, problems) : load_kept(problems);
@@ -101,6 +108,7 @@ void ScriptHost::step(PlayList::Entry& entry, const Snapshot& snapshot, CommandS
   Behavior& behavior = *entry.behavior;
   behavior.hold_clock(pause_.held_ns());
   const bool goes_on = behavior.tick(snapshot, commands);
+  delivery_.collect(entry);
   pause_.note(snapshot, commands);
   if (goes_on) return;
   list_.end(entry);
@@ -124,13 +132,33 @@ ObjectMask ScriptHost::objects_played_with() const noexcept {
   return all;
 }
 
-std::vector<std::string> ScriptHost::names() const {
-  std::vector<std::string> all;
-  for (const PlayList::Entry& entry : list_.entries()) all.push_back(entry.behavior->name());
+std::vector<const Behavior*> ScriptHost::loaded() const {
+  std::vector<const Behavior*> all;
+  for (const PlayList::Entry& entry : list_.entries()) all.push_back(entry.behavior.get());
   for (const Due& due : events_) {
-    for (const PlayList::Entry& entry : due.loaded) all.push_back(entry.behavior->name());
+    for (const PlayList::Entry& entry : due.loaded) all.push_back(entry.behavior.get());
   }
   return all;
+}
+
+std::vector<std::string> ScriptHost::names() const {
+  std::vector<std::string> all;
+  for (const Behavior* behavior : loaded()) all.push_back(behavior->name());
+  return all;
+}
+
+WrongData ScriptHost::wrong_event(const PlayedEvent& event) const {
+  std::vector<std::string> names;
+  WrongData wrong;
+  for (const Behavior* behavior : loaded()) {
+    for (const ScriptEvent& declared : behavior->events()) names.push_back(declared.name);
+    const ScriptEvent* declared = find_event(behavior->events(), event.name);
+    if (declared == nullptr) continue;
+    wrong = wrong_data(*declared, event);
+    if (wrong.why.empty()) return wrong;
+  }
+  if (wrong.why.empty()) wrong = {unknown_name("event", event.name, names, "of the behaviors here"), event.place};
+  return wrong;
 }
 
 void ScriptHost::declare_signals(SignalTable& signals) {
@@ -172,13 +200,28 @@ void ScriptHost::order(const PlayOrder& order) {
   if (order.kind == PlayOrder::Kind::play) {
     if (const std::string why = clash(due.loaded); !why.empty()) throw InputError({.message = why});
   }
+  if (order.kind == PlayOrder::Kind::emit) check_event(order);
   const std::vector<std::string> known = names();
   if (order.kind == PlayOrder::Kind::reload && std::ranges::find(known, order.behavior.name) == known.end())
     throw InputError({.message = unknown_name("behavior", order.behavior.name, known)});
   orders_.push_back(std::move(due));
 }
 
+void ScriptHost::check_event(const PlayOrder& order) {
+  const auto waiting =
+      std::ranges::count(orders_, PlayOrder::Kind::emit, [](const Due& due) { return due.order.kind; });
+  std::string why = out_of_bounds(order.event.data);
+  if (why.empty()) why = EventDelivery::refusal(order.event, list_, pause_.paused());
+  if (why.empty() && static_cast<std::size_t>(waiting) >= EventDelivery::ordered_max)
+    why = std::to_string(EventDelivery::ordered_max) + " events wait for the next tick already";
+  if (why.empty()) return;
+  list_.count_event(false);
+  throw InputError({.message = std::move(why)});
+}
+
 void ScriptHost::take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  delivery_.deliver_sent(list_, snapshot);
+  delivery_.look_at_inputs(list_, snapshot, pause_.paused());
   for (; events_done_ < events_.size() && events_[events_done_].at_ns <= snapshot.time_ns; ++events_done_) {
     carry_out(events_[events_done_], snapshot, commands);
   }
@@ -190,6 +233,7 @@ void ScriptHost::carry_out(Due& due, const Snapshot& snapshot, CommandSender& co
   using Kind = PlayOrder::Kind;
   const Kind kind = due.order.kind;
   if (kind == Kind::reload) return reload(due.order, snapshot, commands);
+  if (kind == Kind::emit) return delivery_.deliver(due.order.event, list_, snapshot, pause_.paused());
   std::string text = play_order_names[static_cast<std::size_t>(kind)];
   for (const PlayList::Entry& entry : due.loaded) text += " " + entry.behavior->name();
   log_.message(snapshot.time_ns, BehaviorLog::Severity::info, "supervisor", text);
@@ -210,6 +254,7 @@ void ScriptHost::leave_all(const Snapshot& snapshot, CommandSender& commands) no
     if (entry.over) continue;
     entry.behavior->hold_clock(pause_.held_ns());
     entry.behavior->stop(snapshot, commands);
+    entry.behavior->sent_events().clear();
     pause_.note(snapshot, commands);
     if (entry.behavior->failed()) report_failure(*entry.behavior, snapshot.time_ns);
   }
@@ -278,8 +323,11 @@ std::string ScriptHost::keep(ByteWriter& bytes, std::int64_t time_ns) {
   bytes.put(static_cast<std::uint32_t>(events_done_));
   bytes.put(list_.status().done.load(std::memory_order_relaxed));
   bytes.put(list_.status().not_done.load(std::memory_order_relaxed));
+  bytes.put(list_.status().events.load(std::memory_order_relaxed));
+  bytes.put(list_.status().events_refused.load(std::memory_order_relaxed));
   pause_.keep(bytes, time_ns);
   safe_.keep(bytes);
+  delivery_.keep(bytes);
   std::string why;
   for (const PlayList::Entry& entry : list_.entries()) {
     bytes.put<std::uint8_t>(entry.over);
@@ -312,8 +360,11 @@ void ScriptHost::go_on(const Snapshot& snapshot, CommandSender& commands) noexce
   events_done_ = std::min<std::size_t>(bytes.take<std::uint32_t>(), events_.size());
   const auto done = bytes.take<std::uint32_t>();
   list_.count(done, bytes.take<std::uint32_t>());
+  const auto taken = bytes.take<std::uint32_t>();
+  list_.count_events(taken, bytes.take<std::uint32_t>());
   pause_.restore(bytes);
   safe_.restore(bytes);
+  delivery_.restore(bytes);
   for (PlayList::Entry& entry : list_.entries()) {
     entry.over = bytes.take<std::uint8_t>() != 0;
     if (entry.over) continue;

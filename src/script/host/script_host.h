@@ -17,6 +17,7 @@
 #include "config/scenario/play_item.h"
 #include "engine/behavior_host.h"
 #include "engine/behavior_log.h"
+#include "event_delivery.h"
 #include "file_watch.h"
 #include "pause.h"
 #include "play_list.h"
@@ -40,6 +41,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
     std::vector<std::string> feet{"left", "right"};
     std::vector<Event> events{};  // in any order
     SafePosture::Settings safe{};
+    std::vector<InputEvent> inputs{};
     // Bytes from keep() of another process's host: the host plays these instead of `play` and continues where that one
     // ended. They are read in the constructor and in the first tick.
     std::span<const std::byte> kept{};
@@ -51,7 +53,8 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
   void prepare(const Snapshot& newest) noexcept override;
-  // Throws InputError for a wrong file or argument, a clash of control sets, or an unknown behavior.
+  // Throws InputError for a wrong file or argument, a clash of control sets, an unknown behavior, and an event that
+  // nobody who plays can take.
   void order(const PlayOrder& order) override;
   // Behavior thread, between ticks: notes commands that another sender has just committed, so that a pause halts their
   // motions, too.
@@ -78,6 +81,8 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   bool paused() const noexcept { return pause_.paused(); }
   bool finished() const noexcept { return list_.over(); }  // every lane has ended
   const PlayStatus& status() const noexcept { return list_.status(); }
+  // Before the loop. Why no behavior that is loaded takes this event; "": one does.
+  WrongData wrong_event(const PlayedEvent& event) const;
   std::vector<std::string> names() const;  // names of the loaded behaviors that are still in the list or in events
   // Before the loop. All files that it may read: behaviors with their modules, also those of events, and files that
   // events reload.
@@ -104,6 +109,9 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   ObjectMask objects_played_with() const noexcept;
   // Why the loaded behaviors cannot play beside those in the list; "" when they can.
   std::string clash(const std::vector<PlayList::Entry>& loaded) const;
+  // Those of the list and of events.
+  std::vector<const Behavior*> loaded() const;
+  void check_event(const PlayOrder& order);
 
   std::vector<PlayList::Entry> load_kept(std::vector<InputProblem>& problems);
   void go_on(const Snapshot& snapshot, CommandSender& commands) noexcept;
@@ -126,6 +134,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   std::vector<Due> orders_;  // given since the last tick
   std::unique_ptr<FileWatch> watch_;
   SafePosture safe_;
+  EventDelivery delivery_;
   std::vector<SignalState> signal_states_;
   std::string lost_;
 };

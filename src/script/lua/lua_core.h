@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <vector>
 
 #include <lua.hpp>
 
@@ -10,6 +11,7 @@
 #include "kadans/signal/random.h"
 #include "lua_heap.h"
 #include "script/bindings/snapshot_tables.h"
+#include "script/host/script_event.h"
 #include "script/host/script_parameter.h"
 #include "script_error.h"
 
@@ -24,6 +26,7 @@ struct LuaCore {
   RandomStream random;
   TableSlots slots{};
   std::deque<ScriptParameter> parameters{};
+  std::vector<ScriptEvent> events{};  // declared in k.events
   LuaState* owner = nullptr;
   lua_State* main = nullptr;
   lua_State* running = nullptr;        // the coroutine of a `run` while it runs, else nullptr

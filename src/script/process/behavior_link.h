@@ -39,6 +39,7 @@ struct BehaviorLink {
   static constexpr std::size_t behaviors_max = 32, name_bytes = 64, order_bytes = 8192;
   using Name = std::array<char, name_bytes>;
   using Numbers = std::array<std::uint32_t, 5>;
+  using PlayNumbers = std::array<std::uint32_t, 7>;
   template <typename T>
   using OfRegions = std::array<std::array<T, BehaviorStatus::regions_max>, behaviors_max>;
   using RegionPath = std::array<char, BehaviorStatus::region_path_max + 1>;
@@ -65,12 +66,12 @@ struct BehaviorLink {
     std::uint32_t last_sequence = 0;  // the answer's transactions are numbered from the next number on
     std::uint32_t room = 0;           // for commands, headers included
     std::uint32_t order_size = 0;
-    std::array<std::byte, order_bytes> order{};
+    std::array<std::byte, order_bytes> order{};  // one, or several events, one after the other
     Snapshot snapshot;
   };
   struct Answer {
     Turn<> number;                                // number of the request
-    Numbers play{};                               // the numbers of PlayStatus, in its order
+    PlayNumbers play{};                           // the numbers of PlayStatus, in its order
     std::array<Numbers, behaviors_max> status{};  // the numbers of BehaviorStatus, in its order
     OfRegions<std::uint32_t> regions{};           // the active state of each region
     std::uint32_t kept_changed = 0;
@@ -86,9 +87,9 @@ struct BehaviorLink {
 };
 static_assert(std::is_trivially_copyable_v<BehaviorLink>);
 
-// The first byte of a line that is a transition; other lines have a severity of BehaviorLog there.
-// An active line holds the number of active states and their paths.
-inline constexpr std::uint8_t transition_line = 16, active_line = 17;
+// The first byte of a line that is a transition, tells active states (their number, then their paths), or is an event
+// from outside. Other lines have a severity of BehaviorLog there.
+inline constexpr std::uint8_t transition_line = 16, active_line = 17, emitted_line = 18;
 
 // A fingerprint by which two processes check that they use the same numbers for parameters, set-points, control sets
 // and objects. Each process reads the robot's files itself, and the files may have changed in between. Ranges and poses

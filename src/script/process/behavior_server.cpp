@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "behavior_link.h"
+#include "config/json/problems.h"
 #include "kadans/signal/input_error.h"
 #include "script/host/play_list.h"
 
@@ -51,6 +52,18 @@ void SpokenLines::tell_dropped(std::int64_t time_ns) {
   if (push({time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
 }
 
+void SpokenLines::tell_emitted(const EmittedEvent& event) {
+  line_.clear();
+  line_.put(std::uint32_t{0});
+  line_.put(emitted_line);
+  line_.put_string("");
+  line_.put(event.tick);
+  line_.put<std::uint8_t>(event.ordered);
+  for (const std::string* text : {&event.event, &event.data, &event.who}) line_.put_string(*text);
+  line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
+  if (!link_.lines.try_push(line_.bytes())) ++dropped_;
+}
+
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,
                                SpokenLines& lines, const Catalog& catalog)
     : link_(link), bell_(bell), host_(host), log_(log), lines_(lines), commands_(link.commands) {
@@ -78,7 +91,7 @@ bool BehaviorServer::answer() {
   snapshot_ = link_.request.snapshot;
   lines_.tell_dropped(snapshot_.time_ns);  // the lines of the tick before have been taken since
   commands_.follow(link_.request.last_sequence, link_.request.room);
-  take_order();
+  take_orders();
   host_.tick(snapshot_, commands_);
   if (!host_.lost().empty()) {
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", "cannot go on: " + host_.lost());
@@ -89,22 +102,30 @@ bool BehaviorServer::answer() {
   return true;
 }
 
-void BehaviorServer::take_order() {
+void BehaviorServer::take_orders() {
   const std::uint32_t size = link_.request.order_size;
   if (size == 0 || size > BehaviorLink::order_bytes) return;
   ByteReader bytes(std::span(link_.request.order).first(size));
-  try {
-    host_.order(kadans::take_order(bytes));
-  } catch (const InputError& error) {
-    log_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", error.what());
+  while (bytes.left() > 0) {
+    const PlayOrder order = take_order(bytes);
+    if (!bytes.ok()) return;
+    const bool event = order.kind == PlayOrder::Kind::emit;
+    try {
+      host_.order(order);
+    } catch (const InputError& error) {
+      const std::string whose =
+          event ? "event " + in_quotes(order.event.name) + " from " + order.event.who + " was refused: " : "";
+      log_.message(snapshot_.time_ns, event ? BehaviorLog::Severity::warning : BehaviorLog::Severity::error,
+                   "supervisor", whose + error.what());
+    }
   }
 }
 
 void BehaviorServer::tell_status() {
   const auto number = [](const std::atomic<std::uint32_t>& of) { return of.load(std::memory_order_relaxed); };
   const PlayStatus& play = host_.status();
-  link_.answer.play = {number(play.phase), number(play.playing), number(play.waiting), number(play.done),
-                       number(play.not_done)};
+  link_.answer.play = {number(play.phase),    number(play.playing), number(play.waiting),       number(play.done),
+                       number(play.not_done), number(play.events),  number(play.events_refused)};
   for (std::size_t i = 0; i < std::min<std::size_t>(host_.size(), link_.ready.count); ++i) {
     const BehaviorStatus& status = host_.behavior(i).status();
     link_.answer.status[i] = {number(status.heap_bytes), number(status.instructions), number(status.gc_pause_ns),

@@ -22,6 +22,7 @@ class SpokenLines final : public LineSink {
   void tell(const Line& line) override;
   void tell_dropped(std::int64_t time_ns);
   void tell_active(const ActiveStates& active) override;
+  void tell_emitted(const EmittedEvent& event) override;
 
  private:
   bool push(const Line& line);
@@ -44,7 +45,7 @@ class BehaviorServer {
 
  private:
   bool answer();
-  void take_order();
+  void take_orders();
   void tell_status();
   void keep(std::int64_t time_ns);
 

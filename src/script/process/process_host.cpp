@@ -29,6 +29,10 @@ T copy_of(const T& shared) noexcept {
   return copy;
 }
 
+bool is_event(const std::vector<std::byte>& order) noexcept {
+  return !order.empty() && order.front() == std::byte{static_cast<std::uint8_t>(PlayOrder::Kind::emit)};
+}
+
 bool is_name(std::string_view name) noexcept {
   return !name.empty() && std::ranges::all_of(name, [](char c) { return c > ' ' && c < '\x7f'; });
 }
@@ -133,6 +137,11 @@ bool ChildAnswer::tell_line(std::span<const std::byte> line, BehaviorLog& log, s
   if (kind == transition_line) {
     const Transition transition{time_ns, behavior, fields.take_string(), fields.take_string(), fields.take_string()};
     if (fields.ok()) log.transition(transition);
+  } else if (kind == emitted_line) {
+    EmittedEvent event{.time_ns = time_ns, .tick = fields.take<std::uint64_t>()};
+    event.ordered = fields.take<std::uint8_t>() != 0;
+    for (std::string* text : {&event.event, &event.data, &event.who}) *text = fields.take_string();
+    if (fields.ok()) log.emitted(event);
   } else if (kind == active_line) {
     std::array<std::string_view, ActiveStates::told_max> states;
     const auto count = fields.take<std::uint32_t>();
@@ -169,12 +178,14 @@ void ChildAnswer::take_status(BehaviorLink& link, PlayStatus& play, std::deque<B
   const auto store = [](std::atomic<std::uint32_t>& to, std::uint32_t& from) {
     to.store(once(from), std::memory_order_relaxed);
   };
-  BehaviorLink::Numbers& list = link.answer.play;
+  BehaviorLink::PlayNumbers& list = link.answer.play;
   store(play.phase, list[0]);
   store(play.playing, list[1]);
   store(play.waiting, list[2]);
   store(play.done, list[3]);
   store(play.not_done, list[4]);
+  store(play.events, list[5]);
+  store(play.events_refused, list[6]);
   for (std::size_t i = 0; i < behaviors.size() && i < BehaviorLink::behaviors_max; ++i) {
     BehaviorLink::Numbers& numbers = link.answer.status[i];
     store(behaviors[i].heap_bytes, numbers[0]);
@@ -253,6 +264,11 @@ void ProcessHost::order(const PlayOrder& order) {
   put_order(order, bytes);
   if (bytes.size() > BehaviorLink::order_bytes) throw InputError({.message = "the order is too long"});
   if (phase_ == Phase::down) throw InputError({.message = "the behaviors' process is down"});
+  if (order.kind == PlayOrder::Kind::emit) {
+    if (paused()) throw InputError({.message = "the behaviors are paused; the event would be old when they go on"});
+    if (std::ranges::count_if(orders_, is_event) >= static_cast<std::ptrdiff_t>(EventQueue::sent_max))
+      throw InputError({.message = std::to_string(EventQueue::sent_max) + " events wait for the next tick already"});
+  }
   orders_.emplace_back(bytes.bytes().begin(), bytes.bytes().end());
   stopping_ = order.kind == PlayOrder::Kind::stop;
 }
@@ -292,16 +308,25 @@ void ProcessHost::look_if_ready() noexcept {
   }
 }
 
+// The oldest, and events behind an event as far as there is room: they are for the same tick.
+void ProcessHost::put_orders(BehaviorLink::Request& request) noexcept {
+  std::size_t size = 0;
+  asked_orders_ = 0;
+  for (const std::vector<std::byte>& order : orders_) {
+    const bool next = asked_orders_ == 0 || (is_event(order) && is_event(orders_.front()));
+    if (!next || size + order.size() > BehaviorLink::order_bytes) break;
+    std::ranges::copy(order, request.order.begin() + static_cast<std::ptrdiff_t>(size));
+    size += order.size();
+    ++asked_orders_;
+  }
+  request.order_size = static_cast<std::uint32_t>(size);
+}
+
 void ProcessHost::ask(const Snapshot& snapshot, const CommandSender& commands) noexcept {
   BehaviorLink::Request& request = child_->link.request;
   request.last_sequence = asked_sequence_ = commands.last_sequence();
   request.room = static_cast<std::uint32_t>(std::min(commands.room(), CommandQueue::capacity()));
-  request.order_size = 0;
-  asked_order_ = !orders_.empty();
-  if (asked_order_) {
-    request.order_size = static_cast<std::uint32_t>(orders_.front().size());
-    std::ranges::copy(orders_.front(), request.order.begin());
-  }
+  put_orders(request);
   request.snapshot = snapshot;
   asked_for_ns_ = snapshot.time_ns;
   asked_wall_ns_ = clock_.now_ns();
@@ -334,7 +359,8 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
   // nobody wants behaviors to stop; its motions go by the transaction that has their number.
   if (commands.last_sequence() == asked_sequence_ || !stopping_) answer_.send_on(commands, asked_for_ns_);
   ChildAnswer::take_status(link, play_, behaviors_);
-  if (asked_order_) orders_.pop_front();
+  orders_.erase(orders_.begin(), orders_.begin() + static_cast<std::ptrdiff_t>(asked_orders_));
+  asked_orders_ = 0;
   order_deaths_ = 0;
   policy_.answered();
   if (died_ns_ < 0) return true;
@@ -371,8 +397,8 @@ void ProcessHost::bury(const std::string& why, bool alive) noexcept {
 // The next process gets it too, but not for ever.
 void ProcessHost::give_up_order() noexcept {
   constexpr std::uint32_t deaths_max = 3;
-  if (!asked_ || !asked_order_ || ++order_deaths_ < deaths_max) return;
-  orders_.pop_front();
+  if (!asked_ || asked_orders_ == 0 || ++order_deaths_ < deaths_max) return;
+  orders_.erase(orders_.begin(), orders_.begin() + static_cast<std::ptrdiff_t>(asked_orders_));
   order_deaths_ = 0;
   say(Severity::error, "an order was dropped: the behaviors' process died of it three times");
 }
@@ -381,7 +407,7 @@ void ProcessHost::stay_down(const std::string& why) noexcept {
   child_.reset();
   phase_ = Phase::down;
   orders_.clear();
-  asked_order_ = false;
+  asked_orders_ = 0;
   say(Severity::error, "the behaviors' process stays down: " + why);
 }
 

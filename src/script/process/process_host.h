@@ -34,6 +34,7 @@
 #include "kadans/control/catalog.h"
 #include "realtime/machine/child_process.h"
 #include "script/behavior/behavior_status.h"
+#include "script/chart/event_queue.h"
 #include "script/host/play_list.h"
 #include "script/host/safe_posture.h"
 
@@ -129,8 +130,8 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   void attach(Catalog& catalog, const SafePosture::Settings& safe);
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
-  // Mistakes in the order are reported later in the log. Throws InputError only when the order is too long or the
-  // process is down.
+  // Mistakes in the order are reported later in the log. Throws InputError only when the order is too long, when the
+  // process is down, and for an event that comes in a pause or finds too many waiting.
   void order(const PlayOrder& order) override;
 
   // The behaviors that the process was started with.
@@ -151,6 +152,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   void start();
   void start_when_due() noexcept;
   void look_if_ready() noexcept;
+  void put_orders(BehaviorLink::Request& request) noexcept;
   void ask(const Snapshot& snapshot, const CommandSender& commands) noexcept;
   void wait_for_answer(CommandSender& commands) noexcept;
   bool take_answer(CommandSender& commands) noexcept;
@@ -172,7 +174,8 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   std::vector<std::string> names_;
   std::deque<BehaviorStatus> behaviors_;
   std::deque<std::vector<std::byte>> orders_;
-  bool stopping_ = false;  // the last order was to stop
+  std::size_t asked_orders_ = 0;  // the first of them are in the request
+  bool stopping_ = false;         // the last order was to stop
   WallClock clock_;
 
   std::int64_t now_ns_ = 0;         // on the engine's clock
@@ -180,7 +183,6 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   std::int64_t died_ns_ = -1;       // on the engine's clock; -1: the process lives
   std::uint32_t number_ = 0;        // of the last request
   bool asked_ = false;              // the last request has not been answered
-  bool asked_order_ = false;        // that request carries the oldest order
   std::uint32_t order_deaths_ = 0;  // deaths before that order was answered
   std::int64_t asked_wall_ns_ = 0, asked_for_ns_ = 0;
   std::uint32_t asked_sequence_ = 0;

@@ -44,6 +44,7 @@ struct Testing {
   std::array<char, 1024> message{};  // of what went wrong where nothing may raise
   std::string text;                  // given to Lua; a member, since Lua may raise
   std::vector<std::string> texts;    // likewise
+  PlayedEvent event;                 // likewise, the event that is sent
 };
 
 Testing& testing_of(lua_State* state) { return *static_cast<Testing*>(lua_touserdata(state, lua_upvalueindex(1))); }
@@ -177,9 +178,28 @@ int read(lua_State* state) {
 }
 
 bool change_stage(TestStage& stage, const char* what, const char* name, double value) {
-  if (std::strcmp(what, "event") == 0) return stage.emit(name);
   if (std::strcmp(what, "parameter") == 0) return stage.set_parameter(name, value);
   return stage.set_sensor(name, value);
+}
+
+// emit(number, "event", name, data) -> true, or why not. What raises comes before the event is made.
+int emit(lua_State* state, Testing& testing, Played& played) {
+  luaL_checktype(state, 4, LUA_TTABLE);
+  testing.event = {.name = lua_tostring(state, 3), .who = "test"};
+  for (lua_pushnil(state); lua_next(state, 4) != 0; lua_pop(state, 1)) {
+    const int type = lua_type(state, -1);
+    const bool plain = type == LUA_TNUMBER || type == LUA_TBOOLEAN || type == LUA_TSTRING;
+    if (!plain || lua_type(state, -2) != LUA_TSTRING)
+      return luaL_error(state, "emit: data is numbers, true, false and texts, by name");
+    PlayArgument& field = testing.event.data.emplace_back();
+    field.name = lua_tostring(state, -2);
+    if (type == LUA_TNUMBER) field.value = lua_tonumber(state, -1);
+    if (type == LUA_TBOOLEAN) field.value = lua_toboolean(state, -1) != 0;
+    if (type == LUA_TSTRING) field.value = lua_tostring(state, -1);
+  }
+  testing.text = played.stage->emit(testing.event);
+  testing.text.empty() ? lua_pushboolean(state, 1) : lua_pushlstring(state, testing.text.data(), testing.text.size());
+  return 1;
 }
 
 // change(number, what, name, value) -> whether it was known.
@@ -188,6 +208,7 @@ int change(lua_State* state) {
   if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
   const char* what = luaL_checkstring(state, 2);
   const char* name = luaL_checkstring(state, 3);
+  if (std::strcmp(what, "event") == 0) return emit(state, testing_of(state), *played);
   lua_pushboolean(state, change_stage(*played->stage, what, name, luaL_checknumber(state, 4)) ? 1 : 0);
   return 1;
 }

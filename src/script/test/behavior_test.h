@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "config/scenario/play_item.h"
 #include "kadans/control/catalog.h"
 #include "kadans/signal/status.h"
 
@@ -37,8 +38,9 @@ class TestStage {
   virtual std::string control_sets() const = 0;  // names of the active ones
   virtual std::string said() const = 0;          // the lines that the behavior logged
   virtual std::string went() const = 0;          // the states that it went through, "settle squat rest"
+  // Returns "", or why the behavior cannot take it.
+  virtual std::string emit(const PlayedEvent& event) = 0;
   // These return false, and nothing changes, when the name is unknown or the value is out of range.
-  virtual bool emit(const std::string& event) = 0;
   virtual bool set_parameter(const std::string& name, double value) = 0;
   // Sets a value that the behavior sees from now on: "base.pitch_rad", "joints.l_knee.position_rad",
   // "feet.left.contact", "sensors.front_m", "safety.level" (its number).

@@ -145,8 +145,11 @@ function methods.finish(run, max_s)
   end
   return run.outcome
 end
-function methods.emit(run, event)
-  if not change(run.id, "event", event, 0) then error("nothing waits for the event '" .. tostring(event) .. "'", 2) end
+function methods.emit(run, event, data)
+  if type(event) ~= "string" then error("emit needs the name of an event", 2) end
+  if data ~= nil and type(data) ~= "table" then error("emit: the data is a table { name = value }", 2) end
+  local why = change(run.id, "event", event, data or {})
+  if why ~= true then error(why, 2) end
 end
 function methods.set_parameter(run, name, value)
   if not change(run.id, "parameter", name, value) then

@@ -13,6 +13,7 @@
 namespace kadans {
 
 bool is_upkeep(const std::string& name) {
+  if (name == "play.events_refused") return true;  // counts orders, too, that were refused and left no other trace
   if (!name.starts_with("behavior.")) return false;
   return name.ends_with(".heap_bytes") || name.ends_with(".instructions") || name.ends_with(".gc_pause_ns");
 }

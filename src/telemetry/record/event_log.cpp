@@ -46,6 +46,14 @@ void EventLog::tell(const Line& line) {
   push();
 }
 
+void EventLog::tell_emitted(const EmittedEvent& event) {
+  begin(Event::Kind::emitted, event.time_ns, "");
+  outgoing_.put(event.tick);
+  outgoing_.put<std::uint8_t>(event.ordered);
+  for (const std::string* text : {&event.event, &event.data, &event.who}) outgoing_.put_string(*text);
+  push();
+}
+
 void EventLog::tell_active(const ActiveStates& active) {
   begin(Event::Kind::active, active.time_ns, active.behavior);
   outgoing_.put(static_cast<std::uint32_t>(active.states.size()));
@@ -87,6 +95,11 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
     event.transition.from = fields.take_string();
     event.transition.to = fields.take_string();
     event.transition.why = fields.take_string();
+  } else if (event.kind == Event::Kind::emitted) {
+    event.emitted = {.time_ns = event_time_ns, .tick = fields.take<std::uint64_t>()};
+    event.emitted.ordered = fields.take<std::uint8_t>() != 0;
+    for (std::string* text : {&event.emitted.event, &event.emitted.data, &event.emitted.who})
+      *text = fields.take_string();
   } else if (event.kind == Event::Kind::active) {
     for (auto left = fields.take<std::uint32_t>(); left > 0 && fields.ok(); --left) {
       event.states.push_back(fields.take_string());
@@ -114,6 +127,13 @@ std::string json_of(const Event& event) {
     json["from"] = transition.from;
     json["to"] = transition.to;
     json["why"] = transition.why;
+  } else if (event.kind == Event::Kind::emitted) {
+    const EmittedEvent& emitted = event.emitted;
+    json["tick"] = emitted.tick;
+    json["event"] = emitted.event;
+    json["data"] = read_foreign_json(emitted.data).value_or(nlohmann::ordered_json::object());
+    json["who"] = emitted.who;
+    json["ordered"] = emitted.ordered;
   } else if (event.kind == Event::Kind::active) {
     json["behavior"] = transition.behavior;
     json["states"] = event.states;
@@ -194,6 +214,17 @@ const char* const transition_schema = R"({
     "to": { "type": "string", "description": "Path of the state that was entered" },
     "why": { "type": "string" }
   }
+})";
+
+const char* const emitted_schema = R"({
+  "title": "kadans.Event", "type": "object",
+  "description": "An event from outside that behaviors got",
+  "properties": { "timestamp": { "type": "object", "title": "time",
+      "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
+    "tick": { "type": "integer", "description": "Tick of the control engine" },
+    "event": { "type": "string" }, "data": { "type": "object" },
+    "who": { "type": "string", "description": "Who sent it" },
+    "ordered": { "type": "boolean", "description": "Given while the run went on: a replay takes it from here" } }
 })";
 
 const char* const active_schema = R"({

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -20,12 +21,13 @@
 namespace kadans {
 
 struct Event {
-  enum class Kind : std::uint8_t { message, transition, active };
+  enum class Kind : std::uint8_t { message, transition, active, emitted };
   Kind kind = Kind::message;
   Transition transition;  // all kinds use its time_ns and behavior
   BehaviorLog::Severity severity = BehaviorLog::Severity::info;
   std::string text;
   std::vector<std::string> states;  // the active ones
+  EmittedEvent emitted{};
 
   // Of a message or transition; valid as long as the event.
   Line line() const noexcept {
@@ -42,6 +44,7 @@ std::string json_of(const ToldFault& fault);
 // there are none, and the key is of the robot's configuration.
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what);
 extern const char* const log_schema;
+extern const char* const emitted_schema;  // kadans.Event
 extern const char* const transition_schema;
 extern const char* const active_schema;
 extern const char* const fault_schema;
@@ -52,6 +55,7 @@ class EventLog final : public LineSink {
 
   void tell(const Line& line) override;                   // filling thread only
   void tell_active(const ActiveStates& active) override;  // likewise
+  void tell_emitted(const EmittedEvent& event) override;  // likewise
 
   // Draining thread only. False when no event up to `time_ns` is waiting.
   [[nodiscard]] bool pop(std::int64_t time_ns, Event& event);

@@ -72,6 +72,7 @@ bool RecordWriter::open(const std::string& path) {
   log_ = add_json("/log", "foxglove.Log", log_schema);
   transitions_ = add_json("/transitions", "kadans.Transition", transition_schema);
   active_ = add_json("/active", "kadans.Active", active_schema);
+  emitted_ = add_json("/events", "kadans.Event", emitted_schema);
   faults_ = add_json("/faults", "kadans.Fault", fault_schema);
   timing_ = add_json("/timing", "kadans.Timing", timing_schema);
   parameters_channel_ = add_json("/parameters", "kadans.Parameters", parameters_schema);
@@ -160,6 +161,7 @@ bool RecordWriter::put_parameters(std::int64_t time_ns) {
 bool RecordWriter::event(const Event& event) {
   const std::uint16_t channel = event.kind == Event::Kind::transition ? transitions_
                                 : event.kind == Event::Kind::active   ? active_
+                                : event.kind == Event::Kind::emitted  ? emitted_
                                                                       : log_;
   return file_.write(channel, 0, event.transition.time_ns, bytes_of(json_of(event)));
 }

@@ -3,6 +3,7 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 import { active_paths, active_since } from '../data/active_states.js';
 import { useSession } from '../watching.js';
 import { Chart } from './chart.jsx';
+import { EventForm } from './event_form.jsx';
 
 // The paths of all active states, a line each.
 function Now({ session, behavior }) {
@@ -60,6 +61,7 @@ export function BehaviorPanel({ session }) {
         </nav>
       )}
       {behavior ? <><Now {...{ session, behavior }} /><Chart {...{ session, behavior }} /></> : <p class="hint">{session.description ? 'No behavior plays.' : 'No chart yet.'}</p>}
+      <EventForm session={session} />
       <h3>Transitions</h3>
       <TransitionLog session={session} />
     </div>

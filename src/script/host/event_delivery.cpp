@@ -1,0 +1,160 @@
+#include "event_delivery.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "config/json/problems.h"
+#include "config/scenario/event_text.h"
+
+namespace kadans {
+
+using Severity = BehaviorLog::Severity;
+
+EventDelivery::EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs)
+    : log_(log), inputs_(std::move(inputs)), levels_(inputs_.size(), Level::unknown) {}
+
+std::string EventDelivery::refusal(const PlayedEvent& event, PlayList& list, bool paused) {
+  if (paused) return "the behaviors are paused; the event would be old when they go on";
+  std::vector<std::string> known;
+  std::string wrong, waits;
+  bool fits = false;
+  list.each_in_turn([&](const PlayList::Entry& entry) {
+    const Behavior& behavior = *entry.behavior;
+    for (const ScriptEvent& declared : behavior.events()) known.push_back(declared.name);
+    if (const ScriptEvent* declared = find_event(behavior.events(), event.name)) {
+      const std::string why = wrong_data(*declared, event).why;
+      fits = fits || why.empty();
+      if (wrong.empty()) wrong = why;
+    } else if (const EventId id = behavior.chart().find_event(event.name);
+               id != no_event && !behavior.chart().made_by_runner(id)) {
+      waits = behavior.name();
+    }
+  });
+  if (fits || !wrong.empty()) return fits ? "" : wrong;
+  if (!waits.empty())
+    return "'" + waits + "' does not let the event '" + event.name + "' in: it lacks k.events { " + event.name +
+           " = {} }";
+  if (known.empty()) return "no behavior that plays declares events (k.events)";
+  std::ranges::sort(known);
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  return unknown_name("event", event.name, known, "for what plays");
+}
+
+void EventDelivery::refuse(const PlayedEvent& event, const std::string& why, PlayList& list, const Snapshot& snapshot) {
+  list.count_event(false);
+  log_.message(snapshot.time_ns, Severity::warning, "supervisor",
+               "event " + in_quotes(event.name) + " from " + event.who + " was refused: " + why);
+}
+
+void EventDelivery::deliver(const PlayedEvent& event, PlayList& list, const Snapshot& snapshot, bool paused) {
+  if (const std::string why = refusal(event, list, paused); !why.empty()) return refuse(event, why, list, snapshot);
+  std::string takers, wrong;
+  list.each_in_turn([&](const PlayList::Entry& entry) {
+    if (find_event(entry.behavior->events(), event.name) == nullptr) return;
+    const std::string why = entry.behavior->post(event);
+    if (why.empty()) takers += (takers.empty() ? "" : ", ") + entry.behavior->name();
+    if (!why.empty()) wrong = why;
+  });
+  if (!wrong.empty()) refuse(event, wrong, list, snapshot);
+  if (takers.empty()) return;
+  list.count_event(true);
+  log_.message(snapshot.time_ns, Severity::info, "supervisor",
+               "event " + event_text(event) + " from " + event.who + " to " + takers);
+  log_.emitted({.time_ns = snapshot.time_ns,
+                .tick = snapshot.tick,
+                .event = event.name,
+                .data = data_json(event.data),
+                .who = event.who,
+                .ordered = event.ordered});
+}
+
+EventDelivery::Level EventDelivery::level_of(const InputEvent& input, const Snapshot& snapshot) noexcept {
+  if (input.of == InputEvent::Of::button)
+    return snapshot.joystick.buttons[input.index % joystick_buttons] ? Level::on : Level::off;
+  const double value = snapshot.status.channels[input.index % max_channels];
+  if (input.index >= snapshot.status.channel_count || std::isnan(value)) return Level::unknown;
+  return value > 0.5 ? Level::on : Level::off;
+}
+
+void EventDelivery::look_at_inputs(PlayList& list, const Snapshot& snapshot, bool paused) {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const Level level = level_of(inputs_[i], snapshot);
+    if (level == Level::unknown) continue;
+    const Level before = std::exchange(levels_[i], level);
+    if (before == Level::unknown || before == level) continue;
+    input_says(inputs_[i], level == Level::on ? inputs_[i].rise : inputs_[i].fall, list, snapshot, paused);
+  }
+}
+
+// A configuration names events for several behaviors, so that nobody declares one is told once.
+void EventDelivery::input_says(const InputEvent& input, const std::string& event, PlayList& list,
+                               const Snapshot& snapshot, bool paused) {
+  if (event.empty()) return;
+  const PlayedEvent played{.name = event, .who = input.input};
+  bool declared = false;
+  list.each_in_turn([&](const PlayList::Entry& entry) {
+    declared = declared || find_event(entry.behavior->events(), event) != nullptr;
+  });
+  if (declared) return deliver(played, list, snapshot, paused);
+  list.count_event(false);
+  if (!told("input " + input.input + " " + event))
+    log_.message(snapshot.time_ns, Severity::info, "supervisor",
+                 "event '" + event + "' from " + input.input + ": no behavior that plays declares it (told once)");
+}
+
+void EventDelivery::collect(PlayList::Entry& sender) {
+  for (SentEvent& sent : sender.behavior->sent_events()) {
+    sent.event.who = sender.behavior->name();
+    sent.lane = sender.lane;
+    sent_.push_back(std::move(sent));
+  }
+  sender.behavior->sent_events().clear();
+}
+
+void EventDelivery::deliver_sent(PlayList& list, const Snapshot& snapshot) {
+  for (const SentEvent& sent : std::exchange(sent_, {})) {
+    bool taken = false;
+    std::string wrong = "nobody of that name plays and declares it";
+    if (sent.to == "all") wrong = "no other behavior that plays declares it";
+    list.each_in_turn([&](const PlayList::Entry& entry) {
+      Behavior& behavior = *entry.behavior;
+      const bool itself = entry.lane == sent.lane && behavior.name() == sent.event.who;
+      if (itself || (sent.to != "all" && sent.to != behavior.name())) return;
+      if (find_event(behavior.events(), sent.event.name) == nullptr) return;
+      const std::string why = behavior.post(sent.event);
+      taken = taken || why.empty();
+      if (!why.empty()) wrong = why;
+    });
+    list.count_event(taken);
+    if (!taken && !told("sent " + sent.event.who + " " + sent.event.name + " " + sent.to))
+      log_.message(snapshot.time_ns, Severity::warning, sent.event.who,
+                   "event '" + sent.event.name + "' to '" + sent.to + "' was refused: " + wrong + " (told once)");
+  }
+}
+
+void EventDelivery::keep(ByteWriter& bytes) const {
+  bytes.put(static_cast<std::uint32_t>(levels_.size()));
+  for (const Level level : levels_) bytes.put(static_cast<std::uint8_t>(level));
+  bytes.put(static_cast<std::uint32_t>(sent_.size()));
+  for (const SentEvent& sent : sent_) {
+    put_event(sent.event, bytes);
+    bytes.put_string(sent.to);
+    bytes.put(sent.lane);
+  }
+}
+
+void EventDelivery::restore(ByteReader& bytes) {
+  const auto inputs = bytes.take<std::uint32_t>();
+  for (std::uint32_t i = 0; i < inputs && bytes.ok(); ++i) {
+    const auto level = bytes.take<std::uint8_t>();
+    if (i < levels_.size() && level <= static_cast<std::uint8_t>(Level::on)) levels_[i] = static_cast<Level>(level);
+  }
+  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
+    SentEvent sent{.event = take_event(bytes), .to = bytes.take_string()};
+    sent.lane = bytes.take<std::uint32_t>();
+    if (bytes.ok()) sent_.push_back(std::move(sent));
+  }
+}
+
+}  // namespace kadans

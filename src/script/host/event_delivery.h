@@ -1,0 +1,62 @@
+// Brings events to behaviors: from outside (orders, scenarios, inputs of the robot) and from one behavior to others. It
+// is the only way in. An event goes to each behavior that plays, declares it (k.events) and whose declaration its data
+// fits. Whatever is refused is counted and told.
+//
+// In a tick come first what behaviors sent in the tick before, in the order of the list and of their calls; then what
+// inputs say, in the order of the configuration; then what is due by time, then orders, each in their order. In a pause
+// an event from outside is refused, because it would be old when the charts go on. What behaviors sent in the tick
+// before waits in their queues.
+//
+// Behavior thread only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "config/robot/input_event.h"
+#include "engine/behavior_log.h"
+#include "kadans/signal/status.h"
+#include "play_list.h"
+#include "script/chart/event_queue.h"
+
+namespace kadans {
+
+class EventDelivery {
+ public:
+  static constexpr std::size_t ordered_max = EventQueue::sent_max;  // by orders, for one tick
+
+  EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs);
+
+  // Why nobody could take the event now; "": somebody can.
+  static std::string refusal(const PlayedEvent& event, PlayList& list, bool paused);
+  void deliver(const PlayedEvent& event, PlayList& list, const Snapshot& snapshot, bool paused);
+  // To be called in each tick: what inputs say, as compared with the tick before.
+  void look_at_inputs(PlayList& list, const Snapshot& snapshot, bool paused);
+  // To be called after the tick of a behavior.
+  void collect(PlayList::Entry& sender);
+  void deliver_sent(PlayList& list, const Snapshot& snapshot);
+
+  // For another process.
+  void keep(ByteWriter& bytes) const;
+  void restore(ByteReader& bytes);
+
+ private:
+  enum class Level : std::uint8_t { unknown, off, on };
+  static Level level_of(const InputEvent& input, const Snapshot& snapshot) noexcept;
+  void input_says(const InputEvent& input, const std::string& event, PlayList& list, const Snapshot& snapshot,
+                  bool paused);
+  void refuse(const PlayedEvent& event, const std::string& why, PlayList& list, const Snapshot& snapshot);
+  bool told(const std::string& what) { return told_.size() >= told_max || !told_.insert(what).second; }
+
+  static constexpr std::size_t told_max = 256;
+  BehaviorLog& log_;
+  std::vector<InputEvent> inputs_;
+  std::vector<Level> levels_;  // of the inputs
+  std::vector<SentEvent> sent_;
+  std::set<std::string> told_;  // what is told only once
+};
+
+}  // namespace kadans
