@@ -14,7 +14,7 @@ using Eigen::Index;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double feasible = 1e-9;    // of a row, for a normal of length 1 and bounds about 1
-constexpr double dependent = 1e-10;  // squared share of a normal that is left beside the active ones
+constexpr double dependent = 1e-16;  // squared share of a normal that is left beside the active ones
 
 }  // namespace
 
