@@ -19,6 +19,8 @@
 
 namespace kadans {
 
+class Foresight;
+
 // Named values for some of an object's parameters: gains "soft", gains "stiff".
 struct Preset {
   std::string name;
@@ -34,6 +36,7 @@ struct ObjectInfo {
   std::vector<Preset> presets;
   std::uint32_t divisor = 1;             // low level every n-th control tick
   std::uint32_t high_level_divisor = 1;  // high level every n-th behavior tick
+  Foresight* foresight = nullptr;        // what it can say about reach (control_object.h); behavior thread
 };
 
 struct ControlSetInfo {

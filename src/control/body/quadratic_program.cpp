@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double feasible = 1e-9;    // of a row, for a normal of length 1 and bounds about 1
 constexpr double dependent = 1e-16;  // squared share of a normal that is left beside the active ones
 
@@ -47,24 +46,13 @@ void QuadraticProgram::begin(Index variables) noexcept {
   gradient().setZero();
 }
 
-void QuadraticProgram::add_squares(const Eigen::Ref<const Eigen::MatrixXd>& a,
-                                   const Eigen::Ref<const Eigen::VectorXd>& b, double weight) noexcept {
-  for (Index row = 0; row < a.rows(); ++row) {
-    for (Index k = 0; k < n_; ++k) {
-      const double share = weight * a(row, k);
-      if (share == 0) continue;
-      gradient_[k] -= share * b[row];
-      hessian_.col(k).head(n_) += share * a.row(row).transpose();
-    }
-  }
-}
-
-// 0 * NaN and 0 * infinity are NaN.
+// 0 * NaN and 0 * unbounded are NaN.
 bool QuadraticProgram::finite() const noexcept {
   const double sum = 0 * hessian_.topLeftCorner(n_, n_).sum() + 0 * gradient_.head(n_).sum() +
                      0 * normals_.topLeftCorner(n_, m_).sum();
   bool fine = sum == 0;
-  for (Index i = 0; i < m_; ++i) fine = fine && lower_[i] <= upper_[i] && lower_[i] < infinity && upper_[i] > -infinity;
+  for (Index i = 0; i < m_; ++i)
+    fine = fine && lower_[i] <= upper_[i] && lower_[i] < unbounded && upper_[i] > -unbounded;
   return fine;
 }
 
@@ -121,7 +109,7 @@ void QuadraticProgram::directions() noexcept {
 
 // How far the way goes until the multiplier of an active inequality is 0.
 double QuadraticProgram::blocking(Index& position) const noexcept {
-  double shortest = infinity;
+  double shortest = unbounded;
   for (Index i = 0; i < count_; ++i) {
     if (is_equality(active_[static_cast<std::size_t>(i)]) || !(step_[i] > 0)) continue;
     const double length = active_multiplier_[i] / step_[i];
@@ -179,13 +167,13 @@ QuadraticProgram::Status QuadraticProgram::bring_in(Candidate candidate, int ite
     const bool moves = count_ < n_ && free2 > dependent * d_.head(n_).squaredNorm();
     const double missing = bound - normal_.head(n_).dot(x_.head(n_));
     Index position = -1;
-    const double in_dual = blocking(position), full = moves ? std::max(0.0, missing / free2) : infinity;
+    const double in_dual = blocking(position), full = moves ? std::max(0.0, missing / free2) : unbounded;
     const double length = std::min(in_dual, full);
     if (!moves && missing <= 1e3 * feasible * (scale_[candidate.row] + std::abs(bound)) * (1 + x_.head(n_).norm())) {
       skipped_[static_cast<std::size_t>(candidate.row)] = true;
       return Status::solved;
     }
-    if (length == infinity) return Status::infeasible;
+    if (length == unbounded) return Status::infeasible;
     active_multiplier_.head(count_) -= length * step_.head(count_);
     multiplier += length;
     if (moves) x_.head(n_) += length * z_.head(n_);

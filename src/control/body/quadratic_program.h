@@ -24,6 +24,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,6 +40,8 @@ class QuadraticProgram {
     refused  // a number is not finite, a lower bound is above the upper one, or H is not positive definite
   };
 
+  static constexpr double unbounded = std::numeric_limits<double>::infinity();
+
   // Room for problems up to this size.
   QuadraticProgram(Eigen::Index variables_max, Eigen::Index rows_max);
 
@@ -49,9 +52,16 @@ class QuadraticProgram {
   // H and g, to be filled or added to.
   auto hessian() noexcept { return hessian_.topLeftCorner(n_, n_); }
   auto gradient() noexcept { return gradient_.head(n_); }
-  // Adds `weight` |A x - b|^2 / 2 to what is minimised.
-  void add_squares(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::VectorXd>& b,
-                   double weight) noexcept;
+  // Adds `weight` (a' x - b)^2 / 2 to what is minimised; a(k) gives the first `size` components, the others are 0.
+  template <typename Normal>
+  void add_square(Eigen::Index size, const Normal& a, double b, double weight) noexcept {
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const double share = weight * a(k);
+      if (share == 0) continue;
+      gradient_[k] -= share * b;
+      for (Eigen::Index i = 0; i < size; ++i) hessian_(i, k) += share * a(i);
+    }
+  }
   // Adds a row whose normal the caller fills. There must be room.
   auto add_row(double lower, double upper) noexcept {
     lower_[m_] = lower;

@@ -59,6 +59,8 @@ const char* type_name(const MotionOption& option) noexcept {
       return "'minimum_jerk'|'trapezoid'";
     case MotionOption::Type::flag:
       return "boolean";
+    case MotionOption::Type::list:
+      return "string[]";
   }
   return "any";
 }
@@ -113,7 +115,11 @@ std::string motion_option_reference() {
       if ((option.methods & table.method) != 0) where += (where.empty() ? "" : ", ") + std::string(table.title);
     }
     std::string value = range(option);
-    if (value.empty()) value = option.type == MotionOption::Type::flag ? "boolean" : "text";
+    if (value.empty()) {
+      value = option.type == MotionOption::Type::flag   ? "boolean"
+              : option.type == MotionOption::Type::list ? "list"
+                                                        : "text";
+    }
     text += "| `" + std::string(option.name) + "` | " + where + " | " + value + " | " + option.doc + " |\n";
   }
   return text;
