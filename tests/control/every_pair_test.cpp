@@ -23,7 +23,8 @@ const std::vector<BenchObject> objects{{"pid", make_joint_pid},
                                        {"profile", make_profile_position},
                                        {"player", make_feedforward_player},
                                        {"computed", make_computed_torque},
-                                       {"gravity", make_gravity_compensation}};
+                                       {"gravity", make_gravity_compensation},
+                                       {"body", make_whole_body}};
 enum class Situation { rest, moving, load, saturated };
 
 void set_if_there(JointBench& bench, const std::string& parameter, double value) {

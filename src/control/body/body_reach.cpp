@@ -16,7 +16,7 @@ constexpr int steps_max = 20, reach_iterations_max = 200;
 constexpr double asked_weight = 1, other_weight = 1e-4, least_weight = 1e-5;
 constexpr double step_max_rad = 0.4;  // of a joint, in one step
 constexpr double back_m = 0.03;       // how far the centre of mass comes back over the soles in one step
-constexpr double still = 1e-4;        // a step after which no other is made
+constexpr double still = 5e-4;        // a step after which no other is made
 constexpr double reached_m = 0.005, reached_rad = 0.01;  // what counts as reached
 
 double cross2(const Vec3& o, const Vec3& a, const Vec3& b) noexcept {
