@@ -1,11 +1,14 @@
 // The whole-body object: an arm that its own dynamics move, and a biped whose joints follow exactly.
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
+#include <utility>
 
 #include <doctest/doctest.h>
 
 #include "arm_bench.h"
-#include "control/body/body_model.h"
+#include "control/body/body_leader.h"
 #include "kadans/testing/allocation_count.h"
 #include "kadans/testing/real_time_guard.h"
 #include "leg_robot.h"
@@ -20,7 +23,8 @@ namespace {
 
 // The arm with its wheel as the right hand; gains that a stiff joint has.
 struct HandBench : ArmBench {
-  HandBench() : ArmBench(make_whole_body, {{{"right_hand", "wheel"}}}) {
+  explicit HandBench(std::map<std::string, std::string> options = {{"right_hand", "wheel"}})
+      : ArmBench(make_whole_body, ObjectOptions(std::move(options))) {
     for (const std::string joint : {"shoulder", "elbow"}) {
       set(joint + ".stiffness_Nm_per_rad", 200);
       set(joint + ".damping_Nms_per_rad", 5);
@@ -102,6 +106,26 @@ TEST_CASE("an arm brings its hand to a point that is given in space, and keeps i
   CHECK(bench.signal("failures") == 0);
 }
 
+TEST_CASE(
+    "a task of the second level gets what the first leaves: two joints bring the hand there, not the link's turn") {
+  double missed_m[2] = {};
+  for (const int priority : {1, 2}) {
+    HandBench bench({{"right_hand", "wheel"}, {"trunk", "fore"}});
+    bench.set("trunk.priority", priority);
+    bench.start();
+    bench.run(300);
+    const Vec3 before = bench.hand_m();
+    bench.set_point("hand_right_x_m", before[0] + 0.1, 0.8);
+    bench.set_point("hand_right_z_m", before[2] + 0.15, 0.8);
+    bench.run(3000);
+    const Vec3 after = bench.hand_m();
+    missed_m[priority - 1] = std::hypot(after[0] - before[0] - 0.1, after[2] - before[2] - 0.15);
+    CHECK(bench.signal("failures") == 0);
+  }
+  CHECK(missed_m[0] > 0.03);
+  CHECK(missed_m[1] < 0.003);
+}
+
 TEST_CASE("an arm keeps still and carries its weight before any task is asked for") {
   HandBench bench;
   bench.start();
@@ -126,6 +150,52 @@ TEST_CASE("a biped moves its centre of mass, and its feet bear its weight and st
   CHECK(bench.signal("load_left_N") + bench.signal("load_right_N") == doctest::Approx(weight_N).epsilon(0.01));
   CHECK(bench.signal("failures") == 0);
   CHECK(bench.most_Nm < 0.9 * 25 + 0.01);
+}
+
+TEST_CASE(
+    "a wrench stays in its friction pyramid and over the sole, torques in their limits, whatever a task asks for") {
+  const RobotModel model = leg_robot();
+  const BodyLayout layout(
+      {model, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}}});
+  BodyModel body(model, Dynamics::Base::floating, layout.rotor_inertia_kg_m2);
+  for (std::size_t i = 0; i < 10; ++i) body.position_rad[i] = std::array{0.0, 0.0, -0.3, 0.6, -0.3}[i % 5];
+  BodyAim aim;
+  aim.settings.sole_m = 0;
+  Kinematics kinematics(model);
+  body.base = body_start(layout, aim.settings, kinematics, body.position_rad, {1, 0, 0, 0});
+  body.update();
+  present_setpoints(layout, aim.settings, kinematics, aim.setpoints);
+  std::array<BodyStand, body_feet_max> feet;
+  for (std::size_t i = 0; i < 2; ++i) feet[i].pose = kinematics.link(layout.tasks[layout.feet[i]].link);
+  BodyProblem problem(layout);
+  const BodyWeights weights{1, 0, 0, 1};
+  const SetpointState com_x = aim.setpoints[0], com_z = aim.setpoints[2];
+  int at_friction = 0, at_edge = 0, at_torque = 0;
+  for (const double way_m : {-2.0, -0.3, -0.05, 0.0, 0.05, 0.3, 2.0}) {
+    for (const double up_m : {0.0, 0.2, 3.0}) {
+      aim.setpoints[0].value = com_x.value + way_m;
+      aim.setpoints[2].value = com_z.value + up_m;
+      REQUIRE(problem.solve(body, aim, weights, feet));
+      for (std::size_t foot = 0; foot < 2; ++foot) {
+        const Eigen::Vector<double, 6> w = problem.wrench(foot);
+        const double grip_N = aim.settings.friction / std::sqrt(2.0) * w[2], slack = 1e-6 * (1 + w.norm());
+        const double reach_m = 0.1 - aim.settings.edge_m, side_m = aim.settings.side_m - aim.settings.edge_m;
+        CHECK(w[2] >= -slack);
+        CHECK(std::max(std::abs(w[0]), std::abs(w[1])) <= grip_N + slack);
+        CHECK(std::abs(w[4]) <= reach_m * w[2] + slack);
+        CHECK(std::abs(w[3]) <= side_m * w[2] + slack);
+        at_friction += std::abs(w[0]) > grip_N - slack ? 1 : 0;
+        at_edge += std::abs(w[4]) > reach_m * w[2] - slack ? 1 : 0;
+      }
+      for (std::size_t joint = 0; joint < 10; ++joint) {
+        CHECK(std::abs(problem.effort_Nm(joint)) <= 0.9 * 25 + 1e-6);
+        at_torque += std::abs(problem.effort_Nm(joint)) > 0.9 * 25 - 1e-6 ? 1 : 0;
+      }
+    }
+  }
+  CHECK(at_edge > 4);
+  CHECK(at_torque > 4);
+  INFO(at_friction);
 }
 
 TEST_CASE("what cannot be reached is told before it moves, with how far it is, and what can be is not") {

@@ -6,8 +6,9 @@
 namespace kadans {
 namespace {
 
-constexpr double load_s = 0.3;      // in which a foot takes its load, or leaves it
-constexpr double brake_per_s = 8;   // how the body comes to rest when there is no solution
+constexpr double load_s = 0.3;     // in which a foot takes its load, or leaves it
+constexpr double brake_per_s = 8;  // how the body comes to rest when there is no solution
+constexpr double weigh_s = 0.2, least_weight = 1e-4;
 constexpr double gaze_ahead_m = 1;  // of the first point
 
 void put(std::array<SetpointState, body_channels_max>& setpoints, std::uint32_t channel, const Vec3& values) noexcept {
@@ -76,9 +77,18 @@ void BodyLeader::stand(const BodyAim& aim, double dt_s) noexcept {
       foot.pose = {{link.position_m[0], link.position_m[1], aim.settings.sole_m},
                    from_roll_pitch_yaw(0, 0, roll_pitch_yaw(link.orientation)[2])};
     }
-    const double change = dt_s / load_s;
+    const double change = dt_s / (wanted ? 0.05 : load_s);
     foot.share = std::clamp(foot.share + (wanted ? change : -change), 0.0, 1.0);
     if (wanted && fresh_) foot.share = 1;
+  }
+}
+
+// A task that comes or goes, or counts otherwise, does so smoothly: what it held back would else jump.
+void BodyLeader::weigh(const BodyAim& aim, double dt_s) noexcept {
+  for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
+    const double wanted = aim.engaged[i] ? aim.settings.tasks[i].weight : 0;
+    weights_[i] += (fresh_ ? 1 : std::min(1.0, dt_s / weigh_s)) * (wanted - weights_[i]);
+    if (wanted == 0 && weights_[i] < least_weight) weights_[i] = 0;
   }
 }
 
@@ -90,7 +100,8 @@ void BodyLeader::step(const BodyAim& aim, double dt_s, BodyLead& lead) noexcept 
   }
   model_.update();
   stand(aim, dt_s);
-  const bool solved = problem_.solve(model_, aim, feet_);
+  weigh(aim, dt_s);
+  const bool solved = problem_.solve(model_, aim, weights_, feet_);
   if (solved)
     acceleration_ = problem_.acceleration();
   else
@@ -114,7 +125,7 @@ void BodyLeader::fill(const BodyAim& aim, BodyLead& lead) const noexcept {
     const Vec3& at = feet_[i].pose.position_m;
     const Vec3 turn = roll_pitch_yaw(feet_[i].pose.orientation);
     lead.feet[i] = {feet_[i].stands(),
-                    feet_[i].stands() ? problem_.load_N(i) : 0,
+                    feet_[i].stands() ? problem_.wrench(i).z() : 0,
                     {at[0], at[1], at[2] - aim.settings.sole_m, turn[0], turn[1], turn[2]}};
   }
   lead.com_m = model_.dynamics().com_m();
@@ -130,7 +141,7 @@ void BodyLeader::pass_state(StateBytes& bytes) noexcept {
   for (double& value : model_.position_rad) bytes.high_level(value);
   pass(model_.velocity);
   pass(acceleration_);
-  bytes.high_level(model_.base, feet_, fresh_);
+  bytes.high_level(model_.base, feet_, weights_, fresh_);
 }
 
 }  // namespace kadans

@@ -25,12 +25,14 @@ class BodyLeader {
 
  private:
   void stand(const BodyAim& aim, double dt_s) noexcept;
+  void weigh(const BodyAim& aim, double dt_s) noexcept;
   void fill(const BodyAim& aim, BodyLead& lead) const noexcept;
 
   const BodyLayout* layout_;
   BodyModel model_;
   BodyProblem problem_;
   std::array<BodyStand, body_feet_max> feet_;
+  BodyWeights weights_{};
   Eigen::VectorXd acceleration_, way_;
   bool fresh_ = true;  // begun, not moved on yet
 };

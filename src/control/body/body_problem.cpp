@@ -47,6 +47,7 @@ BodyProblem::BodyProblem(const BodyLayout& layout)
       program_(static_cast<Index>(layout.model->joints.size() + (layout.floating ? 6 + 6 * layout.feet.size() : 0)),
                rows_max(layout)) {
   const auto n = static_cast<Index>(layout.model->joints.size() + (layout.floating ? 6 : 0));
+  for (auto& wrench : kept_) wrench.setZero();
   for (auto& jacobian : foot_jacobian_) jacobian.setZero(6, n);
   for (Rows& rows : tasks_) rows.jacobian.setZero(6, n);
   jacobian_.setZero(6, n);
@@ -174,15 +175,15 @@ void BodyProblem::posture(const BodyModel& model, const BodyAim& aim) noexcept {
   }
 }
 
-void BodyProblem::find_tasks(const BodyModel& model, const BodyAim& aim,
+void BodyProblem::find_tasks(const BodyModel& model, const BodyAim& aim, const BodyWeights& weights,
                              const std::array<BodyStand, body_feet_max>& feet) noexcept {
   for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
     const BodyTask& task = layout_->tasks[i];
     const BodySettings::Task& s = aim.settings.tasks[i];
     Rows& rows = tasks_[i];
     rows.count = 0;
-    rows.weight = s.weight;
-    rows.level = aim.engaged[i] && s.weight > 0 ? (s.priority > 1 ? 2 : 1) : 0;
+    rows.weight = weights[i];
+    rows.level = weights[i] > 0 ? (s.priority > 1 ? 2 : 1) : 0;
     for (std::size_t foot = 0; foot < layout_->feet.size(); ++foot) {
       if (layout_->feet[foot] == i && feet[foot].stands()) rows.level = 0;
     }
@@ -279,13 +280,16 @@ void BodyProblem::keep(const BodyModel& model) noexcept {
     }
     effort_Nm_[static_cast<Index>(joint)] = effort;
   }
-  for (std::size_t i = 0; i < layout_->feet.size(); ++i) load_N_[i] = wrench_[i] != 0 ? x[wrench_[i] + 2] : 0;
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
+    kept_[i].setZero();
+    if (wrench_[i] != 0) kept_[i] = x.segment<6>(wrench_[i]);
+  }
 }
 
-bool BodyProblem::solve(const BodyModel& model, const BodyAim& aim,
+bool BodyProblem::solve(const BodyModel& model, const BodyAim& aim, const BodyWeights& weights,
                         const std::array<BodyStand, body_feet_max>& feet) noexcept {
   begin(model, aim, feet);
-  find_tasks(model, aim, feet);
+  find_tasks(model, aim, weights, feet);
   add_level(1);
   status_ = program_.solve(tick_iterations_max);
   iterations_ = program_.iterations();

@@ -31,17 +31,20 @@ struct BodyStand {   // of a foot
   bool stands() const noexcept { return share > 0; }
 };
 
+using BodyWeights = std::array<double, body_tasks_max>;
+
 class BodyProblem {
  public:
   explicit BodyProblem(const BodyLayout& layout);
 
-  // True: acceleration(), effort_Nm and load_N are new.
-  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim,
+  // True: acceleration(), effort_Nm and wrench are new. `weights`: of the tasks; 0: left out.
+  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyWeights& weights,
                            const std::array<BodyStand, body_feet_max>& feet) noexcept;
 
   const Eigen::VectorXd& acceleration() const noexcept { return acceleration_; }
   double effort_Nm(std::size_t joint) const noexcept { return effort_Nm_[static_cast<Eigen::Index>(joint)]; }
-  double load_N(std::size_t foot) const noexcept { return load_N_[foot]; }
+  // Of a foot: force and moment about its frame, in the axes of the task frame; 0 of one that is free.
+  const Eigen::Vector<double, 6>& wrench(std::size_t foot) const noexcept { return kept_[foot]; }
   QuadraticProgram::Status status() const noexcept { return status_; }
   int iterations() const noexcept { return iterations_; }
 
@@ -60,7 +63,7 @@ class BodyProblem {
   void limit(const BodyModel& model, const BodySettings& s) noexcept;
   void spring(const BodyModel& model, const BodySettings& s) noexcept;
   void posture(const BodyModel& model, const BodyAim& aim) noexcept;
-  void find_tasks(const BodyModel& model, const BodyAim& aim,
+  void find_tasks(const BodyModel& model, const BodyAim& aim, const BodyWeights& weights,
                   const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void lead_point(const BodyModel& model, const BodyAim& aim, std::size_t task) noexcept;
   void lead_turn(const BodyModel& model, const BodyAim& aim, std::size_t task) noexcept;
@@ -75,7 +78,7 @@ class BodyProblem {
   std::array<Rows, body_tasks_max> tasks_;
   BodyModel::Jacobian jacobian_;
   Eigen::VectorXd acceleration_, effort_Nm_, row_;
-  std::array<double, body_feet_max> load_N_{};
+  std::array<Eigen::Vector<double, 6>, body_feet_max> kept_{};
   QuadraticProgram::Status status_ = QuadraticProgram::Status::refused;
   int iterations_ = 0;
 };

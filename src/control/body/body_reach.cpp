@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr int steps_max = 20, reach_iterations_max = 200;
-constexpr double asked_weight = 1, other_weight = 1e-4, least_weight = 1e-5;
+constexpr double asked_weight = 1, other_weight = 1e-4, change_weight = 1e-5;
 constexpr double step_max_rad = 0.4;  // of a joint, in one step
 constexpr double back_m = 0.03;       // how far the centre of mass comes back over the soles in one step
 constexpr double still = 5e-4;        // a step after which no other is made
@@ -202,7 +202,7 @@ void BodyReach::add_task(std::size_t index) noexcept {
 bool BodyReach::improve() noexcept {
   model_.update();
   program_.begin(model_.size());
-  program_.hessian().diagonal().setConstant(least_weight);
+  program_.hessian().diagonal().setConstant(change_weight);
   hold_feet();
   balance();
   limit();

@@ -73,6 +73,7 @@ class WholeBody final : public ControlObject {
     EffortTakeover takeover;
   };
   void declare_task(Declaration& declaration, std::size_t task);
+  void declare_weight(Declaration& declaration, std::size_t task);
   void declare_ground(Declaration& declaration);
   void declare_joint(Declaration& declaration, std::size_t i);
   bool locate(const ControlInput& input) noexcept;
@@ -117,7 +118,10 @@ WholeBody::WholeBody(const ObjectSetup& setup)
 }
 
 void WholeBody::declare(Declaration& declaration) {
-  for (std::size_t i = 0; i < layout_.tasks.size(); ++i) declare_task(declaration, i);
+  for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
+    declare_task(declaration, i);
+    declare_weight(declaration, i);
+  }
   if (layout_.floating) declare_ground(declaration);
   BodySettings& s = settings_;
   declaration.parameter({"effort_share", "", 0.1, 1, 0.9, "Share of the torque limits that it plans with."},
@@ -138,11 +142,10 @@ void WholeBody::declare(Declaration& declaration) {
 
 void WholeBody::declare_task(Declaration& declaration, std::size_t index) {
   const BodyTask& task = layout_.tasks[index];
-  BodySettings::Task& s = settings_.tasks[index];
   const bool looks = task.kind == BodyTask::Kind::gaze, foot = task.kind == BodyTask::Kind::foot;
   std::uint32_t channel = task.channel;
   for (std::size_t k = 0; task.has_point() && k < 3; ++k) {
-    declaration.setpoint(
+    const SetpointId id = declaration.setpoint(
         {.name = task.name + (foot ? ".position_" : "_") + points[k],
          .unit = "m",
          .min = looks ? -look_far_m : -task_far_m,
@@ -150,6 +153,7 @@ void WholeBody::declare_task(Declaration& declaration, std::size_t index) {
          .doc = looks ? "The point to look at, in the task frame." : "Where it shall be, in the task frame.",
          .channel = channel++,
          .joint = no_joint});
+    reach_.set_first(id + 1 - channel);  // an object's set-points follow each other
   }
   for (std::size_t k = 0; task.has_turn() && k < 3; ++k) {
     const double most = k == 1 ? pitch_max_rad : turn_max_rad;
@@ -162,6 +166,11 @@ void WholeBody::declare_task(Declaration& declaration, std::size_t index) {
                                                 .joint = no_joint});
     reach_.set_first(id + 1 - channel);
   }
+}
+
+void WholeBody::declare_weight(Declaration& declaration, std::size_t index) {
+  const BodyTask& task = layout_.tasks[index];
+  BodySettings::Task& s = settings_.tasks[index];
   declaration.parameter({task.name + ".weight", "", 0, 1000, 1, "How much the task counts beside others; 0: not."},
                         &s.weight);
   declaration.parameter({task.name + ".priority", "", 1, 2, 1, "1, or 2: gets what tasks of 1 leave."}, &s.priority);

@@ -161,8 +161,9 @@ constexpr ApiEntry written[] = {
      "Clears the faults of the safety layer, but no emergency stop; commands later in the same tick count already; "
      "nil, \"queue_full\""},
 
-    {"object", "move(pose, options)", "kadans.Motion?, string?",
-     "Moves to a pose, by name or as joint = rad, in { time_s = }; nil, \"queue_full\""},
+    {"object", "move(pose, options)", "kadans.Motion?, string?, number?, string?",
+     "Moves to a pose, by name or as joint = rad, or to tasks, in { time_s = }; nil, \"queue_full\", or nil, "
+     "\"out_of_reach\", how far, set-point"},
     {"object", "move_through(points, options)", "kadans.Motion?, string?",
      "Moves on a smooth curve through { { pose, time_s = }, ... } to rest at the last; nil, \"queue_full\""},
     {"object", "follow(pose, limits)", "boolean?, string?",
