@@ -7,14 +7,14 @@ describe("reach", function()
 
   it("sinks first: the knees bend", function()
     run:advance_to("reach")
-    expect(run.joints.l_knee.position_rad > 0.6).to_be(true)
-    expect(run.joints.r_knee.position_rad > 0.6).to_be(true)
+    expect(run.joints.l_knee.position_rad).to_be_above(0.6)
+    expect(run.joints.r_knee.position_rad).to_be_above(0.6)
   end)
 
   it("stretches the right arm forward, and ends as it began", function()
     run:advance_to("reach")
     run:advance(3.5)
-    expect(run.joints.r_shoulder_pitch.position_rad < -0.8).to_be(true)
+    expect(run.joints.r_shoulder_pitch.position_rad).to_be_below(-0.8)
     expect(run:finish(30)).to_equal "done"
     expect(run.joints.l_knee.position_rad).to_be_near(0.3, 0.05)
   end)
@@ -23,7 +23,7 @@ describe("reach", function()
     run:set_parameter("forward_m", 2)
     run:advance_to("reach")
     run:advance_to("back")
-    expect(run.joints.r_shoulder_pitch.position_rad > -0.4).to_be(true)
+    expect(run.joints.r_shoulder_pitch.position_rad).to_be_above(-0.4)
     expect(run:finish(30)).to_equal "done"
   end)
 

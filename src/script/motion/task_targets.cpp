@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "script/bindings/bindings.h"
+#include "script/bindings/snapshot_tables.h"
 #include "script/check/hint.h"
 #include "script/lua/script_error.h"
 
@@ -58,6 +59,17 @@ double number_on_top(lua_State* state, const PlainWord& word) {
   return lua_tonumber(state, -1);
 }
 
+// A list { x, y, z } at the top of the stack, with nothing else in it.
+void check_list(lua_State* state, const char* name) {
+  if (!lua_istable(state, -1))
+    luaL_error(state, "%s must be a list { x, y, z }, not a %s", name, luaL_typename(state, -1));
+  charge_table(state, lua_gettop(state));
+  for (lua_pushnil(state); lua_next(state, -2) != 0; lua_pop(state, 1)) {
+    const double at = lua_type(state, -2) == LUA_TNUMBER ? lua_tonumber(state, -2) : 0;
+    if (at != 1 && at != 2 && at != 3) luaL_error(state, "%s must be a list { x, y, z } with nothing else in it", name);
+  }
+}
+
 // The value of this word in the table at `index`, if it has one. Keeps the stack.
 bool find_value(lua_State* state, int index, const PlainWord& word, double& value) {
   const int top = lua_gettop(state);
@@ -71,8 +83,7 @@ bool find_value(lua_State* state, int index, const PlainWord& word, double& valu
   if (lua_istable(state, -1)) {
     lua_getfield(state, -1, word.key.data());
     if (word.axis > 0 && !lua_isnil(state, -1)) {
-      if (!lua_istable(state, -1))
-        luaL_error(state, "%s must be a list { x, y, z }, not a %s", word.key.data(), luaL_typename(state, -1));
+      check_list(state, word.key.data());
       lua_rawgeti(state, -1, word.axis);
     }
     found = !lua_isnil(state, -1);
@@ -103,6 +114,14 @@ void check_words(lua_State* state, int index, const ObjectInfo& object, const ch
   check_keys(state, index, calling_place(state), group != nullptr ? group : "this table of tasks", names.data());
 }
 
+// The table of this group, if it is given.
+void check_group(lua_State* state, int index, const ObjectInfo& object, const Word& group) {
+  if (group[0] == '\0') return;
+  lua_getfield(state, index, group.data());
+  if (lua_istable(state, -1)) check_words(state, lua_gettop(state), object, group.data());
+  lua_pop(state, 1);
+}
+
 }  // namespace
 
 TaskWord task_word(const std::string& short_name) {
@@ -118,16 +137,13 @@ void read_tasks(lua_State* state, int index, const ObjectInfo& object, const cha
   const Catalog& catalog = *bindings_of(state).catalog;
   targets.count = 0;
   check_words(state, index, object, nullptr);
+  Word group{};
   for (const SetpointId id : object.setpoints) {  // in the object's order, so that every run sends the same
     const Setpoint& setpoint = catalog.setpoints[id];
     const PlainWord word = plain_word(short_name(object, setpoint.name), of_joint(setpoint));
+    if (word.group != group) check_group(state, index, object, group = word.group);
     double value = 0;
     if (!find_value(state, index, word, value)) continue;
-    if (word.group[0] != '\0') {
-      lua_getfield(state, index, word.group.data());
-      check_words(state, lua_gettop(state), object, word.group.data());
-      lua_pop(state, 1);
-    }
     if (targets.count == targets.all.size()) luaL_error(state, "%s: too many targets at once", called);
     targets.all[targets.count++] = {.id = id, .value = value, .from = {}};
   }
