@@ -37,7 +37,7 @@ return k.behavior "reach" {
     run = function(m)
       m.body:move({ trunk = { pitch_rad = P.lean_rad } }, { time_s = P.time_s }):wait()
       local hand = { hand_right_m = { P.forward_m, m.body:setpoint("hand_right_y_m"), P.height_m } }
-      local motion, why, distance_m = m.body:move(hand, { time_s = P.time_s, weight = 1 })
+      local motion, why, distance_m = m.body:move(hand, { time_s = P.time_s, weight = 30 })
       if why == "out_of_reach" then
         k.log.warning("the hand would stay %.2f m short", distance_m)
       elseif motion then

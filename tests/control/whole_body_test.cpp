@@ -168,14 +168,15 @@ TEST_CASE(
   std::array<BodyStand, body_feet_max> feet;
   for (std::size_t i = 0; i < 2; ++i) feet[i].pose = kinematics.link(layout.tasks[layout.feet[i]].link);
   BodyProblem problem(layout);
-  const BodyWeights weights{1, 0, 0, 1};
+  BodyRanks ranks;
+  ranks[0].weight = ranks[3].weight = 1;
   const SetpointState com_x = aim.setpoints[0], com_z = aim.setpoints[2];
   int at_friction = 0, at_edge = 0, at_torque = 0;
   for (const double way_m : {-2.0, -0.3, -0.05, 0.0, 0.05, 0.3, 2.0}) {
     for (const double up_m : {0.0, 0.2, 3.0}) {
       aim.setpoints[0].value = com_x.value + way_m;
       aim.setpoints[2].value = com_z.value + up_m;
-      REQUIRE(problem.solve(body, aim, weights, feet));
+      REQUIRE(problem.solve(body, aim, ranks, feet));
       for (std::size_t foot = 0; foot < 2; ++foot) {
         const Eigen::Vector<double, 6> w = problem.wrench(foot);
         const double grip_N = aim.settings.friction / std::sqrt(2.0) * w[2], slack = 1e-6 * (1 + w.norm());

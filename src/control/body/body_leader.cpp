@@ -6,9 +6,10 @@
 namespace kadans {
 namespace {
 
-constexpr double load_s = 0.3;     // in which a foot takes its load, or leaves it
-constexpr double brake_per_s = 8;  // how the body comes to rest when there is no solution
-constexpr double weigh_s = 0.2, least_weight = 1e-4;
+constexpr double load_s = 0.3;                          // in which a foot takes its load, or leaves it
+constexpr double brake_per_s = 8;                       // how the body comes to rest when there is no solution
+constexpr double weigh_per_s = 15, least_weight = 0.2;  // the growth of a weight, per weight
+constexpr double strict_weight = 100;
 constexpr double gaze_ahead_m = 1;  // of the first point
 
 void put(std::array<SetpointState, body_channels_max>& setpoints, std::uint32_t channel, const Vec3& values) noexcept {
@@ -83,12 +84,20 @@ void BodyLeader::stand(const BodyAim& aim, double dt_s) noexcept {
   }
 }
 
-// A task that comes or goes, or counts otherwise, does so smoothly: what it held back would else jump.
+// A task that comes or goes, or counts otherwise, does so smoothly: what it held back would else jump. One of the first
+// level goes by way of the second, where it begins with a weight that lets the others hardly move it. Levels themselves
+// act at once: a task that comes between others does so more smoothly by its weight.
 void BodyLeader::weigh(const BodyAim& aim, double dt_s) noexcept {
+  const bool second =
+      std::ranges::any_of(ranks_, [](const BodyRank& rank) { return rank.level > 1 && rank.weight > 0; });
   for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
+    BodyRank& rank = ranks_[i];
     const double wanted = aim.engaged[i] ? aim.settings.tasks[i].weight : 0;
-    weights_[i] += (fresh_ ? 1 : std::min(1.0, dt_s / weigh_s)) * (wanted - weights_[i]);
-    if (wanted == 0 && weights_[i] < least_weight) weights_[i] = 0;
+    const int level = aim.settings.tasks[i].priority > 1 || (wanted == 0 && second) ? 2 : 1;
+    if (level > rank.level && rank.weight > 0 && !fresh_) rank.weight = std::max(rank.weight, strict_weight);
+    rank.level = level;
+    const double change = weigh_per_s * dt_s * std::max(rank.weight, least_weight);
+    rank.weight = fresh_ ? wanted : std::clamp(wanted, rank.weight - change, rank.weight + change);
   }
 }
 
@@ -101,7 +110,7 @@ void BodyLeader::step(const BodyAim& aim, double dt_s, BodyLead& lead) noexcept 
   model_.update();
   stand(aim, dt_s);
   weigh(aim, dt_s);
-  const bool solved = problem_.solve(model_, aim, weights_, feet_);
+  const bool solved = problem_.solve(model_, aim, ranks_, feet_);
   if (solved)
     acceleration_ = problem_.acceleration();
   else
@@ -141,7 +150,7 @@ void BodyLeader::pass_state(StateBytes& bytes) noexcept {
   for (double& value : model_.position_rad) bytes.high_level(value);
   pass(model_.velocity);
   pass(acceleration_);
-  bytes.high_level(model_.base, feet_, weights_, fresh_);
+  bytes.high_level(model_.base, feet_, ranks_, fresh_);
 }
 
 }  // namespace kadans

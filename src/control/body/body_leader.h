@@ -32,7 +32,7 @@ class BodyLeader {
   BodyModel model_;
   BodyProblem problem_;
   std::array<BodyStand, body_feet_max> feet_;
-  BodyWeights weights_{};
+  BodyRanks ranks_;
   Eigen::VectorXd acceleration_, way_;
   bool fresh_ = true;  // begun, not moved on yet
 };

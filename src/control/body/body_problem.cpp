@@ -175,15 +175,14 @@ void BodyProblem::posture(const BodyModel& model, const BodyAim& aim) noexcept {
   }
 }
 
-void BodyProblem::find_tasks(const BodyModel& model, const BodyAim& aim, const BodyWeights& weights,
+void BodyProblem::find_tasks(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
                              const std::array<BodyStand, body_feet_max>& feet) noexcept {
   for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
     const BodyTask& task = layout_->tasks[i];
-    const BodySettings::Task& s = aim.settings.tasks[i];
     Rows& rows = tasks_[i];
     rows.count = 0;
-    rows.weight = weights[i];
-    rows.level = weights[i] > 0 ? (s.priority > 1 ? 2 : 1) : 0;
+    rows.weight = ranks[i].weight;
+    rows.level = ranks[i].weight > 0 ? ranks[i].level : 0;
     for (std::size_t foot = 0; foot < layout_->feet.size(); ++foot) {
       if (layout_->feet[foot] == i && feet[foot].stands()) rows.level = 0;
     }
@@ -286,10 +285,10 @@ void BodyProblem::keep(const BodyModel& model) noexcept {
   }
 }
 
-bool BodyProblem::solve(const BodyModel& model, const BodyAim& aim, const BodyWeights& weights,
+bool BodyProblem::solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
                         const std::array<BodyStand, body_feet_max>& feet) noexcept {
   begin(model, aim, feet);
-  find_tasks(model, aim, weights, feet);
+  find_tasks(model, aim, ranks, feet);
   add_level(1);
   status_ = program_.solve(tick_iterations_max);
   iterations_ = program_.iterations();

@@ -31,14 +31,18 @@ struct BodyStand {   // of a foot
   bool stands() const noexcept { return share > 0; }
 };
 
-using BodyWeights = std::array<double, body_tasks_max>;
+struct BodyRank {     // of a task
+  double weight = 0;  // 0: left out
+  int level = 1;      // 2: gets what those of 1 leave
+};
+using BodyRanks = std::array<BodyRank, body_tasks_max>;
 
 class BodyProblem {
  public:
   explicit BodyProblem(const BodyLayout& layout);
 
-  // True: acceleration(), effort_Nm and wrench are new. `weights`: of the tasks; 0: left out.
-  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyWeights& weights,
+  // True: acceleration(), effort_Nm and wrench are new.
+  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
                            const std::array<BodyStand, body_feet_max>& feet) noexcept;
 
   const Eigen::VectorXd& acceleration() const noexcept { return acceleration_; }
@@ -63,7 +67,7 @@ class BodyProblem {
   void limit(const BodyModel& model, const BodySettings& s) noexcept;
   void spring(const BodyModel& model, const BodySettings& s) noexcept;
   void posture(const BodyModel& model, const BodyAim& aim) noexcept;
-  void find_tasks(const BodyModel& model, const BodyAim& aim, const BodyWeights& weights,
+  void find_tasks(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
                   const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void lead_point(const BodyModel& model, const BodyAim& aim, std::size_t task) noexcept;
   void lead_turn(const BodyModel& model, const BodyAim& aim, std::size_t task) noexcept;
