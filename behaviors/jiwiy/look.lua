@@ -1,5 +1,6 @@
 -- Looks left, right and ahead again. The profile keeps its limits, whatever time it is given.
 local k = require "kadans"
+local gestures = require "gestures"
 
 local P = k.params {
   times  = { 1, min = 1, max = 100, doc = "how often" },
@@ -9,18 +10,13 @@ local P = k.params {
 
 return k.behavior "look" {
   controls = "position",
+  vars     = { poses = 0 },
   initial  = "around",
 
-  k.state "around" {
-    run = function(m)
-      for _ = 1, P.times do
-        for _, pose in ipairs { "left", "right", "ahead" } do
-          m.profile:move(pose, { time_s = P.time_s }):wait()
-          m:wait(P.rest_s)
-        end
-      end
-    end,
-    { on = "run.done", to = "done" },
+  gestures.through "around" {
+    object = "profile", poses = { "left", "right", "ahead" },
+    times = P.times, time_s = P.time_s, rest_s = P.rest_s,
+    { on = "done", to = "done", action = function(m, s) m.vars.poses = s.event.data.result.poses end },
   },
-  k.final "done" { outcome = "done" },
+  k.final "done" { outcome = "done", result = function(m) return { poses = m.vars.poses } end },
 }

@@ -68,6 +68,10 @@ class NamedLog final : public BehaviorLog, private LineSink {
     }
     log_.say(named);
   }
+  void tell_active(const ActiveStates& active) override {
+    const std::string behavior = prefix_ + std::string(active.behavior);
+    log_.active({active.time_ns, behavior, active.states});
+  }
 
   std::string prefix_;
   BehaviorLog& log_;
@@ -352,7 +356,8 @@ RunParts Assembly::parts_in(Lockstep& lockstep) {
                  .joystick = joystick_.get(),
                  .upkeep_first = static_cast<SignalId>(upkeep_first_),
                  .upkeep_count = upkeep_count_,
-                 .name = number_ == 0 ? "" : scenario_.name};
+                 .name = number_ == 0 ? "" : scenario_.name,
+                 .faulty = number_ == 0 ? nullptr : faulty_.get()};
   for (const auto& other : others_) parts.others.push_back(other->parts_in(lockstep));
   return parts;
 }

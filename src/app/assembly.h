@@ -71,6 +71,9 @@ class Assembly {
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
   const ScriptHost& host() const noexcept { return *host_; }  // only when behaviors do not play outside
   ScriptHost& host() noexcept { return *host_; }
+  std::span<const SignalState> signal_states() const noexcept {
+    return host_ ? host_->signal_states() : std::span<const SignalState>();
+  }
   const ScriptHost* own_host() const noexcept { return host_.get(); }  // nullptr when they play outside
   OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
   // Call before the run: from now on saved files are reloaded. Throws std::runtime_error when files cannot be watched.

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/run/run_request.h"
+#include "app/run/run_choices.h"
 #include "assembly.h"
 #include "campaign/sweep/tuning_score.h"
 #include "config/scenario/scenario_config.h"
@@ -21,7 +21,7 @@ class App;
 
 namespace kadans {
 
-struct SimOptions : RunRequest {
+struct SimOptions : RunChoices {
   bool json = false;
   bool verbose = false;
   bool no_record = false;

@@ -28,7 +28,7 @@ RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, b
   RecordPlan plan;
   plan.settings.every_ticks = ticks_between(choice, catalog.signals, assembly.robot().engine.control_period_s);
   plan.settings.precision = config.single_precision ? Precision::single : Precision::full;
-  plan.settings.subjects = viewer_subjects(assembly.robot());
+  plan.settings.subjects = viewer_subjects(assembly);
   plan.settings.parameters = &catalog.parameters;
   plan.flight = {.kept_s = options.flight_s.value_or(flies ? config.flight_s : 0),
                  .bytes = static_cast<std::size_t>(config.flight_MB * 1e6)};

@@ -70,18 +70,27 @@ void add_live_hosts(CLI::App& command, LiveServiceOptions& place) {
       ->allow_extra_args(false);
 }
 
-ViewerSubjects viewer_subjects(const RobotConfig& robot) {
+ViewerSubjects viewer_subjects(const Assembly& assembly) {
+  const RobotConfig& robot = assembly.robot();
   ViewerSubjects subjects{.joints = robot.model.joint_names(), .base = robot.model.links.front().name, .feet = {}};
   for (const FootSettings& foot : robot.plant.feet) subjects.feet.push_back(foot.link);
+  for (const auto& other : assembly.others()) {
+    subjects.others.push_back(viewer_subjects(*other));
+    subjects.others.back().robot = other->scenario().name;
+  }
   return subjects;
 }
 
 RobotTexts robot_texts(const Assembly& assembly) {
   const RobotConfig& robot = assembly.robot();
-  return {.name = robot.model.name,
-          .urdf = read_input_file(robot.model.file),
-          .description = run_description(robot, assembly.catalog(), assembly.own_host()),
-          .subjects = viewer_subjects(robot)};
+  RobotTexts texts{.name = robot.model.name,
+                   .urdf = read_input_file(robot.model.file),
+                   .description = run_description(robot, assembly.catalog(), assembly.own_host())};
+  for (const auto& other : assembly.others()) {
+    const std::string& file = other->robot().model.file;
+    texts.others.push_back({.name = other->scenario().name, .urdf = read_input_file(file), .file = file});
+  }
+  return texts;
 }
 
 LiveService::LiveService(const LiveServiceOptions& place, Instance& instance, const Assembly& assembly,

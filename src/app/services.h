@@ -52,8 +52,8 @@ struct LiveServiceOptions {
 void add_live_service(CLI::App& command, LiveServiceOptions& place);
 void add_live_hosts(CLI::App& command, LiveServiceOptions& place);
 
-ViewerSubjects viewer_subjects(const RobotConfig& robot);
-// The texts about the assembled robot that viewers need.
+// What viewers show of the assembled robot and of the further ones of its world.
+ViewerSubjects viewer_subjects(const Assembly& assembly);
 RobotTexts robot_texts(const Assembly& assembly);
 
 class LiveService {

@@ -37,6 +37,7 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
     : catalog_(catalog),
       objects_(std::move(objects)),
       partition_(catalog),
+      dwell_(catalog, partition_),
       switchover_(catalog.drives, catalog.switching),
       unheld_(catalog.unheld),
       active_(catalog.initial_sets) {
@@ -105,6 +106,7 @@ void ControlSets::declare(Catalog& catalog) {
                        "Largest step that the last switch absorbed, as a share of the "
                        "joint's torque limit."},
                       &switchover_.absorbed_share());
+  dwell_.declare(catalog.signals);
 }
 
 void ControlSets::start_newcomers(const ControlInput& input) noexcept {
@@ -117,6 +119,7 @@ void ControlSets::start_newcomers(const ControlInput& input) noexcept {
     }
   });
   running_ = partition_.objects(active_);
+  dwell_.note(active_, input.time_ns);
 }
 
 void ControlSets::switch_to(std::uint32_t set) noexcept {
@@ -166,6 +169,7 @@ void ControlSets::step(std::uint64_t tick, const ControlInput& input, ActuationF
   unheld_.step(input.joints, actuation);
   if (touched != 0 && !first) switchover_.begin(input.joints, input.dt_s, input.last, actuation, touched);
   switchover_.apply(input.joints, input.dt_s, actuation);
+  if (dwell_.demanded()) dwell_.step(input.time_ns, input.dt_s);
 }
 
 void ControlSets::drive(const ControlInput& input, JointMask blind, ActuationFrame& actuation) noexcept {
@@ -201,6 +205,8 @@ void ControlSets::fill(Snapshot& snapshot) const noexcept {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     snapshot.objects[i] = {.active = runs(static_cast<std::uint32_t>(i)),
                            .motion_remaining_s = objects_[i]->motion_remaining_s()};
+    if (dwell_.demanded())
+      snapshot.objects[i].dwell_s = static_cast<float>(dwell_.left_s(static_cast<std::uint32_t>(i)));
   }
 }
 

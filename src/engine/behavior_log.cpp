@@ -131,7 +131,10 @@ BehaviorLog::BehaviorLog(std::initializer_list<LineSink*> sinks) : logger_(std::
 BehaviorLog::BehaviorLog(TextSink sink) : BehaviorLog() { add(std::move(sink)); }
 BehaviorLog::~BehaviorLog() = default;
 
-void BehaviorLog::add(LineSink& sink) { add(std::make_shared<FactSink>(sink)); }
+void BehaviorLog::add(LineSink& sink) {
+  add(std::make_shared<FactSink>(sink));
+  facts_.push_back(&sink);
+}
 void BehaviorLog::add(TextSink sink) { logger_->sinks().push_back(std::move(sink)); }
 void BehaviorLog::say(const Line& line) { logger_->say(line); }
 
@@ -141,6 +144,23 @@ void BehaviorLog::transition(const Transition& transition) {
 
 void BehaviorLog::message(std::int64_t time_ns, Severity severity, std::string_view behavior, std::string_view text) {
   say({.time_ns = time_ns, .severity = severity, .behavior = behavior, .text = text});
+}
+
+void BehaviorLog::active(const ActiveStates& active) {
+  for (LineSink* sink : facts_) sink->tell_active(active);
+}
+
+void ActiveNow::take(const ActiveStates& told) {
+  const auto known = all_.find(told.behavior);
+  if (told.states.empty() && known != all_.end()) all_.erase(known);
+  if (told.states.empty() || (known == all_.end() && all_.size() == behaviors_max)) return;
+  all_.insert_or_assign(std::string(told.behavior), told.copies());
+}
+
+std::string listed(const std::vector<std::string>& states) {
+  std::string text;
+  for (const std::string& state : states) text += (text.empty() ? "" : ", ") + state;
+  return text;
 }
 
 // systemd.exec(5): the device and inode of the stream that it connected.

@@ -5,11 +5,16 @@
 // behaviors' log (telemetry/record/event_log.h). Real-time threads say nothing.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
+#include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace spdlog::sinks {
 class sink;
@@ -25,6 +30,31 @@ struct Transition {
   std::string to;
   std::string why;
 };
+
+// The innermost active states of a behavior: those of all its regions and of the behaviors that it calls, by path, in
+// document order. Told when they have changed, at the end of a tick; none: the behavior is over. Valid while it is
+// told.
+struct ActiveStates {
+  static constexpr std::size_t told_max = 64;  // of one behavior
+
+  std::int64_t time_ns = 0;
+  std::string_view behavior;
+  std::span<const std::string_view> states;
+
+  std::vector<std::string> copies() const { return {states.begin(), states.end()}; }
+};
+// What is active now: the states by behavior, of at most behaviors_max of them; none that is over.
+class ActiveNow {
+ public:
+  static constexpr std::size_t behaviors_max = 64;
+  void take(const ActiveStates& told);
+  const std::map<std::string, std::vector<std::string>, std::less<>>& by_behavior() const noexcept { return all_; }
+
+ private:
+  std::map<std::string, std::vector<std::string>, std::less<>> all_;
+};
+// "act.arm.wave, act.leg.step"
+std::string listed(const std::vector<std::string>& states);
 
 struct Line;
 class LineSink;
@@ -46,11 +76,13 @@ class BehaviorLog {
 
   void say(const Line& line);
   void transition(const Transition& transition);
+  void active(const ActiveStates& active);  // for sinks that read facts
   void message(std::int64_t time_ns, Severity severity, std::string_view behavior, std::string_view text);
 
  private:
   class Logger;
   std::unique_ptr<Logger> logger_;
+  std::vector<LineSink*> facts_;
 };
 
 // Valid while it is said.
@@ -68,6 +100,7 @@ class LineSink {
  public:
   virtual ~LineSink() = default;
   virtual void tell(const Line& line) = 0;
+  virtual void tell_active(const ActiveStates& active) { (void)active; }
 };
 
 // Text sinks write "     1.50 s  squat: on my way". They lock, so no real-time thread uses them.

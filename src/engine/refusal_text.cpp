@@ -33,6 +33,12 @@ std::string out_of_range(const Refusal& refusal, const Catalog& catalog) {
                                                     : text(catalog.setpoints[refusal.index]);
 }
 
+std::string seconds_text(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f s", seconds);
+  return text;
+}
+
 }  // namespace
 
 std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
@@ -60,6 +66,9 @@ std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
              " is held";
     case RefusalReason::armed_full:
       return "as many transactions as can wait are armed already";
+    case RefusalReason::set_dwells:
+      return of + (refusal.joint < catalog.sets.size() ? catalog.sets[refusal.joint].name : "?") +
+             " cannot be switched for another " + seconds_text(refusal.value) + " (switch_dwell_s)";
   }
   return "";
 }

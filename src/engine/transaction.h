@@ -20,6 +20,18 @@ class CommandSender {
   // False when the transaction would not fit into the queue or into one tick; the whole transaction is then refused
   // by commit().
   [[nodiscard]] bool add(const Command& command) noexcept;
+  // What was added behind a mark can be taken back, until commit().
+  struct Mark {
+    std::size_t size = 1;
+    std::uint64_t overflow = 0;
+    bool switches = false;
+  };
+  Mark mark() const noexcept { return {size_, overflow_, switches_}; }
+  void take_back_to(const Mark& mark) noexcept {
+    size_ = mark.size;
+    overflow_ = mark.overflow;
+    switches_ = mark.switches;
+  }
   // The number of the transaction, from 1; 0 when it was refused; the last number again when nothing was added.
   std::uint32_t commit() noexcept;
   void discard() noexcept;

@@ -54,8 +54,8 @@ double RobotModel::mass_kg() const {
   return sum_kg;
 }
 
-ToldFault told(const Fault& fault, const RobotModel& model, std::int64_t time_ns) {
-  return told(fault, fault.joint < model.joints.size() ? model.joints[fault.joint].name : "", time_ns);
+ToldFault told(const Fault& fault, const RobotModel& model, std::int64_t time_ns, const std::string& robot) {
+  return told(fault, fault.joint < model.joints.size() ? model.joints[fault.joint].name : "", time_ns, robot);
 }
 
 }  // namespace kadans

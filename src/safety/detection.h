@@ -21,6 +21,7 @@
 //   drive_not_enabled                                  drives.enable_s in ticks + 1, while it is asked for torque
 //   supply_low, supply_high                            supply.time_s in ticks + 1
 //   emergency_input                                    1
+//   emergency_stop                                     1, of the first tick after somebody asked
 //   heartbeat_lost                                     heartbeat_timeout_s in ticks + 1
 //   tick_overrun                                       1
 //   overruns                                           overruns_in_a_row_max

@@ -46,6 +46,7 @@ FaultWords words_of_modes(ActuationMode own, ActuationMode other) noexcept {
 
 void Safety::raise(const Fault& fault) noexcept {
   if (fault_count_++ == 0) first_fault_ = fault;
+  new_faults_[faults_raised_++ % new_faults_shown] = {fault.code, fault.joint, fault.value, fault.limit};
   (void)log_.try_push(fault);
   pending_ |= bit(fault.code);
 }
@@ -332,6 +333,8 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   status.level = worst;
   status.fault_count = fault_count_;
   status.first_fault = first_fault_;
+  if (status.faults_raised != faults_raised_) status.new_faults = new_faults_;
+  status.faults_raised = faults_raised_;
   status.stopped = stopped_;
   status.lifts = lifts_;
   level_number_ = static_cast<std::uint32_t>(worst);

@@ -158,6 +158,8 @@ class Safety {
   std::uint16_t lifts_ = 0;
   std::uint32_t fault_count_ = 0;
   Fault first_fault_;
+  std::uint64_t faults_raised_ = 0;
+  std::array<NewFault, new_faults_shown> new_faults_{};
   FaultLog log_;
   std::uint32_t level_number_ = 0, robot_level_number_ = 0;
 };

@@ -73,24 +73,23 @@ class Run {
     hash_.add(row.first(parts_.upkeep_first));
     hash_.add(row.subspan(parts_.upkeep_first + parts_.upkeep_count));
     parts_.world.hash(hash_);
+    for (const RunParts& other : parts_.others) {
+      if (other.faulty != nullptr) other.faulty->hash_held_back(hash_);
+    }
     checks_.update(time_s, row);
     for (RunObserver* observer : observers_) observer->tick(time_s, row);
     const RunMark mark{parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()};
     for (RunObserver* observer : observers_) observer->between_ticks(mark);
-    take_faults(parts_);
-    for (const RunParts& other : parts_.others) take_faults(other);
+    take_faults(parts_, 0);
+    for (std::size_t i = 0; i < parts_.others.size(); ++i) take_faults(parts_.others[i], i + 1);
   }
 
-  void take_faults(const RunParts& robot) {
+  void take_faults(const RunParts& robot, std::size_t number) {
     const std::int64_t time_ns = robot.control.state().time_ns;
     for (Fault fault; robot.control.safety().log().try_pop(fault);) {
-      ToldFault what = told(fault, robot.model, time_ns);
-      if (robot.name.empty()) {
-        for (RunObserver* observer : observers_) observer->fault(fault);
-      } else {
-        what.joint.insert(0, what.joint.empty() ? robot.name : robot.name + ".");
-        robot.log.message(time_ns, BehaviorLog::Severity::warning, robot.name, "fault " + fault_text(what));
-      }
+      fault.robot = static_cast<std::uint16_t>(number);
+      ToldFault what = told(fault, robot.model, time_ns, robot.name);
+      for (RunObserver* observer : observers_) observer->fault(fault);
       result_.faults.push_back({fault, std::move(what)});
     }
   }

@@ -11,6 +11,7 @@
 #include "kadans/plant/world.h"
 #include "plant/joystick/stick.h"
 #include "scenario/disturb/disturbances.h"
+#include "scenario/disturb/planned_faults.h"
 #include "scenario/judge/checks.h"
 #include "scenario/judge/truth_signals.h"
 
@@ -35,15 +36,18 @@ class RunLog final : public BehaviorLog, private LineSink {
 
   const std::vector<Transition>& transitions() const noexcept { return transitions_; }
   const std::vector<LogLine>& lines() const noexcept { return lines_; }
+  const ActiveNow& active() const noexcept { return active_; }
   bool has_errors() const noexcept { return errors_; }  // also when their lines are no longer kept
 
  private:
   void tell(const Line& line) override;
+  void tell_active(const ActiveStates& active) override { active_.take(active); }
 
   std::size_t kept_max_;
   bool errors_ = false;
   std::vector<Transition> transitions_;
   std::vector<LogLine> lines_;
+  ActiveNow active_;
 };
 
 struct RunParts {
@@ -61,8 +65,9 @@ struct RunParts {
   // because memory depends on the machine.
   SignalId upkeep_first = 0;
   std::size_t upkeep_count = 0;
-  std::string name{};              // of a further robot
-  std::vector<RunParts> others{};  // of the world's further robots; their signals are among the first robot's
+  std::string name{};                   // of a further robot
+  const FaultyPlant* faulty = nullptr;  // of a further robot; nullptr: its plant has no faults
+  std::vector<RunParts> others{};       // of the world's further robots; their signals are among the first robot's
 
   // What comes before a step: the truth of each robot as signals, disturbances, the joystick.
   void begin_step() const;
@@ -80,7 +85,7 @@ class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void tick(double time_s, std::span<const double> row) = 0;
-  // Called for each fault that the first robot's safety layer found. Those of further robots are lines of the log.
+  // Called for each fault that a robot's safety layer found; `fault.robot` says which robot's.
   virtual void fault(const Fault& fault) { (void)fault; }
   // Called after each tick and its step of the plant. Changes that it makes take effect in the next tick.
   virtual void between_ticks(const RunMark& mark) { (void)mark; }

@@ -95,8 +95,9 @@ FaultWords fault_words(std::string_view text) noexcept {
   return words;
 }
 
-ToldFault told(const Fault& fault, const std::string& joint, std::int64_t time_ns) {
-  return {name(fault.code), joint, fault.value, fault.limit, fault.words.data(), time_ns};
+ToldFault told(const Fault& fault, const std::string& joint, std::int64_t time_ns, const std::string& robot) {
+  const std::string of = robot.empty() || joint.empty() ? robot + joint : robot + "." + joint;
+  return {name(fault.code), of, fault.value, fault.limit, fault.words.data(), time_ns};
 }
 
 std::string fault_name(const ToldFault& fault) {

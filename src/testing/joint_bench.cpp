@@ -163,6 +163,25 @@ void JointBench::set_point(std::string_view setpoint, double value, double durat
 
 void JointBench::cancel_motion(std::string_view setpoint) { motions_->cancel(find_setpoint(setpoint)); }
 
+void JointBench::lead(const SetpointState& position) noexcept { led_ = position; }
+
+void JointBench::lead_active(const ControlInput& input) {
+  sets_->start_newcomers(input);
+  const std::uint32_t object = active_object();
+  for (SetpointId id = 0; id < catalog_.setpoints.size(); ++id) {
+    const Setpoint& setpoint = catalog_.setpoints[id];
+    if (setpoint.owner != object) continue;
+    const bool velocity = setpoint.unit == "rad/s";
+    if (!velocity && setpoint.unit != "rad") continue;
+    const SetpointState state = velocity ? SetpointState{led_->velocity, led_->acceleration, 0} : *led_;
+    if (setpoint.follows && !setpoint.own_motion) {
+      sets_->object(object).follow(setpoint.channel, state);
+    } else {
+      motions_->move(id, std::clamp(state.value, setpoint.min, setpoint.max), 0);
+    }
+  }
+}
+
 void JointBench::switch_to(std::string_view object) {
   sets_->switch_to(static_cast<std::uint32_t>(find_by_ending("object", object, names_of(catalog_.sets))));
 }
@@ -207,8 +226,11 @@ void JointBench::tick() {
   asked.effort_Nm = std::clamp(asked.effort_Nm, -limit_Nm, limit_Nm);
   written_ = computed_;
   plant_.write(written_);
+  const ControlInput input{joints_, status_, written_, sensors_.time_ns, config_.dt_s};
+  if (led_) lead_active(input);
+  led_.reset();
   motions_->step(config_.dt_s);
-  sets_->step(tick_, {joints_, status_, written_, sensors_.time_ns, config_.dt_s}, computed_);
+  sets_->step(tick_, input, computed_);
   if (tick_ % behavior_divisor == 0) update_high_level();
   catalog_.signals.gather(row_);
   plant_.step(std::llround(config_.dt_s * 1e9));

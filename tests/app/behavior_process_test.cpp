@@ -46,6 +46,27 @@ TEST_CASE("run with a behavior process squats as with a thread: the same transit
   CHECK(has(said(process.err), "settle -> squat"));
 }
 
+TEST_CASE("a behavior process tells all active states, as signals and by their paths") {
+  const auto project = project_copy("process_active");
+  write(project / "behaviors/tulip/two.lua",
+        "local k = require 'kadans'\nreturn k.behavior 'two' { controls = 'posture', k.parallel 'both' {\n"
+        "  k.region 'a' { initial = 'x', k.state 'x' { { after = 0.3, to = 'y' } }, k.state 'y' { endless = true } },\n"
+        "  k.region 'b' { k.state 'z' { endless = true } } } }\n");
+  const std::string two = "run config/tulip/robot.json --plant ideal --play two --duration 0.6 --record ";
+  REQUIRE(run(two + "process.mcap" + on_virtual_time, project).exit_code == 0);
+  REQUIRE(run(two + "thread.mcap --threads-on-virtual-time", project).exit_code == 0);
+  const auto told = [&](const std::string& record) {
+    return run("log cat " + record + " --topic active", project).out;
+  };
+  CHECK(has(told("process.mcap"), R"("states":["both.a.y","both.b.z"])"));
+  for (const char* record : {"process.mcap", "thread.mcap"}) {  // both.a.x is the third state, both.b.z the last
+    const std::string rows = run("log csv " + std::string(record) + " 'behavior.two.region.*'", project).out;
+    CHECK(has(rows, "time_s,behavior.two.region.both.a,behavior.two.region.both.b\n"));
+    CHECK(has(rows, ",3,6\n"));
+    CHECK(has(rows, ",4,6\n"));
+  }
+}
+
 TEST_CASE(
     "run with a behavior process ends cleanly on SIGTERM: behaviors leave, the robot is off, no process is left") {
   const auto project = project_copy("process_term");

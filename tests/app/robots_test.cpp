@@ -7,6 +7,8 @@
 #include <doctest/doctest.h>
 
 #include "app/assembly.h"
+#include "app/services.h"
+#include "telemetry/record/viewer_messages.h"
 
 using namespace kadans;
 
@@ -112,10 +114,66 @@ TEST_CASE("A further robot's faults are its own, told with its name, and the fir
     CAPTURE(signal);
     CHECK(value(one.robot, signal) == value(two.robot, signal));
   }
-  REQUIRE(two.log.lines().size() >= 2);
-  const LogLine& last = two.log.lines().back();
-  CHECK(last.behavior == "left");
-  CHECK(last.text.starts_with("fault heartbeat_lost of left: "));
+}
+
+TEST_CASE("Observers of a run, and so its record and its servers, are told the faults of all robots with their names") {
+  struct Hearing final : RunObserver {
+    void tick(double, std::span<const double>) override {}
+    void fault(const Fault& fault) override { heard.push_back(fault); }
+    std::vector<Fault> heard;
+  } hearing;
+  ScenarioConfig scenario = with_left(20);
+  scenario.faults = {{.kind = ScenarioFault::Kind::sensor_silent, .of = {"r_knee", {}}, .from_s = 0.1}};
+  scenario.robots[0].faults = {{.kind = ScenarioFault::Kind::sensor_silent, .of = {"l_knee", {}}, .from_s = 0.2},
+                               {.kind = ScenarioFault::Kind::behaviors_silent, .from_s = 0.5}};
+  Played played(scenario);
+  Checks none(played.robot.catalog().signals, {});
+  (void)run_scenario(played.robot.parts(), 1, none, {&hearing});
+  const ViewerSubjects subjects = viewer_subjects(played.robot);
+  std::vector<std::string> named;
+  for (const Fault& fault : hearing.heard) named.push_back(fault_name(told(fault, subjects, 0)));
+  CHECK(named ==
+        std::vector<std::string>{"sensor_silent of r_knee", "sensor_silent of left.l_knee", "heartbeat_lost of left"});
+}
+
+TEST_CASE("Viewers get joint states, wrenches and the base of each robot, a further one's under its name") {
+  const ScenarioConfig scenario = with_left(1.5);
+  Played played(scenario);
+  CHECK(played.run(0.1).passed);
+  ViewerMessages messages(played.robot.catalog().signals, viewer_subjects(played.robot));
+  std::vector<std::string> topics;
+  std::string bases;
+  for (std::size_t i = 0; i < messages.channels().size(); ++i) {
+    topics.push_back(messages.channels()[i].topic);
+    if (topics.back() != "/tf") continue;
+    ByteWriter message;
+    messages.write(i, 0, played.robot.control().row(), message);
+    bases.assign(reinterpret_cast<const char*>(message.bytes().data()), message.size());
+  }
+  CHECK(topics == std::vector<std::string>{"/joint_states", "/tf", "/wrench/l_ankle_roll_link",
+                                           "/wrench/r_ankle_roll_link", "/left/joint_states",
+                                           "/left/wrench/l_ankle_roll_link", "/left/wrench/r_ankle_roll_link"});
+  const std::string base = played.robot.robot().model.links.front().name;
+  CHECK(bases.find("\"child_frame_id\":\"" + base + "\"") != std::string::npos);
+  const std::size_t left = bases.find("\"child_frame_id\":\"left/" + base + "\"");
+  REQUIRE(left != std::string::npos);
+  const double y_m = std::stod(bases.substr(bases.find("\"y\":", left) + 4));
+  CHECK(y_m == doctest::Approx(1.5).epsilon(0.01));
+}
+
+TEST_CASE("The hash of a run holds what is under way to the late drives of a further robot") {
+  ScenarioConfig scenario = with_left(20);
+  scenario.robots[0].set.push_back({.key = "actuation.delay_s", .value = 0.003});
+  const auto hash = [&scenario](bool held_back) {
+    Played played(scenario);
+    RunParts parts = played.robot.parts();
+    REQUIRE(parts.others.at(0).faulty != nullptr);
+    if (!held_back) parts.others[0].faulty = nullptr;
+    Checks none(played.robot.catalog().signals, {});
+    return run_scenario(parts, 0.01, none, {}).state_hash;
+  };
+  CHECK(hash(true) == hash(true));
+  CHECK(hash(true) != hash(false));
 }
 
 TEST_CASE("What is set for a further robot is among the quantities of the run") {

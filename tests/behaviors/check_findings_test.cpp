@@ -83,7 +83,26 @@ const Case wrong[] = {
      "t.lua:3: vars.f is a function: vars and args hold plain data"},
     {"a function deep in args",
      "return k.behavior 't' { args = { list = { { go =\nprint } } }, k.state 'a' { endless = true } }",
-     "t.lua:2: args.list.1.go is a function"},
+     "t.lua:2: args.list.go is a function"},
+    {"a misspelt argument",
+     "return k.behavior 't' { args = k.args { side = { 'left' } }, k.state 'a' { endless = true,\n"
+     "enter = function(m) print(m.args.sied) end } }",
+     "t.lua:3: m.args has no 'sied', did you mean 'side'?"},
+    {"a misspelt argument of k.args",
+     "local A = k.args { side = { 'left' } }\nreturn k.behavior 't' { k.state 'a' { endless = true,\n"
+     "enter = function() print(A.side, A.sied) end } }",
+     "t.lua:4: k.args has no 'sied', did you mean 'side'?"},
+    {"a result that waits",
+     "return k.behavior 't' { k.final 'a' { outcome = 'done', result = function(m)\nm:wait(1) return {} end } }",
+     "t.lua:3: a wait where 'result' runs"},
+    {"a report that is emitted",
+     "return k.behavior 't' { k.state 'a' { enter = function(m)\nm:emit 'error' end, { on = 'error', to = 'a' } } }",
+     "t.lua:3: 'error' reports what happened to the behavior, it cannot be emitted"},
+    {"a misspelt name in a function that a call gives",
+     "return k.behavior 't' { k.state 'a' { endless = true, k.call 'takes' {\nhow_m = function(_, s) return s.tiem_s "
+     "end } "
+     "} }",
+     "t.lua:3: s has no 'tiem_s', did you mean 'time_s'?"},
     {"a parameter in vars",
      "local P = k.params { x = 1 }\nreturn k.behavior 't' { vars = {\nx = P.x }, k.state 'a' { endless = true } }",
      "t.lua:4: vars.x is a parameter, which is read where it is needed"},
@@ -204,8 +223,19 @@ const Case right[] = {
      "require 'says'\nrequire(\"nothing\")\nreturn k.behavior 't' { k.state 'a' { endless = true } }", ""},
     {"vars of every plain kind",
      "return k.behavior 't' { vars = { a = 1, b = 'x', c = true, d = { 1, 2, { e = {} } }, [3] = 4 },\n"
-     "args = { list = {} }, k.state 'a' { endless = true, enter = function(m) m.vars.a = (function() return 2 end)() "
+     "args = { list = { {} } }, k.state 'a' { endless = true, enter = function(m) m.vars.a = (function() return 2 "
+     "end)() "
      "end } }",
+     ""},
+    {"reports, arguments, results, and what a call gives",
+     "local A = k.args { side = { 'left', one_of = { 'left', 'right' } } }\nlocal P = k.params { deep_m = { 1, min = "
+     "0, max "
+     "= 2 } }\n"
+     "return k.behavior 't' { initial = 'a', always = { { on = 'error', to = 'b' } }, k.state 'a' {\n"
+     "k.call 'takes' { how_m = P.deep_m, far_m = function(m, s) return s.time_s end },\n"
+     "{ on = 'done', to = 'b', action = function(m, s) print(s.event.data.result.x, A.side, m.args.side) end },\n"
+     "{ on = { 'refused', 'fault.motor_hot' }, to = 'b' } },\n"
+     "k.final 'b' { outcome = 'done', result = function(m) return { side = A.side } end } }",
      ""},
     {"a chart made in a loop, with its functions in locals",
      "local states = { initial = 's1', controls = 'posture' }\nfor i = 1, 3 do\n"

@@ -3,6 +3,7 @@
 
 #include "app/assembly.h"
 #include "app/program.h"
+#include "estimate/estimator.h"
 #include "script/check/check_behavior.h"
 
 namespace kadans::check_tests {
@@ -21,6 +22,7 @@ class Project {
       : robot_(read_robot(KADANS_SOURCE_DIR "/config/tulip/robot.json")),
         system_(make_control_system(robot_)),
         folder_(program::fresh_folder("check_findings")) {
+    declare_signals(system_->catalog.signals, robot_.config.model, robot_.config.estimate, *measured_);
     fs::create_directories(folder_ / "behaviors/lib");
     lib("arms",
         "local arms = { count = 0 }\n"
@@ -36,6 +38,10 @@ class Project {
     lib("says", "require 'kadans'.log.info('loaded')\n");
     lib("number", "return 7\n");
     lib("call", "return function(m) m.posture:set_gains 'soft' end\n");
+    lib("takes",
+        "local k = require 'kadans' return k.behavior 'takes' { args = { how_m = { 1, min = 0, max = 3 }, far_m = 0 "
+        "},\n"
+        "k.final 'a' { outcome = 'done', result = function(m) return { x = m.args.how_m } end } }\n");
     lib("over", "local k = require 'kadans' return k.behavior 'over' { k.final 'a' { outcome = 'tired' } }\n");
   }
 
@@ -59,6 +65,7 @@ class Project {
  private:
   Robot robot_;
   std::unique_ptr<ControlSystem> system_;
+  std::unique_ptr<Snapshot> measured_ = std::make_unique<Snapshot>();  // for the names of what is measured
   fs::path folder_;
 };
 

@@ -50,7 +50,7 @@ const Mistake in_a_function[] = {
     {"print(maths.pi)", "5: unknown name 'maths', did you mean 'math'?"},
     {"count = 1", "5: 'count' would be a global: write local count"},
     {"helper(m, s)", "2: s.base has no 'roll', did you mean 'roll_rad'?"},
-    {"m.vars.tries = m.vars.tries + 1\nm.vars.new = 2\nprint(m.vars.new, m.args.x, m.time_s, P.settle_s)", ""},
+    {"m.vars.tries = m.vars.tries + 1\nm.vars.new = { 2 }\nprint(m.vars.new, m.args.x, m.time_s, P.settle_s)", ""},
     {"for i, v in ipairs({ 1 }) do print(i, v) end\nrepeat local done = true until done\ngoto out\n::out::", ""},
     {"local a, b = 1, 2\nlocal function f(x, ...) return x + a + b, ... end\nprint(f(1), #s.safety.level, math.pi)",
      ""},

@@ -1,5 +1,5 @@
-// docs/behaviors.md and docs/reflexes.md are true: their files are written into a copy of the project, their commands
-// are run there, and what they show is what these print.
+// docs/behaviors.md, docs/behaviors_composition.md and docs/reflexes.md are true: their files are written into a copy
+// of the project, their commands are run there, and what they show is what these print.
 #include <algorithm>
 
 #include <doctest/doctest.h>
@@ -10,6 +10,10 @@ using namespace kadans;
 
 TEST_CASE("every file of the guide is right, every command of it works and prints what it shows") {
   document::check_page("behaviors.md", "guide");
+}
+
+TEST_CASE("every file of the chapter on composing is right, every command of it works and prints what it shows") {
+  document::check_page("behaviors_composition.md", "composition");
 }
 
 TEST_CASE("every file of the page on reflexes is right, every command of it works and prints what it shows") {

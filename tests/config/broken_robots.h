@@ -157,6 +157,10 @@ inline constexpr Broken broken_robots[] = {
      "53:51: control objects 'posture' and 'arms' of one set both drive joint 'l_shoulder_pitch'"},
     {"\"posture\": { \"objects\": [\"posture\"] }", "\"posture\": { \"objects\": [\"posture\"], \"sum\": [\"arms\"] }",
      "53:60: unknown control object 'arms' of this set (known: posture)"},
+    {"\"posture\": { \"objects\": [\"posture\"] }",
+     "\"posture\": { \"objects\": [\"posture\"], \"switch_dwell_s\": 61 }",
+     "53:70: control.sets.posture.switch_dwell_s is 61, must be 0..60 s: least time between two switches of it, in or "
+     "out; an earlier one is refused"},
     {"\"posture\": { \"objects\": [\"posture\"] }", "\"posture\": [\"posture\"]",
      "53:26: control.sets.posture must be an object, not an array: control sets: the control objects that are active "
      "together\n54:20: unknown control set 'posture' (known: wave)"},

@@ -82,6 +82,18 @@ TEST_CASE("The bound of a switch and its fade are the configuration's, else 2 pe
   CHECK(changed.switching.fade_s == 0.5);
 }
 
+TEST_CASE("A control set and a control object may demand a least time between switches, else they demand none") {
+  CHECK(read(right_robot).sets.front().switch_dwell_s == 0);
+  CHECK(read(right_robot).objects.front().switch_dwell_s == 0);
+  CHECK(read_with("\"posture\": { \"objects\": [\"posture\"] }",
+                  "\"posture\": { \"objects\": [\"posture\"], \"switch_dwell_s\": 0.3 }")
+            .sets.front()
+            .switch_dwell_s == 0.3);
+  CHECK(read_with("\"name\": \"posture\",", "\"name\": \"posture\", \"switch_dwell_s\": 0.2,")
+            .objects.front()
+            .switch_dwell_s == 0.2);
+}
+
 TEST_CASE("A pattern speaks for all joints that it fits, and later entries override earlier ones field by field") {
   const RobotConfig config = read_with("\"*_ankle_roll\": { \"rotor_inertia_kg_m2\": 0,", "\"*_ankle_roll\": {");
   const DriveSettings& ankle = config.plant.drives[joint(config, "r_ankle_roll")];

@@ -118,6 +118,25 @@ TEST_CASE("TaskImpedance takes a point that is set between its start and its fir
   CHECK(kadans::test::largest_step(bench, 300) < 0.02);
 }
 
+TEST_CASE("TaskImpedance keeps a set-point that comes with a new point, whichever of the two comes first") {
+  for (const bool started : {false, true}) {
+    ArmBench bench = tuned();
+    bench.place(0.9, -1.4);
+    bench.start();
+    if (!started) bench.run(300);
+    SetpointState x, z;
+    REQUIRE(bench.object->setpoint_state(0, x));
+    bench.object->follow(0, {.value = x.value + 0.1});  // as the engine does in one transaction with the parameter
+    bench.set("point_z_m", -0.2);
+    CHECK(kadans::test::largest_step(bench, 1) < 0.02);
+    CHECK(bench.signal("x.reference_m") == x.value + 0.1);
+    REQUIRE(bench.object->setpoint_state(2, z));
+    CHECK(z.value == bench.signal("z.position_m"));  // what was not asked for is taken over
+    CHECK(kadans::test::largest_step(bench, 300) < 0.05);
+    CHECK(bench.signal("x.reference_m") == x.value + 0.1);
+  }
+}
+
 TEST_CASE("TaskImpedance limits the force at the point and the torque of each joint, and says so") {
   ArmBench bench = tuned();
   bench.place(0.9, -1.4);

@@ -292,3 +292,57 @@ TEST_CASE("Armed transactions take no memory while they wait and when they act")
   CHECK(heap.count() == 0);
   CHECK(stand.value() == 70);
 }
+
+TEST_CASE("Ten thousand arms and cancels leave no place taken and no memory, and the last one acts") {
+  Stand stand;
+  const testing::AllocationCount heap;
+  const Command condition = stand.hip(ConditionKind::above, 0.003);
+  for (int i = 0; i < 10'000; ++i) {
+    const std::uint32_t number = stand.send({Stand::arm(1, 1), condition, stand.set_kp(90)});
+    (void)stand.send({Command{.kind = CommandKind::disarm, .index = 0, .sequence = number},
+                      Command{.kind = CommandKind::disarm, .index = 7, .sequence = number + 9}});
+    if (i % 8 == 7) stand.ticks(1);
+  }
+  const long allocations = heap.count();
+  CHECK(allocations == 0);
+  CHECK(stand.seen().transactions_refused == 0);
+  const std::uint32_t last = stand.send({Stand::arm(1, 1), condition, stand.set_kp(70)});
+  stand.posed.position_rad[0] = 0.004;
+  stand.ticks(1);
+  CHECK(stand.status(last).state == ArmedState::done);
+  CHECK(stand.value() == 70);
+}
+
+TEST_CASE(
+    "It acts as a command does on an object whose set is not active: that object starts from where the joint is") {
+  Stand armed, plain;
+  const auto spare_hip = [](const Stand& stand) {
+    const SetpointId id = stand.own.setpoints.find("spare.hip.position_rad").value();
+    return Command{.kind = CommandKind::set_point, .index = id, .value = 1, .duration_s = 0.5};
+  };
+  const std::uint32_t number = armed.send({Stand::arm(1, 1), Stand::after(0), spare_hip(armed)});
+  (void)plain.send({spare_hip(plain)});
+  for (Stand* stand : {&armed, &plain}) {
+    stand->ticks(5);
+    (void)stand->send({{.kind = CommandKind::switch_set, .index = 1}});
+    stand->ticks(20);
+  }
+  CHECK(armed.status(number).state == ArmedState::done);
+  for (std::size_t joint = 0; joint < 2; ++joint)
+    CHECK(armed.posed.written.joints[joint].effort_Nm == plain.posed.written.joints[joint].effort_Nm);
+}
+
+TEST_CASE("From the tick of the condition to the torque are two ticks: one that computes, one that writes") {
+  Stand armed, untouched;
+  (void)armed.send({Stand::arm(1, 1), armed.hip(ConditionKind::above, 0.003), armed.set_kp(90)});
+  for (Stand* stand : {&armed, &untouched}) stand->ticks(20);
+  for (Stand* stand : {&armed, &untouched}) stand->posed.position_rad[0] = stand->posed.position_rad[1] = 0.004;
+  const auto differ = [&] {
+    return armed.posed.written.joints[1].effort_Nm != untouched.posed.written.joints[1].effort_Nm;
+  };
+  for (Stand* stand : {&armed, &untouched}) stand->ticks(1);  // measured, and computed with the new gain
+  CHECK(armed.value() == 90);
+  CHECK_FALSE(differ());
+  for (Stand* stand : {&armed, &untouched}) stand->ticks(1);
+  CHECK(differ());
+}

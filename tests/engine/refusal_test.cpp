@@ -133,3 +133,21 @@ TEST_CASE("A held joint refuses a switch that concerns it, by its name, and no o
   CHECK(rig.refusal({{.kind = CommandKind::clear_faults}, switch_to(0)}) == "taken");
   CHECK(rig.sets.active() == 0b1);
 }
+
+TEST_CASE("What was armed for a joint that is held when its condition comes is refused, with the joint; another acts") {
+  Rig rig;
+  const Command now{.kind = CommandKind::condition, .count = static_cast<std::uint32_t>(ConditionKind::after)};
+  const Command arm{.kind = CommandKind::arm, .index = 1, .count = 2, .duration_s = 10};
+  const std::uint32_t held = rig.send({arm, now, rig.set("knee_alone.knee.position_rad", 0.1)});
+  const std::uint32_t free = rig.send({arm, now, rig.set("hip_alone.hip.position_rad", 0.1)});
+  rig.hold(1);
+  rig.inbox.carry_out_armed(2, {rig.snapshot.joints, rig.snapshot.status, rig.written, 0, 0.001}, rig.safety);
+  rig.inbox.fill(rig.snapshot);
+  REQUIRE(rig.snapshot.transactions_refused == 1);
+  CHECK(rig.snapshot.refusals[0].sequence == held);
+  CHECK(refusal_text(rig.snapshot.refusals[0], rig.catalog) == "knee_alone.knee.position_rad: joint knee is held");
+  for (const ArmedStatus& status : rig.snapshot.armed) {
+    if (status.sequence == free) CHECK(status.state == ArmedState::done);
+    if (status.sequence == held) CHECK(status.reason == RefusalReason::joint_held);
+  }
+}

@@ -278,6 +278,20 @@ Findings check_words(std::string_view path, std::string_view text) {
     if ((begins("Tune") || begins("Tuning")) &&
         !in_one_of({"campaign/", "config/plan/", "app/tune/", "app/sweep/", "app/commands.h"}))
       wrong = "'tuning' searches for parameters";
+    const auto speaks_of = [name](std::string_view word) {  // "OrderInfo", "DriveOrder"; not "Recorder", not "Placed"
+      const std::size_t at = name.find(word);
+      return at != std::string_view::npos && (at + word.size() == name.size() || std::isupper(name[at + word.size()]) ||
+                                              name.substr(at + word.size()) == "s");
+    };
+    if (speaks_of("Order") && name != "DriveOrder" &&
+        !in_one_of({"remote/", "config/scenario/play_item.h", "script/host/"}))
+      wrong = "an 'order' is asked of a running instance";
+    if (speaks_of("Request") && name != "DriveRequest" && !in_one_of({"remote/", "script/process/"}))
+      wrong = "a 'request' is an order that is not read yet";
+    if (speaks_of("Command") && !in_one_of({"signal/command.h", "engine/", "app/command"}))
+      wrong = "a 'command' goes to the control engine, or stands on the command line";
+    if (speaks_of("Log") && in_one_of({"telemetry/mcap/", "telemetry/reading/", "telemetry/plot/"}))
+      wrong = "a 'log' is of lines, a run's file is a record";
     if (!wrong.empty())
       findings.push_back(std::string(path) + ": " + type + ": " + wrong + " (docs/architecture.md, words)");
   }

@@ -157,7 +157,18 @@ TEST_CASE("a word of docs/architecture.md stands for one idea in the names of ty
   CHECK(check_words("app/run/a.h", live) ==
         Findings{"app/run/a.h: kadans::LiveThing: 'Live' is the server for viewers (docs/architecture.md, words)"});
   CHECK(check_words("app/a.h", "namespace kadans {\nstruct CtlPlace {\n};\nstruct TextPlace {\n};\n}\n").size() == 1);
-  CHECK(check_words("remote/a.h", "namespace kadans {\nstruct TuningStep {\n};\n}\n").size() == 1);
+  const auto wrong = [](const char* path, const std::string& type) {
+    return check_words(path, "namespace kadans {\nstruct " + type + " {\n};\n}\n").size() == 1;
+  };
+  CHECK(wrong("remote/a.h", "TuningStep"));
+  CHECK(wrong("app/a.h", "PictureOrder"));
+  CHECK_FALSE(wrong("remote/order/a.h", "OrderInfo"));
+  CHECK_FALSE(wrong("telemetry/record/a.h", "Recorder"));
+  CHECK(wrong("app/run/a.h", "RunRequest"));
+  CHECK_FALSE(wrong("remote/order/a.h", "OrderRequest"));
+  CHECK(wrong("remote/ros2/a.h", "TextCommands"));
+  CHECK_FALSE(wrong("app/command_line.h", "CommandInfo"));
+  CHECK(wrong("telemetry/reading/a.h", "LogCut"));
 }
 
 TEST_CASE("no test has a name that CTest would tear apart") {

@@ -99,6 +99,24 @@ TEST_CASE("what ends takes with it those of its group that it leaves behind") {
   close(ends[0]);
 }
 
+TEST_CASE("what ends takes its group with it also where this process was started with SIGCHLD ignored") {
+  struct sigaction ignored {
+  }, before{};
+  ignored.sa_handler = SIG_IGN;
+  REQUIRE(sigaction(SIGCHLD, &ignored, &before) == 0);
+  int ends[2];
+  REQUIRE(pipe2(ends, O_CLOEXEC) == 0);
+  ChildProcess process(
+      {.words = {"sh", "-c", "sleep 1000 & exit 4"}, .files = {no_file, ends[1], no_file}, .own_group = true});
+  close(ends[1]);
+  process.wait();
+  sigaction(SIGCHLD, &before, nullptr);
+  CHECK(process.exit_code() == 4);
+  pollfd gone{ends[0], POLLIN, 0};
+  CHECK(poll(&gone, 1, 5000) == 1);
+  close(ends[0]);
+}
+
 TEST_CASE("a signal that interrupts the wait does not let those of its group live on") {
   struct sigaction handled {
   }, before{};

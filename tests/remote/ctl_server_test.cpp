@@ -152,6 +152,7 @@ TEST_CASE("behaviors play, are paused, tuned, replaced and stopped, and status s
   live.start();
   CHECK(live.ask({{"verb", "play"}, {"list", "wait"}})["text"] == "play wait");
   CHECK(live.ask({{"verb", "status"}})["behaviors"][0]["state"] == "a");
+  CHECK(live.ask({{"verb", "status"}})["behaviors"][0]["active"] == Json::array({"a"}));
   CHECK(live.ask({{"verb", "set"}, {"name", "wait.level"}, {"value", 3}})["before"] == 1);
   CHECK(live.ask({{"verb", "get"}, {"name", "wait.level"}})["value"] == 3);
   CHECK(error_of(live.ask({{"verb", "set"}, {"name", "wait.level"}, {"value", 6}})) ==

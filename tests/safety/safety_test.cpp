@@ -1,4 +1,10 @@
 // The safety layer as a whole: what passes, what the runtime's own failures do, faults and their clearing.
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
+
 #include <doctest/doctest.h>
 
 #include "bench.h"
@@ -273,4 +279,24 @@ TEST_CASE("Checking allocates nothing, whatever is wrong") {
   const auto allocations = heap.count();
   CHECK(allocations == 0);
   CHECK(bench.status.fault_count > 5);
+}
+
+TEST_CASE("The table at the head of detection.h promises something of each fault, a row a promise") {
+  std::ifstream file(KADANS_SOURCE_DIR "/src/safety/detection.h");
+  std::set<std::string> promised;
+  for (std::string line; std::getline(file, line) && line != "#pragma once";) {
+    constexpr std::size_t column = 56;  // where the ticks stand
+    if (!line.starts_with("//   ") || line.find("---") != std::string::npos || line.ends_with(" ticks")) continue;
+    REQUIRE_MESSAGE(line.size() > column, line);
+    CHECK_MESSAGE((line[column - 1] == ' ' && line[column] != ' '), line);
+    std::string names = line.substr(0, column);
+    std::ranges::replace(names, ',', ' ');
+    std::istringstream words(names.substr(2));
+    for (std::string word; words >> word;) promised.insert(word);
+  }
+  CHECK(promised.size() == fault_codes - 1);  // all but none
+  for (std::size_t code = 1; code < fault_codes; ++code) {
+    const std::string fault = name(static_cast<FaultCode>(code));
+    CHECK_MESSAGE(promised.contains(fault), fault);
+  }
 }

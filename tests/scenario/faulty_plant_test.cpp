@@ -100,3 +100,21 @@ TEST_CASE("Faults of drives name drives: a coupled joint is none") {
   CHECK_THROWS_WITH_AS(Bench(fault(ScenarioFault::Kind::drive_dead, "tilt")), doctest::Contains("drive 'tilt'"),
                        InputError);
 }
+
+TEST_CASE(
+    "Two states that differ in what is under way to a late drive, or in what a fault holds, differ in their hash") {
+  const auto hash_after = [](const ScenarioFault& planned, const std::vector<double>& efforts_Nm) {
+    Bench bench(planned);
+    for (const double effort_Nm : efforts_Nm) bench.tick({.effort_Nm = effort_Nm, .mode = ActuationMode::effort});
+    StateHash hash;
+    bench.faulty->hash_held_back(hash);
+    return hash.value();
+  };
+  ScenarioFault late = fault(ScenarioFault::Kind::drive_late, "left", 2);
+  late.from_s = 0;
+  CHECK(hash_after(late, {0, 0, 1}) != hash_after(late, {0, 0, 2}));
+  CHECK(hash_after(late, {0, 1, 0}) != hash_after(late, {0, 2, 0}));
+  CHECK(hash_after(late, {1, 0, 0}) == hash_after(late, {2, 0, 0}));  // it has come to the drive
+  const ScenarioFault stuck = fault(ScenarioFault::Kind::drive_stuck, "left");
+  CHECK(hash_after(stuck, {1, 0}) != hash_after(stuck, {2, 0}));
+}

@@ -29,8 +29,9 @@ struct Subject {
     result.state_hash = 0x0123456789abcdefU;
     result.tick = {1200, 2000, 50000};
     result.commands_sent = 72;
-    for (const Fault& fault : {Fault{FaultCode::velocity_limit, 0, 1234, 13, 12},
-                               Fault{FaultCode::heartbeat_lost, no_joint, 2000, 0.2, 0.1}})
+    for (const Fault& fault :
+         {Fault{.code = FaultCode::velocity_limit, .joint = 0, .tick = 1234, .value = 13, .limit = 12},
+          Fault{.code = FaultCode::heartbeat_lost, .tick = 2000, .value = 0.2, .limit = 0.1}})
       result.faults.push_back({fault, told(fault, model)});
     log.transition({1'500'000'000, "squat", "stand", "down", "after 1 s"});
     log.message(0, BehaviorLog::Severity::error, "squat", "squat.lua:12: attempt to call a nil value");

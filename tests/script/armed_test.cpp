@@ -13,13 +13,19 @@ namespace {
 
 double contact = 0, height_m = 0;
 
+std::string armed_chart(const std::string& code, const std::string& out, const std::string& name = "a") {
+  return "local k = require 'kadans'\nreturn k.behavior 'test' { controls = 'posture', initial = '" + name +
+         "',\nk.state '" + name + "' { enter = function(m, s)\n" + code + "\nend,\n" + out +
+         " }, k.state 'b' { endless = true } }\n";
+}
+
+constexpr const char* leads_to_b = "{ on = 'touched', to = 'b' },";
+constexpr const char* arms_hold =
+    "m:on('foot.right.contact', function(c) c.posture:hold() end, { within_s = 9, event = 'touched' })";
+
 // A robot with two signals; `code` runs with m and s in `enter` of state "a". Event "touched" leads to "b".
 struct ArmedStage : Stage {
-  explicit ArmedStage(const std::string& code, const std::string& out = "{ on = 'touched', to = 'b' },")
-      : Stage(
-            "local k = require 'kadans'\nreturn k.behavior 'test' { controls = 'posture', initial = 'a',\n"
-            "k.state 'a' { enter = function(m, s)\n" +
-            code + "\nend,\n" + out + " }, k.state 'b' { endless = true } }\n") {
+  explicit ArmedStage(const std::string& code, const std::string& out = leads_to_b) : Stage(armed_chart(code, out)) {
     for (const char* foot : {"foot.l_sole.contact", "foot.l_sole.force_N", "foot.r_sole.contact"})
       robot.catalog.signals.add({foot, "", ""}, &contact);
     robot.catalog.signals.add({"base.height_m", "m", ""}, &height_m);
@@ -182,4 +188,73 @@ TEST_CASE("a mistake in m:on is told with its line, and nothing is recorded any 
   stage.tick();
   CHECK(stage.commands(CommandKind::set_point) == 1);
   CHECK(stage.commands(CommandKind::cancel_motion) == 0);
+}
+
+TEST_CASE(
+    "one that is refused when its condition is true is told with the reason, and does not bring the state's sets "
+    "back") {
+  ArmedStage stage(
+      "m:on('foot.right.contact', function(c) c:use('gesture') c.arms:set('l_shoulder_pitch.position_rad', 1) end, "
+      "{ within_s = 9 })");
+  stage.tick();
+  const std::size_t sent = stage.applied.size();
+  stage.snapshot.control_sets = 2;  // a person, or another reflex, switched to "gesture"
+  stage.tell(ArmedState::refused, 0);
+  stage.snapshot.refusals[0] = {.sequence = stage.sender.last_sequence(),
+                                .kind = CommandKind::switch_set,
+                                .reason = RefusalReason::set_dwells,
+                                .joint = 0,
+                                .index = 1,
+                                .value = 0.125};
+  stage.snapshot.transactions_refused = 1;
+  stage.tick(5);
+  CHECK(stage.applied.size() == sent);
+  CHECK(stage.behavior->transactions_refused() == 1);
+  CHECK(has(stage.said(),
+            "what a armed was refused when its condition was true\nall its commands: control set gesture: "
+            "posture cannot be switched for another 0.125 s (switch_dwell_s)\n"));
+}
+
+TEST_CASE("a reload leaves armed what belongs to a state that stays, with its event, and takes back the rest") {
+  for (const bool stays : {true, false}) {
+    CAPTURE(stays);
+    ArmedStage stage(arms_hold);
+    stage.tick();
+    const std::uint32_t number = stage.sender.last_sequence();
+    ArmedStatus& status = stage.snapshot.armed[0];
+    status = {.sequence = number, .state = ArmedState::waits};
+    stage.tick(2);
+    stage.scripts.write("behaviors/test.lua", armed_chart("print 'new'", leads_to_b, stays ? "a" : "c"));
+    REQUIRE(stage.behavior->reload(stage.snapshot, stage.sender) == Behavior::Reload::taken);
+    stage.tick(3);
+    CHECK((stage.commands(CommandKind::disarm) > 0) == !stays);
+    status.state = ArmedState::done;
+    status.fired = 1;
+    stage.tick(3);
+    CHECK(stage.behavior->state() == (stays ? "b" : "c"));
+  }
+}
+
+TEST_CASE("in a pause it stays armed, and what happened meanwhile is told when the behavior goes on") {
+  Theatre theatre;
+  for (const char* foot : {"foot.l_sole.contact", "foot.l_sole.force_N", "foot.r_sole.contact"})
+    theatre.robot.catalog.signals.add({foot, "", ""}, &contact);
+  theatre.scripts.write("behaviors/main.lua", armed_chart(arms_hold, leads_to_b));
+  ScriptHost::Settings settings;
+  settings.play.push_back({.file = "behaviors/main.lua"});
+  theatre.open(settings);
+  theatre.tick();
+  ArmedStatus& status = theatre.snapshot.armed[0];
+  status = {.sequence = theatre.sender.last_sequence(), .state = ArmedState::waits};
+  theatre.host->order({.kind = PlayOrder::Kind::pause});
+  theatre.tick(5);
+  REQUIRE(theatre.host->paused());
+  CHECK(theatre.commands(CommandKind::disarm) == 0);
+  status.state = ArmedState::done;
+  status.fired = 1;
+  theatre.tick(5);
+  CHECK(theatre.host->behavior(0).state() == "a");
+  theatre.host->order({.kind = PlayOrder::Kind::resume});
+  theatre.tick(5);
+  CHECK(theatre.host->behavior(0).state() == "b");
 }

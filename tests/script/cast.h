@@ -34,6 +34,18 @@ struct Cast : Theatre {
     }
     return "";
   }
+  // Lets a tick pass whose transactions the control engine refuses.
+  void refuse_tick(RefusalReason reason) {
+    applying = false;
+    tick();
+    Command command;
+    while (queue.try_pop(command)) {
+      if (command.kind == CommandKind::transaction)
+        snapshot.refusals[0] = {.sequence = command.sequence, .reason = reason};
+    }
+    snapshot.transactions_refused = 1;
+    applying = true;
+  }
   std::vector<std::uint32_t> switches() const {
     std::vector<std::uint32_t> all;
     for (const Command& command : applied) {

@@ -175,6 +175,11 @@ constexpr ChargeCase cases[] = {
     {"k.params",
      "local t = {} for i = 1, 900 do t['p' .. i] = { 1, min = 0, max = 2, doc = ('x'):rep(500) } end\n"
      "return k.params, t"},
+    {"k.args",
+     "local t = {} for i = 1, 90 do t['p' .. i] = { 1, min = 0, max = 2, doc = ('x'):rep(500) } end\n"
+     "return k.args, t"},
+    {"k.args", "local t = {} for i = 1, 30 do t[i] = 'x' .. i end\nreturn pcall, k.args, { x = { 'x0', one_of = t } }"},
+    {"k.skill", "return k.skill 'x', { doc = ('x'):rep(60000), make = function() end }"},
     {"k.pose", "return k.pose, 'stand'"},
     {"k.pose", "return pcall, k.pose, ('x'):rep(200)"},
     {"k.budget", "return k.budget"},

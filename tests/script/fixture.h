@@ -103,12 +103,15 @@ class Log final : public BehaviorLog, private LineSink {
       errors += line.severity == Severity::error ? 1 : 0;
     }
   }
+  void tell_active(const ActiveStates& told) override {
+    active.push_back(std::string(told.behavior) + ": " + listed(told.copies()));
+  }
   std::string joined() const {
     std::string all;
     for (const std::string& text : messages) all += text.substr(text.find(": ") + 2) + "\n";
     return all;
   }
-  std::vector<std::string> transitions, messages;
+  std::vector<std::string> transitions, messages, active;
   int errors = 0;
 };
 

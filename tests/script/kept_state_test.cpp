@@ -263,6 +263,25 @@ TEST_CASE("the count of lines that found no place stays until it is told") {
   CHECK_MESSAGE(text.ends_with("3 lines found no place"), text);
 }
 
+TEST_CASE("the count of lines that found no place is told when there is place, also if no line follows") {
+  const auto link = std::make_unique<BehaviorLink>();
+  SpokenLines lines(*link);
+  BehaviorLog log{&lines};
+  log.message(0, BehaviorLog::Severity::info, "one", std::string(link->lines.free() - 50, 'x'));
+  log.message(0, BehaviorLog::Severity::info, "one", std::string(100, 'x'));
+  const std::size_t full = link->lines.free();
+  lines.tell_dropped(0);
+  CHECK(link->lines.free() == full);  // there is no place for it yet
+  link->lines.drop(link->lines.size());
+  lines.tell_dropped(0);
+  std::string text;
+  for (std::size_t i = 0; i < link->lines.size(); ++i) text.push_back(static_cast<char>(link->lines.peek(i)));
+  CHECK_MESSAGE(text.ends_with("1 lines found no place"), text);
+  link->lines.drop(link->lines.size());
+  lines.tell_dropped(0);
+  CHECK(link->lines.size() == 0);  // once
+}
+
 TEST_CASE("a process is replaced at once, then later and later, and not at all after too many deaths in a row") {
   RestartPolicy policy({.deaths_max = 6, .proved_ticks = 3, .delay_ns = 100, .delay_max_ns = 300});
   CHECK(policy.died(1000) == 1000);

@@ -117,6 +117,25 @@ const Mistake in_a_tick[] = {
     {"error({})", "behaviors/test.lua:3: the script raised a value that is not a string"},
     {"string.format('%d', 'x')", "behaviors/test.lua:3: bad argument #2"},
     {"require 'legs'", "behaviors/test.lua:3: require 'legs' belongs at the top of the file"},
+    // what behavior check cannot see before a run
+    {"local vars = m.vars\nlocal x = vars.n + 1",
+     "behaviors/test.lua:4: attempt to perform arithmetic on field 'n' (a nil value): nothing gave it a value"},
+    {"local up = s.time_s >= 0\nlocal x = 'up ' .. up",
+     "behaviors/test.lua:4: attempt to concatenate local 'up' (a boolean value): tostring(x) makes a text of it"},
+    {"local limit = tostring(1)\nif s.time_s < limit then end",
+     "behaviors/test.lua:4: attempt to compare number with string: tonumber(text) makes a number of it"},
+    {"local limit = 45\nm.posture:move({ l_knee = limit }, { time_s = 1 })",
+     "behaviors/test.lua:4: posture.l_knee.position_rad = 45 is outside its range 0..2.35 rad; 45 degrees are 0.785 "
+     "rad"},
+    {"local name = 'stnd'\nm.posture:move(name, { time_s = 1 })",
+     "behaviors/test.lua:4: unknown pose 'stnd', did you mean 'stand'?"},
+    {"local event = 'unherd'\nm:emit(event)",
+     "behaviors/test.lua:4: nothing in this behavior waits for the event 'unherd'"},
+    {"local object = 'postur'\nm[object]:hold()", "behaviors/test.lua:4: m has no 'postur', did you mean 'posture'?"},
+    {"local how = 1\nm.posture:move('stand', how)",
+     "behaviors/test.lua:4: move: the last argument must be a table { ... }, not a number"},
+    {"local x = s.wait", "behaviors/test.lua:3: s has no 'wait'; the order is (m, s) in enter"},
+    {"print(null)", "behaviors/test.lua:3: unknown name 'null': Lua writes nil"},
 };
 
 }  // namespace
@@ -160,5 +179,7 @@ TEST_CASE("check_behavior tells what is wrong without running anything, and noth
   scripts.write("a.lua",
                 "local k = require 'kadans' return k.behavior 'a' { enter = function() while true do end end,\nk.state "
                 "'x' { endless = true } }");
-  CHECK(check_behavior(scripts.root, "a.lua", robot.catalog).empty());
+  const auto endless = check_behavior(scripts.root, "a.lua", robot.catalog);  // a run would exceed its budget
+  REQUIRE(endless.size() == 1);
+  CHECK(endless[0].text().find("a.lua:1: this loop never ends") == 0);
 }

@@ -229,7 +229,7 @@ TEST_CASE("a list gives a behavior its arguments, and values of its parameters")
       "behaviors/says.lua",
       "local k = require 'kadans'\n"
       "local P = k.params { depth_m = { 0.1, min = 0.02, max = 0.15, unit = 'm' } }\n"
-      "return k.behavior 'says' { args = { word = 'no', loud = false, times = 1, pose = {} },\n"
+      "return k.behavior 'says' { args = { word = 'no', loud = false, times = 1, pose = { {} } },\n"
       "k.state 'a' { enter = function(m) print(m.args.word, m.args.loud, m.args.times, P.depth_m) end "
       "} }\n");
   auto list = theatre.list({"says", "says"});

@@ -150,7 +150,8 @@ TEST_CASE("regions that could be active together on sets with a common joint are
   CHECK(regions("", "controls = 'leg',", "") ==
         "behaviors/main.lua:2: unknown control set 'leg' in 'controls', did you mean 'legs'?");
   CHECK(regions("", "controls = {},", "") ==
-        "behaviors/main.lua:2: 'controls' is a list of 1..32 names of control sets, not of 0");
+        "behaviors/main.lua:2: 'controls' is a list of 1..32 names of control sets, not of 0: controls = { \"legs\", "
+        "\"arms\" }");
   CHECK(regions("", "controls = { 1 },", "") ==
         "behaviors/main.lua:2: 'controls' lists names of control sets, not a number");
   CHECK(regions("", "controls = true,", "") ==
@@ -288,16 +289,8 @@ TEST_CASE("sets of a transaction that was refused are asked for again as soon as
              "return k.behavior 'main' { controls = 'posture', initial = 'a', k.state 'a' { { after = 0.02, to = 'b' } "
              "}, k.state 'b' { controls = 'legs', endless = true } }");
   cast.tick(2);
-  cast.applying = false;
-  cast.tick();
-  Command command;
-  while (cast.queue.try_pop(command)) {
-    if (command.kind == CommandKind::transaction)
-      cast.snapshot.refusals[0] = {.sequence = command.sequence, .reason = RefusalReason::robot_held};
-  }
-  cast.snapshot.transactions_refused = 1;
+  cast.refuse_tick(RefusalReason::robot_held);
   cast.snapshot.status.safety.level = SafetyLevel::hold;
-  cast.applying = true;
   cast.tick(3);
   CHECK(cast.switches().empty());
   cast.snapshot.status.safety.level = SafetyLevel::normal;

@@ -82,7 +82,7 @@ TEST_CASE("what is used of a snapshot is copied, what is not stays") {
   from.status.base.height_m = 10;
   from.status.support.cop_y_m = 11;
   from.object_count = 2;
-  for (ObjectStatus& object : from.objects) object = {true, 12};
+  for (ObjectStatus& object : from.objects) object = {true, 3, 12};
   from.setpoint_count = 2;
   for (SetpointStatus& setpoint : from.setpoints) setpoint = {13, 14};
   for (Refusal& refusal : from.refusals) refusal.sequence = 15;
@@ -101,6 +101,7 @@ TEST_CASE("what is used of a snapshot is copied, what is not stays") {
   CHECK(to.status.base.height_m == 10);
   CHECK(to.status.support.cop_y_m == 11);
   CHECK(to.object_count == 2);
+  CHECK(to.objects[1].dwell_s == 3);
   CHECK(to.objects[1].motion_remaining_s == 12);
   CHECK_FALSE(to.objects[2].active);
   CHECK(to.setpoint_count == 2);

@@ -177,6 +177,25 @@ TEST_CASE("Faults that latch within the time that is kept give one dump, a later
   CHECK(read_dump(second.path()).knee.rbegin()->first == 7099);
 }
 
+TEST_CASE("A fault that latches on a further robot is due, too, also while the first one is held") {
+  SignalTable table = robot_table();
+  table.add({"left.safety.level", "", ""}, &zero);
+  Recorder recorder(table, {}, {.kept_s = 1, .bytes = 1U << 20U});
+  const auto run = [&recorder](std::uint64_t from, std::uint64_t to, double level, double left) {
+    for (std::uint64_t tick = from; tick < to; ++tick)
+      recorder.record(tick, static_cast<std::int64_t>(tick) * ms, std::array{0.0, level, left});
+    (void)recorder.drain();
+    return recorder.flight()->due(true);
+  };
+  const ScratchFile file;
+  CHECK_FALSE(run(0, 100, 1, 1));
+  CHECK(run(100, 200, 3, 1));
+  REQUIRE(recorder.flight()->begin(file.path()));
+  recorder.flight()->finish();
+  CHECK_FALSE(run(200, 1300, 3, 1));
+  CHECK(run(1300, 1400, 3, 4));
+}
+
 TEST_CASE("A rung that the end of a run asks for is no fault, a file that cannot be written is told") {
   Robot robot;
   robot.flight().watch_no_more();

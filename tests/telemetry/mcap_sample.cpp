@@ -32,8 +32,8 @@ int main(int argc, char** argv) {
   kadans::Recorder recorder(
       table, {.every_ticks = every_ticks,
               .subjects = {.joints = {"l_hip", "l_knee", "r_hip", "r_knee"}, .base = "torso", .feet = {"l_foot"}}});
-  if (!recorder.open(argv[1]) || !recorder.describe_run({.run = {{"scenario", "sample"}, {"seed", "1"}}}) ||
-      !recorder.describe_robot("sample", "<robot name=\"sample\"/>", 0)) {
+  if (!recorder.open(argv[1]) || !recorder.file().describe_run({.run = {{"scenario", "sample"}, {"seed", "1"}}}) ||
+      !recorder.file().describe_robot("sample", "<robot name=\"sample\"/>", 0)) {
     std::fprintf(stderr, "%s\n", recorder.error().c_str());
     return 1;
   }

@@ -230,8 +230,8 @@ TEST_CASE("Recorder describes run and robot: metadata, attachment, and the URDF 
   const SignalTable table = small_table();
   Recorder recorder(table);
   REQUIRE(recorder.open(file.path()));
-  REQUIRE(recorder.describe_run({.run = {{"scenario", "squat"}, {"seed", "7"}}}));
-  REQUIRE(recorder.describe_robot("tulip", "<robot/>", 0));
+  REQUIRE(recorder.file().describe_run({.run = {{"scenario", "squat"}, {"seed", "7"}}}));
+  REQUIRE(recorder.file().describe_robot("tulip", "<robot/>", 0));
   REQUIRE(recorder.close());
   McapReader reader(file.path());
   McapMessage message;
@@ -243,6 +243,32 @@ TEST_CASE("Recorder describes run and robot: metadata, attachment, and the URDF 
   CHECK(reader.metadata().at("recorder").at("dropped_rows") == "0");
   REQUIRE(reader.attachments().size() == 1);
   CHECK(reader.attachments()[0].name == "tulip.urdf");
+}
+
+TEST_CASE("Recorder tells of a further robot: its URDF on a topic of its own, its faults with its name") {
+  const ScratchFile file;
+  const SignalTable table = small_table();
+  ViewerSubjects subjects{.joints = {"l_knee", "r_knee"}, .base = "torso", .feet = {}};
+  subjects.others.push_back({.joints = {"elbow"}, .base = "arm", .feet = {}, .robot = "left"});
+  Recorder recorder(table, {.subjects = subjects});
+  REQUIRE(recorder.open(file.path()));
+  REQUIRE(recorder.file().describe_robot("tulip", "<robot/>", 0));
+  REQUIRE(recorder.file().describe_other("left", "<robot/>", 0));
+  recorder.fault({.code = FaultCode::motor_hot, .joint = 1, .tick = 4});
+  recorder.fault({.code = FaultCode::motor_hot, .joint = 0, .robot = 1, .tick = 4});
+  recorder.fault({.code = FaultCode::fall, .robot = 1, .tick = 4});
+  REQUIRE(recorder.close());
+  std::vector<std::string> joints;
+  const std::vector<Entry> entries = entries_of(file.path());
+  for (const Entry& entry : entries) {
+    if (entry.topic != "/faults") continue;
+    const std::size_t at = entry.payload.find("\"joint\":\"");
+    REQUIRE(at != std::string::npos);
+    joints.push_back(entry.payload.substr(at + 9, entry.payload.find('"', at + 9) - at - 9));
+  }
+  CHECK(joints == std::vector<std::string>{"r_knee", "left.elbow", "left"});
+  CHECK(count(entries, "/robot_description") == 1);
+  CHECK(count(entries, "/left/robot_description") == 1);
 }
 
 TEST_CASE("Recorder: with a thread that drains, every row arrives whole and in order or is counted") {

@@ -47,6 +47,19 @@ SignalPlot knee_plot(WrittenRecord& record) {
 
 }  // namespace
 
+TEST_CASE("lanes of active states: each region keeps its own, and what begins together is there from its beginning") {
+  const auto told = [](double time_s, std::vector<std::string> states) {
+    return Event{.kind = Event::Kind::active,
+                 .transition = {std::llround(1e9 * time_s), "walk", "", "", ""},
+                 .states = std::move(states)};
+  };
+  CHECK(text_of(state_lanes(
+            {told(0, {"wait"}), told(1, {"go.left.up", "go.right.in"}), told(2, {"go.left.up", "go.right.out"}),
+             told(2.5, {"go.left.down", "go.right.out"}), told(3, {"done"}), told(3.5, {})},
+            0, 4)) ==
+        "walk: wait 0-10 go.left.up 10-25 go.left.down 25-30 done 30-35;walk: go.right.in 10-20 go.right.out 20-30;");
+}
+
 TEST_CASE("a signal is thinned to a bounded number of points that keep its ends and each of its peaks") {
   PlotColumns columns(0, 100, 50);
   constexpr int rows = 100'000;

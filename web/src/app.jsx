@@ -1,5 +1,6 @@
 // The page: robot and plots in the middle, signals on the left, one of five panels on the right, time below.
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
+import { active_paths } from './data/active_states.js';
 import { keep, kept } from './data/kept.js';
 import { keys, listen_to_keys } from './keyboard.js';
 import { BehaviorPanel } from './panels/behavior_panel.jsx';
@@ -46,6 +47,13 @@ function usePlots(session) {
   return [chosen, change];
 }
 
+// "squat in settle - Kadans": of each behavior that plays, all active states.
+function page_title(session) {
+  const plays = (session.description?.behaviors ?? []).map((behavior) => [behavior.name, active_paths(session, behavior, session.cursor_s)]);
+  const told = [...new Map(plays)].filter(([, paths]) => paths.length > 0).map(([name, paths]) => `${name} in ${paths.join(', ')}`);
+  return [...told, 'Kadans'].join(' - ');
+}
+
 function Help({ close }) {
   return (
     <dialog open class="help" onClick={close}>
@@ -82,6 +90,9 @@ export function App({ session, frames, drawing, open }) {
     document.documentElement.dataset.theme = theme;
     keep('theme', theme);
   }, [theme]);
+  useEffect(() => {
+    document.title = page_title(session);
+  });
   const turn = () => set_theme((now) => (now === 'dark' ? 'light' : 'dark'));
   useEffect(
     () =>

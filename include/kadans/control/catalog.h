@@ -36,6 +36,7 @@ struct ObjectInfo {
   std::vector<Preset> presets;
   std::uint32_t divisor = 1;             // low level every n-th control tick
   std::uint32_t high_level_divisor = 1;  // high level every n-th behavior tick
+  double switch_dwell_s = 0;             // least time between two switches of it (switch_dwell.h)
   Foresight* foresight = nullptr;        // what it can say about reach (control_object.h); behavior thread
 };
 
@@ -43,7 +44,10 @@ struct ControlSetInfo {
   std::string name;
   std::vector<std::uint32_t> objects;       // in the order of computing
   std::vector<Composition> compositions{};  // one per object; empty: every object sets its joints
+  double switch_dwell_s = 0;                // least time between two switches of it (switch_dwell.h)
 };
+
+inline constexpr double switch_dwell_max_s = 60;
 
 // A named posture that a behavior can move to: positions for some joints.
 struct PoseInfo {

@@ -11,6 +11,7 @@
 //
 // Signals     composition.<joint>.writers     the objects that have a share in its actuation, one bit each
 //             composition.switch_share        the largest step that the last switch absorbed, as a share of the limit
+//             composition.<set>.dwell_s       of a set that can dwell (switch_dwell.h)
 // Parameters  <set>.<object>.weight           of an object that blends
 #pragma once
 
@@ -21,6 +22,7 @@
 #include "kadans/control/catalog.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/set_partition.h"
+#include "kadans/control/switch_dwell.h"
 #include "kadans/control/switchover.h"
 
 namespace kadans {
@@ -58,6 +60,7 @@ class ControlSets {
 
   SetMask active() const noexcept { return active_; }
   const SetPartition& partition() const noexcept { return partition_; }
+  const SwitchDwell& dwell() const noexcept { return dwell_; }  // control thread
   bool runs(std::uint32_t object) const noexcept { return ((running_ | at_drives_) >> object & 1U) != 0; }
   // Control thread: whether the object started since the last step.
   bool fresh(std::uint32_t object) const noexcept { return (fresh_ >> object & 1U) != 0; }
@@ -83,6 +86,7 @@ class ControlSets {
   std::vector<Plan> plans_;                                 // by set
   Writers writers_{};
   SetPartition partition_;
+  SwitchDwell dwell_;
   Switchover switchover_;
   UnheldJoints unheld_;
   ObjectMask running_ = 0;

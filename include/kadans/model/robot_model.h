@@ -100,6 +100,6 @@ struct RobotModel {
   double mass_kg() const;
 };
 
-ToldFault told(const Fault& fault, const RobotModel& model, std::int64_t time_ns = 0);
+ToldFault told(const Fault& fault, const RobotModel& model, std::int64_t time_ns = 0, const std::string& robot = "");
 
 }  // namespace kadans

@@ -75,15 +75,16 @@ enum class RefusalReason : std::uint8_t {
   robot_held,
   joint_held,
   armed_full,  // too many wait already
+  set_dwells,  // a control set or object was switched too short a time ago
 };
 
 struct alignas(8) Refusal {
   std::uint32_t sequence = 0;  // the transaction's number; 0: none
   CommandKind kind = CommandKind::transaction;
   RefusalReason reason = RefusalReason::none;
-  std::uint16_t joint = no_joint;  // the one that is held
+  std::uint16_t joint = no_joint;  // the one that is held; set_dwells: the control set that dwells
   std::uint32_t index = 0;         // as in the command
-  alignas(8) double value = 0;     // as in the command
+  alignas(8) double value = 0;     // as in the command; set_dwells: for how long it still dwells, in s
 };
 static_assert(std::is_trivially_copyable_v<Refusal> && sizeof(Refusal) == 24);
 

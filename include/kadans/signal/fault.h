@@ -85,6 +85,7 @@ using DriveWords = std::string_view (*)(std::uint32_t code) noexcept;
 struct Fault {
   FaultCode code = FaultCode::none;
   std::uint16_t joint = no_joint;     // index in the model (a foot's: the joint that carries it), or no_joint
+  std::uint16_t robot = 0;            // the number in the world of who has it; safety counts only its own
   alignas(8) std::uint64_t tick = 0;  // of the control engine
   double value = 0;                   // what was seen
   double limit = 0;                   // what was allowed
@@ -94,12 +95,14 @@ static_assert(sizeof(Fault) == 72 && alignof(Fault) == 8 && offsetof(Fault, tick
 
 // A fault as people and programs are told of it, with its names: whatever shows one, live or from a record, shows this.
 struct ToldFault {
-  std::string name, joint;      // joint: "" for none
+  std::string name, joint;      // joint: "" for none; of a further robot with its name: "left.l_knee", "left"
   double value = 0, limit = 0;  // as in Fault
   std::string words;            // in place of the two, where there are some
   std::int64_t time_ns = 0;     // where it is known
 };
-ToldFault told(const Fault& fault, const std::string& joint = "", std::int64_t time_ns = 0);
+// `robot`: the name of a further robot of the world.
+ToldFault told(const Fault& fault, const std::string& joint = "", std::int64_t time_ns = 0,
+               const std::string& robot = "");
 // "motor_hot of l_knee"
 std::string fault_name(const ToldFault& fault);
 // "121, limit 120", or its words

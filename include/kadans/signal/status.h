@@ -47,12 +47,23 @@ struct alignas(8) SupportStatus {
   double cop_x_m = 0, cop_y_m = 0;  // centre of pressure; holds without contact
 };
 
+// A fault in brief, for those who look at all new ones.
+struct NewFault {
+  FaultCode code = FaultCode::none;
+  std::uint16_t joint = no_joint;
+  alignas(8) double value = 0;
+  double limit = 0;
+};
+inline constexpr std::uint32_t new_faults_shown = 8;
+
 struct SafetyStatus {
   SafetyLevel level = SafetyLevel::normal;
-  bool stopped = false;           // by the emergency stop, until it is lifted
-  std::uint16_t lifts = 0;        // how often somebody outside cleared all faults; wraps around
-  std::uint32_t fault_count = 0;  // since the start or the last clearing
-  Fault first_fault;              // kept until cleared
+  bool stopped = false;                                 // by the emergency stop, until it is lifted
+  std::uint16_t lifts = 0;                              // how often somebody outside cleared all faults; wraps around
+  std::uint32_t fault_count = 0;                        // since the start or the last clearing
+  Fault first_fault;                                    // kept until cleared
+  std::uint64_t faults_raised = 0;                      // since the start
+  std::array<NewFault, new_faults_shown> new_faults{};  // the newest; number n is at n modulo new_faults_shown
 };
 
 struct alignas(8) RobotStatus {
@@ -83,6 +94,7 @@ struct alignas(8) PowerStatus {
 // What the behaviors see of a control object.
 struct alignas(8) ObjectStatus {
   bool active = false;
+  float dwell_s = 0;                         // for how long a switch of it, or of a set with it, is still refused
   alignas(8) double motion_remaining_s = 0;  // until the last of its set-points is reached; 0 at rest
 };
 
@@ -148,10 +160,11 @@ inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
 }
 
 static_assert(std::is_trivially_copyable_v<Snapshot>);
-static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 && sizeof(SafetyStatus) == 80 &&
-              sizeof(ObjectStatus) == 16 && alignof(SafetyStatus) == 8);
+static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 &&
+              sizeof(SafetyStatus) == 88 + 24 * new_faults_shown && sizeof(ObjectStatus) == 16 &&
+              alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 112 && offsetof(Snapshot, joints) == 32);
 static_assert(sizeof(DriveStatus) == 12 && sizeof(PowerStatus) == 16 + 12 * max_joints);
-static_assert(sizeof(Snapshot) == 5968);  // a new field also belongs in copy_used()
+static_assert(sizeof(Snapshot) == 5968 + 8 + 24 * new_faults_shown);  // a new field also belongs in copy_used()
 
 }  // namespace kadans

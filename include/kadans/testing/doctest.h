@@ -19,6 +19,7 @@
 #include "kadans/testing/joint_bench.h"
 #include "kadans/testing/step_response.h"
 #include "kadans/testing/switch_record.h"
+#include "kadans/testing/switching_stability.h"
 #include "kadans/testing/tracking.h"
 
 // doctest knows a container only as "{?}": without this the elements would not be printed.

@@ -20,6 +20,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,6 +68,9 @@ class JointBench {
   void set_point(double value, double duration_s = 0);  // the first one of the active object
   void set_point(std::string_view setpoint, double value, double duration_s = 0);
   void cancel_motion(std::string_view setpoint);
+  // Leads the active object in the next tick, from its first step on, as the engine leads a motion: each of its
+  // set-points of position or velocity that it has.
+  void lead(const SetpointState& position) noexcept;
   void switch_to(std::string_view object);
   double signal(std::string_view name) const;  // as of the last tick
 
@@ -95,6 +99,7 @@ class JointBench {
   void estimate(const SensorFrame& sensors) noexcept;
   void update_high_level();
   SetpointId find_setpoint(std::string_view name) const;
+  void lead_active(const ControlInput& input);
 
   JointBenchConfig config_;
   RobotModel model_;
@@ -110,6 +115,7 @@ class JointBench {
   ActuationFrame written_, computed_;
   Snapshot snapshot_;
   std::vector<double> row_;
+  std::optional<SetpointState> led_;
   std::uint64_t tick_ = 0, limited_ticks_ = 0, not_finite_ticks_ = 0;
 };
 

@@ -114,7 +114,20 @@ class IdealStage final : public TestStage {
   const Snapshot& snapshot() const override { return seen_; }
   const Catalog& catalog() const override { return assembly_.catalog(); }
   std::string state() const override { return behavior().state(); }
+  std::vector<std::string> active() const override { return behavior().active(); }
+  std::optional<bool> in(const std::string& path) const override {
+    const std::vector<Chart::State>& states = behavior().chart().states;
+    const auto found = std::ranges::find(states, path, &Chart::State::path);
+    if (path.empty() || found == states.end()) return std::nullopt;
+    return behavior().active(static_cast<StateIndex>(found - states.begin()));
+  }
+  std::vector<std::string> paths() const override {
+    std::vector<std::string> all;
+    for (const Chart::State& state : behavior().chart().states) all.push_back(state.path);
+    return all;
+  }
   std::string outcome() const override { return behavior().outcome(); }
+  std::string result() const override { return behavior().result(); }
   std::string error() const override { return behavior().failed() ? behavior().error().text() : ""; }
   std::string control_sets() const override {
     std::string all;

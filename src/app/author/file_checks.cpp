@@ -13,6 +13,7 @@
 #include "behavior_stage.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
+#include "estimate/estimator.h"
 #include "kadans/model/urdf.h"
 #include "kadans/signal/input_error.h"
 #include "scenario/judge/checks.h"
@@ -170,7 +171,7 @@ std::string FileChecks::check_scenario(const fs::path& file) {
   scenario.plugins = gate_;
   RunLog log;
   const Assembly assembly(scenario, scenario.seed, log);
-  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
+  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file, assembly.signal_states());
   std::vector<InputProblem> problems = problems_of_named(scenario, assembly.catalog());
   for (const auto& robot : assembly.others()) {
     std::ranges::move(problems_of_named(robot->scenario(), robot->catalog()), std::back_inserter(problems));
@@ -202,6 +203,8 @@ const FileChecks::Known& FileChecks::robot_at(const fs::path& config) {
   auto read = std::make_unique<Known>();
   read->robot = read_robot(config, gate_);
   read->system = make_control_system(read->robot);
+  declare_signals(read->system->catalog.signals, read->robot.config.model, read->robot.config.estimate,
+                  *read->measured);
   known = std::move(read);
   return *known;
 }

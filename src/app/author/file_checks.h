@@ -40,6 +40,7 @@ class FileChecks {
   struct Known {
     Robot robot;
     std::unique_ptr<ControlSystem> system;
+    std::unique_ptr<Snapshot> measured = std::make_unique<Snapshot>();  // for the names of what is measured
   };
   const Known& robot_at(const std::filesystem::path& config);
   const Known* robot_of(const std::filesystem::path& script, std::string& missing);

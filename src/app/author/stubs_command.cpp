@@ -86,7 +86,7 @@ void add_stubs(CLI::App& app, StubsOptions& options) {
 
 int run_stubs(const StubsOptions& options) {
   if (options.markdown) {
-    std::fputs(api_reference().c_str(), stdout);
+    std::fputs(api_reference(project_root(fs::current_path() / "behaviors")).c_str(), stdout);
     return exit_passed;
   }
   const Robot robot = read_robot(options.robot.empty() ? only_robot(fs::current_path()) : fs::path(options.robot));

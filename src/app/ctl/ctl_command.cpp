@@ -16,6 +16,7 @@
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
+#include "engine/behavior_log.h"
 #include "kadans/signal/input_error.h"
 #include "remote/ctl/ctl_folder.h"
 #include "remote/order/order.h"
@@ -66,9 +67,11 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 std::string behavior_text(const Json& behavior) {
   const std::string name = behavior.at("name");
   if (behavior.contains("error")) return name + ": " + behavior.at("error").get<std::string>();
-  if (behavior.contains("outcome")) return name + ": " + behavior.at("outcome").get<std::string>();
+  if (behavior.contains("outcome"))
+    return name + ": " + behavior.at("outcome").get<std::string>() +
+           (behavior.contains("result") ? " " + behavior.at("result").get<std::string>() : "");
   if (!behavior.value("plays", false)) return name + ": stopped";
-  return name + (behavior.contains("state") ? " in " + behavior.at("state").get<std::string>() : " waits");
+  return name + (behavior.contains("active") ? " in " + listed(behavior.at("active")) : " waits");
 }
 
 std::string status_text(const Json& answer) {

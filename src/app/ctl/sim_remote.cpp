@@ -1,6 +1,6 @@
 #include "sim_remote.h"
 
-#include "app/run/run_request.h"
+#include "app/run/run_choices.h"
 #include "config/robot/project_root.h"
 #include "version.h"
 
@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::uint32_t publish_every_ticks = 20;
 
-Instance::Facts facts_of(const ScenarioConfig& scenario, const RobotConfig& robot) {
+Instance::Facts facts_of(const ScenarioConfig& scenario, const Assembly& assembly) {
+  const RobotConfig& robot = assembly.robot();
   return {.name = robot.name,
           .mode = "simulation of " + scenario.name,
           .version = version,
@@ -18,7 +19,8 @@ Instance::Facts facts_of(const ScenarioConfig& scenario, const RobotConfig& robo
           .folders = folders_of(scenario),
           .records = std::filesystem::current_path(),
           .control_period_s = robot.engine.control_period_s,
-          .behavior_period_s = robot.engine.behavior_period_s};
+          .behavior_period_s = robot.engine.behavior_period_s,
+          .subjects = viewer_subjects(assembly)};
 }
 
 }  // namespace
@@ -28,7 +30,7 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
     : parts_(assembly.parts()),
       model_(assembly.robot().model),
       log_(log),
-      instance_(facts_of(scenario, assembly.robot()), assembly.catalog(), parts_.control.safety().emergency_stop()),
+      instance_(facts_of(scenario, assembly), assembly.catalog(), parts_.control.safety().emergency_stop()),
       control_side_(instance_),
       record_side_(instance_, control_side_, {{"robot", scenario.robot}, {"kadans", version}}),
       behavior_side_({instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), echo, log}),

@@ -38,7 +38,10 @@ class SimRemote final : public RunObserver {
 
   LivePace& pace() noexcept { return pace_; }
   void tick(double time_s, std::span<const double> row) override;
-  void fault(const Fault& fault) override { instance_.tell(fault); }
+  void fault(const Fault& fault) override {
+    instance_.tell(fault);
+    record_side_.tell(fault);
+  }
   void between_ticks(const RunMark& mark) override;
 
  private:

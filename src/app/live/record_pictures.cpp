@@ -150,10 +150,10 @@ class Frames {
   bool done_ = false;
 };
 
-std::string address_of(const PictureOrder& order, const LiveServer& server) {
-  const std::string url = server.url() + "&record=record.mcap&render=1&theme=" + order.theme +
-                          "&width=" + std::to_string(order.width) + "&height=" + std::to_string(order.height);
-  return url + (order.every_s ? "&every=" + number_text(*order.every_s) : "&at=" + number_text(order.at_s));
+std::string address_of(const PictureOptions& options, const LiveServer& server) {
+  const std::string url = server.url() + "&record=record.mcap&render=1&theme=" + options.theme +
+                          "&width=" + std::to_string(options.width) + "&height=" + std::to_string(options.height);
+  return url + (options.every_s ? "&every=" + number_text(*options.every_s) : "&at=" + number_text(options.at_s));
 }
 
 }  // namespace
@@ -163,17 +163,17 @@ std::string pictures_missing() {
   return find_chromium().empty() ? "pictures are drawn by Chromium: install the package chromium" : "";
 }
 
-void draw_record(const PictureOrder& order,
+void draw_record(const PictureOptions& options,
                  const std::function<void(const std::string& name, std::string bytes)>& take) {
   if (const std::string missing = pictures_missing(); !missing.empty()) throw InputError({.message = missing});
-  (void)McapReader(order.record);  // throws with the record's name when it is wrong
+  (void)McapReader(options.record);  // throws with the record's name when it is wrong
   Frames frames;
   LiveServer server(
       {.port = 0, .token = "", .hosts = {}}, nullptr,
-      {.file = std::filesystem::absolute(order.record).string(),
+      {.file = std::filesystem::absolute(options.record).string(),
        .take_frame = [&frames](const std::string& name, const std::string& bytes) { frames.take(name, bytes); }});
   server.start();
-  Chromium chromium(find_chromium(), address_of(order, server), order.width, order.height);
+  Chromium chromium(find_chromium(), address_of(options, server), options.width, options.height);
   for (std::vector<Frames::Frame> got = frames.next(chromium); !got.empty(); got = frames.next(chromium)) {
     for (Frames::Frame& frame : got) take(frame.name, std::move(frame.bytes));
   }

@@ -7,7 +7,7 @@
 
 namespace kadans {
 
-struct PictureOrder {
+struct PictureOptions {
   std::string record;
   double at_s = 0;                // time of one picture ...
   std::optional<double> every_s;  // ... or the interval between pictures
@@ -19,7 +19,7 @@ struct PictureOrder {
 std::string pictures_missing();
 // Calls `take` for each picture as it comes, with its name ("00003.200.png", its time in s) and its bytes. Throws
 // InputError when they cannot be drawn, or when the program is interrupted.
-void draw_record(const PictureOrder& order,
+void draw_record(const PictureOptions& options,
                  const std::function<void(const std::string& name, std::string bytes)>& take);
 
 }  // namespace kadans

@@ -22,17 +22,18 @@ void write(const fs::path& file, const std::string& bytes) {
   std::printf("%s\n", file.string().c_str());
 }
 
-PictureOrder order_of(const RenderOptions& options) {
-  PictureOrder order{.record = options.record,
-                     .at_s = options.at_s.value_or(0),
-                     .every_s = options.film ? 1.0 / options.frames_per_s : options.every_s,
-                     .theme = options.theme};
+PictureOptions picture_options(const RenderOptions& options) {
+  PictureOptions picture{.record = options.record,
+                         .at_s = options.at_s.value_or(0),
+                         .every_s = options.film ? 1.0 / options.frames_per_s : options.every_s,
+                         .theme = options.theme};
   char rest = 0;
-  const int got = std::sscanf(options.size.c_str(), "%dx%d%c", &order.width, &order.height, &rest);  // NOLINT: checked
+  const int got =
+      std::sscanf(options.size.c_str(), "%dx%d%c", &picture.width, &picture.height, &rest);  // NOLINT: checked
   const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 4096; };
-  if (got != 2 || !fits(order.width) || !fits(order.height))
+  if (got != 2 || !fits(picture.width) || !fits(picture.height))
     throw InputError(InputProblem{.file = "--size", .message = "must be like 960x720, from 16 to 4096"});
-  return order;
+  return picture;
 }
 
 }  // namespace
@@ -60,14 +61,14 @@ void add_render(CLI::App& app, RenderOptions& options) {
 }
 
 int run_render(const RenderOptions& options) {
-  const PictureOrder order = order_of(options);
+  const PictureOptions picture = picture_options(options);
   if (const std::string missing = pictures_missing(); !missing.empty()) throw InputError({.message = missing});
   catch_interrupts();
   const std::string stem = fs::path(options.record).stem().string();
   const fs::path out = !options.out.empty() ? options.out : options.every_s ? stem : stem + ".png";
   if (options.every_s) fs::create_directories(out);
   std::vector<std::string> film;
-  draw_record(order, [&](const std::string& name, std::string bytes) {
+  draw_record(picture, [&](const std::string& name, std::string bytes) {
     if (options.film) {
       film.push_back(std::move(bytes));
     } else {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/run/run_request.h"
+#include "app/run/run_choices.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
 #include "log_verbs.h"
@@ -18,9 +18,9 @@ using Json = nlohmann::ordered_json;
 std::string again(const RecordOutline& record) {
   if (record.fact("run", "clock") != "virtual") return "";
   if (!record.fact("run", "branch_tick").empty()) return "kadans replay " + shell_word(record.file);
-  RunRequest request = request_of(record.metadata.at("run"), record.file);
-  request.scenario = record.fact("run", "scenario");
-  return repeat_command(request, *request.seed);
+  RunChoices choices = choices_of(record.metadata.at("run"), record.file);
+  choices.scenario = record.fact("run", "scenario");
+  return repeat_command(choices, *choices.seed);
 }
 
 std::size_t lines_of(const RecordOutline& record, BehaviorLog::Severity severity) {

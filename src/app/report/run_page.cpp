@@ -46,9 +46,9 @@ void add_film(const RunPage& page, const ReportOptions& place, HtmlReport& repor
   if (report.no_film.empty() && !(duration_s > 0)) report.no_film = "the run has no duration";
   if (!report.no_film.empty()) return;
   try {
-    const PictureOrder order{
+    const PictureOptions picture{
         .record = page.record, .every_s = duration_s / (pictures - 0.5), .width = 480, .height = 360};
-    draw_record(order, [&report](const std::string& name, std::string bytes) {
+    draw_record(picture, [&report](const std::string& name, std::string bytes) {
       report.film.push_back({std::stod(name), std::move(bytes)});
     });
   } catch (const InputError& error) {

@@ -89,7 +89,7 @@ int run_behavior_process(const RunOptions& options) {
   const std::unique_ptr<ScriptHost> host =
       make_script_host(scenario, robot.config, system->catalog, scenario.seed, log, bytes);
   settle(link.setup);
-  return BehaviorServer(link, bell, *host, log, system->catalog).serve();
+  return BehaviorServer(link, bell, *host, log, lines, system->catalog).serve();
 }
 
 }  // namespace kadans

@@ -126,9 +126,10 @@ constexpr std::size_t kept_lines = 1000;
 constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, service_ns = 5'000'000'000,
                        record_ns = 10'000'000'000, standing_ns = 2'000'000'000;
 
-Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const RobotConfig& robot) {
+Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const Assembly& assembly) {
   namespace fs = std::filesystem;
   const fs::path record(options.record);
+  const RobotConfig& robot = assembly.robot();
   return {.name = robot.name,
           .mode = options.virtual_time ? "run on virtual time" : "run",
           .version = version,
@@ -137,7 +138,8 @@ Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenar
           .folders = folders_of(scenario),
           .records = fs::absolute(record.has_parent_path() ? record.parent_path() : fs::current_path()),
           .control_period_s = robot.engine.control_period_s,
-          .behavior_period_s = robot.engine.behavior_period_s};
+          .behavior_period_s = robot.engine.behavior_period_s,
+          .subjects = viewer_subjects(assembly)};
 }
 
 // Many runs on virtual time may go on at the same time. So a run on virtual time is reachable only when a folder was
@@ -383,7 +385,7 @@ class WallClockRun {
   // Reports the messages of behaviors, and faults except late ticks, which the final report counts.
   void tell(std::int64_t time_ns) {
     Event event;
-    while (told_.pop(time_ns, event)) said_.say(event.line());
+    while (told_.pop(time_ns, event)) event.say_to(said_);
     if (joystick_ != nullptr) {
       const auto snapshot = parts_.control.exchange().snapshot.read(1);
       joystick_->tell_news(*snapshot, said_);
@@ -425,7 +427,7 @@ class WallClockRun {
   std::unique_ptr<PlantTask> plant_;  // of a model, or nullptr
   std::unique_ptr<JoystickTask> joystick_;
   Leaving leaving_;
-  Instance instance_{facts_of(options_, scenario_, assembly_.robot()), assembly_.catalog(),
+  Instance instance_{facts_of(options_, scenario_, assembly_), assembly_.catalog(),
                      parts_.control.safety().emergency_stop()};
   ControlSide control_side_{instance_};
   RecordSide record_side_{instance_,

@@ -81,7 +81,7 @@ std::string differing_objects(const TextMap& checkpoint, const TextMap& now) {
   return names;
 }
 
-CheckpointOrder parse_checkpoint(const std::string& text) {
+PlannedCheckpoint parse_checkpoint(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::optional<double> at_s = number_of<double>(std::string_view(text).substr(0, equals));
   if (equals == std::string::npos || !at_s || !(*at_s > 0) || equals + 1 == text.size())
@@ -92,9 +92,9 @@ CheckpointOrder parse_checkpoint(const std::string& text) {
 
 void CheckpointWriter::between_ticks(const RunMark& mark) {
   trail_.between_ticks(mark);
-  std::erase_if(orders_, [&](const CheckpointOrder& order) {
-    if (mark.time_ns < std::llround(order.at_s * 1e9)) return false;
-    write_checkpoint({inputs_, mark, trail_.marks(), object_states(assembly_)}, order.file);
+  std::erase_if(planned_, [&](const PlannedCheckpoint& planned) {
+    if (mark.time_ns < std::llround(planned.at_s * 1e9)) return false;
+    write_checkpoint({inputs_, mark, trail_.marks(), object_states(assembly_)}, planned.file);
     return true;
   });
 }

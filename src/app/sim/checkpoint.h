@@ -45,25 +45,25 @@ TextMap object_states(Assembly& assembly);
 std::string differing_objects(const TextMap& checkpoint, const TextMap& now);
 
 // A checkpoint to be written: "2.5=crouched.mcap". parse_checkpoint throws InputError.
-struct CheckpointOrder {
+struct PlannedCheckpoint {
   double at_s = 0;
   std::string file;
 };
-CheckpointOrder parse_checkpoint(const std::string& text);
+PlannedCheckpoint parse_checkpoint(const std::string& text);
 
 // Writes checkpoints while a run goes.
 class CheckpointWriter final : public RunObserver {
  public:
-  CheckpointWriter(RunInputs inputs, std::vector<CheckpointOrder> orders, Assembly& assembly)
-      : inputs_(std::move(inputs)), orders_(std::move(orders)), assembly_(assembly) {}
+  CheckpointWriter(RunInputs inputs, std::vector<PlannedCheckpoint> planned, Assembly& assembly)
+      : inputs_(std::move(inputs)), planned_(std::move(planned)), assembly_(assembly) {}
   void tick(double, std::span<const double>) override {}
   void between_ticks(const RunMark& mark) override;
 
-  const std::vector<CheckpointOrder>& missed() const noexcept { return orders_; }  // the run ended before them
+  const std::vector<PlannedCheckpoint>& missed() const noexcept { return planned_; }  // the run ended before them
 
  private:
   RunInputs inputs_;
-  std::vector<CheckpointOrder> orders_;
+  std::vector<PlannedCheckpoint> planned_;
   Assembly& assembly_;
   HashTrail trail_{checkpoint_trail_s};
 };

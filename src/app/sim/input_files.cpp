@@ -180,14 +180,14 @@ std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembl
   return files.take();
 }
 
-RunInputs inputs_of(const RunRequest& request, const ScenarioConfig& scenario, const Assembly& assembly) {
+RunInputs inputs_of(const RunChoices& choices, const ScenarioConfig& scenario, const Assembly& assembly) {
   RunInputs inputs{.run = {{"scenario", scenario.file},
                            {"scenario_input", Folders(scenario.file).name(scenario.file)},
                            {"kadans", version},
                            {"clock", "virtual"}},
                    .program = program_parts(),
                    .files = input_files(scenario, assembly)};
-  put_facts(request, inputs.run);
+  put_facts(choices, inputs.run);
   return inputs;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/assembly.h"
-#include "app/run/run_request.h"
+#include "app/run/run_choices.h"
 #include "telemetry/record/run_inputs.h"
 
 namespace kadans {
@@ -15,8 +15,8 @@ namespace kadans {
 // have only a hash. Meshes have only a name, because nothing is computed from them.
 std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly);
 
-// All inputs of the run that `request` asks for, for its record.
-RunInputs inputs_of(const RunRequest& request, const ScenarioConfig& scenario, const Assembly& assembly);
+// All inputs of the run that `choices` asks for, for its record.
+RunInputs inputs_of(const RunChoices& choices, const ScenarioConfig& scenario, const Assembly& assembly);
 
 // An input that is no longer the same.
 struct InputChange {

@@ -53,12 +53,12 @@ RunInputs read_front(const std::string& record) {
 // The repeated run; it is compared with the record while it goes.
 class Replay final : public RunObserver {
  public:
-  Replay(const std::string& record, const RunInputs& inputs, const RunRequest& request)
+  Replay(const std::string& record, const RunInputs& inputs, const RunChoices& choices)
       : inputs_(inputs),
         reader_(record),
-        scenario_(read_scenario(request)),
-        duration_s_(*request.duration_s),
-        assembly_(scenario_, *request.seed, log_),
+        scenario_(read_scenario(choices)),
+        duration_s_(*choices.duration_s),
+        assembly_(scenario_, *choices.seed, log_),
         comparison_(reader_, assembly_.catalog().signals),
         branch_tick_(number_in(inputs.run, "branch_tick")) {}
 
@@ -229,21 +229,21 @@ int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
   std::unique_ptr<UnpackedInputs> unpacked;
   if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record, options.allow_plugins);
-  RunRequest request = request_of(inputs.run, options.record);
-  request.scenario = unpacked ? unpacked->scenario().string() : find_scenario(inputs, options.record).string();
-  request.plugins = unpacked ? unpacked->plugins() : plugins_beside(request.scenario, options.allow_plugins);
+  RunChoices choices = choices_of(inputs.run, options.record);
+  choices.scenario = unpacked ? unpacked->scenario().string() : find_scenario(inputs, options.record).string();
+  choices.plugins = unpacked ? unpacked->plugins() : plugins_beside(choices.scenario, options.allow_plugins);
   const std::vector<InputChange> program = changed_program(inputs);
   try {
-    Replay replay(options.record, inputs, request);
+    Replay replay(options.record, inputs, choices);
     catch_interrupts();
     replay.go(stderr_is_terminal() && !options.json);
     if (interrupted()) return exit_interrupted;
-    const Findings findings{options, replay, changed_files(inputs, request.scenario, replay.files()), program,
+    const Findings findings{options, replay, changed_files(inputs, choices.scenario, replay.files()), program,
                             notes_of(replay, inputs)};
     options.json ? print_json(findings) : print_text(findings);
     return replay.same() ? exit_passed : exit_failed;
   } catch (const InputError&) {
-    const std::string changed = change_text(changed_files(inputs, request.scenario, {}));
+    const std::string changed = change_text(changed_files(inputs, choices.scenario, {}));
     if (!changed.empty()) print_error(options.record + " cannot be run again; since it was recorded: " + changed);
     throw;
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/assembly.h"
-#include "app/run/run_request.h"
+#include "app/run/run_choices.h"
 #include "scenario/disturb/disturbances.h"
 #include "telemetry/record/run_inputs.h"
 

@@ -26,15 +26,15 @@ int go_on(const SimOptions& options) {
   const UnpackedInputs unpacked(inputs, options.from, options.allow_plugins);
   if (std::ranges::any_of(continuation.branches, [](const RunBranch& branch) { return !branch.play.empty(); }))
     unpacked.add_behaviors(inputs);
-  RunRequest request = request_of(inputs.run, options.from);
-  request.scenario = unpacked.scenario().string();
-  request.plugins = unpacked.plugins();
-  if (options.duration_s) request.duration_s = options.duration_s;
+  RunChoices choices = choices_of(inputs.run, options.from);
+  choices.scenario = unpacked.scenario().string();
+  choices.plugins = unpacked.plugins();
+  if (options.duration_s) choices.duration_s = options.duration_s;
   const double at_s = static_cast<double>(continuation.from.at.time_ns) / 1e9;
-  if (!(*request.duration_s > at_s))
+  if (!(*choices.duration_s > at_s))
     throw InputError(
         {.file = "--duration", .message = "must be more than the " + number_text(at_s) + " s of the checkpoint"});
-  SimRun sim(options, request, std::move(continuation));
+  SimRun sim(options, choices, std::move(continuation));
   catch_interrupts();
   return sim.run();
 }

@@ -27,33 +27,35 @@ std::vector<ScenarioCheck> reached_checks(const ScenarioConfig& scenario, double
   return checks;
 }
 
-RunInputs inputs_for(RunRequest request, const ScenarioConfig& scenario, const Assembly& assembly, std::uint64_t seed,
+RunInputs inputs_for(RunChoices choices, const ScenarioConfig& scenario, const Assembly& assembly, std::uint64_t seed,
                      double duration_s, bool watched) {
-  request.seed = seed;
-  request.duration_s = duration_s;
-  RunInputs inputs = inputs_of(request, scenario, assembly);
+  choices.seed = seed;
+  choices.duration_s = duration_s;
+  RunInputs inputs = inputs_of(choices, scenario, assembly);
   if (watched) inputs.run["watched"] = "yes";
   return inputs;
 }
 
-std::vector<CheckpointOrder> checkpoints_of(const SimOptions& options) {
-  std::vector<CheckpointOrder> orders;
-  for (const std::string& text : options.checkpoints) orders.push_back(parse_checkpoint(text));
-  return orders;
+std::vector<PlannedCheckpoint> checkpoints_of(const SimOptions& options) {
+  std::vector<PlannedCheckpoint> planned;
+  for (const std::string& text : options.checkpoints) planned.push_back(parse_checkpoint(text));
+  return planned;
 }
 
 }  // namespace
 
-SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::optional<SimContinuation> continuation)
+SimRun::SimRun(const SimOptions& options, const RunChoices& choices, std::optional<SimContinuation> continuation)
     : options_(options),
-      request_(request),
-      scenario_(read_scenario(request)),
-      seed_(request.seed.value_or(scenario_.seed)),
-      duration_s_(request.duration_s.value_or(scenario_.duration_s)),
+      choices_(choices),
+      scenario_(read_scenario(choices)),
+      seed_(choices.seed.value_or(scenario_.seed)),
+      duration_s_(choices.duration_s.value_or(scenario_.duration_s)),
       assembly_(scenario_, seed_, log_),
-      checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file),
+      checks_(assembly_.catalog().signals, reached_checks(scenario_, duration_s_), scenario_.file,
+              assembly_.signal_states()),
       metrics_(assembly_.catalog().signals,
-               options.metrics.empty() ? std::vector<MetricConfig>() : read_metrics(options.metrics), options.metrics),
+               options.metrics.empty() ? std::vector<MetricConfig>() : read_metrics(options.metrics), options.metrics,
+               assembly_.signal_states()),
       height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
       record_plan_(record_plan(assembly_, options.recording, false)),
       continuation_(std::move(continuation)) {
@@ -67,7 +69,7 @@ SimRun::SimRun(const SimOptions& options, const RunRequest& request, std::option
     actions_.reserve(continuation_->branches.size());
     for (const RunBranch& branch : continuation_->branches) actions_.emplace_back(branch, scenario_, assembly_, at_s);
   } else {
-    inputs_ = inputs_for(request_, scenario_, assembly_, seed_, duration_s_, options_.watch);
+    inputs_ = inputs_for(choices_, scenario_, assembly_, seed_, duration_s_, options_.watch);
   }
   if (!continuation_) make_reachable();
   if (options_.hash_every_s) trail_ = std::make_unique<HashTrail>(*options_.hash_every_s);
@@ -128,8 +130,8 @@ int SimRun::report(RunResult& result) {
   traces_ = {height_.trace()};
   if (options_.report.wanted()) write_page(result);
   if (checkpoints_) {
-    for (const CheckpointOrder& order : checkpoints_->missed())
-      tell_lost("the run was over before the checkpoint at " + number_text(order.at_s) + " s");
+    for (const PlannedCheckpoint& planned : checkpoints_->missed())
+      tell_lost("the run was over before the checkpoint at " + number_text(planned.at_s) + " s");
   }
   print(result);
   if (result.interrupted) return exit_interrupted;
@@ -214,12 +216,9 @@ bool SimRun::open_record() {
 }
 
 // Describes a record or a dump of the flight recorder.
-template <typename Record>
-void SimRun::describe(Record& record) const {
-  const RobotTexts texts = robot_texts(assembly_);
+void SimRun::describe(RecordWriter& record) const {
   (void)record.describe_run(inputs_);
-  (void)record.describe_robot(texts.name, texts.urdf, 0);
-  (void)record.describe_parts(texts.description, 0);
+  describe_robots(record, robot_texts(assembly_), 0);
 }
 
 void SimRun::start_record() {
@@ -227,7 +226,7 @@ void SimRun::start_record() {
   if (options_.no_record && !options_.report.wanted() && !flies) return;
   recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals, record_plan_.settings, record_plan_.flight);
   if (open_record()) {
-    describe(*recorder_);
+    describe(recorder_->file());
   } else if (!flies) {
     return recorder_.reset();
   }
@@ -255,11 +254,11 @@ void SimRun::finish_record(const RunResult& result) {
   }
   if (recorder_->is_open()) {
     const auto failed = std::ranges::count(result.checks, false, &CheckResult::passed);
-    (void)recorder_->describe("result", {{"state_hash", hash_text(result.state_hash)},
-                                         {"control_ticks", std::to_string(result.control_ticks)},
-                                         {"passed", result.passed ? "yes" : "no"},
-                                         {"checks", std::to_string(result.checks.size())},
-                                         {"checks_failed", std::to_string(failed)}});
+    (void)recorder_->file().describe("result", {{"state_hash", hash_text(result.state_hash)},
+                                                {"control_ticks", std::to_string(result.control_ticks)},
+                                                {"passed", result.passed ? "yes" : "no"},
+                                                {"checks", std::to_string(result.checks.size())},
+                                                {"checks_failed", std::to_string(failed)}});
   }
   if (!recorder_->close()) tell_lost("the record is not complete: " + recorder_->error());
   if (recorder_->dropped() > 0) tell_lost(std::to_string(recorder_->dropped()) + " rows are missing in the record");
@@ -271,7 +270,7 @@ void SimRun::tell_lost(const std::string& what) {
 }
 
 std::string SimRun::repeat() const {
-  if (!continuation_) return repeat_command(request_, seed_);
+  if (!continuation_) return repeat_command(choices_, seed_);
   std::string command = "kadans sim --from " + shell_word(options_.from);
   if (options_.duration_s) command += " --duration " + number_text(*options_.duration_s);
   if (!branch_.name.empty()) return command + " --branch " + shell_quoted(branch_text(branch_));

@@ -27,8 +27,8 @@ struct SimContinuation {
 
 class SimRun final : public RunObserver {
  public:
-  // `request` names the scenario's file. Without a continuation the run is recorded from its first tick.
-  SimRun(const SimOptions& options, const RunRequest& request, std::optional<SimContinuation> continuation = {});
+  // `choices` names the scenario's file. Without a continuation the run is recorded from its first tick.
+  SimRun(const SimOptions& options, const RunChoices& choices, std::optional<SimContinuation> continuation = {});
 
   // Runs, prints the report, or those of all branches, and returns the program's exit code.
   int run();
@@ -42,8 +42,7 @@ class SimRun final : public RunObserver {
 
  private:
   void make_reachable();
-  template <typename Record>
-  void describe(Record& record) const;
+  void describe(RecordWriter& record) const;
   void start_record();
   bool open_record();
   void fly();
@@ -61,7 +60,7 @@ class SimRun final : public RunObserver {
   int tell_parting() const;
 
   const SimOptions& options_;
-  RunRequest request_;
+  RunChoices choices_;
   ScenarioConfig scenario_;
   std::uint64_t seed_;
   double duration_s_;

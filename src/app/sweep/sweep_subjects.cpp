@@ -62,10 +62,10 @@ SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig&
   verify_ranges(plan, robot, problems);
   RunLog log;
   const Assembly assembly(scenario, plan.seed, log);
-  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file);
+  const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file, assembly.signal_states());
   for (const InputProblem& problem : problems_of_played(scenario, assembly.catalog()))
     problems.add(InputError(problem));
-  const Metrics metrics(assembly.catalog().signals, plan.metrics, plan.file);
+  const Metrics metrics(assembly.catalog().signals, plan.metrics, plan.file, assembly.signal_states());
   const auto system = make_control_system(robot);
   PlantVariant variant{.model = robot.config.model, .plant = robot.config.plant};
   return {.scenario = named,

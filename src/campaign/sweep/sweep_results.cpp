@@ -18,40 +18,30 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* manifest_file = "sweep.json";
 
-Json to_json(const SweepManifest& manifest) {
-  return {{"sweep", manifest.sweep},
-          {"doc", manifest.doc},
-          {"plan", manifest.plan},
-          {"version", manifest.version},
-          {"sampling", manifest.sampling},
-          {"seed", manifest.seed},
-          {"cases", manifest.cases},
-          {"metrics", manifest.metrics},
-          {"first_try", manifest.first_try},
-          {"time", manifest.time},
-          {"worst", manifest.worst},
-          {"map_x", manifest.map_x},
-          {"map_y", manifest.map_y},
-          {"map_metric", manifest.map_metric},
-          {"passed_min", manifest.passed_min}};
+// Both ways: `visit` gets the key and the member.
+template <typename Manifest, typename Visit>
+void visit_facts(Manifest& manifest, Visit visit) {
+  visit("sweep", manifest.sweep);
+  visit("doc", manifest.doc);
+  visit("plan", manifest.plan);
+  visit("version", manifest.version);
+  visit("sampling", manifest.sampling);
+  visit("seed", manifest.seed);
+  visit("cases", manifest.cases);
+  visit("metrics", manifest.metrics);
+  visit("first_try", manifest.first_try);
+  visit("time", manifest.time);
+  visit("worst", manifest.worst);
+  visit("map_x", manifest.map_x);
+  visit("map_y", manifest.map_y);
+  visit("map_metric", manifest.map_metric);
+  visit("passed_min", manifest.passed_min);
 }
 
-SweepManifest manifest_from(const Json& json) {
-  return {.sweep = json.at("sweep"),
-          .doc = json.at("doc"),
-          .plan = json.at("plan"),
-          .version = json.at("version"),
-          .sampling = json.at("sampling"),
-          .seed = json.at("seed"),
-          .cases = json.at("cases"),
-          .metrics = json.at("metrics"),
-          .first_try = json.at("first_try"),
-          .time = json.at("time"),
-          .worst = json.at("worst"),
-          .map_x = json.at("map_x"),
-          .map_y = json.at("map_y"),
-          .map_metric = json.at("map_metric"),
-          .passed_min = json.at("passed_min")};
+Json to_json(const SweepManifest& manifest) {
+  Json json;
+  visit_facts(manifest, [&json](const char* key, const auto& value) { json[key] = value; });
+  return json;
 }
 
 SweepManifest read_manifest(const fs::path& folder) {
@@ -59,7 +49,10 @@ SweepManifest read_manifest(const fs::path& folder) {
   if (!fs::exists(file))
     throw InputError({.file = folder.string(), .message = "holds no results of a sweep: there is no sweep.json"});
   try {
-    return manifest_from(parse_foreign_json(read_input_file(file), file.string()));
+    const Json json = parse_foreign_json(read_input_file(file), file.string());
+    SweepManifest manifest;
+    visit_facts(manifest, [&json](const char* key, auto& value) { json.at(key).get_to(value); });
+    return manifest;
   } catch (const Json::exception& error) {
     throw InputError({.file = file.string(), .message = std::string("cannot be read: ") + error.what()});
   }

@@ -38,6 +38,7 @@ struct ObjectConfig {
   std::vector<std::size_t> joints;       // in the order of the model
   std::uint32_t divisor = 1;             // the low level runs every n-th control tick
   std::uint32_t high_level_divisor = 1;  // the high level runs every n-th behavior tick
+  double switch_dwell_s = 0;             // least time between two switches of it
   std::vector<TextEntry> options;        // settings of its type other than parameters
   std::vector<NumberEntry> parameters;   // key: pattern over the parameters' names without the object's name
   std::vector<PresetConfig> presets;

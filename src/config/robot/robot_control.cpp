@@ -168,6 +168,8 @@ void RobotReader::object(Fields& f) {
   f.integer("divisor", object.divisor, {1, 1000}, "the low level is computed every n-th control tick");
   f.integer("high_level_divisor", object.high_level_divisor, {1, 1000},
             "the high level is computed every n-th behavior tick");
+  f.number("switch_dwell_s", object.switch_dwell_s, {0, switch_dwell_max_s, "s"},
+           "least time between two switches of it, in or out of the active sets; an earlier one is refused");
   f.object("options", "options of the type, in addition to parameters",
            [&](Fields& e) { e.text_entries(object.options, "value of the option"); });
   f.object("parameters", "first values by parameter pattern",
@@ -230,6 +232,8 @@ void RobotReader::control_set(Fields& entry) {
   }
   ControlSetInfo set;
   set.name = entry.key();
+  entry.number("switch_dwell_s", set.switch_dwell_s, {0, switch_dwell_max_s, "s"},
+               "least time between two switches of it, in or out; an earlier one is refused");
   const std::vector<std::string> names = names_of(config_.objects);
   std::vector<std::size_t> owner(joint_names_.size(), names.size());  // the object of this set that sets a joint
   for (const PlacedName& object : objects) {

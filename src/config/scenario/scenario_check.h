@@ -12,14 +12,15 @@
 namespace kadans {
 
 // A check of a scenario: one signal must stay within bounds, or a Lua condition over several signals must hold. "It" is
-// the demand of the check: the signal is within [min, max], or the condition `that` is true.
+// the demand of the check: the signal is within [min, max], or the condition `that` is true. Behind each kind stands
+// the value that is told of the check.
 enum class CheckKind : std::uint8_t {
-  always,      // it holds in every tick
-  never,       // it holds in no tick
-  eventually,  // it holds in at least one tick
-  at_end,      // it holds in the last tick
-  within,      // each time that `when` becomes true, it holds at most within_s later
-  settles,     // at most within_s after `when` (or from_s) it begins to hold, and holds until the end
+  always,      // it holds in every tick: the worst value
+  never,       // it holds in no tick: the worst value
+  eventually,  // it holds in at least one tick: the value nearest to or deepest in the demand
+  at_end,      // it holds in the last tick: the last value
+  within,      // each time that `when` becomes true, it holds at most within_s later: the last value
+  settles,     // at most within_s after `when` (or from_s) it begins to hold, and holds until the end: the time in s
 };
 inline const std::array<std::string, 6> check_kinds{"always", "never", "eventually", "at_end", "within", "settles"};
 
@@ -30,7 +31,7 @@ struct ScenarioCheck {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   std::string that;  // a condition in Lua; "" with a signal
-  std::string when;  // for within and settles
+  std::string when;  // a condition from which the time counts, for some kinds
   double within_s = 0;
   double from_s = 0;                                         // the check covers the time from here ...
   double until_s = std::numeric_limits<double>::infinity();  // ... to here, both included

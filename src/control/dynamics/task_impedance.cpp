@@ -26,6 +26,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kadans/control/control_object.h"
@@ -74,6 +75,8 @@ class TaskImpedance final : public ControlObject {
     Config config;
     State state;
     SetpointState reference;
+    bool asked = false;  // since the last step
+    bool keeps = false;  // it was asked together with a new point: the takeover leaves it
   };
   struct Part {
     JointAxis axis;
@@ -179,7 +182,9 @@ bool TaskImpedance::measured(const JointStates& joints) const noexcept {
 
 void TaskImpedance::take_over_point(const JointStates& joints) noexcept {
   const Vec3 at = chain_.update(joints, point_in_link_m_);
-  for (std::size_t i = 0; i < 3; ++i) directions_[i].reference = {.value = at[i]};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!std::exchange(directions_[i].keeps, false)) directions_[i].reference = {.value = at[i]};
+  }
   point_started_m_ = point_in_link_m_;
   for (Part& part : parts_) part.posture_rad = joints.joints[part.axis.joint].position_rad;
   located_ = true;
@@ -187,6 +192,7 @@ void TaskImpedance::take_over_point(const JointStates& joints) noexcept {
 
 void TaskImpedance::start(const ControlInput& input) noexcept {
   located_ = false;
+  for (Direction& direction : directions_) direction.asked = direction.keeps = false;
   if (measured(input.joints)) take_over_point(input.joints);
   for (Part& part : parts_) {
     const std::size_t joint = part.axis.joint;
@@ -197,6 +203,7 @@ void TaskImpedance::start(const ControlInput& input) noexcept {
 void TaskImpedance::parameters_changed() noexcept {
   if (point_in_link_m_ == point_started_m_ || !located_) return;
   located_ = false;
+  for (Direction& direction : directions_) direction.keeps = direction.asked;
   // An object that has started in this tick goes on from the torque of its start: its own output is of an earlier time.
   for (Part& part : parts_) {
     if (!part.takeover.pending()) part.takeover.start(part.output.effort_Nm);
@@ -247,6 +254,7 @@ void TaskImpedance::step(const ControlInput& input, ActuationFrame& actuation) n
     if (!located_) take_over_point(joints);
     pull(joints);
   }
+  for (Direction& direction : directions_) direction.asked = false;
   for (Part& part : parts_) {
     const JointState& joint = joints.joints[part.axis.joint];
     const double law = law_Nm(part, joint);
@@ -264,11 +272,13 @@ bool TaskImpedance::setpoint_state(std::uint32_t channel, SetpointState& state) 
 
 void TaskImpedance::follow(std::uint32_t channel, const SetpointState& state) noexcept {
   directions_[channel].reference = state;
+  directions_[channel].asked = true;
 }
 
 void TaskImpedance::pass_state(StateBytes& bytes) noexcept {
   for (Part& part : parts_) bytes(part.output, part.posture_rad, part.takeover);
-  for (Direction& direction : directions_) bytes(direction.state, direction.reference);
+  for (Direction& direction : directions_)
+    bytes(direction.state, direction.reference, direction.asked, direction.keeps);
   bytes(point_started_m_, force_limited_, located_);
 }
 

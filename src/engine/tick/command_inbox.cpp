@@ -140,7 +140,7 @@ Refusal CommandInbox::judge_arm(std::uint32_t rest, std::uint32_t armed_before, 
 }
 
 template <typename At>
-Refusal CommandInbox::judge_all(std::uint32_t count, const Safety& safety, At at) const noexcept {
+Refusal CommandInbox::judge_all(std::uint32_t count, std::int64_t time_ns, const Safety& safety, At at) const noexcept {
   bool cleared = false;
   SetMask active = sets_.active();
   std::uint32_t armed = 0;
@@ -158,7 +158,15 @@ Refusal CommandInbox::judge_all(std::uint32_t count, const Safety& safety, At at
     if (refusal.reason == RefusalReason::none && !cleared)
       refusal.reason = held(command, safety, active, refusal.joint);
     if (refusal.reason != RefusalReason::none) return refusal;
-    if (command.kind == CommandKind::switch_set) active = sets_.partition().after(active, command.index);
+    if (command.kind != CommandKind::switch_set) continue;
+    if (const SwitchDwell::Dweller dweller = sets_.dwell().against(active, command.index, time_ns);
+        dweller.left_s > 0) {
+      refusal.reason = RefusalReason::set_dwells;
+      refusal.joint = static_cast<std::uint16_t>(dweller.set);
+      refusal.value = dweller.left_s;
+      return refusal;
+    }
+    active = sets_.partition().after(active, command.index);
   }
   return {};
 }
@@ -266,7 +274,8 @@ void CommandInbox::execute_all(const Command& header, const ControlInput& input,
 void CommandInbox::carry_out_armed(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept {
   armed_.step(tick, input.time_ns, [&](std::uint32_t sequence, std::span<const Command> commands) {
     const auto count = static_cast<std::uint32_t>(commands.size());
-    const Refusal refusal = judge_all(count, safety, [&](std::uint32_t i) -> const Command& { return commands[i]; });
+    const Refusal refusal =
+        judge_all(count, input.time_ns, safety, [&](std::uint32_t i) -> const Command& { return commands[i]; });
     if (refusal.reason != RefusalReason::none) {
       refuse({.count = count, .sequence = sequence}, refusal, tick, safety);
       return refusal.reason;
@@ -296,7 +305,7 @@ void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& 
     if (header.count > share || orders_again(header.count)) return;
     const bool fresh = input.time_ns - header.time_ns <= age_max_ns_;
     const Refusal refusal =
-        fresh ? judge_all(header.count, safety, arrived) : Refusal{.reason = RefusalReason::too_old};
+        fresh ? judge_all(header.count, input.time_ns, safety, arrived) : Refusal{.reason = RefusalReason::too_old};
     if (refusal.reason == RefusalReason::none) {
       execute_all(header, input, safety);
       state_.applied += header.count;

@@ -10,6 +10,9 @@
 // parameters, of the objects that drive it; a switch of control sets that concerns it. A joint that damps or is off
 // causes no refusal, so that the others can go on; when it comes back, it starts from where it is.
 //
+// A switch of a control set or object whose least time is not over (kadans/control/switch_dwell.h) is
+// refused with the whole transaction, whoever sends it. The safety layer switches no sets, so nothing keeps it waiting.
+//
 // Orders to drives are carried out while the robot is held, because they can end the cause. Under the emergency stop,
 // orders that let a joint move are refused.
 #pragma once
@@ -60,7 +63,7 @@ class CommandInbox {
   // The refusal of the first of the `count` commands that is refused; with the reason none: there is no such command.
   // `at(i)` is the i-th, from 0.
   template <typename At>
-  Refusal judge_all(std::uint32_t count, const Safety& safety, At at) const noexcept;
+  Refusal judge_all(std::uint32_t count, std::int64_t time_ns, const Safety& safety, At at) const noexcept;
   // An arm with what belongs to it: at(0) is the arm, and `rest` commands follow.
   template <typename At>
   Refusal judge_arm(std::uint32_t rest, std::uint32_t armed_before, At at) const noexcept;

@@ -61,6 +61,7 @@ class SpawnPlan {
   SpawnPlan& operator=(const SpawnPlan&) = delete;
 
   pid_t spawn(const ProgramStart& start) const {
+    hear_of_ends();
     std::vector<char*> words;
     for (const std::string& word : start.words) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
@@ -72,6 +73,15 @@ class SpawnPlan {
   }
 
  private:
+  // Whoever started this process may have left it with SIGCHLD ignored. Then the system takes a process off its list at
+  // once, and the number of its group is lost with it.
+  static void hear_of_ends() noexcept {
+    struct sigaction now {};
+    if (sigaction(SIGCHLD, nullptr, &now) != 0 || (now.sa_flags & SA_SIGINFO) != 0 || now.sa_handler != SIG_IGN) return;
+    now.sa_handler = SIG_DFL;
+    (void)sigaction(SIGCHLD, &now, nullptr);
+  }
+
   SpawnPlan() {
     posix_spawn_file_actions_init(&files_);
     posix_spawnattr_init(&attributes_);
@@ -157,7 +167,7 @@ bool ChildProcess::reap(bool waits) noexcept {
   int status = 0;
   const pid_t got = uninterrupted([&] { return waitpid(pid_, &status, moment); });
   if (got == pid_) status_ = status;
-  if (got == pid_ || (got < 0 && errno == ECHILD)) forget();  // as when somebody set SIGCHLD to be ignored
+  if (got == pid_ || (got < 0 && errno == ECHILD)) forget();  // as when somebody has ignored SIGCHLD since the start
   return !running_;
 }
 

@@ -170,6 +170,9 @@ std::string CtlRequests::told(const CtlSession& session, const OrderRequest& req
   } else if (request.is("complete")) {
     json["begin"] = answer.begin;
     json["words"] = answer.words;
+  } else if (request.is("why")) {
+    json["text"] = answer.text;
+    json["reasons"] = reasons_json(answer);
   } else if (request.is("line")) {
     json.update({{"text", answer.text},
                  {"incomplete", answer.incomplete},
@@ -266,16 +269,18 @@ std::string CtlRequests::sample(CtlSession& session) {
 
 std::string CtlRequests::faults() {
   upkeep();
-  const RobotModel& model = *instance_.catalog().model;
   const SafetyStatus& safety = port_.status().safety;
   Json all = Json::array();
+  const auto json_of = [&](const Fault& fault) {
+    return fault_json(fault, kadans::told(fault, instance_.facts().subjects, 0));
+  };
   for (const auto& [key, seen] : faults_) {
-    Json one = fault_json(seen.last, model);
+    Json one = json_of(seen.last);
     one["count"] = seen.count;
     all.push_back(std::move(one));
   }
   Json json{{"ok", true}, {"level", name(safety.level)}, {"since_clearing", safety.fault_count}, {"faults", all}};
-  if (safety.fault_count > 0) json["first"] = fault_json(safety.first_fault, model);
+  if (safety.fault_count > 0) json["first"] = json_of(safety.first_fault);
   return json_text(json);
 }
 
@@ -292,7 +297,7 @@ void CtlRequests::upkeep() {
   for (Event event; port_.next(event);) {
   }
   for (Fault fault; port_.next(fault);) {
-    Seen& seen = faults_[{fault.code, fault.joint}];
+    Seen& seen = faults_[{fault.code, fault.joint, fault.robot}];
     ++seen.count;
     seen.last = fault;
   }

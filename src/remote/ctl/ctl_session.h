@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -130,7 +131,7 @@ class CtlRequests {
   std::map<std::uint64_t, OrderRequest> asked_;  // the pending request of each session
   std::vector<std::uint64_t> leaving_;           // clients whose consoles must be closed
   std::set<std::uint64_t> fast_;                 // sessions that watch faster than the usual row
-  std::map<std::pair<FaultCode, std::uint16_t>, Seen> faults_;
+  std::map<std::tuple<FaultCode, std::uint16_t, std::uint16_t>, Seen> faults_;  // by code, joint and robot
 };
 
 }  // namespace kadans

@@ -103,6 +103,8 @@ bool BehaviorSide::begin(Pending& pending) {
   switch (order.kind) {
     case Order::Kind::report:
       return report(answer), true;
+    case Order::Kind::why:
+      return tell_why(order.text, answer), true;
     case Order::Kind::describe:
       return answer.text = behaviors_description(p_.host), true;
     case Order::Kind::play:
@@ -306,9 +308,10 @@ void BehaviorSide::report(Answer& answer) const {
   for (std::size_t i = 0; i < host.size(); ++i) {
     const Behavior& behavior = host.behavior(i);
     answer.behaviors.push_back({.name = behavior.name(),
-                                .state = behavior.state(),
                                 .outcome = behavior.outcome(),
                                 .error = behavior.failed() ? behavior.error().text() : "",
+                                .active = behavior.active(),
+                                .result = behavior.result(),
                                 .lane = host.lane(i),
                                 .over = host.over(i),
                                 .chart = chart_sign(behavior.chart()),
@@ -316,15 +319,29 @@ void BehaviorSide::report(Answer& answer) const {
   }
 }
 
+// Of all that play, or of the one with this name.
+void BehaviorSide::tell_why(const std::string& name, Answer& answer) {
+  if (p_.host == nullptr) {
+    throw InputError({.message = "behaviors play in a process of their own, which tells no reasons: "
+                                 "run with --behaviors thread"});
+  }
+  const auto snapshot = p_.exchange.snapshot.read(0);
+  answer.reasons = p_.host->why(name, *snapshot);
+  answer.text = reasons_text(answer.reasons);
+}
+
 // What a process tells of its behaviors while it plays.
 void BehaviorSide::report_process(Answer& answer) const {
   const ProcessHost& process = *p_.process;
+  const auto& active = p_.echo.active().by_behavior();
   answer.paused = process.paused();
-  for (std::size_t i = 0; i < process.names().size(); ++i) {
-    answer.behaviors.push_back({.name = process.names()[i],
-                                .state = process.down() ? "" : "state " + std::to_string(process.state(i)),
+  for (const std::string& name : process.names()) {
+    const auto told = active.find(name);
+    const bool silent = process.down() || told == active.end();
+    answer.behaviors.push_back({.name = name,
                                 .outcome = "",
                                 .error = process.down() ? "its process stays down" : "",
+                                .active = silent ? std::vector<std::string>() : told->second,
                                 .lane = 0,
                                 .over = process.down() || process.finished(),
                                 .chart = 0,

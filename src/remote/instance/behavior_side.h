@@ -35,6 +35,9 @@ class LineEcho final : public LineSink {
     lines_.push_back({line.severity, std::string(line.behavior), std::string(line.text)});
   }
 
+  void tell_active(const ActiveStates& active) override { active_.take(active); }
+  const ActiveNow& active() const noexcept { return active_; }
+
   void listen() {
     if (!listens_) lines_.clear();
     listens_ = true;
@@ -49,6 +52,7 @@ class LineEcho final : public LineSink {
   static constexpr std::size_t lines_max = 64;
   bool listens_ = false;
   std::vector<Heard> lines_;
+  ActiveNow active_;
 };
 
 class BehaviorSide final : public BesideTick {
@@ -97,6 +101,7 @@ class BehaviorSide final : public BesideTick {
   OrderTaker& orders() const noexcept { return p_.host != nullptr ? static_cast<OrderTaker&>(*p_.host) : *p_.process; }
   void report_process(Answer& answer) const;
   void report(Answer& answer) const;
+  void tell_why(const std::string& name, Answer& answer);
   void give(Pending& pending, PlayOrder::Kind kind);
   void set_parameter(Pending& pending, const std::string& name, double value);
   void send(Pending& pending, std::span<const Command> commands);

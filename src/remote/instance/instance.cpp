@@ -56,6 +56,10 @@ void Instance::tell(const Line& line) {
   for (const auto& port : ports_) port->events_.tell(line);
 }
 
+void Instance::tell_active(const ActiveStates& active) {
+  for (const auto& port : ports_) port->events_.tell_active(active);
+}
+
 void Instance::tell(const Fault& fault) noexcept {
   for (const auto& port : ports_) (void)port->faults_.try_push(fault);  // its server counts by itself
 }

@@ -30,6 +30,7 @@
 #include "remote/order/answer.h"
 #include "safety/emergency_stop.h"
 #include "telemetry/record/event_log.h"
+#include "telemetry/record/viewer_messages.h"
 
 namespace kadans {
 
@@ -105,6 +106,7 @@ class Instance final : public LineSink {
     PlayFolders folders;
     std::filesystem::path records;  // folder in which ordered records are written
     double control_period_s = 0.001, behavior_period_s = 0.01;
+    ViewerSubjects subjects = {};  // the parts of its robots, as viewers name them
   };
   // Make it when all signals are declared. `catalog` and `stop` must outlive it. Throws InputError when the
   // configuration cannot be read.
@@ -139,6 +141,7 @@ class Instance final : public LineSink {
   // Supervisor.
   void publish(const InstanceStatus& status) noexcept;
   void tell(const Line& line) override;
+  void tell_active(const ActiveStates& active) override;
   void tell(const Fault& fault) noexcept;
 
  private:

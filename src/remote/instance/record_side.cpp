@@ -38,17 +38,15 @@ void RecordSide::begin() {
 }
 
 // A record, or what the flight recorder writes.
-template <typename Record>
-void RecordSide::describe(Record& record, std::int64_t time_ns) const {
+void RecordSide::describe(RecordWriter& record, std::int64_t time_ns) const {
   (void)record.describe("run", facts_);
-  if (!texts_.urdf.empty()) (void)record.describe_robot(texts_.name, texts_.urdf, time_ns);
-  if (!texts_.description.empty()) (void)record.describe_parts(texts_.description, time_ns);
+  describe_robots(record, texts_, time_ns);
 }
 
 void RecordSide::start(const std::string& file) {
   make_recorder();
   if (!recorder_->open(file)) throw InputError({.message = recorder_->error()});
-  describe(*recorder_, time_ns_);
+  describe(recorder_->file(), time_ns_);
   file_ = file;
   events_.store(&recorder_->events(), std::memory_order_release);
   control_.record_to(recorder_.get());

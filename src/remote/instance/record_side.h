@@ -55,6 +55,9 @@ class RecordSide final : public Task, public LineSink {
   void tell(const Line& line) override {
     if (LineSink* events = events_.load(std::memory_order_acquire); events != nullptr) events->tell(line);
   }
+  void tell_active(const ActiveStates& active) override {
+    if (LineSink* events = events_.load(std::memory_order_acquire); events != nullptr) events->tell_active(active);
+  }
 
   // Supervisor.
   void tell(const Fault& fault) noexcept {
@@ -67,8 +70,7 @@ class RecordSide final : public Task, public LineSink {
  private:
   void carry_out(OrderCase& order);
   void make_recorder();
-  template <typename Record>
-  void describe(Record& record, std::int64_t time_ns) const;
+  void describe(RecordWriter& record, std::int64_t time_ns) const;
   void hand_over(bool at_once);
   void fly(const std::filesystem::path& file);
   void tell_timing();

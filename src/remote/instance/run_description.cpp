@@ -43,12 +43,22 @@ Json chart_of(const Behavior& behavior) {
                       {"kind", kind_name(state.kind)},
                       {"parent", number_of(state.parent)},
                       {"initial", number_of(state.initial)}});
+    if (state.deep) states.back()["deep"] = true;
   }
-  for (const Chart::Transition& transition : chart.transitions) {
+  const std::vector<GuardSource> guards = behavior.guards();
+  for (std::size_t i = 0; i < chart.transitions.size(); ++i) {
+    const Chart::Transition& transition = chart.transitions[i];
     if (transition.target == no_state) continue;
-    transitions.push_back({{"source", transition.source},
-                           {"target", transition.target},
-                           {"label", transition_label(chart, transition, parameters)}});
+    const Chart::State& source = chart.states[transition.source];
+    Json one{{"number", i},
+             {"source", transition.source},
+             {"target", transition.target},
+             {"label", transition_label(chart, transition, parameters)},
+             {"line", source.chunk + ":" + std::to_string(transition.line)}};
+    if (i - source.first_always < source.always_count) one["always"] = true;
+    if (const GuardSource& guard = guards[i]; !guard.file.empty())
+      one["guard"] = {{"file", guard.file}, {"line", guard.line}, {"text", guard.text}};
+    transitions.push_back(std::move(one));
   }
   return {{"states", states}, {"transitions", transitions}};
 }
@@ -137,6 +147,13 @@ Json parameters_of(const Catalog& catalog) {
 }
 
 }  // namespace
+
+void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t time_ns) {
+  // A disk that fails is told when the record is closed.
+  if (!texts.urdf.empty()) (void)record.describe_robot(texts.name, texts.urdf, time_ns);
+  for (const RobotTexts::Other& other : texts.others) (void)record.describe_other(other.name, other.urdf, time_ns);
+  if (!texts.description.empty()) (void)record.describe_parts(texts.description, time_ns);
+}
 
 std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host) {
   const Json description{{"robot", robot_of(robot)},

@@ -11,7 +11,7 @@
 #include "config/robot/robot_config.h"
 #include "kadans/control/catalog.h"
 #include "script/host/script_host.h"
-#include "telemetry/record/viewer_messages.h"
+#include "telemetry/record/record_writer.h"
 
 namespace kadans {
 
@@ -19,8 +19,14 @@ namespace kadans {
 struct RobotTexts {
   std::string name, urdf;
   std::string description;
-  ViewerSubjects subjects;
+  struct Other {
+    std::string name, urdf, file;  // the file of the URDF
+  };
+  std::vector<Other> others{};  // the further robots of the world
 };
+
+// Writes the texts that there are into a record that has just been opened.
+void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t time_ns);
 
 // Call it before the loop or between two behavior ticks, because it reads the values of parameters and the charts.
 // Without a host (behaviors in a process of their own) the charts are left out.

@@ -8,12 +8,15 @@
 
 #include "order.h"
 #include "order_queue.h"
+#include "script/behavior/behavior_why.h"
 #include "script/host/script_parameter.h"
 
 namespace kadans {
 
 struct BehaviorReport {
-  std::string name, state, outcome, error;
+  std::string name, outcome, error;
+  std::string result{};             // with the outcome
+  std::vector<std::string> active;  // all innermost active states, by path
   std::uint32_t lane = 0;
   bool over = false;
   std::uint64_t chart = 0;  // a number that changes when the chart's states or transitions change
@@ -25,6 +28,7 @@ struct Answer {
   bool done = false;
   std::string text;  // when not done: the reason; else a message
   std::vector<BehaviorReport> behaviors{};
+  std::vector<BehaviorReasons> reasons{};
   bool paused = false;
   std::vector<ParameterChange> changes{};
   std::vector<ParameterChange> set{};  // for the order `changes`: also those that are already saved

@@ -26,6 +26,7 @@ struct Order {
   enum class Kind : std::uint8_t {
     // Behavior thread.
     report,    // Answer::behaviors = what plays
+    why,       // Answer::reasons = why transitions were not taken; `text` = name of a behavior, "": all that play
     describe,  // Answer::text = behaviors_description
     play,      // `text` = list; it is appended to what plays
     replace,   // `text` = list; it replaces what plays
@@ -137,6 +138,19 @@ inline constexpr OrderInfo orders[] = {
      Is::report,
      {},
      "  kadans ctl status --json\n"},
+    {"why",
+     "why",
+     all,
+     Role::operate,
+     "Why the transitions of the active states were not taken: events, times, guards",
+     Is::why,
+     {{{.name = "behavior",
+        .kind = text,
+        .shown = "NAME",
+        .doc = "name of a behavior (default: all that play)",
+        .lists = "behaviors"}}},
+     "  kadans ctl why\n"
+     "  kadans ctl why squat --json\n"},
     {"list",
      "list",
      ctl,

@@ -111,10 +111,30 @@ Json behaviors_json(const Answer& report) {
   Json all = Json::array();
   for (const BehaviorReport& behavior : report.behaviors) {
     Json one{{"name", behavior.name}, {"plays", !behavior.over}, {"lane", behavior.lane}};
-    if (!behavior.state.empty()) one["state"] = behavior.state;
+    if (!behavior.active.empty()) {
+      one["state"] = behavior.active.front();
+      one["active"] = behavior.active;
+    }
     if (!behavior.outcome.empty()) one["outcome"] = behavior.outcome;
+    if (!behavior.result.empty()) one["result"] = behavior.result;
     if (!behavior.error.empty()) one["error"] = behavior.error;
     all.push_back(std::move(one));
+  }
+  return all;
+}
+
+Json reasons_json(const Answer& answer) {
+  Json all = Json::array();
+  for (const BehaviorReasons& behavior : answer.reasons) {
+    for (const TransitionReason& reason : behavior.transitions) {
+      Json one{{"behavior", behavior.name}, {"number", reason.transition}, {"from", reason.from}, {"to", reason.to},
+               {"label", reason.label},     {"free", reason.free},         {"why", reason.why}};
+      if (!reason.saw.empty()) one["saw"] = reason.saw;
+      if (!reason.guard.file.empty()) {
+        one["guard"] = {{"file", reason.guard.file}, {"line", reason.guard.line}, {"text", reason.guard.text}};
+      }
+      all.push_back(std::move(one));
+    }
   }
   return all;
 }
@@ -144,7 +164,8 @@ Json status_json(const Instance& instance, const InstanceStatus& status) {
   }
   Json safety{
       {"level", name(status.safety.level)}, {"faults", status.safety.fault_count}, {"stopped", status.safety.stopped}};
-  if (status.safety.fault_count > 0) safety["first"] = fault_json(status.safety.first_fault, *catalog.model);
+  if (status.safety.fault_count > 0)
+    safety["first"] = fault_json(status.safety.first_fault, told(status.safety.first_fault, *catalog.model));
   return {{"ok", true},
           {"name", facts.name},
           {"mode", facts.mode},

@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 std::string refusal(const std::string& why);
 
 Json behaviors_json(const Answer& report);
+Json reasons_json(const Answer& answer);
 Json status_json(const Instance& instance, const InstanceStatus& status);
 // {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
 Json drives_json(const PowerStatus& power, const RobotModel& model);
@@ -50,8 +51,9 @@ struct OrderRequest {
 OrderRequest read_request(std::string_view line, Role role);
 
 // {"verb": "set", "text": "l_knee.kp", "value": 50}: `text` is the order's text argument and `value` its number,
-// whatever their names in the table are. "id" is the caller's; any other field is refused. `paced`: the run's time can
-// be held. Throws as read_request.
+// whatever their names in the table are. "id" is the caller's. `paced`: the run's time can be held. Throws InputError
+// for an order that is not brief (OrderInfo::is_brief) or needs a run that is paced, for any other field, for a text or
+// a number that the order does not take, and as read_request for arguments; roles are the caller's business.
 OrderRequest read_brief_request(const Json& json, bool paced);
 
 // Finishes a `save` after the behavior thread has answered with the changes: writes the file and informs that thread.

@@ -241,6 +241,10 @@ void LiveClient::take(std::uint32_t number, const Answer& answer) noexcept {
 
 void LiveClient::answer_call(const Call& call, const Answer& answer) {
   if (call.save) return save(call, answer);
+  if (call.service && !answer.reasons.empty()) {
+    const Json told{{"done", true}, {"text", answer.text}, {"reasons", reasons_json(answer)}};
+    return put({true, service_response(call.service_call, json_text(told))});
+  }
   if (call.service) return answer_service(call.service_call, answer.done, answer.text);
   if (!answer.done) complain(answer.text);
   if (answer.done) hub_.settled(call.parameter, call.value);

@@ -40,7 +40,8 @@ void LiveChannel::put(std::uint64_t time_ns, std::span<const std::byte> payload)
 LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
     : catalog_(instance.catalog()),
       topics_(signal_topics(catalog_.signals, Precision::full)),
-      viewers_(catalog_.signals, texts.subjects),
+      subjects_(instance.facts().subjects),
+      viewers_(catalog_.signals, subjects_),
       description_(texts.description) {
   for (const SignalTopic& topic : topics_) {
     signals_["signals" + topic.topic] = topic.description;
@@ -54,13 +55,18 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
   for (const ViewerChannel& channel : viewers_.channels()) add_viewer(channel);
   log_ = add_json("/log", "foxglove.Log", log_schema, true);
   transitions_ = add_json("/transitions", "kadans.Transition", transition_schema, true);
+  active_ = add_json("/active", "kadans.Active", active_schema, true);
   faults_ = add_json("/faults", "kadans.Fault", fault_schema, true);
   timing_ = add_json("/timing", "kadans.Timing", timing_schema, false);
   drives_ = add_json("/drives", "kadans.Drives", drives_schema, false);
   described_ = add_json("/description", "kadans.Description", description_schema, false);
   put_json(described_, 0, texts.description);
   write_robot_description(texts.urdf, message_);
-  channels_[add_viewer(robot_description_channel())].put(0, message_.bytes());
+  channels_[add_viewer(robot_description_channel(""))].put(0, message_.bytes());
+  for (const RobotTexts::Other& other : texts.others) {
+    write_robot_description(other.urdf, message_);
+    channels_[add_viewer(robot_description_channel(other.name))].put(0, message_.bytes());
+  }
 }
 
 std::size_t LiveChannels::add(LiveChannel channel) {
@@ -105,11 +111,14 @@ void LiveChannels::take(const LatestRow::View& row) {
 }
 
 void LiveChannels::take(const Event& event) {
-  put_json(event.kind == Event::Kind::transition ? transitions_ : log_, event.transition.time_ns, json_of(event));
+  const std::size_t channel = event.kind == Event::Kind::transition ? transitions_
+                              : event.kind == Event::Kind::active   ? active_
+                                                                    : log_;
+  put_json(channel, event.transition.time_ns, json_of(event));
 }
 
 void LiveChannels::take(const Fault& fault, std::int64_t time_ns) {
-  put_json(faults_, time_ns, json_of(told(fault, *catalog_.model, time_ns)));
+  put_json(faults_, time_ns, json_of(told(fault, subjects_, time_ns)));
 }
 
 void LiveChannels::take_behaviors(const std::string& json) {
@@ -158,12 +167,17 @@ std::string place_of(const std::string& name, const fs::path& folder) {
 LiveAssets::LiveAssets(const RobotTexts& texts, const std::string& urdf_file)
     : urdf_(std::make_shared<const std::string>(texts.urdf)),
       urdf_uri_(std::string(package) + texts.name + "/" + texts.name + ".urdf") {
+  add_meshes(texts.urdf, urdf_file);
+  for (const RobotTexts::Other& other : texts.others) add_meshes(other.urdf, other.file);
+}
+
+void LiveAssets::add_meshes(const std::string& urdf, const std::string& urdf_file) {
   const fs::path folder = fs::absolute(urdf_file).parent_path();
   constexpr std::string_view key = "filename=\"";
-  for (std::size_t at = texts.urdf.find(key); at != std::string::npos; at = texts.urdf.find(key, at)) {
+  for (std::size_t at = urdf.find(key); at != std::string::npos; at = urdf.find(key, at)) {
     at += key.size();
-    const std::string name = texts.urdf.substr(at, texts.urdf.find('"', at) - at);
-    files_[name] = place_of(name, folder);
+    const std::string name = urdf.substr(at, urdf.find('"', at) - at);
+    files_.emplace(name, place_of(name, folder));
   }
 }
 

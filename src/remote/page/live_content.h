@@ -69,15 +69,17 @@ class LiveChannels {
   std::vector<SignalTopic> topics_;  // the first channels
   std::vector<LiveChannel> channels_;
   std::map<std::string, std::string> signals_;
+  ViewerSubjects subjects_;
   ViewerMessages viewers_;
-  std::size_t first_viewer_, log_, transitions_, faults_, timing_, drives_, described_;
+  std::size_t first_viewer_, log_, transitions_, active_, faults_, timing_, drives_, described_;
   std::string description_, drives_told_;
   ByteWriter message_;
   std::vector<std::byte> payload_;
   std::vector<double> values_;
 };
 
-// The files that clients may fetch: the robot's URDF and the meshes that it names, of at most 16 MB each.
+// The files that clients may fetch: the first robot's URDF and the meshes that the robots' URDFs name, of at most 16 MB
+// each. Where two URDFs name different files alike, the first counts.
 class LiveAssets {
  public:
   LiveAssets(const RobotTexts& texts, const std::string& urdf_file);
@@ -89,6 +91,8 @@ class LiveAssets {
   Content read(std::string_view uri);
 
  private:
+  void add_meshes(const std::string& urdf, const std::string& urdf_file);
+
   Content urdf_;
   std::string urdf_uri_;
   std::map<std::string, std::string, std::less<>> files_;         // files by their names in the URDF

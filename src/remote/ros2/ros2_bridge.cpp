@@ -26,7 +26,7 @@
 #include "realtime/posix_wait.h"
 #include "realtime/task_thread.h"
 #include "remote/instance/latest_row.h"
-#include "text_commands.h"
+#include "text_orders.h"
 
 namespace kadans {
 
@@ -96,12 +96,13 @@ class Ros2Topics {
   // Takes the next text on /kadans/command; false: none is waiting.
   [[nodiscard]] bool take(std::string& command);
   void answer(const std::string& text) noexcept;
+  void tell_active(const std::string& json) noexcept { publish_text(to_.active, json); }
 
  private:
   using Stamp = builtin_interfaces_msg_dds__Time_;
   using Stamped = geometry_msgs_msg_dds__TransformStamped_;
   struct Writers {
-    dds_entity_t joint_states, tf, tf_static, description, imu, clock, command_result;
+    dds_entity_t joint_states, tf, tf_static, description, imu, clock, active, command_result;
   };
 
   void publish_joint_states(Stamp now) noexcept;
@@ -160,7 +161,7 @@ void RobotReadings::take(const LatestRow::View& row) noexcept {
 namespace {
 
 constexpr DdsQuality kept_for_all{.depth = 1, .for_late_readers = true};
-constexpr std::int32_t frames_depth = 100, commands_depth = 16;  // tf2's own; orders that may wait
+constexpr std::int32_t frames_depth = 100, commands_depth = 16, active_depth = 32;  // tf2's own; orders that may wait
 
 // A sample that is written is only read: the C structs know no const.
 char* chars(const std::string& text) noexcept { return const_cast<char*>(text.c_str()); }
@@ -187,6 +188,8 @@ Ros2Topics::Ros2Topics(std::uint32_t domain, const RobotReadings& robot, const s
           .description = domain_.writer(std_msgs_msg_dds__String__desc, "rt/robot_description", kept_for_all),
           .imu = domain_.writer(sensor_msgs_msg_dds__Imu__desc, "rt/imu"),
           .clock = domain_.writer(rosgraph_msgs_msg_dds__Clock__desc, "rt/clock"),
+          .active = domain_.writer(std_msgs_msg_dds__String__desc, "rt/kadans/active",
+                                   {.depth = active_depth, .for_late_readers = true}),
           .command_result =
               domain_.writer(std_msgs_msg_dds__String__desc, "rt/kadans/command_result", {.depth = commands_depth})},
       commands_(domain_.reader(std_msgs_msg_dds__String__desc, "rt/kadans/command", {.depth = commands_depth})) {
@@ -261,6 +264,7 @@ namespace {
 
 constexpr int niceness = 5;
 constexpr int commands_a_beat = 8;  // the others wait, or make way for newer ones
+constexpr int events_a_beat = 64;
 constexpr double beats_a_sample = 2;
 
 }  // namespace
@@ -315,6 +319,9 @@ struct Ros2Bridge::Inside final : Task {
       if (const auto answer = commands.take(text)) topics->answer(*answer);
     }
     while (const auto answer = commands.next()) topics->answer(*answer);
+    for (int i = 0; i < events_a_beat && port.next(event); ++i) {
+      if (event.kind == Event::Kind::active) topics->tell_active(json_of(event));
+    }
   }
 
   Ros2Settings settings;
@@ -322,11 +329,12 @@ struct Ros2Bridge::Inside final : Task {
   std::string urdf;
   std::uint32_t every_ticks;
   RobotReadings readings;
-  TextCommands commands;
+  TextOrders commands;
   std::optional<Ros2Topics> topics;
   std::promise<void> joined;
   std::atomic<bool> running{false};
   std::uint64_t last_tick = UINT64_MAX;
+  Event event;
   PosixWait wait{0, WallClock().now_ns()};
   TaskThread thread;
 };

@@ -1,6 +1,6 @@
 // Makes a running instance visible to nodes of ROS 2 without ROS itself: DDS topics with the names, types and qualities
 // of service that ROS 2 uses. It publishes /joint_states, /tf, /tf_static, /robot_description, /imu and /clock. It
-// takes orders on /kadans/command and answers on /kadans/command_result (text_commands.h). docs/ros2.md describes their
+// takes orders on /kadans/command and answers on /kadans/command_result (text_orders.h). docs/ros2.md describes their
 // contents.
 //
 // It has one thread of its own at low priority, beside the threads of Cyclone DDS; none of them runs on the control

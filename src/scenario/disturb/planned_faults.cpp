@@ -131,6 +131,10 @@ void FaultyPlant::add(const ActuatorFault& fault) {
   actuator_faults_.push_back({.fault = fault, .held = {}, .order_seen = asked_[fault.joint].number});
 }
 
+std::size_t FaultyPlant::late_ticks(const ActuatorFault& fault) noexcept {
+  return static_cast<std::size_t>(std::clamp(fault.size, 0.0, double{late_ticks_max}));
+}
+
 void FaultyPlant::spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept {
   const ActuatorFault& fault = planned.fault;
   if (!planned.is_now(time_ns_)) {
@@ -155,11 +159,9 @@ void FaultyPlant::spoil(PlannedActuator& planned, JointActuation& actuation) con
     case ActuatorFaultKind::offset:
       actuation.effort_Nm += fault.size;
       break;
-    case ActuatorFaultKind::late: {
-      const auto ticks = static_cast<std::size_t>(std::clamp(fault.size, 0.0, double{late_ticks_max}));
-      actuation = written_[(newest_ + written_.size() - ticks) % written_.size()].joints[fault.joint];
+    case ActuatorFaultKind::late:
+      actuation = written_before(late_ticks(fault)).joints[fault.joint];
       break;
-    }
   }
 }
 
@@ -181,6 +183,21 @@ void FaultyPlant::write(const ActuationFrame& actuation) noexcept {
 void FaultyPlant::hash(StateHash& hash) const noexcept {
   world_.hash(hash);
   for (const PlannedActuator& planned : actuator_faults_) hash.add(planned.held.effort_Nm);
+}
+
+void FaultyPlant::hash_held_back(StateHash& hash) const noexcept {
+  const auto add = [&hash](const JointActuation& actuation) {
+    hash.add(static_cast<std::uint8_t>(actuation.mode));
+    for (const double value : {actuation.position_rad, actuation.velocity_rad_s, actuation.effort_Nm}) hash.add(value);
+  };
+  for (const PlannedActuator& planned : actuator_faults_) {
+    add(planned.held);
+    hash.add(static_cast<std::uint8_t>(planned.fault.kind));
+    hash.add(planned.over);
+    if (planned.fault.kind != ActuatorFaultKind::late) continue;
+    for (std::size_t age = 0; age < late_ticks(planned.fault); ++age)
+      add(written_before(age).joints[planned.fault.joint]);
+  }
 }
 
 void FaultyHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {

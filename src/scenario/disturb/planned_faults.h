@@ -97,6 +97,9 @@ class FaultyPlant final : public OneRobotWorld {
     robot_.push(link, force_N, point_in_link_m);
   }
   void hash(StateHash& hash) const noexcept override;
+  // Of this robot alone: what its faults hold back, and the actuation that is under way to its late drives. Needed for
+  // a further robot, whose faults are not in the hash of the first one's world.
+  void hash_held_back(StateHash& hash) const noexcept;
 
  private:
   struct Planned {
@@ -117,6 +120,10 @@ class FaultyPlant final : public OneRobotWorld {
   };
   void spoil(Planned& planned, SensorFrame& sensors) noexcept;
   void spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept;
+  static std::size_t late_ticks(const ActuatorFault& fault) noexcept;
+  const ActuationFrame& written_before(std::size_t ticks) const noexcept {
+    return written_[(newest_ + written_.size() - ticks) % written_.size()];
+  }
 
   World& world_;
   WorldRobot& robot_;

@@ -36,8 +36,9 @@ std::string wanted_text(const ScenarioCheck& check) {
 
 }  // namespace
 
-Checks::Checks(const SignalTable& signals, const std::vector<ScenarioCheck>& checks, const std::string& file)
-    : conditions_(signals) {
+Checks::Checks(const SignalTable& signals, const std::vector<ScenarioCheck>& checks, const std::string& file,
+               std::span<const SignalState> states)
+    : conditions_(signals, states) {
   Problems problems(file);
   for (const ScenarioCheck& check : checks) {
     Judged judged{.check = Check(check)};
@@ -54,12 +55,12 @@ Checks::Checks(const SignalTable& signals, const std::vector<ScenarioCheck>& che
   problems.throw_if_any();
 }
 
-// The column in the file: the text begins behind its quote. Escapes before it would move it; conditions have none.
+// The column in the file: the text begins behind its quote.
 std::size_t Checks::compile(const std::string& text, TextPlace place, Problems& problems) {
   std::size_t index = none;
   ExpressionError error;
   if (!conditions_.add(text, index, error)) {
-    if (place.column > 0) place.column += error.column;
+    if (place.column > 0) place.column += error.file_column(text);
     problems.add(place, error.message);
   }
   return index;

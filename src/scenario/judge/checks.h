@@ -15,9 +15,7 @@ namespace kadans {
 struct CheckResult {
   std::string name;
   bool passed = false;
-  // always, never: the worst value; eventually: the value nearest to or deepest in the demand; at_end, within: the last
-  // value; settles: the time in s until it settled.
-  double value = 0;
+  double value = 0;      // what CheckKind says of the kind
   double at_s = 0;       // time of that value
   std::string note;      // what `value` cannot express: "its `when` never became true"
   std::string wanted{};  // "-0.01 .. 0.01", "never >= 0.6", "at the end joint.knee.position_rad > 0"
@@ -61,7 +59,7 @@ class Check {
   double worst_ = -std::numeric_limits<double>::infinity();
   double value_ = 0, excess_ = 0;
   double at_s_ = 0;
-  // within, settles
+  // of kinds with `when`
   bool when_ = false;                                            // value of `when` in the tick before
   bool started_ = false;                                         // `when` was true once
   bool waiting_ = false;                                         // the demand is not yet fulfilled ...
@@ -74,9 +72,9 @@ class Check {
 class Checks {
  public:
   // Looks the signals up and compiles the conditions. Throws InputError with all mistakes. `file` is the file from
-  // which the checks were read, for messages. The table must outlive this object.
+  // which the checks were read, for messages. The table and the states must outlive this object.
   explicit Checks(const SignalTable& signals, const std::vector<ScenarioCheck>& checks = {},
-                  const std::string& file = {});
+                  const std::string& file = {}, std::span<const SignalState> states = {});
 
   // To be called after each control tick.
   void update(double time_s, std::span<const double> row) noexcept;

@@ -11,8 +11,9 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Metrics::Metrics(const SignalTable& signals, const std::vector<MetricConfig>& metrics, const std::string& file)
-    : conditions_(signals) {
+Metrics::Metrics(const SignalTable& signals, const std::vector<MetricConfig>& metrics, const std::string& file,
+                 std::span<const SignalState> states)
+    : conditions_(signals, states) {
   Problems problems(file);
   for (const MetricConfig& config : metrics) {
     Gathered metric{.config = config};
@@ -20,7 +21,7 @@ Metrics::Metrics(const SignalTable& signals, const std::vector<MetricConfig>& me
       ExpressionError error;
       if (!conditions_.add(config.that, metric.index, error)) {
         const TextPlace start = config.that_place;
-        problems.add({start.line, start.column > 0 ? start.column + error.column : 0}, error.message);
+        problems.add({start.line, start.column > 0 ? start.column + error.file_column(config.that) : 0}, error.message);
       }
     } else if (const auto signal = signals.find(config.signal)) {
       metric.index = *signal;

@@ -21,7 +21,8 @@ class Metrics final : public RunObserver {
  public:
   // Looks the signals up and compiles the conditions. Throws InputError with all mistakes; `file` is the file from
   // which the metrics were read. The table must outlive this object.
-  Metrics(const SignalTable& signals, const std::vector<MetricConfig>& metrics, const std::string& file);
+  Metrics(const SignalTable& signals, const std::vector<MetricConfig>& metrics, const std::string& file,
+          std::span<const SignalState> states = {});
 
   void tick(double time_s, std::span<const double> row) override;
   std::vector<MetricValue> values() const;

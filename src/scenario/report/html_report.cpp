@@ -224,6 +224,8 @@ class HtmlRun {
   void transitions() {
     title("Transitions");
     const std::vector<Transition>& all = report_.subject.log.transitions();
+    for (const auto& [behavior, active] : report_.subject.log.active().by_behavior())
+      add("<p>At the end " + html_text(behavior) + " was in " + html_text(listed(active)) + ".</p>\n");
     if (all.empty()) return add("<p class=\"dim\">None.</p>\n");
     table({"time", "behavior", "from", "to", "why"}, 1);
     for (const Transition& t : all)

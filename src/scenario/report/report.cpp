@@ -51,7 +51,9 @@ class TextReport {
     std::ranges::stable_sort(said, {}, &std::pair<std::int64_t, std::string>::first);
     for (const auto& [time_ns, text] : said)
       text_ += dim(printed("  %7.2f s  ", 1e-9 * static_cast<double>(time_ns))) + text + '\n';
-    if (!said.empty()) text_ += '\n';
+    for (const auto& [behavior, active] : subject_.log.active().by_behavior())
+      text_ += dim("  at the end  ") + behavior + " in " + listed(active) + '\n';
+    if (!text_.empty()) text_ += '\n';
   }
 
   void plot(const ReportTrace& trace) {
@@ -179,6 +181,8 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
     if (line.severity == BehaviorLog::Severity::error) json["errors"].push_back(line.text);
   }
   for (const std::string& what : context.lost) json["errors"].push_back(what);
+  json["active"] = Json::object();
+  for (const auto& [behavior, active] : context.log.active().by_behavior()) json["active"][behavior] = active;
   json["record"] = context.record;
   json["quantities"] = Json::object();
   for (const QuantityValue& quantity : context.quantities) json["quantities"][quantity.name] = quantity.value;

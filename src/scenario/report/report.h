@@ -25,9 +25,9 @@ struct ReportContext {
 
 // {scenario, seed, passed, checks [{name, passed, value, at_s, wanted, note}], duration_s, realtime_factor,
 // control_ticks, behavior_ticks, state_hash, tick_ns {median, p99, max}, queue {sent, refused}, faults [], errors [],
-// record, quantities {}, metrics {}, hashes [], branch, transitions [], evidence [{check, signal, unit, from_s, to_s,
-// values}]}, on one line. Hashes and branch stand there only when there are any, transitions and evidence only when the
-// run did not pass. Numbers that are not finite become null.
+// active {behavior: [states]}, record, quantities {}, metrics {}, hashes [], branch, transitions [], evidence [{check,
+// signal, unit, from_s, to_s, values}]}, on one line. Hashes and branch stand there only when there are any,
+// transitions and evidence only when the run did not pass. Numbers that are not finite become null.
 std::string json_report(const RunResult& result, const ReportContext& context);
 
 struct ReportStyle {

@@ -8,6 +8,8 @@
 #include "engine/clock.h"
 #include "engine/refusal_text.h"
 #include "script/bindings/machine_sets.h"
+#include "script/chart/chart_arguments.h"
+#include "script/chart/chart_calls.h"
 #include "script/chart/chart_reader.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_core.h"
@@ -20,20 +22,11 @@ namespace {
 // as from k.call, or of its parameters.
 struct Giving {
   Behavior::Parts& parts;
-  std::vector<std::pair<std::string, int>> declared{};  // name and Lua type of the default
-  std::vector<const PlayArgument*> given{};
+  const PlayArgument* argument = nullptr;  // the one that is given now
+  bool declared = false;                   // among `args`
+  std::string wrong{}, whom{};
+  std::vector<std::string> names{};  // of `args`
 };
-
-int read_declared(lua_State* state) {
-  Giving& giving = *static_cast<Giving*>(lua_touserdata(state, 1));
-  const int arguments = giving.parts.chart.machines.front().arguments;
-  if (arguments == Chart::no_function) return 0;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, arguments);
-  for (lua_pushnil(state); lua_next(state, 2) != 0; lua_pop(state, 1)) {
-    if (lua_type(state, -2) == LUA_TSTRING) giving.declared.emplace_back(lua_tostring(state, -2), lua_type(state, -1));
-  }
-  return 0;
-}
 
 void push(lua_State* state, const PlayValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return lua_pushnumber(state, *number);
@@ -42,33 +35,33 @@ void push(lua_State* state, const PlayValue& value) {
   lua_pushlstring(state, text.data(), text.size());
 }
 
-int keep_given(lua_State* state) {
-  const Giving& giving = *static_cast<const Giving*>(lua_touserdata(state, 1));
-  lua_newtable(state);
-  for (const PlayArgument* argument : giving.given) {
-    push(state, argument->value);
-    lua_setfield(state, 2, argument->name.c_str());
+// Gives an argument when it is declared and fits.
+int give_declared(lua_State* state) {
+  Giving& giving = *static_cast<Giving*>(lua_touserdata(state, 1));
+  Chart::Machine& machine = giving.parts.chart.machines.front();
+  const char* name = giving.argument->name.c_str();
+  if (machine.arguments == Chart::no_function) return 0;
+  push(state, giving.argument->value);  // 2
+  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.arguments);
+  lua_getfield(state, 3, name);
+  giving.declared = !lua_isnil(state, 4);
+  if (giving.declared && push_refusal(state, 4, 2, name, giving.whom.c_str())) {
+    giving.wrong = lua_tostring(state, -1);
+    return 0;
   }
-  giving.parts.chart.machines.front().given = luaL_ref(state, LUA_REGISTRYINDEX);
+  if (!giving.declared) {
+    for (lua_pushnil(state); lua_next(state, 3) != 0; lua_pop(state, 1))
+      giving.names.emplace_back(lua_tostring(state, -2));
+    return 0;
+  }
+  if (machine.given == Chart::no_function) {
+    lua_newtable(state);
+    machine.given = luaL_ref(state, LUA_REGISTRYINDEX);
+  }
+  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.given);
+  lua_pushvalue(state, 2);
+  lua_setfield(state, -2, name);
   return 0;
-}
-
-const char* kind_name(int type) {
-  switch (type) {
-    case LUA_TNUMBER:
-      return "a number";
-    case LUA_TBOOLEAN:
-      return "true or false";
-    case LUA_TSTRING:
-      return "a text";
-    default:
-      return "a table, which only k.call can give";
-  }
-}
-
-int type_of(const PlayValue& value) {
-  constexpr int lua_types[] = {LUA_TNUMBER, LUA_TBOOLEAN, LUA_TSTRING};
-  return lua_types[value.index()];
 }
 
 std::string number(double value) {
@@ -117,24 +110,18 @@ std::string give(Behavior::Parts& parts, const BehaviorValue& given) {
          hint_text(given.parameter, names);
 }
 
-// What is wrong with it, or "".
-std::string give(Giving& giving, const PlayArgument& argument) {
+// What is wrong with an argument that is not among `args`, or "".
+std::string give_parameter(Giving& giving) {
   const std::string& behavior = giving.parts.chart.name;
-  for (const auto& [name, type] : giving.declared) {
-    if (name != argument.name) continue;
-    if (type != type_of(argument.value)) return "argument '" + name + "' " + who(behavior) + " is " + kind_name(type);
-    giving.given.push_back(&argument);
-    return "";
-  }
+  const PlayArgument& argument = *giving.argument;
   if (ScriptParameter* parameter = find_parameter(giving.parts, argument.name)) {
     const auto* value = std::get_if<double>(&argument.value);
     if (value == nullptr) return "parameter '" + argument.name + "' " + who(behavior) + " is a number";
     return set(*parameter, *value, behavior);
   }
-  std::vector<std::string> names;
-  for (const auto& declared : giving.declared) names.push_back(declared.first);
-  for (const ScriptParameter& known : giving.parts.lua->core().parameters) names.push_back(known.name);
-  return "behavior '" + behavior + "' takes no argument '" + argument.name + "'" + hint_text(argument.name, names);
+  for (const ScriptParameter& known : giving.parts.lua->core().parameters) giving.names.push_back(known.name);
+  return "behavior '" + behavior + "' takes no argument '" + argument.name + "'" +
+         hint_text(argument.name, giving.names);
 }
 
 }  // namespace
@@ -153,17 +140,16 @@ void give_robot_values(Behavior::Parts& parts) {
 
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions) {
   const Behavior::Settings& settings = parts.settings;
-  if (settings.arguments.empty()) return;
-  Giving giving{parts};
   std::vector<InputProblem> problems;
-  bool done = parts.lua->call(read_declared, &giving, instructions, settings.limits.load_wall_ns);
   for (const PlayArgument& argument : settings.arguments) {
-    const std::string wrong = give(giving, argument);
-    if (!wrong.empty()) problems.push_back({settings.source, argument.place.line, argument.place.column, wrong});
+    Giving giving{.parts = parts, .argument = &argument, .whom = "behavior '" + parts.chart.name + "'"};
+    if (!parts.lua->call(give_declared, &giving, instructions, settings.limits.load_wall_ns))
+      throw InputError({.file = settings.source, .message = parts.lua->error().text()});
+    if (!giving.declared) giving.wrong = give_parameter(giving);
+    if (!giving.wrong.empty())
+      problems.push_back({settings.source, argument.place.line, argument.place.column, giving.wrong});
   }
   if (!problems.empty()) throw InputError(problems);
-  done = done && parts.lua->call(keep_given, &giving, instructions, settings.limits.load_wall_ns);
-  if (!done) throw InputError({.file = settings.source, .message = parts.lua->error().text()});
 }
 
 namespace {
@@ -177,6 +163,7 @@ constexpr const char* rehearsal_text =
 int tick_chart(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  if (parts.chart.waits_for_reports) post_reports(state, parts);
   parts.runner->tick(state, parts.bindings.now_ns);
   return 0;
 }
@@ -257,10 +244,16 @@ void Behavior::Parts::tell_dropped(bool at_once) noexcept {
 
 void Behavior::Parts::tell_refused() noexcept {
   while (const Refusal* refusal = bindings.next_refusal()) {
+    const std::string why = refusal_text(*refusal, catalog);
+    if (bindings.was_armed(refusal->sequence)) {  // tell_armed() counted it; the states' sets are as they were
+      log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name, "all its commands: " + why);
+      continue;
+    }
     ++transactions_refused;
     bindings.sets_lost = true;
+    reports.note(*refusal);
     log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
-                "refused by the control engine, all commands of that tick: " + refusal_text(*refusal, catalog));
+                "refused by the control engine, all commands of that tick: " + why);
     bindings.forget_armed(refusal->sequence);
   }
 }
@@ -277,6 +270,7 @@ void Behavior::Parts::tell_armed() noexcept {
     }
     if (status.state == ArmedState::refused) {
       ++transactions_refused;
+      reports.note({.reason = status.reason});
       log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
                   of + "was refused when its condition was true");
     }
@@ -310,6 +304,10 @@ void Behavior::Parts::out_of_steps(const char* chunk, int line) noexcept {
   say_with(BehaviorLog::Severity::warning, text);
 }
 
+void Behavior::Parts::recovered(const ScriptError& taken) noexcept {
+  say_with(BehaviorLog::Severity::warning, ("error taken as an event: " + taken.text()).c_str());
+}
+
 bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
   return lua->call(function, this, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
 }
@@ -317,6 +315,12 @@ bool Behavior::Parts::run(int (*function)(lua_State*)) noexcept {
 Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
     : parts_(std::make_unique<Parts>(settings, catalog, log)), past_(std::make_unique<Past>()) {
   load_behavior(*parts_);
+  for (const Chart::State& state : chart().states) {
+    first_paths_.push_back(state.path);
+    const bool shown = state.kind == Chart::Kind::region && BehaviorStatus::is_region_path(state.path);
+    if (shown && status_.region_paths.size() < BehaviorStatus::regions_max) status_.region_paths.push_back(state.path);
+  }
+  number_states();
   publish_status();
 }
 
@@ -351,16 +355,26 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
     parts.error = parts.lua->error();
     parts.tell_dropped(true);
     if (parts.error.breach == ScriptBreach::none) stop(snapshot, commands);
+    tell_active(snapshot.time_ns);
     return false;
   }
   if (!bindings.commit()) {
     ++parts.transactions_refused;
+    parts.reports.queue_full = true;
     parts.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "queue_full: the commands of this tick were refused, all of them");
   }
-  parts.tell_dropped(finished());
+  const bool over = finished();
+  parts.tell_dropped(over);
+  if (over) tell_result(snapshot.time_ns);
   publish_status();
-  return !finished();
+  tell_active(snapshot.time_ns);
+  return !over;
+}
+
+void Behavior::tell_result(std::int64_t time_ns) noexcept {
+  const std::string text = result();
+  if (!text.empty()) parts_->log.message(time_ns, BehaviorLog::Severity::info, name(), "result " + text);
 }
 
 void Behavior::publish_status() noexcept {
@@ -374,7 +388,12 @@ void Behavior::publish_status() noexcept {
   parts.lua->collect();
   store(status_.gc_pause_ns, wall ? static_cast<std::uint64_t>(WallClock{}.now_ns() - began_ns) : 0);
   store(status_.heap_bytes, parts.lua->used_bytes());
-  store(status_.state, parts.runner->innermost());
+  store(status_.state, number_of(parts.runner->innermost()));
+  for (std::size_t i = 0; i < region_states_.size(); ++i) {
+    const StateIndex region = region_states_[i];
+    const bool active = region != no_state && parts.runner->active(region);
+    store(status_.regions[i], active ? number_of(parts.runner->innermost(region)) : 0);
+  }
 }
 
 void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -389,6 +408,8 @@ void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept 
     parts.bindings.begin(commands, snapshot, snapshot.time_ns);
     if (parts.lua->call(stop_chart, &parts, left, left_ns)) {
       (void)parts.bindings.commit();
+      publish_status();
+      tell_active(snapshot.time_ns);
       return;
     }
     commands.discard();
@@ -431,6 +452,8 @@ std::uint64_t Behavior::transactions_refused() const noexcept { return parts_->t
 std::uint64_t Behavior::events_unhandled() const noexcept { return parts_->runner->events_unhandled(); }
 std::size_t Behavior::heap_bytes() const noexcept { return parts_->lua->used_bytes(); }
 
+std::string Behavior::result() const { return finished() && !failed() ? result_text(*parts_) : ""; }
+
 std::string Behavior::outcome() const {
   if (failed()) return "error";
   const EventId outcome = parts_->runner->outcome();
@@ -438,6 +461,50 @@ std::string Behavior::outcome() const {
 }
 
 std::string Behavior::state() const { return parts_->chart.states[parts_->runner->innermost()].path; }
+
+std::vector<std::string> Behavior::active() const {
+  std::vector<std::string> paths;
+  const auto active = parts_->runner->active_states();
+  for (std::size_t i = 0; i < active.size() && !failed(); ++i) {
+    if (active[i] != 0 && parts_->runner->is_leaf(i)) paths.push_back(chart().states[active[i]].path);
+  }
+  return paths;
+}
+
+bool Behavior::active(StateIndex state) const noexcept { return !failed() && parts_->runner->active(state); }
+
+void Behavior::tell_active(std::int64_t time_ns) noexcept {
+  const auto now = failed() ? std::span<const StateIndex>() : parts_->runner->active_states();
+  if (std::ranges::equal(now, told_)) return;
+  told_.assign(now.begin(), now.end());
+  told_paths_.clear();
+  for (std::size_t i = 0; i < now.size() && told_paths_.size() < ActiveStates::told_max; ++i) {
+    if (now[i] != 0 && parts_->runner->is_leaf(i)) told_paths_.push_back(chart().states[now[i]].path);
+  }
+  parts_->log.active({time_ns, name(), told_paths_});
+}
+
+// After its chart was loaded. A state that is new has the number of the one around it.
+void Behavior::number_states() {
+  const std::vector<Chart::State>& states = chart().states;
+  numbers_.clear();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const auto first = std::ranges::find(first_paths_, states[i].path);
+    const std::uint32_t around = i == 0 ? 0 : numbers_[states[i].parent];
+    numbers_.push_back(first == first_paths_.end() ? around : static_cast<std::uint32_t>(first - first_paths_.begin()));
+  }
+  region_states_.clear();
+  for (const std::string& path : status_.region_paths) {
+    const auto is_it = [&](const Chart::State& s) { return s.kind == Chart::Kind::region && s.path == path; };
+    const auto found = std::ranges::find_if(states, is_it);
+    region_states_.push_back(found == states.end() ? no_state : static_cast<StateIndex>(found - states.begin()));
+  }
+  told_.clear();
+  told_.reserve(states.size());
+  told_paths_.reserve(ActiveStates::told_max);
+}
+
+std::uint32_t Behavior::number_of(StateIndex state) const noexcept { return numbers_[state]; }
 
 SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets; }
 
@@ -485,6 +552,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   if (!parts.lua->call(open_bindings, &parts, instructions, settings.limits.load_wall_ns)) {
     throw InputError(problem_of(parts.lua->error()));
   }
+  make_room_for_calls(parts.lua->core(), parts.chart, parts.bindings);
   parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);
   parts.bindings.runner = parts.runner.get();
   parts.lua->core().loading = false;
@@ -500,14 +568,27 @@ void BehaviorStatus::declare(SignalTable& signals, const std::string& name) cons
   signals.add({prefix + "gc_pause_ns", "ns", "Pause of the collector after its last tick; 0 in virtual time."},
               &gc_pause_ns);
   signals.add({prefix + "state", "", "Number of its innermost active state; 0: the behavior itself."}, &state);
+  for (std::size_t i = 0; i < region_paths.size(); ++i) {
+    signals.add({prefix + "region." + region_paths[i], "", "Number of the region's innermost active state; 0: none."},
+                &regions[i]);
+  }
   signals.add({prefix + "reloads", "", "New versions taken since the start."}, &reloads);
 }
 
-void BehaviorStatus::declare_numbered(SignalTable& signals, const std::string& name) const {
+bool BehaviorStatus::is_region_path(std::string_view path) noexcept {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
+  };
+  return !path.empty() && path.size() <= region_path_max && path.front() != '.' && path.back() != '.' &&
+         path.find("..") == std::string_view::npos && std::ranges::all_of(path, fits);
+}
+
+std::string BehaviorStatus::declare_numbered(SignalTable& signals, const std::string& name) const {
   std::string free = name;
   for (int number = 2; signals.find("behavior." + free + ".state"); ++number)
     free = name + "_" + std::to_string(number);
   declare(signals, free);
+  return free;
 }
 
 }  // namespace kadans

@@ -20,6 +20,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "behavior_status.h"
@@ -37,6 +38,8 @@ namespace kadans {
 
 class ByteReader;
 class ByteWriter;
+struct GuardSource;
+struct TransitionReason;
 
 class Behavior {
  public:
@@ -76,6 +79,9 @@ class Behavior {
   // Before the first tick: continues from bytes of keep(). False: error() says why.
   [[nodiscard]] bool go_on(ByteReader& bytes, const Snapshot& snapshot, CommandSender& commands) noexcept;
   const Settings& settings() const noexcept;  // as they were given, but with the file that was last read
+  // Behavior thread, between ticks (behavior_why.h). Throws InputError: the guards cannot be asked.
+  std::vector<TransitionReason> why(const Snapshot& snapshot) const;
+  std::vector<GuardSource> guards() const;  // of each transition of its chart
   // Behavior thread, between ticks. From now on the chart's clock, which `after`, m.time_s and motions use, is held_ns
   // behind the engine's clock.
   void hold_clock(std::int64_t held_ns) noexcept;
@@ -85,11 +91,15 @@ class Behavior {
 
   const std::string& name() const noexcept;
   const Chart& chart() const noexcept;
-  bool finished() const noexcept;             // reached a final state
-  bool failed() const noexcept;               // error() says why
-  std::string outcome() const;                // outcome of the final state; "error" when it failed; "" while it runs
-  std::string state() const;                  // path of the innermost active state; the first when there are several
-  const ScriptError& error() const noexcept;  // of the last failure
+  bool finished() const noexcept;  // reached a final state
+  bool failed() const noexcept;    // error() says why
+  std::string result() const;      // once it is finished: that of its final state, { steps = 3 }; "" when it has none
+  std::string outcome() const;     // outcome of the final state; "error" when it failed; "" while it runs
+  std::string state() const;       // path of the innermost active state; the first when there are several
+  // The paths of all innermost active states, in document order; none when it has not begun, is over or failed.
+  std::vector<std::string> active() const;
+  bool active(StateIndex state) const noexcept;  // of its chart, also one around others
+  const ScriptError& error() const noexcept;     // of the last failure
   std::uint64_t transactions_refused() const noexcept;
   std::uint64_t events_unhandled() const noexcept;
   std::size_t heap_bytes() const noexcept;
@@ -113,10 +123,19 @@ class Behavior {
   std::int64_t clock_ns(const Snapshot& snapshot) const noexcept;
   void forget_past(std::int64_t now_ns) noexcept;
   void publish_status() noexcept;
+  void tell_active(std::int64_t time_ns) noexcept;
+  void number_states();
+  std::uint32_t number_of(StateIndex state) const noexcept;
+  void tell_result(std::int64_t time_ns) noexcept;
 
   std::unique_ptr<Parts> parts_;
   std::unique_ptr<Past> past_;
   BehaviorStatus status_;
+  std::vector<std::string> first_paths_;      // of the states of its first chart; status_ numbers them
+  std::vector<std::uint32_t> numbers_;        // by state of another chart: the state of the first one; empty: the same
+  std::vector<StateIndex> region_states_;     // in the order of status_.region_paths
+  std::vector<StateIndex> told_;              // active states as they were told last
+  std::vector<std::string_view> told_paths_;  // of the innermost ones
 };
 
 }  // namespace kadans

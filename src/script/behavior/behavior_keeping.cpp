@@ -6,6 +6,7 @@
 #include "behavior_parts.h"
 #include "kadans/signal/input_error.h"
 #include "script/bindings/machine_sets.h"
+#include "script/chart/chart_calls.h"
 #include "script/lua/lua_core.h"
 #include "script/motion/motion.h"
 #include "signal/byte_order.h"
@@ -91,6 +92,15 @@ void push_vars(lua_State* state, const RunnerTables::Machine& machine) {
   lua_pushliteral(state, "vars");
   lua_rawget(state, -2);
   lua_remove(state, -2);
+}
+
+// [-0 +1] Pushes an argument of a machine.
+void push_argument(lua_State* state, const RunnerTables::Machine& machine, const char* name) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.content);
+  lua_getfield(state, -1, "args");
+  lua_getfield(state, -1, name);
+  lua_replace(state, -3);
+  lua_pop(state, 1);
 }
 
 constexpr std::size_t kept_bytes_max = std::size_t{256} << 10U;
@@ -296,6 +306,63 @@ void take_event_data(lua_State* state, const Behavior::Parts& parts, ByteReader&
   }
 }
 
+// The results of final states that are active: the end of a parallel may need them later.
+void put_results(Behavior::Parts& parts, ByteWriter& bytes) {
+  lua_State* state = parts.lua->get();
+  const int top = lua_gettop(state);
+  std::string why;
+  for (StateIndex i = 0; i < parts.chart.size() && lua_checkstack(state, 8) != 0; ++i) {
+    if (!parts.runner->active(i) || parts.chart.states[i].result == Chart::no_function) continue;
+    bytes.put<std::uint8_t>(1);
+    bytes.put_string(parts.chart.states[i].path);
+    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
+    lua_rawgeti(state, -1, i + 1);
+    (void)put_value(state, top + 2, bytes, why);  // plain data: it was checked when it was made
+    lua_settop(state, top);
+  }
+  bytes.put<std::uint8_t>(0);
+}
+
+void take_results(lua_State* state, const Behavior::Parts& parts, ByteReader& bytes) {
+  luaL_checkstack(state, 8, "results");
+  while (bytes.take<std::uint8_t>() != 0) {
+    const auto found = std::ranges::find(parts.chart.states, text_of(bytes), &Chart::State::path);
+    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
+    push_value(state, bytes, parts.catalog);
+    const auto index = static_cast<int>(found - parts.chart.states.begin());
+    if (found != parts.chart.states.end() && lua_istable(state, -1)) lua_rawseti(state, -2, index + 1);
+    lua_settop(state, 1);
+  }
+}
+
+// What calls have given by now, but for constants: those are in the text. Each value behind a 1, the path of the
+// machine's root, and its name.
+void put_given(Behavior::Parts& parts, ByteWriter& bytes) {
+  lua_State* state = parts.lua->get();
+  const int top = lua_gettop(state);
+  std::string why;
+  for (std::size_t i = 0; i < parts.chart.machines.size() && lua_checkstack(state, 8) != 0; ++i) {
+    const Chart::Machine& machine = parts.chart.machines[i];
+    if (!parts.runner->active(machine.root)) continue;
+    for (std::size_t at = 0; at < machine.calls_with.size(); ++at) {
+      const Chart::Given& given = machine.calls_with[at];
+      const bool argument = given.parameter == Chart::no_parameter;
+      if (!argument && given.function == Chart::no_function) continue;
+      lua_pushnumber(state, parts.bindings.evaluated[i][at]);
+      if (argument) push_argument(state, parts.tables.machines[i], given.name.c_str());
+      ByteWriter value;
+      if (put_value(state, lua_gettop(state), value, why)) {
+        bytes.put<std::uint8_t>(1);
+        bytes.put_string(parts.chart.states[machine.root].path);
+        bytes.put_string(given.name);
+        bytes.put(value.bytes());
+      }
+      lua_settop(state, top);
+    }
+  }
+  bytes.put<std::uint8_t>(0);
+}
+
 std::size_t machine_at(const Chart& chart, std::string_view path) {
   std::size_t at = 0;
   while (at < chart.machines.size() && chart.states[chart.machines[at].root].path != path) ++at;
@@ -325,11 +392,40 @@ void take_machine(lua_State* state, Behavior::Parts& parts, ByteReader& bytes) {
   lua_settop(state, 1);
 }
 
+// Whether the version that goes on has it evaluated, too, and takes the value at the top of the stack.
+bool takes_given(lua_State* state, const Chart::Machine& machine, const Chart::Given& given) {
+  const bool constant = given.function == Chart::no_function && given.follows == Chart::no_parameter;
+  if (constant || (given.parameter != Chart::no_parameter && given.function == Chart::no_function)) return false;
+  if (!push_given_refusal(state, machine, given)) return true;
+  lua_pop(state, 1);
+  return false;
+}
+
+void take_given(lua_State* state, Behavior::Parts& parts, ByteReader& bytes) {
+  while (bytes.take<std::uint8_t>() != 0) {
+    luaL_checkstack(state, 12, "what a call gives");
+    const std::size_t number = machine_at(parts.chart, text_of(bytes));
+    const std::string_view name = text_of(bytes);
+    push_value(state, bytes, parts.catalog);
+    const int top = lua_gettop(state);
+    if (number < parts.chart.machines.size() && parts.runner->active(parts.chart.machines[number].root)) {
+      const Chart::Machine& machine = parts.chart.machines[number];
+      for (std::size_t i = 0; i < machine.calls_with.size(); ++i) {
+        if (machine.calls_with[i].name != name || !takes_given(state, machine, machine.calls_with[i])) continue;
+        lua_pushvalue(state, top);
+        parts.runner->give(state, static_cast<std::uint16_t>(number), i);
+      }
+    }
+    lua_settop(state, top - 1);
+  }
+}
+
 void renew_machines(lua_State* state, Behavior::Parts& parts, ByteReader& bytes) {
   for (std::size_t i = 0; i < parts.chart.machines.size(); ++i) {
     if (!parts.runner->active(parts.chart.machines[i].root)) continue;
     renew_machine(state, parts.chart, parts.tables, static_cast<std::uint16_t>(i));
   }
+  take_given(state, parts, bytes);
   while (bytes.take<std::uint8_t>() != 0) take_machine(state, parts, bytes);
 }
 
@@ -345,6 +441,7 @@ int take_machines(lua_State* state) {
   const GoingOn& going_on = *static_cast<const GoingOn*>(lua_touserdata(state, 1));
   Behavior::Parts& parts = going_on.parts;
   take_event_data(state, parts, going_on.bytes);
+  take_results(state, parts, going_on.bytes);
   ByteReader again = going_on.bytes;
   parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
   renew_machines(state, parts, going_on.bytes);
@@ -363,11 +460,15 @@ std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
   bytes.put<std::uint8_t>(parts.failed);
   bytes.put(parts.transactions_refused);
   put_parameters(parts.lua->core(), bytes);
+  bytes.put<std::uint8_t>(parts.reports.queue_full);
+  bytes.put(parts.reports.faults_seen);
   bytes.put(std::as_bytes(std::span(&parts.lua->core().random, 1)));
   put_bindings(parts.bindings, bytes);
   put_armed(parts, bytes);
   parts.runner->keep(bytes);
   put_event_data(parts, bytes);
+  put_results(parts, bytes);
+  put_given(parts, bytes);
   return put_machines(parts, bytes);
 }
 
@@ -377,6 +478,8 @@ bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snaps
   parts.failed = bytes.take<std::uint8_t>() != 0;
   parts.transactions_refused = bytes.take<std::uint64_t>();
   take_parameters(core, bytes);
+  parts.reports.queue_full = bytes.take<std::uint8_t>() != 0;
+  parts.reports.faults_seen = bytes.take<std::uint64_t>();
   GoingOn going_on{parts, bytes, core.random, guards_tried};
   const auto kept = bytes.take_bytes(sizeof going_on.random);
   if (!kept.empty()) std::memcpy(static_cast<void*>(&going_on.random), kept.data(), sizeof going_on.random);
@@ -497,6 +600,7 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
     past_->parts = std::move(parts_);
   }
   parts_ = std::move(fresh);
+  number_states();
   status_.reloads.fetch_add(1, std::memory_order_relaxed);
   parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(),
                       "reloaded " + parts_->lua->sources().front().chunk);
@@ -515,6 +619,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
   old.bindings.go_on_after(failing.bindings);
   old.want_sets();
   parts_ = std::move(past_->parts);
+  number_states();
   parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
                       "new version taken back, the old one goes on: " + error.text());
   return true;

@@ -2,6 +2,7 @@
 // process. behavior.cpp makes and runs them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -62,6 +63,7 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;
   void event_dropped(const char* event) noexcept override;
   void out_of_steps(const char* chunk, int line) noexcept override;
+  void recovered(const ScriptError& error) noexcept override;
   void tell_refused() noexcept;  // logs what the control engine has refused since the last call
   void tell_armed() noexcept;    // logs what became of armed transactions since the last call, and posts their events
   // Asks in the next tick for the control sets of the active states that are not active.
@@ -85,6 +87,15 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
     std::int64_t now_ns = 0;
     int function = LUA_NOREF;
   } rehearsal;
+  struct Reports {  // what is going to be an event in the next step of the chart (chart_reports.h)
+    std::array<Refusal, refusals_shown> refused{};
+    std::uint32_t refused_count = 0;
+    void note(const Refusal& refusal) noexcept {
+      if (refused_count < refused.size()) refused[refused_count++] = refusal;
+    }
+    bool queue_full = false;  // a transaction found no place
+    std::uint64_t faults_seen = 0;
+  } reports;
   ScriptError error;
   bool failed = false;
   std::uint64_t transactions_refused = 0;
@@ -108,6 +119,12 @@ void give_robot_values(Behavior::Parts& parts);
 
 // Gives the behavior the values of Settings::arguments. Throws InputError.
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
+
+// Of a finished behavior: the result of its final state, as text that Lua can read; "" when it has none.
+std::string result_text(const Behavior::Parts& parts);
+
+// To be called in a tick, before the chart's: reports that an active state waits for become events. Raises.
+void post_reports(lua_State* state, Behavior::Parts& parts);
 
 // Writes what is carried over to another version, Lua state or process. Returns "", or what
 // cannot be kept: vars hold something that is no plain data and no motion, or hold more than 256 kB.

@@ -22,8 +22,8 @@ std::span<const ApiEntry> script_api();
 // A ---@meta file for lua-language-server with the table and this robot's objects, set-points, presets, poses and
 // joints.
 std::string lua_stubs(const Catalog& catalog);
-// The table as Markdown for people.
-std::string api_reference();
+// The table as Markdown for people, and the skills of the project's library.
+std::string api_reference(const std::filesystem::path& root);
 // The names that a loaded behavior really has: "kadans.pose", "m.wait", "object.move", "joint.position_rad". Throws
 // InputError.
 std::vector<std::string> bound_names(const std::filesystem::path& root, const std::filesystem::path& behavior,

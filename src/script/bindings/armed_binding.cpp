@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string_view>
+#include <vector>
 
 #include "bindings.h"
 #include "script/check/hint.h"
@@ -40,14 +41,13 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text;
 }
 
-using SignalName = std::array<char, 128>;
-
 std::string_view part_of(std::string_view name, std::size_t from) noexcept {
   return name.substr(from, name.find('.', from) - from);
 }
 
-// A signal as the table names it: a foot has the name of its link there, and that of `s.feet` here.
-SignalName table_name(const Bindings& bindings, std::string_view name) noexcept {
+}  // namespace
+
+SignalName condition_signal(const Bindings& bindings, std::string_view name) noexcept {
   constexpr std::size_t foot_at = 5;  // behind "foot."
   SignalName text{};
   std::string_view foot = name.starts_with("foot.") ? part_of(name, foot_at) : std::string_view{}, link = foot;
@@ -69,49 +69,65 @@ SignalName table_name(const Bindings& bindings, std::string_view name) noexcept 
   return text;
 }
 
+bool is_truth_of_simulation(std::string_view name) noexcept {
+  return name.starts_with("plant.") || name.starts_with("reference.") || name.starts_with("world.");
+}
+
+// Of the same topic: those of the same owner, and those of the same quantity.
+std::vector<std::string> signals_near(const Bindings& bindings, std::string_view wanted) {
+  const std::string_view topic = part_of(wanted, 0);
+  const std::string_view owner = part_of(wanted, std::min(wanted.size(), topic.size() + 1));
+  const std::string_view quantity = wanted.substr(std::min(wanted.rfind('.'), wanted.size()));
+  std::vector<std::string> names;
+  for (SignalId id = 0; id < bindings.catalog->signals.size() && names.size() < hints_max; ++id) {
+    const std::string& other = bindings.catalog->signals.info(id).name;
+    if (part_of(other, 0) != topic || other.size() == topic.size()) continue;
+    const bool near = part_of(other, topic.size() + 1) == owner || std::string_view(other).ends_with(quantity);
+    if (near) names.push_back(other);
+  }
+  return names;
+}
+
+ConditionText read_condition_text(std::string_view text) noexcept {
+  text = trimmed(text);
+  ConditionText read{.signal = text};
+  const std::size_t sign = text.find_first_of("<>");
+  if (text.find('=') != std::string_view::npos) {
+    read.wrong = "a condition compares with < or >, not with =";
+  } else if (sign != std::string_view::npos) {
+    const std::optional<double> number = number_of<double>(trimmed(text.substr(sign + 1)));
+    if (!number) read.wrong = "behind < or > stands a number";
+    read.value = number.value_or(0);
+    read.below = text[sign] == '<';
+    read.signal = trimmed(text.substr(0, sign));
+  } else if (text.starts_with("not ")) {
+    read.below = true;
+    read.signal = trimmed(text.substr(4));
+  }
+  return read;
+}
+
+namespace {
+
 // The key of a signal that behaviors may know. The text is at the top of the stack.
 std::int64_t check_signal(lua_State* state, std::string_view name) {
   const Bindings& bindings = bindings_of(state);
-  for (const char* truth : {"plant.", "reference.", "world."}) {
-    if (name.starts_with(truth))
-      luaL_error(state, "m:on: '%s' is the truth of a simulation, which no robot knows", lua_tostring(state, -1));
-  }
-  const SignalName known = table_name(bindings, name);
+  if (is_truth_of_simulation(name))
+    luaL_error(state, "m:on: '%s' is the truth of a simulation, which no robot knows", lua_tostring(state, -1));
+  const SignalName known = condition_signal(bindings, name);
   if (bindings.catalog->signals.find_key(signal_key(known.data()))) return signal_key(known.data());
-  const std::string_view wanted = known.data(), topic = part_of(wanted, 0);
-  const std::string_view owner = part_of(wanted, std::min(wanted.size(), topic.size() + 1));
-  const std::string_view quantity = wanted.substr(std::min(wanted.rfind('.'), wanted.size()));
-  const Hint hint = make_hint(state, known.data(), [&](auto& names) {
-    for (SignalId id = 0; id < bindings.catalog->signals.size(); ++id) {
-      const std::string& other = bindings.catalog->signals.info(id).name;
-      if (part_of(other, 0) != topic || other.size() == topic.size()) continue;
-      const bool near = part_of(other, topic.size() + 1) == owner || std::string_view(other).ends_with(quantity);
-      if (near && names.size() < hints_max) names.push_back(other);
-    }
-  });
+  const Hint hint = make_hint(state, known.data(), [&](auto& names) { names = signals_near(bindings, known.data()); });
   luaL_error(state, "m:on: unknown signal '%s'%s", known.data(), hint.data());
   return 0;
 }
 
 // "not foot.right.contact", "joint.l_knee.position_rad > 0.3"; the text is at the top of the stack.
 Command signal_condition(lua_State* state) {
-  constexpr double true_above = 0.5;  // of a signal that is 0 or 1
-  std::string_view text = trimmed(lua_tostring(state, -1));
-  Command command{.kind = CommandKind::condition, .value = true_above};
-  ConditionKind kind = ConditionKind::above;
-  const std::size_t sign = text.find_first_of("<>");
-  if (sign != std::string_view::npos) {
-    const std::optional<double> number = number_of<double>(trimmed(text.substr(sign + 1)));
-    if (!number) refuse_condition(state, "behind < or > stands a number");
-    command.value = *number;
-    if (text[sign] == '<') kind = ConditionKind::below;
-    text = trimmed(text.substr(0, sign));
-  } else if (text.starts_with("not ")) {
-    kind = ConditionKind::below;
-    text = trimmed(text.substr(4));
-  }
-  command.count = static_cast<std::uint32_t>(kind);
-  command.time_ns = check_signal(state, text);
+  const ConditionText read = read_condition_text(lua_tostring(state, -1));
+  if (read.wrong != nullptr) refuse_condition(state, read.wrong);
+  Command command{.kind = CommandKind::condition, .value = read.value};
+  command.count = static_cast<std::uint32_t>(read.below ? ConditionKind::below : ConditionKind::above);
+  command.time_ns = check_signal(state, read.signal);
   return command;
 }
 
@@ -251,10 +267,10 @@ int on(lua_State* state) {
   end_callback(state);
   const std::uint32_t flags = conditions.options | (options.every_time ? std::uint32_t{arm_every_time} : 0U);
   bool fits = bindings.send({.kind = CommandKind::arm,
-                        .index = conditions.count,
-                        .count = conditions.count + bindings.recorded_count,
-                        .sequence = flags,
-                        .duration_s = options.within_s});
+                             .index = conditions.count,
+                             .count = conditions.count + bindings.recorded_count,
+                             .sequence = flags,
+                             .duration_s = options.within_s});
   for (std::uint32_t i = 0; i < conditions.count; ++i) fits = fits && bindings.send(conditions.all[i]);
   for (std::uint32_t i = 0; i < bindings.recorded_count; ++i) fits = fits && bindings.send(bindings.recorded[i]);
   if (!fits) return queue_full(state);
@@ -365,6 +381,12 @@ bool Bindings::look_at_armed(ArmedHere& told, ArmedStatus& status) noexcept {
     return true;
   }
   return false;
+}
+
+bool Bindings::was_armed(std::uint32_t sequence) const noexcept {
+  return std::ranges::any_of(snapshot->armed, [sequence](const ArmedStatus& status) {
+    return status.sequence == sequence && status.state == ArmedState::refused;
+  });
 }
 
 void Bindings::forget_armed(std::uint32_t sequence) noexcept {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "script/chart/chart_arguments.h"
 #include "script/chart/chart_reader.h"
+#include "script/chart/chart_skills.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
@@ -12,15 +14,32 @@
 namespace kadans {
 
 void Bindings::want(SetMask sets, SetMask needed) noexcept {
-  wanted = (wanted & sets) | (needed & ~sets_now);
+  wanted &= sets;
+  bring_in(needed);
   bring_in_again();
 }
 
-void Bindings::bring_in_again() noexcept {
-  each_bit(wanted & ~sets_now, [&](std::uint32_t set) {
+void Bindings::bring_in(SetMask sets) noexcept {
+  each_bit(sets & ~sets_now, [&](std::uint32_t set) {
+    wanted |= set_bit(set);
     sets_now = partition->after(sets_now, set);
     (void)send({.kind = CommandKind::switch_set, .index = set});
   });
+}
+
+void Bindings::bring_in_again() noexcept {
+  each_bit(wanted, [&](std::uint32_t set) {
+    if (!must_wait(set)) bring_in(set_bit(set));
+  });
+}
+
+bool Bindings::must_wait(std::uint32_t set) const noexcept {
+  const SetMask changed = sets_now ^ partition->after(sets_now, set);
+  bool dwells = false;
+  each_bit(partition->objects(changed), [&](std::uint32_t object) {
+    dwells = dwells || (object < snapshot->object_count && snapshot->objects[object].dwell_s > 0);
+  });
+  return dwells;
 }
 
 void Bindings::go_on_after(const Bindings& other) noexcept {
@@ -71,11 +90,25 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
   to.begin(time_ns);
 }
 
+Bindings::Mark Bindings::mark() const noexcept {
+  return {sender->mark(), refused, motion_count, armed_count, armed_in_tick};
+}
+
+void Bindings::take_back_to(const Mark& mark) noexcept {
+  sender->take_back_to(mark.sent);
+  refused = mark.refused;
+  recording = false;
+  for (std::uint32_t i = mark.motions; i < motion_count; ++i) motions[i]->state = MotionState::cancelled;
+  motion_count = mark.motions;
+  armed_count = mark.armed;
+  armed_in_tick = mark.armed_in_tick;
+}
+
 bool Bindings::commit() noexcept {
   const std::uint32_t sequence = sender->commit();
   const bool taken = !refused && (sequence != 0 || sender->last_sequence() == 0);
   if (taken) {
-    wanted = 0;
+    wanted &= ~sets_now;
     sets_sent = sets_now;
     if (sender->last_switch() == sequence) switched = sequence;
   }
@@ -132,6 +165,8 @@ int pose(lua_State* state) {
 void open_kadans_module(lua_State* state) {
   lua_newtable(state);
   open_parameters(state);
+  open_arguments(state);
+  open_skills(state);
   open_nodes(state);
   lua_pushcfunction(state, budget);
   lua_setfield(state, -2, "budget");

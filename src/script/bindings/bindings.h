@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <lua.hpp>
@@ -29,15 +30,26 @@ struct ArmedHere {
   std::uint32_t fired = 0;      // as last seen
 };
 
+// The text of a condition of m:on, taken apart: "not foot.right.contact", "joint.l_knee.position_rad > 0.3".
+struct ConditionText {
+  std::string_view signal;
+  double value = 0.5;  // of a signal that is 0 or 1
+  bool below = false;
+  const char* wrong = nullptr;  // what is no condition in it
+};
+ConditionText read_condition_text(std::string_view text) noexcept;
+bool is_truth_of_simulation(std::string_view signal) noexcept;
+
 inline const std::vector<std::string> no_feet;
 
 struct Bindings {
   const Catalog* catalog = nullptr;
   const std::vector<std::string>* feet = &no_feet;  // their names in `s.feet`, in the snapshot's order
   std::optional<SetPartition> partition;
-  SetMask all_sets = 0;                       // those that any state may run on
-  std::vector<SetMask> machine_sets;          // those that the states of each machine run on
-  std::vector<ObjectMask> machine_objects{};  // what `m` of each machine shows; empty: every object
+  SetMask all_sets = 0;                          // those that any state may run on
+  std::vector<SetMask> machine_sets;             // those that the states of each machine run on
+  std::vector<ObjectMask> machine_objects{};     // what `m` of each machine shows; empty: every object
+  std::vector<std::vector<double>> evaluated{};  // values that functions gave to parameters: Chart::Machine::calls_with
   const Snapshot* snapshot = nullptr;
   CommandSender* sender = nullptr;
   std::int64_t held_ns = 0;  // how much the behaviors' clock is behind the engine's, because of pauses
@@ -70,10 +82,15 @@ struct Bindings {
   // states run on: switches to those of them that are `needed` and not active. The others were switched to when their
   // states were entered; since then a reflex or a person may have taken their joints.
   void want(SetMask sets, SetMask needed) noexcept;
-  // To be called after begin(): asks again for sets that could not be sent before.
+  // To be called after begin(): asks again for sets that could not be sent before, or were refused. A switch of what
+  // still dwells (kadans/control/switch_dwell.h) waits until it does not.
   void bring_in_again() noexcept;
+  void bring_in(SetMask sets) noexcept;  // those of them that are not active
+  bool must_wait(std::uint32_t set) const noexcept;
   // The next refusal in the snapshot of one of this behavior's transactions; nullptr when all have been returned.
   const Refusal* next_refusal() noexcept;
+  // Whether what was refused had been taken, and armed something that was refused when its condition was true.
+  bool was_armed(std::uint32_t sequence) const noexcept;
   // Notes the transaction that was just armed.
   const ArmedHere& note_armed(EventId event) noexcept;
   // A state was left: takes back what it armed.
@@ -84,6 +101,15 @@ struct Bindings {
   bool look_at_armed(ArmedHere& told, ArmedStatus& status) noexcept;
   void forget_armed(std::uint32_t sequence) noexcept;  // its transaction was refused when it arrived
   void drop_armed(std::uint32_t index) noexcept;
+  // Where this tick's transaction is: what is asked for behind it can be taken back.
+  struct Mark {
+    CommandSender::Mark sent;
+    bool refused = false;
+    std::uint32_t motions = 0, armed = 0;
+    std::uint16_t armed_in_tick = 0;
+  };
+  Mark mark() const noexcept;
+  void take_back_to(const Mark& mark) noexcept;  // motions that begin behind it are cancelled
   // False when the queue has no place; then the whole transaction will be refused.
   bool send(const Command& command) noexcept;
   void begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept;
@@ -111,9 +137,18 @@ void open_armed(lua_State* state, const Chart& chart);
 void open_armed_handles(lua_State* state);
 
 // Makes `m` for each machine, and `s`. Stores their references in the runner's tables. Raises.
+// A signal as the table names it: a foot has the name of its link there, and that of `s.feet` here.
+using SignalName = std::array<char, 128>;
+SignalName condition_signal(const Bindings& bindings, std::string_view name) noexcept;
+// The signals that may have been meant by an unknown one.
+std::vector<std::string> signals_near(const Bindings& bindings, std::string_view wanted);
+
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables);
 // Gives a machine that is being entered its vars and arguments.
 void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tables, std::uint16_t machine);
+
+// [-0 +1] A deep copy of the value at `index` (> 0): plain data only. Raises.
+void push_plain_copy(lua_State* state, int index);
 
 // Helper functions for the methods of a control object: m.<object>:method(...).
 

@@ -5,6 +5,7 @@
 
 #include "bindings.h"
 #include "machine_sets.h"
+#include "script/chart/chart_reports.h"
 #include "script/check/hint.h"
 #include "script/motion/motion_options.h"
 #include "script/sandbox/handle.h"
@@ -111,7 +112,8 @@ const char* short_name(const ObjectInfo& object, const std::string& name) noexce
 
 void check_range(lua_State* state, const char* name, const char* unit, double value, double min, double max) {
   if (value >= min && value <= max) return;
-  luaL_error(state, "%s = %f is outside its range %f..%f %s", name, value, min, max, unit);
+  const auto degrees = degree_hint(unit, value, min, max);
+  luaL_error(state, "%s = %f is outside its range %f..%f %s%s", name, value, min, max, unit, degrees.data());
 }
 
 int queue_full(lua_State* state) { return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2; }
@@ -202,6 +204,23 @@ void push_copy(lua_State* state, int index, int depth) {
   }
 }
 
+// [-0 +1] What a behavior's args hold when a call gives nothing: name = default.
+void push_defaults(lua_State* state, int declared) {
+  lua_newtable(state);
+  const int made = lua_gettop(state);
+  if (declared == Chart::no_function) return;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, declared);
+  for (lua_pushnil(state); lua_next(state, made + 1) != 0;) {
+    lua_rawgeti(state, -1, 1);
+    lua_replace(state, -2);
+    lua_pushvalue(state, -2);
+    push_copy(state, lua_gettop(state) - 1, 0);
+    lua_rawset(state, made);
+    lua_pop(state, 1);
+  }
+  lua_pop(state, 1);
+}
+
 void push_copy_of_reference(lua_State* state, int reference) {
   if (reference == Chart::no_function) return lua_newtable(state);
   lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
@@ -241,7 +260,12 @@ void push_event_data(lua_State* state, int index, int depth, int& fields) {
 
 }  // namespace
 
+void push_plain_copy(lua_State* state, int index) { push_copy(state, index, 0); }
+
 EventId check_event(lua_State* state, const Chart& chart, const char* name) {
+  if (reserved_for_reports(name))
+    luaL_error(state, "'%s' reports what happened to the behavior, it cannot be emitted: give the event another name",
+               name);
   const EventId event = chart.find_event(name);
   if (event == no_event) luaL_error(state, "nothing in this behavior waits for the event '%s'", name);
   if (chart.made_by_runner(event))
@@ -271,6 +295,17 @@ int emit(lua_State* state) {
     lua_rawseti(state, -2, place + 1);
   }
   return lua_pushboolean(state, 1), 1;
+}
+
+// (function, m, s) -> what the function of a final state's `result` returns, copied.
+int make_result(lua_State* state) {
+  lua_settop(state, 3);
+  lua_call(state, 2, 1);
+  if (!lua_istable(state, 1))
+    return luaL_error(state, "result returns a table { name = value }, not a %s", luaL_typename(state, 1));
+  int fields = 0;
+  push_event_data(state, 1, 1, fields);
+  return 1;
 }
 
 void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, const RunnerTables& tables,
@@ -315,6 +350,10 @@ void open_machines(lua_State* state, const Chart& chart, const Bindings& binding
   tables.event_names = luaL_ref(state, LUA_REGISTRYINDEX);
   lua_createtable(state, EventQueue::places, 0);
   tables.event_data = luaL_ref(state, LUA_REGISTRYINDEX);
+  lua_newtable(state);
+  tables.results = luaL_ref(state, LUA_REGISTRYINDEX);
+  lua_pushcfunction(state, make_result);
+  tables.make_result = luaL_ref(state, LUA_REGISTRYINDEX);
   for (std::size_t i = 0; i < chart.machines.size(); ++i) {
     push_machine_content(state, chart, bindings, tables, i);
     lua_pushvalue(state, -1);
@@ -340,7 +379,7 @@ void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tab
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables.machines[number].content);
   push_copy_of_reference(state, machine.vars);
   lua_setfield(state, top + 1, "vars");
-  push_copy_of_reference(state, machine.arguments);
+  push_defaults(state, machine.arguments);
   if (machine.given != Chart::no_function) {
     lua_rawgeti(state, LUA_REGISTRYINDEX, machine.given);
     for (lua_pushnil(state); lua_next(state, top + 3) != 0;) {

@@ -9,6 +9,7 @@
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/nearest_name.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -29,6 +30,14 @@ std::size_t number_end(std::string_view text, std::size_t at) {
     ++at;
   }
   return at;
+}
+
+// Its place in the table of values, from 1; it becomes one of the condition's signals and of those in use.
+std::ptrdiff_t place_of(SignalId signal, std::vector<SignalId>& of_condition, std::vector<SignalId>& used) {
+  if (std::ranges::find(of_condition, signal) == of_condition.end()) of_condition.push_back(signal);
+  auto place = std::ranges::find(used, signal);
+  if (place == used.end()) place = used.insert(place, signal);
+  return place - used.begin() + 1;
 }
 
 std::optional<SignalId> find_signal(const SignalTable& signals, std::string_view name) {
@@ -105,13 +114,50 @@ int SignalExpressions::State::evaluate(lua_State* state) {
   return 0;
 }
 
-SignalExpressions::SignalExpressions(const SignalTable& signals)
-    : signals_(signals), state_(std::make_unique<State>()) {
+SignalExpressions::SignalExpressions(const SignalTable& signals, std::span<const SignalState> states)
+    : signals_(signals), states_(states), state_(std::make_unique<State>()) {
   state_->conditions = &conditions_;
   state_->used = &used_;
 }
 
 SignalExpressions::~SignalExpressions() = default;
+
+// From behind the word `state` on: ("PATH"). It becomes a question about the signals of the behaviors that have it.
+bool SignalExpressions::translate_state(std::string_view text, std::size_t& at, Condition& condition,
+                                        std::vector<SignalId>& used, std::string& lua, ExpressionError& error) const {
+  const auto after = [&](std::size_t from) { return std::min(text.find_first_not_of(" \t", from), text.size()); };
+  const std::size_t open = after(at);
+  const std::size_t quote = open < text.size() && text[open] == '(' ? after(open + 1) : text.size();
+  const bool quoted = quote < text.size() && (text[quote] == '"' || text[quote] == '\'');
+  const std::size_t end = quoted ? text.find(text[quote], quote + 1) : std::string_view::npos;
+  const std::size_t close = end == std::string_view::npos ? text.size() : after(end + 1);
+  if (close == text.size() || text[close] != ')') {
+    error = {static_cast<int>(at) + 1, "state wants the path of a state in quotes: state(\"act.arm\")"};
+    return false;
+  }
+  const std::string path(text.substr(quote + 1, end - quote - 1));
+  std::string any;
+  for (const SignalState& state : states_) {
+    if (path != state.path && path != state.behavior + "." + state.path) continue;
+    const std::string value = "values[" + std::to_string(place_of(state.signal, condition.signals, used)) + "]";
+    any += (any.empty() ? "(" : " or ") + value + " >= " + number_text(state.first) + " and " + value + " < " +
+           number_text(state.end);
+  }
+  if (any.empty()) {
+    std::vector<std::string> known;
+    for (const SignalState& state : states_) {
+      known.push_back(state.path);
+      known.push_back(state.behavior + "." + state.path);
+    }
+    error = {static_cast<int>(quote) + 2, states_.empty()
+                                              ? "no states are known here: what plays is not loaded in this process"
+                                              : "no behavior has the state '" + path + "'" + did_you_mean(path, known)};
+    return false;
+  }
+  lua += any + ")";
+  at = close + 1;
+  return true;
+}
 
 // Puts values[n] where a signal's name stands.
 bool SignalExpressions::translate(std::string_view text, Condition& condition, std::string& lua,
@@ -136,6 +182,10 @@ bool SignalExpressions::translate(std::string_view text, Condition& condition, s
       lua += "math." + std::string(word);
       continue;
     }
+    if (word == "state") {
+      if (!translate_state(text, at, condition, used, lua, error)) return false;
+      continue;
+    }
     const bool before = word.starts_with(tick_before);
     const auto signal = find_signal(signals_, before ? word.substr(tick_before.size()) : word);
     if (!signal) {
@@ -143,10 +193,7 @@ bool SignalExpressions::translate(std::string_view text, Condition& condition, s
                "unknown signal '" + std::string(word) + "'" + did_you_mean(word, signals_.names())};
       return false;
     }
-    if (std::ranges::find(condition.signals, *signal) == condition.signals.end()) condition.signals.push_back(*signal);
-    auto place = std::ranges::find(used, *signal);
-    if (place == used.end()) place = used.insert(place, *signal);
-    lua += (before ? "last[" : "values[") + std::to_string(place - used.begin() + 1) + "]";
+    lua += (before ? "last[" : "values[") + std::to_string(place_of(*signal, condition.signals, used)) + "]";
   }
   return true;
 }

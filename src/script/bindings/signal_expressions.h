@@ -2,10 +2,12 @@
 //
 // A dotted name is a signal; "plant." may be left out when no other signal has the shorter name. With the prefix
 // "last." it is the signal's value one tick before (in the first tick the value of that tick). time_s is the time. The
-// functions of `math` can be used without its name. All conditions of a run are in one sandboxed Lua state. They are
-// compiled once and evaluated together, each tick under one budget. One thread at a time.
+// functions of `math` can be used without its name. state("act.arm.wave") is true while a behavior is in that state,
+// and state("greet.act.arm.wave") while the behavior `greet` is. All conditions of a run are in one sandboxed Lua
+// state. They are compiled once and evaluated together, each tick under one budget. One thread at a time.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,16 +18,30 @@
 
 namespace kadans {
 
+// A state of a behavior, which is active while a signal is in this range.
+struct SignalState {
+  std::string path;      // "act.arm.wave"
+  std::string behavior;  // as in the signal's name
+  SignalId signal = 0;
+  double first = 0, end = 0;
+};
+
 // Why a condition's text is refused.
 struct ExpressionError {
   int column = 0;  // 1-based, in the text
   std::string message;
+
+  // The same column where the text stands in a JSON file: quotes before it are escaped there.
+  int file_column(std::string_view text) const noexcept {
+    const auto before = text.substr(0, static_cast<std::size_t>(column - 1));
+    return column + static_cast<int>(std::count(before.begin(), before.end(), '"'));
+  }
 };
 
 class SignalExpressions {
  public:
-  // The table must outlive this object.
-  explicit SignalExpressions(const SignalTable& signals);
+  // The table and the states must outlive this object.
+  explicit SignalExpressions(const SignalTable& signals, std::span<const SignalState> states = {});
   ~SignalExpressions();
   SignalExpressions(const SignalExpressions&) = delete;
   SignalExpressions& operator=(const SignalExpressions&) = delete;
@@ -51,9 +67,12 @@ class SignalExpressions {
   };
   struct State;
   bool translate(std::string_view text, Condition& condition, std::string& lua, ExpressionError& error) const;
+  bool translate_state(std::string_view text, std::size_t& at, Condition& condition, std::vector<SignalId>& used,
+                       std::string& lua, ExpressionError& error) const;
   bool compile(const std::string& lua, Condition& condition, ExpressionError& error);
 
   const SignalTable& signals_;
+  std::span<const SignalState> states_;
   std::unique_ptr<State> state_;
   std::vector<Condition> conditions_;
   std::vector<SignalId> used_;  // used by any condition

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "chart_reports.h"
 #include "script/check/hint.h"
 
 namespace kadans {
@@ -170,6 +171,12 @@ EventId Chart::intern(std::string_view event) {
   return static_cast<EventId>(events.size() - 1);
 }
 
+bool Chart::is_report(EventId event) const noexcept {
+  return event != no_event &&
+         (event == error_event || event == refused_event ||
+          std::ranges::find(fault_events, event, &std::pair<FaultCode, EventId>::second) != fault_events.end());
+}
+
 bool Chart::hears_end(StateIndex state, StateIndex ended) const noexcept {
   if (state == no_state || !inside(ended, state) || states[state].machine != states[ended].machine) return false;
   for (StateIndex index = ended; index != state; index = states[index].parent) {
@@ -191,10 +198,14 @@ void Chart::resolve(std::vector<InputProblem>& problems) {
     if (states[i].kind == Kind::history) resolver.history(i);
   }
   for (std::size_t i = 0; i < transitions.size() && !enough(); ++i) resolver.transition(transitions[i]);
+  find_reports(*this, problems);
   ends_.assign(events.size(), false);
   ends_[run_done_event] = ends_[done_event] = true;
   for (const State& state : states) {
     if (state.outcome != no_event) ends_[static_cast<std::size_t>(state.outcome)] = true;
+  }
+  for (EventId event = 0; event < static_cast<EventId>(events.size()); ++event) {
+    if (is_report(event)) ends_[static_cast<std::size_t>(event)] = true;
   }
 }
 

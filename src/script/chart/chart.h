@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "kadans/signal/fault.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/status.h"
 
@@ -44,7 +46,8 @@ struct Chart {
     std::uint16_t first_transition = 0, transition_count = 0;
     std::uint16_t first_always = 0, always_count = 0;
     int enter = no_function, exit = no_function, during = no_function, run = no_function;  // registry references
-    EventId outcome = no_event;                                                            // final states
+    int result = no_function;    // final states: makes the data of the end
+    EventId outcome = no_event;  // final states
     std::string initial_name, outcome_name;
     std::vector<std::string> controls;  // names of the control sets that it runs on; none: those of the state around it
     SetMask sets = 0;                   // its own or inherited; 0: no state around it names any
@@ -61,13 +64,23 @@ struct Chart {
     int line = 0;
     bool listed = false;  // a further event of on = { "a", "b" }: otherwise the same as the one before
   };
+  // What a call gives to a parameter of the behavior that it calls, or, when that is no constant, to an argument.
+  struct Given {
+    std::string name;
+    std::int32_t parameter = no_parameter;  // in LuaCore::parameters; none: it is an argument
+    std::int32_t follows = no_parameter;    // the caller's parameter whose value it has
+    int function = no_function;             // evaluated when the behavior is entered
+    double value = 0;                       // a constant
+    int line = 0;                           // in call_chunk
+  };
   struct Machine {
     std::string name;
     StateIndex root = 0;
     int vars = no_function, arguments = no_function;  // registry: as declared
-    int given = no_function;                          // registry: values given by the caller
-    int migrate = no_function;                        // registry: converts vars of another version
-    std::string call_chunk;                           // file that calls it
+    int given = no_function;                          // registry: constants given by the caller to arguments
+    std::vector<Given> calls_with;
+    int migrate = no_function;  // registry: converts vars of another version
+    std::string call_chunk;     // file that calls it
     int call_line = 0;
     int version = 0;
   };
@@ -77,6 +90,12 @@ struct Chart {
   std::vector<Transition> transitions;  // those of one state are contiguous
   std::vector<Machine> machines;
   std::vector<std::string> events{"run.done", "done"};
+  // Reports, events that tell what happened to the behavior: errors, refused transactions, faults. no_event: no
+  // transition waits for them.
+  EventId error_event = no_event, refused_event = no_event;
+  std::vector<std::pair<FaultCode, EventId>> fault_events;
+  bool waits_for_reports = false;  // for refusals or faults
+  std::vector<bool> takes_errors;  // by state: it, or a state around it, has a transition for "error"
 
   bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // true also for the ancestor itself
     return state >= ancestor && state < states[ancestor].end;
@@ -84,7 +103,8 @@ struct Chart {
   // Whether the end of `ended` is an event for `state`: for itself and the states around it in its behavior, up to the
   // region that it is in.
   bool hears_end(StateIndex state, StateIndex ended) const noexcept;
-  // Events that only the runner makes: the ends of coroutines and of states.
+  bool is_report(EventId event) const noexcept;
+  // Events that only the runner makes: the ends of coroutines and of states, and reports.
   bool made_by_runner(EventId event) const noexcept { return ends_[static_cast<std::size_t>(event)]; }
   StateIndex size() const noexcept { return static_cast<StateIndex>(states.size()); }
   EventId intern(std::string_view event);

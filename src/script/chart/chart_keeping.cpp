@@ -197,6 +197,7 @@ void ChartRunner::report_gone(const ChartRunner& old, const std::vector<bool>& g
 
 void ChartRunner::leave_marked(lua_State* state, const std::vector<bool>& marks, std::int64_t now_ns) {
   now_ns_ = now_ns;
+  recoverable_ = failed_ = false;
   for (StateIndex index = chart_.size(); index > 0; --index) {
     const auto i = static_cast<StateIndex>(index - 1);
     if (run_[i].active && marks[i]) leave(state, i);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "chart_calls.h"
 #include "chart_reader.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/handle.h"
@@ -70,6 +71,9 @@ Spec read_spec(lua_State* state, const char* name, const ScriptPlace& place) {
 }
 
 void add_parameter(lua_State* state, const Spec& spec, const ScriptPlace& place) {
+  if (spec.min > spec.max)
+    raise_at(state, place, spec.name, "parameter '%s': min = %f is greater than max = %f", spec.name, spec.min,
+             spec.max);
   if (!(spec.initial >= spec.min && spec.initial <= spec.max)) {
     raise_at(state, place, spec.name, "parameter '%s': the default %f is outside %f..%f", spec.name, spec.initial,
              spec.min, spec.max);
@@ -87,7 +91,7 @@ int read_parameter(lua_State* state) {  // (proxy, key); upvalue: name -> handle
   lua_rawget(state, lua_upvalueindex(1));
   std::size_t number = 0;
   if (!is_parameter(state, 3, &number)) return raise_unknown_field(state, "k.params", lua_upvalueindex(1), 2);
-  if (!core_of(state).loading) lua_pushnumber(state, core_of(state).parameters[number].value);
+  if (!core_of(state).loading) lua_pushnumber(state, value_here(state, number));
   return 1;
 }
 
@@ -125,16 +129,7 @@ int params(lua_State* state) {
     lua_rawset(state, 2);
   }
   lua_settop(state, 2);
-  lua_newtable(state);
-  lua_createtable(state, 0, 3);
-  lua_pushvalue(state, 2);
-  lua_pushcclosure(state, read_parameter, 1);
-  lua_setfield(state, -2, "__index");
-  lua_pushcfunction(state, refuse_write);
-  lua_setfield(state, -2, "__newindex");
-  lua_pushboolean(state, 0);
-  lua_setfield(state, -2, "__metatable");
-  lua_setmetatable(state, -2);
+  push_reader(state, read_parameter, refuse_write);
   return 1;
 }
 

@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include "chart_arguments.h"
+#include "chart_calls.h"
 #include "kadans/signal/capacity.h"
 #include "script/check/source_lexer.h"
 #include "script/lua/lua_core.h"
@@ -28,7 +30,7 @@ constexpr const char* behavior_keys[] = {"version", "controls", "vars",   "args"
 constexpr const char* state_keys[] = {"controls", "initial", "enter",   "exit", "during",
                                       "run",      "always",  "endless", nullptr};
 constexpr const char* parallel_keys[] = {"controls", "enter", "exit", "during", "run", "always", nullptr};
-constexpr const char* final_keys[] = {"outcome", "enter", nullptr};
+constexpr const char* final_keys[] = {"outcome", "result", "enter", nullptr};
 constexpr const char* history_keys[] = {"deep", "to", nullptr};
 constexpr const char* transition_keys[] = {"when", "on", "after", "to", "why", "action", nullptr};
 
@@ -49,7 +51,7 @@ const char* const* keys_of(NodeKind kind) noexcept {
 
 // The type that a key must have, in words of lua_typename; nullptr: checked elsewhere.
 const char* wanted_type(const char* key) noexcept {
-  for (const char* name : {"enter", "exit", "during", "run", "migrate", "when", "action"}) {
+  for (const char* name : {"enter", "exit", "during", "run", "migrate", "when", "action", "result"}) {
     if (std::strcmp(key, name) == 0) return "function";
   }
   for (const char* name : {"initial", "outcome", "to", "why"}) {
@@ -67,7 +69,12 @@ void check_types(lua_State* state, int table, const ScriptPlace& place, const ch
     lua_getfield(state, table, *names);
     const char* wanted = wanted_type(*names);
     if (!lua_isnil(state, -1) && wanted != nullptr && std::strcmp(luaL_typename(state, -1), wanted) != 0) {
-      raise_at(state, place, *names, "'%s' must be a %s, not a %s", *names, wanted, luaL_typename(state, -1));
+      std::size_t number = 0;
+      const char* given = is_parameter(state, lua_gettop(state), &number) ? "parameter: ask it in a function"
+                                                                          : luaL_typename(state, -1);
+      const bool quoted = lua_type(state, -1) == LUA_TSTRING && std::strcmp(wanted, "boolean") == 0;
+      raise_at(state, place, *names, "'%s' must be a %s, not a %s%s", *names, wanted, given,
+               quoted ? ": true has no quotes" : "");
     }
     if (lua_type(state, -1) == LUA_TSTRING && lua_objlen(state, -1) > text_max) {
       raise_at(state, place, *names, "'%s' is longer than %d characters", *names, static_cast<int>(text_max));
@@ -86,8 +93,8 @@ void check_controls(lua_State* state, int table, const ScriptPlace& place) {
     raise_at(state, place, "controls", "'controls' must be the name of a control set or a list of names, not a %s",
              luaL_typename(state, value));
   if (count < 1 || count > static_cast<int>(max_control_sets))
-    raise_at(state, place, "controls", "'controls' is a list of 1..%d names of control sets, not of %d",
-             static_cast<int>(max_control_sets), count);
+    raise_at(state, place, "controls", "'controls' is a list of 1..%d names of control sets, not of %d%s",
+             static_cast<int>(max_control_sets), count, count == 0 ? ": controls = { \"legs\", \"arms\" }" : "");
   for (int i = 1; list && i <= count; ++i) {
     lua_rawgeti(state, value, i);
     if (lua_type(state, -1) != LUA_TSTRING)
@@ -144,6 +151,7 @@ void check_transition(lua_State* state, int table, const ScriptPlace& place) {
   const char* to = lua_tostring(state, -1);
   ScriptPlace nearer = place;
   if (to == nullptr) {
+    check_keys(state, table, nearer, "a transition", transition_keys);  // `target` says more than a missing `to`
     lua_getfield(state, table, "on");
     const char* on = lua_tostring(state, -1);
     raise_at(state, place, on, "a transition needs 'to': the state it leads to");
@@ -192,6 +200,16 @@ void make_node(lua_State* state, NodeKind kind, const char* name, const ScriptPl
   set_kind(state, node_key);
 }
 
+// always = { when = ..., to = ... } would be an empty list.
+void check_list(lua_State* state, int list, const ScriptPlace& place) {
+  for (const char* const* key = transition_keys; *key != nullptr; ++key) {
+    lua_getfield(state, list, *key);
+    if (!lua_isnil(state, -1))
+      raise_at(state, place, "always", "'always' is a list of transitions: always = { { %s = ... } }", *key);
+    lua_pop(state, 1);
+  }
+}
+
 // Upvalues: kind, name, chunk, line. Takes the body.
 int finish_node(lua_State* state) {
   const auto kind = static_cast<NodeKind>(lua_tointeger(state, lua_upvalueindex(1)));
@@ -207,7 +225,10 @@ int finish_node(lua_State* state) {
   check_types(state, 1, place, keys_of(kind));
   check_controls(state, 1, place);
   check_transitions(state, 1, place, true);
+  if (kind == NodeKind::final_state && lua_objlen(state, 1) > 0)
+    raise_at(state, place, nullptr, "a k.final is an end: no transition leaves it, and no state is in it");
   lua_getfield(state, 1, "always");
+  if (lua_istable(state, 2)) check_list(state, 2, place);
   if (lua_istable(state, 2)) check_transitions(state, 2, place, false);
   lua_settop(state, 1);
   make_node(state, kind, name, place);
@@ -219,25 +240,30 @@ bool good_name(const char* name) noexcept {
   return std::strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::strlen(name);
 }
 
+// The name at index 1 of k.state "name" and its kin.
+void check_name(lua_State* state, const char* word, const ScriptPlace& place) {
+  if (lua_type(state, 1) != LUA_TSTRING) raise_at(state, place, nullptr, "%s needs a name", word);
+  const char* name = lua_tostring(state, 1);
+  if (lua_objlen(state, 1) > name_max) {
+    raise_at(state, place, nullptr, "%s: a name has at most %d characters", word, static_cast<int>(name_max));
+  }
+  if (!good_name(name)) {
+    raise_at(state, place, name, "%s: a name is letters, digits and '_', not \"%s\"", word, name);
+  }
+}
+
 // k.state "name" { ... } and its kin; upvalue: kind.
 int begin_node(lua_State* state) {
   const auto kind = static_cast<NodeKind>(lua_tointeger(state, lua_upvalueindex(1)));
   const ScriptPlace place = calling_place(state);
-  if (lua_type(state, 1) != LUA_TSTRING) return raise_at(state, place, nullptr, "%s needs a name", node_word(kind));
-  const char* name = lua_tostring(state, 1);
-  if (lua_objlen(state, 1) > name_max) {
-    return raise_at(state, place, nullptr, "%s: a name has at most %d characters", node_word(kind),
-                    static_cast<int>(name_max));
+  check_name(state, node_word(kind), place);
+  if (lua_istable(state, 2)) {  // of `return k.behavior("t", { ... })` no place is left on the stack
+    const std::string& main_chunk = core_of(state).owner->sources().front().chunk;
+    const bool placed = place.line > 0;
+    return raise_at(state, placed ? place : ScriptPlace{main_chunk.c_str(), 1}, placed ? nullptr : node_word(kind) + 2,
+                    "%s \"%s\" { ... } takes its table behind the name, without a comma", node_word(kind), lua_tostring(state, 1));
   }
-  if (!good_name(name)) {
-    return raise_at(state, place, name, "%s: a name is letters, digits and '_', not \"%s\"", node_word(kind), name);
-  }
-  lua_settop(state, 1);
-  lua_pushinteger(state, static_cast<int>(kind));
-  lua_insert(state, 1);
-  lua_pushstring(state, place.chunk);
-  lua_pushinteger(state, place.line);
-  lua_pushcclosure(state, finish_node, 4);
+  push_node_maker(state, kind, 1, place);
   return 1;
 }
 
@@ -255,7 +281,8 @@ int make_call(lua_State* state) {
 int take_arguments(lua_State* state) {  // (node, arguments)
   NodeKind kind{};
   const bool call = is_node(state, 1, &kind) && kind == NodeKind::call;
-  if (!call || !lua_istable(state, 2)) return luaL_error(state, "only k.call takes arguments, in a table { ... }");
+  if (!call || !lua_istable(state, 2))
+    return luaL_error(state, "only k.call takes arguments, in a table { ... }; is a comma missing before this table?");
   lua_settop(state, 2);
   lua_setfield(state, 1, "body");
   return 1;
@@ -290,6 +317,16 @@ ScriptPlace node_place(lua_State* state, int index) {
   const ScriptPlace place{lua_tostring(state, -2), static_cast<int>(lua_tointeger(state, -1))};
   lua_pop(state, 2);
   return place;
+}
+
+void check_node_name(lua_State* state, const char* word, const ScriptPlace& place) { check_name(state, word, place); }
+
+void push_node_maker(lua_State* state, NodeKind kind, int name, const ScriptPlace& place) {
+  lua_pushinteger(state, static_cast<int>(kind));
+  lua_pushvalue(state, name);
+  lua_pushstring(state, place.chunk);
+  lua_pushinteger(state, place.line);
+  lua_pushcclosure(state, finish_node, 4);
 }
 
 void push_node_body(lua_State* state, int index) { lua_getfield(state, index, "body"); }
@@ -438,6 +475,7 @@ struct Reader {
       made.exit = reference(body, "exit");
       made.during = reference(body, "during");
       made.run = reference(body, "run");
+      made.result = reference(body, "result");
       made.initial_name = text(body, made.kind == Chart::Kind::history ? "to" : "initial");
       made.outcome_name = text(body, "outcome");
       if (made.kind == Chart::Kind::final_state) {
@@ -507,31 +545,25 @@ struct Reader {
       raise_at(state, place, name, "k.call: '%s' does not return a k.behavior", name);
     }
     push_node_body(state, node);
-    check_arguments(behavior, lua_gettop(state), name, place);
-    const int given = luaL_ref(state, LUA_REGISTRYINDEX);
+    const int given = lua_gettop(state);
     const std::size_t number = chart.machines.size();
-    read_machine(behavior, parent, given, depth + 1);
-    chart.machines[number].call_chunk = place.chunk;
-    chart.machines[number].call_line = place.line;
+    read_machine(behavior, parent, depth + 1);
+    read_given(state, chart, number, given, place);
   }
 
-  void check_arguments(int behavior, int given, const char* name, const ScriptPlace& place) const {
-    push_node_body(state, behavior);
-    lua_getfield(state, -1, "args");
-    for (lua_pushnil(state); lua_next(state, given) != 0; lua_pop(state, 1)) {
-      const char* key = lua_type(state, -2) == LUA_TSTRING ? lua_tostring(state, -2) : "?";
-      bool known = lua_istable(state, given + 2);
-      if (known) {
-        lua_getfield(state, given + 2, key);
-        known = !lua_isnil(state, -1);
-        lua_pop(state, 1);
-      }
-      if (!known) raise_at(state, place, key, "behavior '%s' takes no argument '%s'", name, key);
+  int declared_arguments(int body, const ScriptPlace& place) const {
+    lua_getfield(state, body, "args");
+    if (lua_isnil(state, -1)) {
+      push_file_declarations(state, place.chunk);
+    } else {
+      push_declarations(state, lua_gettop(state), place);
     }
-    lua_settop(state, given);
+    const int declared = lua_isnil(state, -1) ? Chart::no_function : luaL_ref(state, LUA_REGISTRYINDEX);
+    lua_settop(state, body);
+    return declared;
   }
 
-  StateIndex read_machine(int behavior, StateIndex parent, int given, int depth) {
+  StateIndex read_machine(int behavior, StateIndex parent, int depth) {
     const ScriptPlace place = node_place(state, behavior);
     const char* name = node_name(state, behavior);
     const auto number = static_cast<std::uint16_t>(chart.machines.size());
@@ -544,9 +576,8 @@ struct Reader {
     machine.name = name;
     machine.root = index;
     machine.vars = reference(body, "vars");
-    machine.arguments = reference(body, "args");
     machine.migrate = reference(body, "migrate");
-    machine.given = given;
+    chart.machines[number].arguments = declared_arguments(body, place);
     lua_getfield(state, body, "version");
     machine.version = static_cast<int>(lua_tointeger(state, -1));
     lua_settop(state, body);
@@ -622,7 +653,7 @@ std::size_t always_of(const Tokens& tokens, std::size_t at) {
 void read_chart(lua_State* state, int index, Chart& chart) {
   Reader reader{state, chart};
   chart.name = node_name(state, index);
-  reader.read_machine(index, no_state, Chart::no_function, 0);
+  reader.read_machine(index, no_state, 0);
   charge_resolving(state, chart);
 }
 

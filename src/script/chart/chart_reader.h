@@ -23,6 +23,10 @@ bool is_node(lua_State* state, int index, NodeKind* kind);
 const char* node_name(lua_State* state, int index);
 ScriptPlace node_place(lua_State* state, int index);
 void push_node_body(lua_State* state, int index);  // [-0 +1]
+// [-0 +1] Pushes what makes a node of a body: the name is at `name`, and mistakes are told at `place`.
+void push_node_maker(lua_State* state, NodeKind kind, int name, const ScriptPlace& place);
+// [-0 +0] Raises unless the value at index 1 is a good name of a node.
+void check_node_name(lua_State* state, const char* word, const ScriptPlace& place);
 
 // [-1 +1] Adds behavior, state, parallel, region, final, history and call to the module's table at the top of the
 // stack.

@@ -36,13 +36,22 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
 void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   now_ns_ = now_ns;
   if (finished_) return;
+  if (chart_.error_event != no_event) recoverable_ = true;
   first_step(state);
   std::uint32_t steps = 1;
-  while (run_[0].outcome == no_event && steps < steps_max && select_event(state)) {
-    take_step(state);
-    forget_data(state, shown_);
-    ++steps;
+  for (; run_[0].outcome == no_event && steps < steps_max; ++steps) {
+    if (failed_) {
+      recover(state);
+      continue;
+    }
+    if (queue_.size() > 0 && select_event(state)) {
+      take_step(state);
+      forget_data(state, shown_);
+    } else if (!failed_) {
+      break;
+    }
   }
+  if (failed_) raise_failure(state);
   if (shown_.id != no_event) hide_event(state);
   if (run_[0].outcome != no_event) return stop(state, now_ns);
   if (queue_.size() > 0) drop_events(state, steps);
@@ -52,6 +61,7 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   for (const StateIndex index : active_) {
     if (run_[index].thread != nullptr) resume_run(state, index);
   }
+  if (failed_) recover_late(state);
 }
 
 void ChartRunner::first_step(lua_State* state) {
@@ -68,9 +78,10 @@ void ChartRunner::first_step(lua_State* state) {
 }
 
 // Takes the oldest event out of the queue for which there is a transition. False: there is none.
-bool ChartRunner::select_event(lua_State* state) {
+bool ChartRunner::select_event(lua_State* state, bool ends_only) {
   for (std::size_t i = 0; i < queue_.size(); ++i) {
     const WaitingEvent event = queue_[i];
+    if (ends_only && event.from == no_state) continue;
     show_event(state, event);
     select(state, &event);
     if (selected_.empty()) continue;
@@ -96,6 +107,10 @@ void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
     lua_remove(state, -2);
   } else if (event.from != no_state && chart_.states[event.from].kind == Chart::Kind::parallel) {
     push_outcomes(state, event.from);
+  } else if (event.from != no_state && push_result_in(state, event.from)) {
+    lua_createtable(state, 0, 1);
+    lua_insert(state, -2);
+    lua_setfield(state, -2, "result");
   } else {
     lua_pushnil(state);
   }
@@ -114,9 +129,10 @@ void ChartRunner::hide_event(lua_State* state) {
   lua_pop(state, 1);
 }
 
-// [-0 +1] { outcomes = { region = "done" } }
+// [-0 +1] { outcomes = { region = "done" }, results = { region = { ... } } }
 void ChartRunner::push_outcomes(lua_State* state, StateIndex parallel) {
-  lua_createtable(state, 0, 1);
+  lua_createtable(state, 0, 2);
+  lua_createtable(state, 0, 4);
   lua_createtable(state, 0, 4);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_names);
   const StateIndex end = chart_.states[parallel].end;
@@ -124,9 +140,11 @@ void ChartRunner::push_outcomes(lua_State* state, StateIndex parallel) {
     lua_pushstring(state, chart_.states[region].name.c_str());
     lua_rawgeti(state, -2, run_[region].outcome + 1);
     lua_rawset(state, -4);
+    if (push_result_in(state, region)) lua_setfield(state, -4, chart_.states[region].name.c_str());
   }
   lua_pop(state, 1);
-  lua_setfield(state, -2, "outcomes");
+  lua_setfield(state, -3, "outcomes");
+  lua_setfield(state, -2, "results");
 }
 
 void ChartRunner::forget_data(lua_State* state, const WaitingEvent& event) {
@@ -139,7 +157,7 @@ void ChartRunner::forget_data(lua_State* state, const WaitingEvent& event) {
 }
 
 void ChartRunner::drop_events(lua_State* state, std::uint32_t steps) {
-  unhandled_ += queue_.size();
+  for (std::size_t i = 0; i < queue_.size(); ++i) unhandled_ += chart_.is_report(queue_[i].id) ? 0 : 1;
   if (steps == steps_max && !told_steps_) {
     const Chart::Transition& last = chart_.transitions[selected_.front()];
     sink_.out_of_steps(chart_.states[last.source].chunk.c_str(), last.line);
@@ -147,7 +165,7 @@ void ChartRunner::drop_events(lua_State* state, std::uint32_t steps) {
   }
   for (std::size_t i = 0; i < queue_.size() && steps < steps_max; ++i) {
     const auto id = static_cast<std::size_t>(queue_[i].id);
-    if (!told_[id]) sink_.event_dropped(chart_.events[id].c_str());
+    if (!told_[id] && !chart_.is_report(queue_[i].id)) sink_.event_dropped(chart_.events[id].c_str());
     told_[id] = true;
   }
   for (std::size_t i = 0; i < queue_.size(); ++i) forget_data(state, queue_[i]);
@@ -157,6 +175,8 @@ void ChartRunner::drop_events(lua_State* state, std::uint32_t steps) {
 void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
   now_ns_ = now_ns;
   finished_ = true;
+  recoverable_ = failed_ = false;
+  if (run_[0].outcome != no_event && finished_by_ == no_state) finished_by_ = final_in(0);
   list_active();
   while (!active_.empty()) {  // an exit that raises is not run again
     const StateIndex innermost = active_.back();
@@ -228,10 +248,11 @@ void ChartRunner::enter(lua_State* state, StateIndex index) {
   if (entered.machine_root) {  // a call begins anew: nothing is left of the one before
     renew_machine(state, chart_, tables_, entered.machine);
     for (StateIndex i = index; i < entered.end; ++i) remembered_[i] = false;
+    if (!evaluate_call(state, entered.machine)) return enter_no_further(index);
   }
-  if (entered.enter != Chart::no_function) call(state, entered.enter, index);
+  if (entered.enter != Chart::no_function && !call(state, entered.enter, index)) return enter_no_further(index);
   if (entered.run != Chart::no_function) start_run(state, index);
-  if (entered.kind == Chart::Kind::final_state) complete(entered.parent, entered.outcome);
+  if (entered.kind == Chart::Kind::final_state && make_result(state, index)) complete(entered.parent, entered.outcome);
 }
 
 // `index` came to an end with this outcome; so did, perhaps, what is around it.
@@ -262,15 +283,20 @@ void ChartRunner::go_on(StateIndex index) noexcept {
   if (ended.kind == Chart::Kind::region) go_on(ended.parent);
 }
 
-// Whether a transition somewhere has this event: an end that nobody waits for is none.
-bool ChartRunner::waits_for_end(StateIndex ended, EventId outcome) const noexcept {
+bool ChartRunner::has_transition_for(StateIndex index, EventId event) const noexcept {
+  const Chart::State& at = chart_.states[index];
   const auto has = [&](std::uint16_t first, std::uint16_t count) {
     const auto begin = chart_.transitions.begin() + first;
-    return std::any_of(begin, begin + count, [&](const Chart::Transition& one) { return one.on == outcome; });
+    return std::any_of(begin, begin + count, [&](const Chart::Transition& one) { return one.on == event; });
   };
+  return has(at.first_transition, at.transition_count) || has(at.first_always, at.always_count);
+}
+
+// Whether a transition somewhere has this event: an end that nobody waits for is none.
+bool ChartRunner::waits_for_end(StateIndex ended, EventId outcome) const noexcept {
   for (StateIndex index = ended;; index = chart_.states[index].parent) {
     const Chart::State& at = chart_.states[index];
-    if (has(at.first_transition, at.transition_count) || has(at.first_always, at.always_count)) return true;
+    if (has_transition_for(index, outcome)) return true;
     if (at.kind == Chart::Kind::region || at.machine_root) return false;
   }
 }
@@ -351,8 +377,8 @@ void ChartRunner::report(std::uint16_t number) noexcept {
   sink_.transitioned(chart_.states[from].path, chart_.states[transition.target].path, transition.why);
 }
 
-StateIndex ChartRunner::innermost() const noexcept {
-  StateIndex at = 0;
+StateIndex ChartRunner::innermost(StateIndex around) const noexcept {
+  StateIndex at = around;
   for (const StateIndex index : active_) {
     if (index != 0 && chart_.states[index].parent == at) at = index;
   }
@@ -388,13 +414,19 @@ void ChartRunner::set_time(lua_State* state, StateIndex index) {
   lua_pop(state, 1);
 }
 
-void ChartRunner::call(lua_State* state, int function, StateIndex index) {
+void ChartRunner::push_call(lua_State* state, int function, StateIndex index) {
   set_time(state, index);
   core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, function);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].handle);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
+}
+
+bool ChartRunner::call(lua_State* state, int function, StateIndex index) {
+  push_call(state, function, index);
+  if (recoverable_) return call_recoverably(state, index, 2, 0);
   lua_call(state, 2, 0);
+  return true;
 }
 
 void ChartRunner::start_run(lua_State* state, StateIndex index) {
@@ -446,6 +478,17 @@ bool ChartRunner::ready(lua_State* state, StateRun& run, lua_State* thread, int&
   return arguments = 0, true;
 }
 
+// Keeps the error at the top of the coroutine's stack.
+void ChartRunner::keep_run_error(lua_State* state, lua_State* thread) {
+  ScriptError& error = core_of(state).error;
+  const bool text = lua_type(thread, -1) == LUA_TSTRING;
+  error.set_message(text ? lua_tostring(thread, -1) : "the script raised a value that is not a string");
+  if (error.line == 0) note_place(thread, error);
+  luaL_traceback(state, thread, nullptr, 0);
+  error.set_traceback(lua_tostring(state, -1));
+  lua_pop(state, 1);
+}
+
 void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   StateRun& run = run_[index];
   lua_State* thread = run.thread;
@@ -458,8 +501,9 @@ void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   wait_motion_ = nullptr;
   wait_ns_ = now_ns_;
   core.running = thread;
-  const int status = lua_resume(thread, arguments);
+  const int status = recoverable_ ? resume_recoverably(state, index, arguments) : lua_resume(thread, arguments);
   core.running = nullptr;
+  if (status < 0) return;
   if (status == LUA_YIELD) {
     run.motion = wait_motion_;
     run.wake_ns = wait_ns_;
@@ -467,11 +511,7 @@ void ChartRunner::resume_run(lua_State* state, StateIndex index) {
   }
   if (status != 0) {
     core.budget.raise_again(state);
-    const bool text = lua_type(thread, -1) == LUA_TSTRING;
-    core.error.set_message(text ? lua_tostring(thread, -1) : "the script raised a value that is not a string");
-    if (core.error.line == 0) note_place(thread, core.error);
-    luaL_traceback(state, thread, nullptr, 0);
-    core.error.set_traceback(lua_tostring(state, -1));
+    keep_run_error(state, thread);
     lua_xmove(thread, state, 1);
     lua_error(state);
   }

@@ -22,10 +22,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "chart.h"
 #include "event_queue.h"
+#include "script/lua/script_error.h"
 
 struct lua_State;
 
@@ -49,6 +51,8 @@ struct RunnerTables {
   int event = Chart::no_function;        // content of s.event
   int event_names = Chart::no_function;  // by EventId + 1
   int event_data = Chart::no_function;   // by place + 1
+  int results = Chart::no_function;      // of final states, by StateIndex + 1
+  int make_result = Chart::no_function;  // calls a function with m and s and copies what it returns
 };
 
 class TransitionSink {
@@ -59,6 +63,7 @@ class TransitionSink {
   // transition in this line.
   virtual void event_dropped(const char* event) noexcept = 0;
   virtual void out_of_steps(const char* chunk, int line) noexcept = 0;
+  virtual void recovered(const ScriptError& error) noexcept = 0;  // a transition for "error" is taken
 };
 
 class ChartRunner {
@@ -75,6 +80,7 @@ class ChartRunner {
   // False when the queue is full.
   bool post(EventId event, std::int8_t place = -1) noexcept { return queue_.send(event, place); }
   const EventQueue& events() const noexcept { return queue_; }
+  bool waits_for(EventId event) const noexcept;  // whether an active state has a transition for it
 
   // For a reload and for another process: the runner before writes itself with keep(); this one calls restore() before
   // the first tick, and start_runs() once the machines have their vars. Active states, their time, histories and
@@ -85,6 +91,8 @@ class ChartRunner {
   [[nodiscard]] bool restore(ByteReader& bytes);
   void start_runs(lua_State* state);
   void be_at(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }
+  // [-0 +1] The value of the transition's `when`. Raises what it raises.
+  void call_guard(lua_State* state, std::uint16_t transition);
   // Evaluates the guards of all active states to find errors that they raise.
   void try_guards(lua_State* state);
   // Leaves these states, `exit` innermost first.
@@ -99,15 +107,26 @@ class ChartRunner {
   bool started() const noexcept { return started_; }
   bool finished() const noexcept { return finished_; }
   EventId outcome() const noexcept { return run_[0].outcome; }
+  // [-0 +1 when true] Once the behavior is finished: the result of the final state that it reached.
+  bool push_result(lua_State* state) const;
   bool active(StateIndex state) const noexcept { return run_[state].active; }
-  StateIndex innermost() const noexcept;  // active state, the first when there are several; 0 before the first tick
+  std::span<const StateIndex> active_states() const noexcept { return active_; }  // in document order
+  bool is_leaf(std::size_t position) const noexcept;                              // among them: none inside is active
+  // The active state in `around`, the first when there are several; `around` itself when none in it is.
+  StateIndex innermost(StateIndex around = 0) const noexcept;
   double state_time_s(StateIndex state) const noexcept;
+  bool run_done(StateIndex state) const noexcept { return run_[state].run_done; }
   // The control sets that its innermost active states run on, those that are being entered with them or alone.
   enum class Asking : std::uint8_t { all, entering };
   SetMask sets_asked(Asking asking = Asking::all) const noexcept;
+  const Chart& chart() const noexcept { return chart_; }
   const Chart::State& acting() const noexcept { return chart_.states[acting_]; }  // whose function ran last
   StateIndex acting_index() const noexcept { return acting_; }
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }
+  // [-0 +1] The arguments of the behavior whose function runs.
+  void push_arguments(lua_State* state) const;
+  // [-1 +0] Gives a machine the value at the top, which is as declared, for one of those that its call gives.
+  void give(lua_State* state, std::uint16_t machine, std::size_t number);
   // What the running coroutine waits for: set by the bindings just before they yield.
   void wait_for(Motion* motion) noexcept { wait_motion_ = motion; }
   void wait_until(std::int64_t time_ns) noexcept { wait_ns_ = time_ns; }
@@ -137,7 +156,8 @@ class ChartRunner {
   std::uint16_t select_ordinary(lua_State* state, StepMeter& meter, StateIndex leaf, const WaitingEvent* event);
   std::uint16_t select_passed_over(lua_State* state, StepMeter& meter, StateIndex outer);
   void note_passed_over(lua_State* state, StepMeter& meter);
-  bool is_leaf(std::size_t position) const noexcept;
+  void push_guard(lua_State* state, std::uint16_t transition);
+  bool has_transition_for(StateIndex index, EventId event) const noexcept;
   bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
   bool happened(const Chart::Transition& transition, const WaitingEvent* event) const noexcept;
   bool due(lua_State* state, const Chart::Transition& transition) const noexcept;
@@ -146,12 +166,15 @@ class ChartRunner {
   bool conflict(std::uint16_t one, std::uint16_t other) const noexcept;
 
   void first_step(lua_State* state);
-  bool select_event(lua_State* state);
+  bool select_event(lua_State* state, bool ends_only = false);
   void drop_events(lua_State* state, std::uint32_t steps);
   void show_event(lua_State* state, const WaitingEvent& event);
   void hide_event(lua_State* state);
   void forget_data(lua_State* state, const WaitingEvent& event);
   void push_outcomes(lua_State* state, StateIndex parallel);
+  StateIndex final_in(StateIndex index) const noexcept;
+  bool push_result_in(lua_State* state, StateIndex index);
+  bool make_result(lua_State* state, StateIndex index);
   void take_step(lua_State* state);
   void leave(lua_State* state, StateIndex index);
   void enter(lua_State* state, StateIndex index);
@@ -172,8 +195,27 @@ class ChartRunner {
   [[nodiscard]] bool restore_state(ByteReader& bytes, std::vector<bool>& listed);
   void restore_history(ByteReader& bytes);
 
+  // What is taken back when a function raises; chart_recovery.cpp.
+  struct Attempt;
+  Attempt begin_attempt(lua_State* state) const noexcept;
+  // [-arguments-1 +results when true] Calls the function below its arguments.
+  bool call_recoverably(lua_State* state, StateIndex index, int arguments, int results);
+  int resume_recoverably(lua_State* state, StateIndex index, int arguments);
+  static void keep_run_error(lua_State* state, lua_State* thread);
+  void note_failure(lua_State* state, StateIndex index, const Attempt& attempt);
+  void fail(lua_State* state, StateIndex index);
+  void raise_failure(lua_State* state);
+  void recover(lua_State* state);
+  void recover_late(lua_State* state);
+  void enter_no_further(StateIndex index) noexcept;
+  // Evaluates what the call of a machine that is being entered gives to it. False: as call().
+  bool evaluate_call(lua_State* state, std::uint16_t machine);
+  bool push_given_by(lua_State* state, StateIndex caller, int function);
   void set_time(lua_State* state, StateIndex index);
-  void call(lua_State* state, int function, StateIndex index);
+  // [-0 +3] The function and its arguments, m and s.
+  void push_call(lua_State* state, int function, StateIndex index);
+  // False: an error waits that is going to be an event.
+  bool call(lua_State* state, int function, StateIndex index);
   void start_run(lua_State* state, StateIndex index);
   void resume_run(lua_State* state, StateIndex index);
   void cancel_run(lua_State* state, StateIndex index);
@@ -197,10 +239,15 @@ class ChartRunner {
   std::int64_t now_ns_ = 0;
   StateIndex acting_ = 0;
   bool started_ = false, finished_ = false;
-  bool entering_ = false;  // some state is marked to be entered
-  bool filling_ = false;   // the next tick only enters what a reload left empty; it takes no transition
+  bool recoverable_ = false;  // an error of a function can be an event: none was yet in this tick
+  bool failed_ = false;       // one waits to be taken
+  bool entering_ = false;     // some state is marked to be entered
+  bool filling_ = false;      // the next tick only enters what a reload left empty; it takes no transition
   Motion* wait_motion_ = nullptr;
   std::int64_t wait_ns_ = 0;
+  StateIndex finished_by_ = no_state;  // the final state
+  StateIndex failed_in_ = 0;           // whose function raised
+  ScriptError failure_;
 };
 
 }  // namespace kadans

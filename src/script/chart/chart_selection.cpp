@@ -3,6 +3,7 @@
 
 #include <lua.hpp>
 
+#include "chart_calls.h"
 #include "chart_runner.h"
 #include "script/lua/lua_core.h"
 
@@ -14,17 +15,32 @@ constexpr std::size_t transition_steps = 6, selected_steps = 6;  // to look at o
 
 }  // namespace
 
+// [-0 +3]
+void ChartRunner::push_guard(lua_State* state, std::uint16_t number) {
+  const Chart::Transition& transition = chart_.transitions[number];
+  set_time(state, transition.source);
+  core_of(state).called = transition.when;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, transition.when);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[transition.source].machine].handle);
+}
+
+void ChartRunner::call_guard(lua_State* state, std::uint16_t number) {
+  push_guard(state, number);
+  lua_call(state, 2, 1);
+}
+
 bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
   const Chart::Transition& transition = chart_.transitions[number];
   if (transition.when == Chart::no_function) return true;
   Guard& guard = guards_[number];
   if (guard.look != look_) {  // several innermost states may ask
-    set_time(state, transition.source);
-    core_of(state).called = transition.when;
-    lua_rawgeti(state, LUA_REGISTRYINDEX, transition.when);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[transition.source].machine].handle);
-    lua_call(state, 2, 1);
+    push_guard(state, number);
+    if (recoverable_ && !call_recoverably(state, transition.source, 2, 1)) {
+      guard = {look_, false};
+      return false;
+    }
+    if (!recoverable_) lua_call(state, 2, 1);
     guard = {look_, lua_toboolean(state, -1) != 0};
     lua_pop(state, 1);
   }
@@ -37,13 +53,16 @@ bool ChartRunner::happened(const Chart::Transition& transition, const WaitingEve
     return transition.on == no_event || (transition.on == run_done_event && run_[transition.source].run_done);
   }
   if (transition.on != event->id) return false;
-  return event->from == no_state || chart_.hears_end(transition.source, event->from);
+  if (event->from == no_state) return true;
+  return event->id == chart_.error_event ? chart_.inside(event->from, transition.source)
+                                         : chart_.hears_end(transition.source, event->from);
 }
 
 bool ChartRunner::due(lua_State* state, const Chart::Transition& transition) const noexcept {
   if (!transition.timed) return true;
   const double after_s = transition.after_parameter != Chart::no_parameter
-                             ? core_of(state).parameters[static_cast<std::size_t>(transition.after_parameter)].value
+                             ? parameter_value(state, static_cast<std::size_t>(transition.after_parameter),
+                                               chart_.states[transition.source].machine)
                              : transition.after_s;
   return state_time_s(transition.source) >= after_s;
 }

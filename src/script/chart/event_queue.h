@@ -53,6 +53,13 @@ class EventQueue {
     if (events_[position].from == no_state) --sent_;
     events_.erase(events_.begin() + static_cast<std::ptrdiff_t>(position));
   }
+  // Drops what was sent since it had so many.
+  void shrink(std::size_t size) noexcept {
+    while (events_.size() > size) {
+      free(events_.back());
+      remove(events_.size() - 1);
+    }
+  }
   void clear() noexcept { events_.clear(), sent_ = 0, taken_ = 0; }
 
   std::size_t size() const noexcept { return events_.size(); }

@@ -32,7 +32,7 @@ std::string outside(const std::string& name, double value, double min, double ma
   char text[256];
   std::snprintf(text, sizeof text, "%s = %.14g is outside its range %.14g..%.14g %s", name.c_str(), value, min, max,
                 unit.c_str());
-  return text;
+  return text + std::string(degree_hint(unit, value, min, max).data());
 }
 
 // A text that is the whole argument.
@@ -56,7 +56,40 @@ bool has_key(const std::vector<SourceToken>& tokens, std::size_t at, std::string
   return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) { return tokens[key].text == name; });
 }
 
+bool has_value(const std::vector<SourceToken>& tokens, std::size_t at, std::string_view name, std::string_view text) {
+  const auto keys = keys_of_table(tokens, at);
+  return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) {
+    return tokens[key].text == name && tokens[key + 2].kind == Kind::text && tokens[key + 2].text == text;
+  });
+}
+
+// A text, a number or a flag that is the whole argument.
+bool whole_literal(const std::vector<SourceToken>& tokens, std::size_t at) {
+  double ignored = 0;
+  return whole_text(tokens, at) || number_at(tokens, at, ignored) || tokens[at].is("true") || tokens[at].is("false");
+}
+
 void append(Mistakes& problems, const Mistakes& more) { problems.insert(problems.end(), more.begin(), more.end()); }
+
+// The type of a literal, as Lua names it.
+std::string literal_type(const std::vector<SourceToken>& tokens, std::size_t at) {
+  if (tokens[at].kind == Kind::text) return "string";
+  return tokens[at].is_any({"true", "false"}) ? "boolean" : "number";
+}
+
+// What a literal option must be when it is something else.
+const char* other_type(const std::vector<SourceToken>& tokens, std::size_t at, const MotionOption& option) {
+  const std::string type = literal_type(tokens, at);
+  switch (option.type) {
+    case MotionOption::Type::number:
+      return type == "number" ? nullptr : " must be a number, without quotes";
+    case MotionOption::Type::flag:
+      return type == "boolean" ? nullptr : " must be true or false";
+    case MotionOption::Type::text:
+      return type == "string" ? nullptr : " must be a text";
+  }
+  return nullptr;
+}
 
 // One `name = value` of a motion's options, as the bindings will see it.
 Mistakes motion_option(const std::vector<SourceToken>& tokens, std::size_t key, MotionOption::Method method,
@@ -70,6 +103,9 @@ Mistakes motion_option(const std::vector<SourceToken>& tokens, std::size_t key, 
     const bool number = number_at(tokens, key + 2, value);
     if (option.type == MotionOption::Type::number && number && !(value >= option.min && value <= option.max))
       return {{tokens[key].line, outside(called + ": " + option.name, value, option.min, option.max, option.unit)}};
+    const bool literal = number || whole_literal(tokens, key + 2);
+    const char* const wanted = literal ? other_type(tokens, key + 2, option) : nullptr;
+    if (wanted != nullptr) return {{tokens[key].line, called + ": " + option.name + wanted}};
     if (option.type != MotionOption::Type::text || !whole_text(tokens, key + 2)) return {};
     const std::string& given = tokens[key + 2].text;
     const std::vector<std::string> profiles(std::begin(motion_profiles), std::end(motion_profiles));
@@ -90,7 +126,15 @@ Mistakes motion_table(const std::vector<SourceToken>& tokens, std::size_t at, Mo
   const auto tell = [&](const std::string& text) { problems.push_back({tokens[at].line, called + text}); };
   if (method == MotionOption::move && !has("time_s") && !has("profile")) tell(" needs { time_s = seconds } at the end");
   if (method == MotionOption::point && !has("time_s")) tell(" needs time_s > 0");
-  if (has("time_s") && has("velocity_max_rad_s")) tell(": a trapezoid takes time_s or limits, not both");
+  const bool lengths = has("velocity_max_m_s") || has("acceleration_max_m_s2");  // which may not fit the set-point
+  const bool velocity = has("velocity_max_rad_s"), acceleration = has("acceleration_max_rad_s2");
+  const bool limits = lengths || velocity || acceleration;
+  const bool trapezoid = has_value(tokens, at, "profile", "trapezoid") && !lengths;
+  if (trapezoid && !(velocity && acceleration) && !has("time_s"))
+    tell(": a trapezoid needs time_s, or velocity_max and acceleration_max");
+  if (limits && !has("profile") && method != MotionOption::follow)
+    tell(": velocity_max and acceleration_max need profile = \"trapezoid\"");
+  if (has("profile") && has("time_s") && limits) tell(": a trapezoid takes time_s or limits, not both");
   return problems;
 }
 
@@ -187,6 +231,8 @@ Mistakes ArgumentCheck::named_value(const ObjectInfo& object, const std::vector<
 }
 
 Mistakes ArgumentCheck::preset(const ObjectInfo& object, const Tokens& tokens, std::size_t at) const {
+  if (tokens[at].is("{") || (!whole_text(tokens, at) && whole_literal(tokens, at)))
+    return {{tokens[at].line, "set_gains takes the name of gains; one number goes by set_parameter(name, value)"}};
   if (!whole_text(tokens, at)) return {};
   std::vector<std::string> names;
   for (const Preset& known : object.presets) {
@@ -229,6 +275,10 @@ Mistakes ArgumentCheck::of_motion(const ObjectInfo& object, const MotionMethod& 
   } else {
     problems = pose(object, tokens, at, offsets);
   }
+  if (there && whole_literal(tokens, given[options]))
+    problems.push_back({tokens[given[options]].line, std::string(method.name) +
+                                                         ": the last argument must be a table { ... }, not a " +
+                                                         literal_type(tokens, given[options]) + ": { time_s = 1 }"});
   if (there) append(problems, motion_table(tokens, given[options], method.kind, method.name));
   if (!there && method.needs != nullptr) problems.push_back({tokens[at].line, std::string(method.name) + method.needs});
   return problems;

@@ -30,6 +30,7 @@ struct Looked {
   Behavior::Parts& parts;
   CheckedScript found{};
   bool returned = false;
+  bool unfinished = false;  // k.behavior "name" without its table
 };
 
 // Runs the file and looks at what it returns.
@@ -46,6 +47,7 @@ int look_at_file(lua_State* state) {
   lua_call(state, 0, 1);
   NodeKind kind{};
   looked.returned = !lua_isnil(state, -1);
+  looked.unfinished = lua_iscfunction(state, -1) != 0;
   if (is_node(state, lua_gettop(state), &kind) && kind == NodeKind::behavior) looked.found.kind = ScriptKind::behavior;
   return 0;
 }
@@ -111,6 +113,8 @@ void check_loaded(Looked& looked) {
   check_sources(parts, known, problems);
   if (looked.found.kind == ScriptKind::test) {
     TestCalls(own, parts.settings, problems).run();
+  } else if (looked.unfinished) {
+    problems.push_back({own.chunk, 1, 0, "returns a k.behavior without its table: return k.behavior \"name\" { ... }"});
   } else if (!looked.returned) {
     problems.push_back({own.chunk, 1, 0,
                         "returns nothing: a behavior returns k.behavior \"name\" { ... }, a module its "

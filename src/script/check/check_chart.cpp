@@ -76,7 +76,7 @@ class ChartCheck {
   void never_entered(StateIndex index) {
     const Chart::State& state = chart_.states[index];
     if (reached_[index] || state.parent == no_state || !reached_[state.parent]) return;
-    problem(state, state.line, "state '" + state.name + "' is never entered: no transition leads to it");
+    problem(state, state.line, "state '" + state.name + "' is never entered: no transition leads to it, with to = \"" + state.name + "\"");
   }
 
   void no_way_out(StateIndex index) {
@@ -111,7 +111,7 @@ class ChartCheck {
     for (std::uint16_t i = 0; i < state.transition_count; ++i) {
       const Chart::Transition& transition = chart_.transitions[static_cast<std::size_t>(state.first_transition) + i];
       if (transition.on != run_done_event || state.run != Chart::no_function) continue;
-      problem(state, transition.line, "state '" + state.name + "' waits for \"run.done\", but it has no run");
+      problem(state, transition.line, "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");
     }
   }
 
@@ -275,6 +275,18 @@ void look_at(lua_State* state, Looking& looking, int reference, const char* name
   lua_pop(state, 1);
 }
 
+void look_at_defaults(lua_State* state, Looking& looking, int declared) {
+  if (declared == Chart::no_function) return;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, declared);
+  const int all = lua_gettop(state);
+  for (lua_pushnil(state); lua_next(state, all) != 0; lua_pop(state, 2)) {
+    lua_rawgeti(state, -1, 1);
+    const std::string name = lua_tostring(state, all + 1);
+    look_into(state, looking, "args." + name, name, 1);
+  }
+  lua_settop(state, all - 1);
+}
+
 int look(lua_State* state) {
   auto& looking = *static_cast<Looking*>(lua_touserdata(state, 1));
   const Chart& chart = looking.parts.chart;
@@ -282,7 +294,7 @@ int look(lua_State* state) {
     looking.chunk = chart.states[machine.root].chunk;
     looking.line = chart.states[machine.root].line;
     look_at(state, looking, machine.vars, "vars");
-    look_at(state, looking, machine.arguments, "args");
+    look_at_defaults(state, looking, machine.arguments);
     looking.chunk = machine.call_chunk;
     looking.line = machine.call_line;
     if (!machine.call_chunk.empty()) look_at(state, looking, machine.given, "args");
@@ -298,13 +310,14 @@ void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::
   Emitted emitted;
   for (const ReadSource& one : read) add_emitted(one.scopes.tokens(), emitted);
   for (const Chart::Transition& transition : chart.transitions) {
-    if (transition.on == no_event || transition.on == run_done_event) continue;
+    if (transition.on == no_event || transition.on == run_done_event || chart.is_report(transition.on)) continue;
     const std::string& event = chart.events[static_cast<std::size_t>(transition.on)];
     const bool end = chart.made_by_runner(transition.on);
     if (!end && emitted.may_be(event)) continue;
     Ends ends = heard_ends(chart, transition.source);
     if (ends.contains(event)) continue;
     if (!end) ends.insert(emitted.events.begin(), emitted.events.end());
+    if (chart.states[transition.source].run != Chart::no_function) ends.insert("run.done");
     const Chart::State& source = chart.states[transition.source];
     const std::string told =
         end ? "nothing in '" + (source.name.empty() ? chart.name : source.name) + "' ends with '" + event + "'"

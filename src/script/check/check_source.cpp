@@ -5,8 +5,12 @@
 #include <array>
 
 #include "check_arguments.h"
+#include "check_flow.h"
+#include "check_values.h"
+#include "foreign_words.h"
 #include "hint.h"
 #include "script/bindings/machine_sets.h"
+#include "script/chart/chart_reports.h"
 #include "source_scopes.h"
 
 namespace kadans {
@@ -146,7 +150,14 @@ class SourceCheck final : public SourceListener {
  public:
   SourceCheck(const Behavior::Parts& parts, const KnownNames& known, const LuaState::Source& source,
               std::vector<InputProblem>& problems)
-      : parts_(parts), known_(known), source_(source), problems_(problems), machine_(known.machine), arguments_(parts) {
+      : parts_(parts),
+        known_(known),
+        source_(source),
+        problems_(problems),
+        machine_(known.machine),
+        arguments_(parts),
+        values_(parts, known),
+        flow_(parts.catalog, known, known.vars.contains(source.chunk)) {
     const auto vars = known.vars.find(source.chunk);
     has_behavior_ = vars != known.vars.end();
     if (const auto own = known.machines.find(source.chunk); own != known.machines.end()) machine_ = own->second;
@@ -159,9 +170,13 @@ class SourceCheck final : public SourceListener {
     vars_.insert(vars_.end(), writes.vars.begin(), writes.vars.end());
     std::sort(vars_.begin(), vars_.end());
     scopes.tell(*this);
+    tell(values_.of_literals(scopes.tokens()));
+    tell(flow_.run(scopes.tokens()));
   }
 
   void used(const SourceUse& use, const std::vector<SourceToken>& tokens) override {
+    flow_.note(use);
+    tell(values_.of_use(use, tokens));
     if (!use.known) return unknown(use);
     if (use.guard) guard(use);
     if (!use.at_once.empty() && waits(use, tokens)) {
@@ -202,7 +217,12 @@ class SourceCheck final : public SourceListener {
     if (use.assigned && use.meaning.path.empty()) {
       return problem(use.line, "'" + use.name + "' would be a global: write local " + use.name);
     }
-    problem(use.line, "unknown name '" + use.name + "'" + hint_text(use.name, known_.globals.names()));
+    const std::string_view foreign = foreign_name_hint(use.name);
+    if (!foreign.empty()) return problem(use.line, "unknown name '" + use.name + "'" + std::string(foreign));
+    const bool object = machine_.fields.contains(use.name) && arguments_.object(use.name) != nullptr;
+    const std::string here =
+        object ? ": it is a field of m: m." + use.name : hint_text(use.name, known_.globals.names());
+    problem(use.line, "unknown name '" + use.name + "'" + here);
   }
 
   // m:wait(1), motion:wait(), m.posture:move(...):wait()
@@ -243,6 +263,15 @@ class SourceCheck final : public SourceListener {
     }
   }
 
+  // `m` and `s` stand in the wrong order, or the field's name is wrong.
+  std::string field_hint(const SourceUse& use, std::size_t field, const std::string& shown,
+                         const KnownNames::Shape& at) const {
+    const std::string& name = use.meaning.path[field];
+    const bool object = shown == "s" && machine_.fields.contains(name) && arguments_.object(name) != nullptr;
+    const std::string_view swapped = object ? order_hint : swapped_hint(shown, name);
+    return swapped.empty() ? hint_text(name, at.names()) : std::string(swapped);
+  }
+
   // Each field on the way must be there; the ones before `written` were looked at where they were named.
   void fields(const SourceUse& use, const KnownNames::Shape& root, std::string shown) {
     const KnownNames::Shape* at = &root;
@@ -252,7 +281,7 @@ class SourceCheck final : public SourceListener {
       const auto found = at->fields.find(path[i]);
       if (found == at->fields.end()) {
         if (i + use.written >= path.size() && !at->fields.empty()) {
-          problem(use.lines[i], shown + " has no '" + path[i] + "'" + hint_text(path[i], at->names()));
+          problem(use.lines[i], shown + " has no '" + path[i] + "'" + field_hint(use, i, shown, *at));
         }
         return;
       }
@@ -308,6 +337,23 @@ class SourceCheck final : public SourceListener {
     return 0;
   }
 
+  // A plain value, or one that is counted on, in a field of vars that nobody declared.
+  void undeclared(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+    const std::string& name = use.meaning.path[1];
+    const auto declared = known_.vars.find(source_.chunk);
+    if (declared == known_.vars.end() || name == "*" || !tokens[use.next].is("=")) return;
+    const std::vector<std::string>& names = declared->second;
+    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+    const SourceToken& value = tokens[use.next + 1];
+    const bool plain = value.kind == SourceToken::Kind::number || value.kind == SourceToken::Kind::text ||
+                       value.is("true") || value.is("false");
+    const std::size_t own = use.next - use.at;  // m.vars.n = m.vars.n + 1
+    bool itself = true;
+    for (std::size_t i = 0; i < own; ++i) itself = itself && tokens[use.next + 1 + i].text == tokens[use.at + i].text;
+    if (plain || itself)
+      problem(place(use), "m.vars has no '" + name + "'" + hint_text(name, names) + ": declare it in vars = { }");
+  }
+
   // The token behind '=' of an assignment.
   static bool gives_function(const SourceUse& use, const std::vector<SourceToken>& tokens) {
     return use.next + 1 < tokens.size() && tokens[use.next + 1].is("function");
@@ -322,8 +368,11 @@ class SourceCheck final : public SourceListener {
       problem(place(use), "m.vars." + path[1] + " is given a function: vars hold plain data, which a reload keeps");
     const bool free = std::find(always_there.begin(), always_there.end(), path.front()) != always_there.end();
     if (use.assigned && (!free || path.size() == 1)) {
-      return problem(place(use), "m is read-only: '" + path.front() + "' cannot be set; keep it in m.vars");
+      const std::string where =
+          path.front() == "vars" ? "give its fields values: m.vars.name = 1" : "keep it in m.vars";
+      return problem(place(use), "m is read-only: '" + path.front() + "' cannot be set; " + where);
     }
+    if (use.assigned && path.front() == "vars" && path.size() == 2) undeclared(use, tokens);
     fields(use, machine_, "m");
     if (!has_behavior_ || path.front() != "vars" || path.size() < 2 || path[1] == "*" || use.assigned) return;
     if (std::binary_search(vars_.begin(), vars_.end(), path[1])) return;
@@ -334,6 +383,11 @@ class SourceCheck final : public SourceListener {
     if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
     if (tokens[at - 1].is("(") && !tokens[at + 1].is(")")) return;  // a part of it
     const EventId id = parts_.chart.find_event(tokens[at].text);
+    if (reserved_for_reports(tokens[at].text)) {
+      return problem(tokens[at].line, "'" + tokens[at].text +
+                                          "' reports what happened to the behavior, it cannot be emitted: give the "
+                                          "event another name");
+    }
     if (id != no_event && parts_.chart.made_by_runner(id)) {
       return problem(tokens[at].line, "'" + tokens[at].text +
                                           "' says how a state or a run ended, it cannot be emitted: give the event "
@@ -353,7 +407,8 @@ class SourceCheck final : public SourceListener {
     }
     const auto& names = declared->second;
     if (name == "*" || std::find(names.begin(), names.end(), name) != names.end()) return;
-    problem(place(use), "k.params has no '" + name + "'" + hint_text(name, names));
+    problem(place(use), (use.meaning.place.token == 1 ? "k.args has no '" : "k.params has no '") + name + "'" +
+                            hint_text(name, names));
   }
 
   const Behavior::Parts& parts_;
@@ -362,6 +417,8 @@ class SourceCheck final : public SourceListener {
   std::vector<InputProblem>& problems_;
   KnownNames::Shape machine_;
   ArgumentCheck arguments_;
+  ValueCheck values_;
+  FlowCheck flow_;
   std::vector<std::string> vars_;
   bool has_behavior_ = false;
 };

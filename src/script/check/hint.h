@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "script/lua/lua_core.h"
@@ -19,12 +20,23 @@ inline std::string hint_text(const std::string& wrong, const std::vector<std::st
   std::string near = did_you_mean(wrong, names);
   if (!near.empty() || names.empty()) return near;
   for (const std::string& name : names) {
-    if (wrong.size() >= 3 && name.starts_with(wrong)) return ", did you mean '" + name + "'?";
+    const bool begins = name.size() >= 4 && wrong.starts_with(name + "_");  // move_to
+    if (begins || (wrong.size() >= 3 && name.starts_with(wrong))) return ", did you mean '" + name + "'?";
   }
   if (names.size() > 8) return "";
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "; there is: " : ", ") + name;
   return all;
+}
+
+// For a number that is outside its range in rad, but inside it when it was meant in degrees.
+inline std::array<char, 64> degree_hint(std::string_view unit, double value, double min, double max) {
+  constexpr double degree_rad = 3.14159265358979323846 / 180;
+  std::array<char, 64> text{};
+  const double turned = value * degree_rad;
+  if (unit == "rad" && turned >= min && turned <= max)
+    std::snprintf(text.data(), text.size(), "; %.14g degrees are %.3f rad", value, turned);
+  return text;
 }
 
 // `fill` adds the known names to the vector that it gets; it must not raise. The time is proportional to the product of

@@ -89,6 +89,11 @@ void read_functions(lua_State* state, const Chart& chart, KnownNames& known) {
     read_place(state, one.exit, "exit", i, known);
     read_place(state, one.during, "during", i, known);
     read_place(state, one.run, "run", i, known);
+    read_place(state, one.result, "result", i, known);
+  }
+  for (const Chart::Machine& machine : chart.machines) {
+    for (const Chart::Given& given : machine.calls_with)
+      read_place(state, given.function, "action", chart.states[machine.root].parent, known);
   }
   for (const Chart::Transition& transition : chart.transitions) {
     read_place(state, transition.when, "when", transition.source, known);
@@ -106,7 +111,12 @@ int read(lua_State* state) {
       lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.machines[i].content);
       read_shape(state, lua_gettop(state), *machine, 0);
       lua_pop(state, 1);
-      machine->fields["vars"].open = machine->fields["args"].open = true;
+      machine->fields["vars"].open = true;
+      KnownNames::Shape& args = machine->fields["args"];
+      std::vector<std::string> declared;
+      read_keys(state, parts.chart.machines[i].arguments, declared);
+      for (const std::string& name : declared) args.fields[name].open = true;
+      args.open = args.fields.empty();
     }
   }
   const bool played = !parts.chart.machines.empty();
@@ -127,7 +137,9 @@ int read(lua_State* state) {
   push_environment(state);
   read_shape(state, lua_gettop(state), known.globals, 0);
   for (const Chart::Machine& machine : parts.chart.machines) {
-    read_keys(state, machine.vars, known.vars[parts.chart.states[machine.root].chunk]);
+    const std::string& chunk = parts.chart.states[machine.root].chunk;
+    read_keys(state, machine.vars, known.vars[chunk]);
+    read_keys(state, machine.arguments, known.parameters[chunk]);
   }
   return 0;
 }

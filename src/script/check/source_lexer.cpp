@@ -117,17 +117,6 @@ class Lexer {
   std::vector<SourceToken> tokens_;
 };
 
-// How much deeper the brackets are behind this token.
-int opens(const SourceToken& token) {
-  for (const char* word : {"(", "{", "[", "function", "if", "do", "repeat"}) {
-    if (token.is(word)) return 1;
-  }
-  for (const char* word : {")", "}", "]", "end", "until"}) {
-    if (token.is(word)) return -1;
-  }
-  return 0;
-}
-
 // Behind a value: what goes on with it is no name, and no keyword but these.
 bool begins_statement(const SourceToken& token) {
   if (token.kind == SourceToken::Kind::keyword) return token.text != "and" && token.text != "or";
@@ -146,6 +135,15 @@ bool may_end_value(const SourceToken& token) {
 
 }  // namespace
 
+std::string_view line_of_text(std::string_view text, int line) noexcept {
+  for (int i = 1; i < line; ++i) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  return text.substr(0, text.find('\n'));
+}
+
 std::vector<SourceToken> lex_source(std::string_view text) { return Lexer(text).run(); }
 
 std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at) {
@@ -156,6 +154,24 @@ std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at) 
     for (const char* opening : {"(", "{", "["}) depth += tokens[at].is(opening) ? 1 : 0;
     for (const char* closing : {")", "}", "]"}) depth -= tokens[at].is(closing) ? 1 : 0;
     if (depth == 0) return at + 1;
+  }
+  return at;
+}
+
+int opens(const SourceToken& token) {
+  for (const char* word : {"(", "{", "[", "function", "if", "do", "repeat"}) {
+    if (token.is(word)) return 1;
+  }
+  for (const char* word : {")", "}", "]", "end", "until"}) {
+    if (token.is(word)) return -1;
+  }
+  return 0;
+}
+
+std::size_t end_of_block(const std::vector<SourceToken>& tokens, std::size_t at) {
+  for (int depth = 0; tokens[at].kind != SourceToken::Kind::end; ++at) {
+    depth += opens(tokens[at]);
+    if (depth <= 0) return at;
   }
   return at;
 }

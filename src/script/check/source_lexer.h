@@ -1,9 +1,11 @@
 // Splits Lua source into tokens, for checks that read a script without running it.
 #pragma once
 
+#include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +23,9 @@ struct SourceToken {
   bool is(std::string_view wanted) const noexcept {
     return (kind == Kind::keyword || kind == Kind::symbol) && text == wanted;
   }
+  bool is_any(std::initializer_list<std::string_view> wanted) const noexcept {
+    return std::ranges::any_of(wanted, [&](std::string_view one) { return is(one); });
+  }
 };
 
 // Comments are left out; the last token is of kind `end`. The text has been compiled before, so it is well formed.
@@ -29,6 +34,15 @@ std::vector<SourceToken> lex_source(std::string_view text);
 // The index of the token after the arguments of a call. `at` is the first token in the bracket, or the string or table
 // of a call without brackets.
 std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at);
+
+// The text of a line, the first of which is 1, without its end.
+std::string_view line_of_text(std::string_view text, int line) noexcept;
+
+// The index of the token that closes what opens at `at`: a bracket, a function, an if, a loop's `do` or `repeat`.
+std::size_t end_of_block(const std::vector<SourceToken>& tokens, std::size_t at);
+
+// Whether the token opens a block or a bracket (1), closes one (-1), or neither (0).
+int opens(const SourceToken& token);
 
 // The first tokens of the parts in a bracket, which are separated by commas or semicolons. `at` is the first of all.
 std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::size_t at);

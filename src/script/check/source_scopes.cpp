@@ -159,6 +159,7 @@ std::size_t SourceScopes::start_at(std::size_t at, SourceUse& use) const {
   use.line = tokens_[at].line;
   if (const std::size_t* declared = find(use.name, use.outer); declared != nullptr) {
     use.known = true;
+    use.declared = *declared;
     use.meaning = facts_->local({file_, *declared});
     use.lines.assign(use.meaning.path.size(), use.line);
     return at + 1;
@@ -276,8 +277,9 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
   const std::size_t next = fields_at(start_at(at, use), use);
   if (!use.known) return {};
   const SourceMeaning& meaning = use.meaning;
-  if (meaning.role == SourceRole::module && meaning.path.size() == 1 && meaning.path[0] == "params")
-    return {SourceRole::parameters, {}, {file_, 0}};
+  if (meaning.role == SourceRole::module && meaning.path.size() == 1 &&
+      (meaning.path[0] == "params" || meaning.path[0] == "args"))
+    return {SourceRole::parameters, {}, {file_, meaning.path[0] == "args" ? std::size_t{1} : 0}};
   if (is_motion(use)) return {SourceRole::motion};
   if (use.arguments != 0 || !use.method.empty() || use.written > 4 || !ends_value(tokens_[next])) return {};
   return meaning.path.empty() || meaning.path.back() != "*" ? meaning : SourceMeaning{};
@@ -289,7 +291,7 @@ using Kind = SourceToken::Kind;
 
 // Keys of functions that are over within their tick.
 bool is_at_once(const std::string& key) {
-  return key == "enter" || key == "exit" || key == "during" || key == "action";
+  return key == "enter" || key == "exit" || key == "during" || key == "action" || key == "result";
 }
 
 // Whether a value stands behind `return`.
@@ -527,6 +529,7 @@ std::size_t SourceScopes::name_at(std::size_t at) {
   }
   if (is_key(at)) return key_at(at);
   SourceUse use;
+  use.at = at;
   const std::size_t fields = start_at(at, use);
   for (const Block& block : blocks_) use.guard = use.guard || function(block.function).guard;
   use.at_once = at_once(at);

@@ -43,7 +43,7 @@ struct SourcePlace {
 struct SourceMeaning {
   SourceRole role = SourceRole::none;
   std::vector<std::string> path{};
-  SourcePlace place{};  // where a function or table is written; for parameters: their file
+  SourcePlace place{};  // where a function or table is written; for parameters: their file, and 1 for arguments
   bool operator==(const SourceMeaning&) const = default;
 };
 
@@ -129,6 +129,8 @@ struct SourceUse {
   std::string method;              // after ':', or ""
   int line = 0;                    // of the name
   std::size_t arguments = 0;       // index of the token after the '(' of a call; 0: no call
+  std::size_t at = 0;              // index of the name's token
+  std::size_t declared = 0;        // index of the token that declares the name; 0: no local
   std::size_t next = 0;            // index of the token after the whole use, the '=' of an assignment
 };
 

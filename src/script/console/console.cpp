@@ -19,6 +19,7 @@ namespace kadans {
 
 struct ConsoleBehavior {
   std::string name, state, outcome, error;
+  std::vector<std::string> active;
   std::vector<ScriptParameter> parameters;
 };
 
@@ -134,7 +135,7 @@ void push_new_content(lua_State* state, Console::Parts& parts) {
   lua_settop(state, content);
 }
 
-// [-0 +1] { name = { state =, outcome =, error =, parameters = } }
+// [-0 +1] { name = { state =, active =, outcome =, error =, parameters = } }
 void push_behaviors(lua_State* state, const std::vector<ConsoleBehavior>& behaviors) {
   const auto text = [&](const char* name, const std::string& value) {
     lua_pushlstring(state, value.data(), value.size());
@@ -146,6 +147,12 @@ void push_behaviors(lua_State* state, const std::vector<ConsoleBehavior>& behavi
     text("state", behavior.state);
     text("outcome", behavior.outcome);
     text("error", behavior.error);
+    lua_createtable(state, static_cast<int>(behavior.active.size()), 0);
+    for (std::size_t i = 0; i < behavior.active.size(); ++i) {
+      lua_pushlstring(state, behavior.active[i].data(), behavior.active[i].size());
+      lua_rawseti(state, -2, static_cast<int>(i + 1));
+    }
+    lua_setfield(state, -2, "active");
     lua_newtable(state);
     for (const ScriptParameter& parameter : behavior.parameters) {
       lua_pushnumber(state, parameter.value);
@@ -391,7 +398,7 @@ std::vector<ConsoleBehavior> behaviors_of(const ScriptHost& host) {
   for (std::size_t i = 0; i < host.size(); ++i) {
     const Behavior& behavior = host.behavior(i);
     all.push_back({behavior.name(), behavior.state(), behavior.outcome(),
-                   behavior.failed() ? behavior.error().text() : "", behavior.parameters()});
+                   behavior.failed() ? behavior.error().text() : "", behavior.active(), behavior.parameters()});
   }
   return all;
 }
@@ -406,6 +413,7 @@ struct CommandInfo {
 constexpr CommandInfo commands[] = {
     {":help", "", "what can be typed here"},
     {":status", "", "what plays, and how what played ended"},
+    {":why", " [NAME]", "why transitions of the active states were not taken: events, times, guards"},
     {":play", " LIST", "adds behaviors behind what plays: squat{depth_m=0.08}, wave"},
     {":replace", " LIST", "the same, in place of what plays"},
     {":pause", "", "behaviors and motions stand still"},
@@ -422,7 +430,7 @@ constexpr const char* help_head =
     "A line is Lua; what it gives is printed. There is\n"
     "  s                       the snapshot that behaviors see: s.base.pitch_rad, s.joints.l_knee.position_rad\n"
     "  signals, parameters     by name: signals.plant.base.height_m, parameters.posture.l_knee.kp_Nm_per_rad\n"
-    "  behaviors               by name: behaviors.squat.state, .outcome, .error, .parameters\n"
+    "  behaviors               by name: behaviors.squat.state, .active, .outcome, .error, .parameters\n"
     "  m, k                    control objects, after :write; k.pose(\"stand\")\n"
     "Commands:";
 
@@ -490,7 +498,7 @@ Console::Reply Console::evaluate(std::string_view line, const View& view) noexce
     if (first == std::string_view::npos) return {};
     parts.pending_line = parts.line_number;
     if (line[first] == ':') {
-      const Reply reply = command(std::string(line));
+      const Reply reply = command(std::string(line), view);
       return parts.pending.empty() ? reply : run_lua(view);
     }
   } else {
@@ -555,15 +563,23 @@ std::string Console::status() const {
   std::string text = host.paused() ? "paused" : host.finished() ? "nothing plays" : "plays";
   for (std::size_t i = 0; i < host.size(); ++i) {
     const Behavior& behavior = host.behavior(i);
-    const std::string outcome = behavior.outcome(), state = behavior.state();
+    const std::string outcome = behavior.outcome(), active = listed(behavior.active());
     text += "\n  " + behavior.name() + ": ";
-    text += !outcome.empty() ? outcome : host.over(i) ? "stopped" : state.empty() ? "waits" : "in " + state;
+    text += !outcome.empty() ? outcome : host.over(i) ? "stopped" : active.empty() ? "waits" : "in " + active;
     if (behavior.failed()) text += ", " + behavior.error().text();
   }
   return text;
 }
 
-Console::Reply Console::command(const std::string& line) noexcept {
+Console::Reply Console::why(const std::string& name, const View& view) const noexcept {
+  try {
+    return {.text = reasons_text(parts_->host.why(name, view.snapshot))};
+  } catch (const std::exception& error) {
+    return {.text = error.what(), .error = true};
+  }
+}
+
+Console::Reply Console::command(const std::string& line, const View& view) noexcept {
   const std::size_t first = line.find(':');
   const std::size_t end = std::min(line.find_first_of(" \t\r", first), line.size());
   const std::string name = line.substr(first, end - first);
@@ -578,6 +594,7 @@ Console::Reply Console::command(const std::string& line) noexcept {
   if (*known->argument == '\0' && !argument.empty()) return {.text = name + " takes no argument", .error = true};
   if (name == ":help") return {.text = help()};
   if (name == ":status") return {.text = status()};
+  if (name == ":why") return why(argument, view);
   if (name == ":quit") return {.text = {}, .quit = true};
   if (name == ":clear_faults") {
     parts_->pending = "local asked = m:clear_faults()";

@@ -4,7 +4,7 @@
 // go on.
 //
 // Besides the sandbox Lua sees: s (as behaviors do), signals.<name>, parameters.<name> of the control objects,
-// behaviors.<name>.{state, outcome, error, parameters}, m, and k (require "kadans"). Globals stay from line to line.
+// behaviors.<name>.{state, active, outcome, error, parameters}, m, and k (require "kadans"). Globals stay from line to line.
 //
 // Behavior thread, between its ticks. Only the constructor throws.
 #pragma once
@@ -68,7 +68,8 @@ class Console {
   struct Parts;
 
  private:
-  Reply command(const std::string& line) noexcept;
+  Reply command(const std::string& line, const View& view) noexcept;
+  Reply why(const std::string& name, const View& view) const noexcept;
   Reply run_lua(const View& view) noexcept;
   Reply order(PlayOrder::Kind kind, const std::string& line, std::size_t begin) noexcept;
   std::string status() const;

@@ -1,6 +1,7 @@
 #include "script_host.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "kadans/signal/input_error.h"
 #include "play_list.h"
@@ -11,6 +12,19 @@ namespace kadans {
 namespace {
 
 constexpr std::uint32_t kept_format = 1;
+
+// Each state with the signal of the region that it is in; not those in regions that have no signal.
+void add_states(const Chart& chart, const std::string& name, const SignalTable& signals, std::vector<SignalState>& to) {
+  const std::string prefix = "behavior." + name + ".";
+  std::vector<std::optional<SignalId>> shown_by{signals.find(prefix + "state")};
+  for (StateIndex i = 1; i < chart.size(); ++i) {
+    const Chart::State& state = chart.states[i];
+    const bool region = state.kind == Chart::Kind::region;
+    shown_by.push_back(region ? signals.find(prefix + "region." + state.path) : shown_by[state.parent]);
+    if (shown_by[i] && state.kind != Chart::Kind::history)
+      to.push_back({state.path, name, *shown_by[i], static_cast<double>(i), static_cast<double>(state.end)});
+  }
+}
 
 }  // namespace
 
@@ -119,10 +133,12 @@ std::vector<std::string> ScriptHost::names() const {
   return all;
 }
 
-void ScriptHost::declare_signals(SignalTable& signals) const {
+void ScriptHost::declare_signals(SignalTable& signals) {
   list_.status().declare(signals);
   const auto declare = [&](const PlayList::Entry& entry) {
-    entry.behavior->status().declare_numbered(signals, entry.behavior->name());
+    const BehaviorStatus& status = entry.behavior->status();
+    const std::string name = status.declare_numbered(signals, entry.behavior->name());
+    add_states(entry.behavior->chart(), name, signals, signal_states_);
   };
   std::ranges::for_each(list_.entries(), declare);
   for (const Due& due : events_) std::ranges::for_each(due.loaded, declare);
@@ -234,6 +250,18 @@ void ScriptHost::watch_folders() {
   for (const PlayList::Entry& entry : list_.entries()) {
     for (const std::filesystem::path& file : entry.behavior->files()) (void)watch_->add(file.parent_path());
   }
+}
+
+std::vector<BehaviorReasons> ScriptHost::why(const std::string& name, const Snapshot& snapshot) const {
+  std::vector<BehaviorReasons> all;
+  std::vector<std::string> known;
+  for (const PlayList::Entry& entry : list_.entries()) {
+    if (entry.over) continue;
+    known.push_back(entry.behavior->name());
+    if (name.empty() || name == known.back()) all.push_back({known.back(), entry.behavior->why(snapshot)});
+  }
+  if (!name.empty() && all.empty()) throw InputError({.message = unknown_name("behavior", name, known)});
+  return all;
 }
 
 // Writes what plays and its state as bytes. The host of another process continues from them: it loads the files when it

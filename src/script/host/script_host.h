@@ -21,6 +21,8 @@
 #include "pause.h"
 #include "play_list.h"
 #include "safe_posture.h"
+#include "script/behavior/behavior_why.h"
+#include "script/bindings/signal_expressions.h"
 
 namespace kadans {
 
@@ -55,6 +57,9 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   // motions, too.
   void note(const Snapshot& snapshot, const CommandSender& commands) noexcept { pause_.note(snapshot, commands); }
 
+  // Behavior thread, between ticks: of the playing behavior with this name, or of all that play. Throws InputError.
+  std::vector<BehaviorReasons> why(const std::string& name, const Snapshot& snapshot) const;
+
   // Behavior thread, between ticks: writes the state of everything that plays as bytes. Returns "", or why it is
   // impossible; then the bytes cannot be used.
   std::string keep(ByteWriter& bytes, std::int64_t time_ns);
@@ -65,7 +70,9 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   void watch();
   // Before the loop. Declares play.* and behavior.<name>.* for all loaded behaviors. A name that plays twice gets a
   // number.
-  void declare_signals(SignalTable& signals) const;
+  void declare_signals(SignalTable& signals);
+  // The states of these behaviors, for conditions. After declare_signals().
+  std::span<const SignalState> signal_states() const noexcept { return signal_states_; }
 
   bool in_safe_posture() const noexcept { return safe_.moved(); }  // the robot was sent there after a failure
   bool paused() const noexcept { return pause_.paused(); }
@@ -119,6 +126,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   std::vector<Due> orders_;  // given since the last tick
   std::unique_ptr<FileWatch> watch_;
   SafePosture safe_;
+  std::vector<SignalState> signal_states_;
   std::string lost_;
 };
 

@@ -171,8 +171,10 @@ void Budget::describe(ScriptBreach what) noexcept {
           limit_MB);
       return;
     case ScriptBreach::instructions:
-      std::snprintf(text.data(), text.size(), "instruction budget exceeded: more than %llu in one tick",
-                    static_cast<unsigned long long>(limit_));
+      std::snprintf(
+          text.data(), text.size(),
+          "instruction budget exceeded: more than %llu in one tick; a loop that waits for something needs m:wait(0.01)",
+          static_cast<unsigned long long>(limit_));
       return;
     case ScriptBreach::wall_time:
       std::snprintf(text.data(), text.size(), "time budget exceeded: more than %.3f ms of wall-clock time in one tick",

@@ -29,6 +29,7 @@ struct LuaCore {
   lua_State* running = nullptr;        // the coroutine of a `run` while it runs, else nullptr
   void* bindings = nullptr;            // of the behavior that owns the state
   int (*entry)(lua_State*) = nullptr;  // the function that LuaState::call() runs
+  int handler = LUA_NOREF;             // registry: keeps the message and the stack of an error
   int called = LUA_NOREF;              // registry: the chart function that was called last
   bool loading = true;
   int depth = 0;       // nesting depth of library functions that call back

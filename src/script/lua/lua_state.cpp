@@ -7,6 +7,8 @@
 
 #include "kadans/signal/input_error.h"
 #include "lua_core.h"
+#include "script/check/source_lexer.h"
+#include "script/check/syntax_hint.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/input_file.h"
 
@@ -52,9 +54,21 @@ int keep_error(lua_State* state) {
     error.set_message("the script raised a value that is not a string");
   }
   if (error.line == 0) note_place(state, error);
+  error.add_hint(core_of(state).loading);
   luaL_traceback(state, state, nullptr, 1);
   error.set_traceback(lua_tostring(state, -1));
   return 1;
+}
+
+// The message of the compiler at the top of the stack goes on with what was meant, at the line to change.
+void explain(lua_State* state, const std::string& text) {
+  core_of(state).budget.charge(state, compiling_instructions(static_cast<double>(text.size())));
+  ScriptError error;
+  error.set_message(lua_tostring(state, -1));
+  const SyntaxHint hint = syntax_hint(text, error.line, error.message.data());
+  if (error.line == 0 || hint.text[0] == '\0') return;
+  lua_pop(state, 1);
+  lua_pushfstring(state, "%s:%d: %s: %s", error.file.data(), hint.line, error.message.data(), hint.text.data());
 }
 
 int enter(lua_State* state) { return core_of(state).entry(state); }
@@ -63,6 +77,8 @@ int enter(lua_State* state) { return core_of(state).entry(state); }
 enum Foot : int { handler = 1, entrance = 2 };
 
 int open(lua_State* state) {
+  lua_pushcfunction(state, keep_error);
+  core_of(state).handler = luaL_ref(state, LUA_REGISTRYINDEX);
   open_sandbox(state);
   return 0;
 }
@@ -134,7 +150,9 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   }
   sources_.push_back(std::move(source));
   Pieces pieces{sources_.back().text};
-  if (lua_loadx(state, next_piece, &pieces, chunk.c_str(), "t") != 0) return false;
+  const int status = lua_loadx(state, next_piece, &pieces, chunk.c_str(), "t");
+  if (status == LUA_ERRSYNTAX) explain(state, sources_.back().text);
+  if (status != 0) return false;
   push_environment(lua_);
   lua_setfenv(state, -2);
   return true;
@@ -156,6 +174,24 @@ std::filesystem::path LuaState::find_module(std::string_view name) const {
     if (std::filesystem::is_regular_file(folder / relative, ignored)) return folder / relative;
   }
   return {};
+}
+
+std::vector<std::string> LuaState::module_names() const {
+  constexpr std::size_t names_max = 64;
+  std::vector<std::string> names;
+  for (const auto& folder : {settings_.folder, settings_.root / "behaviors/lib"}) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+      if (names.size() == names_max) return names;
+      if (entry.path().extension() == ".lua") names.push_back(entry.path().stem().string());
+    }
+  }
+  return names;
+}
+
+std::string_view LuaState::line_text(std::string_view chunk, int line) const noexcept {
+  const auto source = std::ranges::find(sources_, chunk, &Source::chunk);
+  return source == sources_.end() ? std::string_view{} : line_of_text(source->text, line);
 }
 
 int LuaState::line_of(std::string_view chunk, int from, std::string_view text) const {

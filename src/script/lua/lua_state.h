@@ -70,6 +70,9 @@ class LuaState {
   bool load_file(lua_State* state, const std::filesystem::path& path);
   // The file in which `require` finds a module; empty when there is none.
   std::filesystem::path find_module(std::string_view name) const;
+  // The names of the files that `require` could find, without those in folders; at most 64.
+  std::vector<std::string> module_names() const;
+  std::string_view line_text(std::string_view chunk, int line) const noexcept;
   // The first line from `from` on that contains `text` in quotes or as a word; `from` when there is none.
   int line_of(std::string_view chunk, int from, std::string_view text) const;
   // The instructions that this search takes at most.

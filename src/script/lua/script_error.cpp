@@ -9,6 +9,7 @@
 
 #include "lua_core.h"
 #include "lua_state.h"
+#include "script/check/foreign_words.h"
 #include "script/check/hint.h"
 
 namespace kadans {
@@ -42,6 +43,23 @@ void ScriptError::set_message(const char* text) noexcept {
     break;
   }
   copy(message, rest, std::strlen(rest));
+}
+
+void ScriptError::add_hint(bool loading) noexcept {
+  const auto says = [&](const char* text) { return std::strstr(message.data(), text) != nullptr; };
+  const char* hint = nullptr;
+  if (loading && says("a nil value") && (says("local 's'") || says("local 'm'") || says("local 'c'")))
+    hint = ": this function is called while the file is loaded; under a key it stands without brackets";
+  else if (loading && says("attempt to compare") && says("userdata"))
+    hint = ": a parameter has its value when the behavior runs";
+  else if (says("attempt to perform arithmetic on field") && says("a nil value"))
+    hint = ": nothing gave it a value; vars = { name = 0 } gives it one at the start";
+  else if (says("attempt to concatenate") && (says("a boolean value") || says("a nil value")))
+    hint = ": tostring(x) makes a text of it";
+  else if (says("attempt to compare number with string") || says("attempt to compare string with number"))
+    hint = ": tonumber(text) makes a number of it";
+  const std::size_t length = std::strlen(message.data());
+  if (hint != nullptr) copy(std::span(message).subspan(length), hint, std::strlen(hint));
 }
 
 std::string ScriptError::text() const {
@@ -99,6 +117,12 @@ void check_keys(lua_State* state, int table, const ScriptPlace& place, const cha
   }
   meter.settle();
   if (wrong == nullptr) return;
+  if (names_a_list(wrong) && is_among("enter", names))
+    raise_at(state, place, wrong, "%s has no key '%s': states and transitions stand directly in the table", what,
+             wrong);
+  const std::string_view here = foreign_key(wrong);
+  if (!here.empty() && is_among(here.data(), names))
+    raise_at(state, place, wrong, "%s has no key '%s', did you mean '%s'?", what, wrong, here.data());
   const Hint hint = make_hint(state, wrong, [&](auto& known) {
     for (const char* const* name = names; *name != nullptr; ++name) known.emplace_back(*name);
   });

@@ -22,6 +22,8 @@ struct ScriptError {
   void clear() noexcept { *this = ScriptError{}; }
   // Splits "file:line: message" into its parts.
   void set_message(const char* text) noexcept;
+  // Goes on with what was probably meant by one of Lua's own messages.
+  void add_hint(bool loading) noexcept;
   void set_traceback(const char* text) noexcept;
   void set_place(const char* chunk, int at_line) noexcept;
   std::string text() const;  // "file:line: message"

@@ -283,7 +283,7 @@ MotionOptions read_motion_options(lua_State* state, int index, MotionOption::Met
       if (!lua_isnil(state, -1)) take(state, option, called, unit, options);
       lua_pop(state, 1);
     }
-  } else if (method == MotionOption::set || method == MotionOption::through) {
+  } else if (!lua_isnoneornil(state, index)) {
     luaL_error(state, "%s: the last argument must be a table { ... }, not a %s", called, luaL_typename(state, index));
   }
   if (method != MotionOption::through && method != MotionOption::point) check_together(state, method, called, options);

@@ -20,6 +20,7 @@
 #include "kadans/exchange/turn.h"
 #include "kadans/signal/command.h"
 #include "kadans/signal/status.h"
+#include "script/behavior/behavior_status.h"
 
 namespace kadans {
 
@@ -38,6 +39,9 @@ struct BehaviorLink {
   static constexpr std::size_t behaviors_max = 32, name_bytes = 64, order_bytes = 8192;
   using Name = std::array<char, name_bytes>;
   using Numbers = std::array<std::uint32_t, 5>;
+  template <typename T>
+  using OfRegions = std::array<std::array<T, BehaviorStatus::regions_max>, behaviors_max>;
+  using RegionPath = std::array<char, BehaviorStatus::region_path_max + 1>;
 
   // Written by the runtime before the process starts.
   struct Setup {
@@ -54,6 +58,7 @@ struct BehaviorLink {
     alignas(8) std::uint64_t fingerprint = 0;  // fingerprint of its catalog
     std::uint32_t count = 0;
     std::array<Name, behaviors_max> names{};  // names of the behaviors whose status it reports
+    OfRegions<RegionPath> regions{};          // paths of their regions; "": no further one
   };
   struct Request {
     Turn<> number;                    // counts from 1
@@ -67,6 +72,7 @@ struct BehaviorLink {
     Turn<> number;                                // number of the request
     Numbers play{};                               // the numbers of PlayStatus, in its order
     std::array<Numbers, behaviors_max> status{};  // the numbers of BehaviorStatus, in its order
+    OfRegions<std::uint32_t> regions{};           // the active state of each region
     std::uint32_t kept_changed = 0;
     KeptState kept;
   };
@@ -81,7 +87,8 @@ struct BehaviorLink {
 static_assert(std::is_trivially_copyable_v<BehaviorLink>);
 
 // The first byte of a line that is a transition; other lines have a severity of BehaviorLog there.
-inline constexpr std::uint8_t transition_line = 16;
+// An active line holds the number of active states and their paths.
+inline constexpr std::uint8_t transition_line = 16, active_line = 17;
 
 // A fingerprint by which two processes check that they use the same numbers for parameters, set-points, control sets
 // and objects. Each process reads the robot's files itself, and the files may have changed in between. Ranges and poses

@@ -21,6 +21,20 @@ bool SpokenLines::push(const Line& line) {
   } else {
     line_.put_string(line.text);
   }
+  return push();
+}
+
+void SpokenLines::tell_active(const ActiveStates& active) {
+  line_.clear();
+  line_.put(std::uint32_t{0});
+  line_.put(active_line);
+  line_.put_string(active.behavior);
+  line_.put(static_cast<std::uint32_t>(active.states.size()));
+  for (const std::string_view state : active.states) line_.put_string(state);
+  dropped_ += push() ? 0 : 1;
+}
+
+bool SpokenLines::push() {
   line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
   return link_.lines.try_push(line_.bytes());
 }
@@ -28,18 +42,24 @@ bool SpokenLines::push(const Line& line) {
 void SpokenLines::tell(const Line& line) {
   const bool fits = push(line);
   dropped_ += fits ? 0 : 1;
-  if (!fits || dropped_ == 0) return;
+  if (fits) tell_dropped(line.time_ns);
+}
+
+void SpokenLines::tell_dropped(std::int64_t time_ns) {
+  if (dropped_ == 0) return;
   const std::string text = std::to_string(dropped_) + " lines found no place";
-  if (push({line.time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
+  if (push({time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
 }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,
-                               const Catalog& catalog)
-    : link_(link), bell_(bell), host_(host), log_(log), commands_(link.commands) {
+                               SpokenLines& lines, const Catalog& catalog)
+    : link_(link), bell_(bell), host_(host), log_(log), lines_(lines), commands_(link.commands) {
   link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
     const std::string& name = host_.behavior(i).name();
     std::copy_n(name.begin(), std::min(name.size(), BehaviorLink::name_bytes - 1), link_.ready.names[i].begin());
+    const std::vector<std::string>& regions = host_.behavior(i).status().region_paths;
+    for (std::size_t r = 0; r < regions.size(); ++r) std::ranges::copy(regions[r], link_.ready.regions[i][r].begin());
   }
   link_.ready.fingerprint = fingerprint_of(catalog);
 }
@@ -56,6 +76,7 @@ int BehaviorServer::serve() {
 
 bool BehaviorServer::answer() {
   snapshot_ = link_.request.snapshot;
+  lines_.tell_dropped(snapshot_.time_ns);  // the lines of the tick before have been taken since
   commands_.follow(link_.request.last_sequence, link_.request.room);
   take_order();
   host_.tick(snapshot_, commands_);
@@ -88,6 +109,7 @@ void BehaviorServer::tell_status() {
     const BehaviorStatus& status = host_.behavior(i).status();
     link_.answer.status[i] = {number(status.heap_bytes), number(status.instructions), number(status.gc_pause_ns),
                               number(status.state), number(status.reloads)};
+    for (std::size_t r = 0; r < status.region_paths.size(); ++r) link_.answer.regions[i][r] = number(status.regions[r]);
   }
 }
 

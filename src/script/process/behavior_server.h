@@ -13,16 +13,19 @@
 
 namespace kadans {
 
-// Writes the log lines of behaviors into the shared memory. Lines that do not fit are dropped and counted, and the
-// count is logged.
+// Writes the log lines of behaviors into the shared memory. Lines that do not fit are dropped and counted; the count is
+// told behind the next line that fits, or by tell_dropped().
 class SpokenLines final : public LineSink {
  public:
   explicit SpokenLines(BehaviorLink& link) : link_(link) {}
 
   void tell(const Line& line) override;
+  void tell_dropped(std::int64_t time_ns);
+  void tell_active(const ActiveStates& active) override;
 
  private:
   bool push(const Line& line);
+  bool push();  // line_, with its size
 
   BehaviorLink& link_;
   ByteWriter line_;
@@ -31,8 +34,9 @@ class SpokenLines final : public LineSink {
 
 class BehaviorServer {
  public:
-  // `log` and `catalog` are those of the host; SpokenLines is a sink of the log.
-  BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log, const Catalog& catalog);
+  // `log` and `catalog` are those of the host; `lines` is a sink of the log.
+  BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log, SpokenLines& lines,
+                 const Catalog& catalog);
 
   // Serves until the runtime closes the doorbell. Returns the exit code of the process: 0, or 1 when the host cannot
   // continue from the kept state.
@@ -48,6 +52,7 @@ class BehaviorServer {
   Doorbell& bell_;
   ScriptHost& host_;
   BehaviorLog& log_;
+  SpokenLines& lines_;
   CommandSender commands_;
   Snapshot snapshot_;
   ByteWriter kept_;

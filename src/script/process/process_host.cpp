@@ -72,6 +72,19 @@ std::optional<std::vector<std::string>> ChildAnswer::names(BehaviorLink& link) {
   return all;
 }
 
+std::vector<std::string> ChildAnswer::regions(BehaviorLink& link, std::size_t behavior) {
+  std::vector<std::string> paths;
+  for (BehaviorLink::RegionPath& written : link.ready.regions[behavior]) {
+    const BehaviorLink::RegionPath path = copy_of(written);
+    const auto end = std::ranges::find(path, '\0');
+    const std::string text(path.begin(), end);
+    const bool taken = std::ranges::find(paths, text) != paths.end();
+    if (end == path.end() || taken || !BehaviorStatus::is_region_path(text)) break;
+    paths.push_back(text);
+  }
+  return paths;
+}
+
 bool ChildAnswer::take_commands(BehaviorLink& link) {
   const std::size_t waiting = link.commands.size();
   commands_.clear();
@@ -120,6 +133,15 @@ bool ChildAnswer::tell_line(std::span<const std::byte> line, BehaviorLog& log, s
   if (kind == transition_line) {
     const Transition transition{time_ns, behavior, fields.take_string(), fields.take_string(), fields.take_string()};
     if (fields.ok()) log.transition(transition);
+  } else if (kind == active_line) {
+    std::array<std::string_view, ActiveStates::told_max> states;
+    const auto count = fields.take<std::uint32_t>();
+    if (count > states.size()) return false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto path = fields.take_bytes(fields.take<std::uint32_t>());
+      states[i] = {reinterpret_cast<const char*>(path.data()), path.size()};
+    }
+    if (fields.ok()) log.active({time_ns, behavior, std::span(states).first(count)});
   } else {
     const std::string text = fields.take_string();
     if (kind > static_cast<std::uint8_t>(BehaviorLog::Severity::error)) return false;
@@ -160,6 +182,8 @@ void ChildAnswer::take_status(BehaviorLink& link, PlayStatus& play, std::deque<B
     store(behaviors[i].gc_pause_ns, numbers[2]);
     store(behaviors[i].state, numbers[3]);
     store(behaviors[i].reloads, numbers[4]);
+    for (std::size_t r = 0; r < behaviors[i].region_paths.size(); ++r)
+      store(behaviors[i].regions[r], link.answer.regions[i][r]);
   }
 }
 
@@ -215,7 +239,11 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
   if (ChildAnswer::fingerprint(child_->link) != fingerprint_) refuse("the robot's files changed meanwhile");
   play_.declare(catalog.signals);
   names_ = *names;
-  for (const std::string& name : names_) behaviors_.emplace_back().declare_numbered(catalog.signals, name);
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    BehaviorStatus& status = behaviors_.emplace_back();
+    status.region_paths = ChildAnswer::regions(child_->link, i);
+    (void)status.declare_numbered(catalog.signals, names_[i]);
+  }
   play_.phase.store(behaviors_.empty() ? 0 : 1, std::memory_order_relaxed);
   phase_ = Phase::playing;
 }

@@ -53,6 +53,8 @@ class ChildAnswer {
   static std::uint64_t fingerprint(BehaviorLink& link) noexcept;
   // nullopt when one of the names is invalid.
   static std::optional<std::vector<std::string>> names(BehaviorLink& link);
+  // The paths of the behavior's regions, up to the first that is none.
+  static std::vector<std::string> regions(BehaviorLink& link, std::size_t behavior);
   static bool answers(BehaviorLink& link, std::uint32_t number) noexcept;
 
   // Takes the answer's transactions out of the link. send_on() sends them with `time_ns` as their time.
@@ -131,11 +133,8 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   // process is down.
   void order(const PlayOrder& order) override;
 
-  // The behaviors that the process was started with, and the number of the innermost active state of each.
+  // The behaviors that the process was started with.
   const std::vector<std::string>& names() const noexcept { return names_; }
-  std::uint32_t state(std::size_t behavior) const noexcept {
-    return behaviors_[behavior].state.load(std::memory_order_relaxed);
-  }
   bool paused() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 2; }
   bool finished() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 0; }
   bool down() const noexcept { return phase_ == Phase::down; }

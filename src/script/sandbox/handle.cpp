@@ -30,6 +30,21 @@ void set_kind(lua_State* state, const HandleKey& key) {
   lua_setmetatable(state, -2);
 }
 
+void push_reader(lua_State* state, lua_CFunction read, lua_CFunction write) {
+  const int content = lua_gettop(state);
+  lua_newtable(state);
+  lua_createtable(state, 0, 3);
+  lua_pushvalue(state, content);
+  lua_pushcclosure(state, read, 1);
+  lua_setfield(state, -2, "__index");
+  lua_pushcfunction(state, write);
+  lua_setfield(state, -2, "__newindex");
+  lua_pushboolean(state, 0);
+  lua_setfield(state, -2, "__metatable");
+  lua_setmetatable(state, -2);
+  lua_replace(state, content);
+}
+
 bool is_kind(lua_State* state, int index, const HandleKey& key) noexcept {
   if (lua_getmetatable(state, index) == 0) return false;
   lua_pushlightuserdata(state, const_cast<HandleKey*>(&key));

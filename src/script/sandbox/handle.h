@@ -16,6 +16,9 @@ void open_kind(lua_State* state, const HandleKey& key);
 void open_kind(lua_State* state, const HandleKey& key, std::span<const luaL_Reg> methods, lua_CFunction read_field);
 // [-0 +0] Gives the kind to the value at the top of the stack.
 void set_kind(lua_State* state, const HandleKey& key);
+// [-1 +1] Replaces the table at the top of the stack by an empty one: reading a field calls `read`, whose upvalue 1 is
+// the table, writing one calls `write`.
+void push_reader(lua_State* state, lua_CFunction read, lua_CFunction write);
 bool is_kind(lua_State* state, int index, const HandleKey& key) noexcept;
 // What is behind user data of the kind; nullptr: it is something else.
 void* to_handle(lua_State* state, int index, const HandleKey& key) noexcept;

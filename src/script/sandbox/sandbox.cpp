@@ -2,8 +2,10 @@
 #include "sandbox.h"
 
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 
+#include "script/check/foreign_words.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
@@ -152,12 +154,23 @@ int raise_unknown_field(lua_State* state, const char* name, int content, int key
   char shown[160];
   const char* text = lua_tostring(state, -1);
   std::snprintf(shown, sizeof shown, "%s", text != nullptr ? text : luaL_typename(state, key));
+  const std::string_view foreign = *name == '\0' ? foreign_name_hint(shown) : swapped_hint(name, shown);
+  if (*name == '\0') {
+    const ScriptPlace place = calling_place(state);
+    core_of(state).budget.charge(state, core_of(state).owner->search_instructions(place.chunk));
+    const std::string_view unquoted =
+        unquoted_value_key(core_of(state).owner->line_text(place.chunk, place.line), shown);
+    if (!unquoted.empty())
+      return luaL_error(state, "unknown name '%s': a name is a text: %s = \"%s\"", shown, unquoted.data(), shown);
+    if (!foreign.empty()) return luaL_error(state, "unknown name '%s'%s", shown, foreign.data());
+  }
   const Hint hint = make_hint(state, shown, [&](auto& names) {
     for (lua_pushnil(state); lua_next(state, copy) != 0; lua_pop(state, 1)) {
       if (lua_type(state, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -2));
     }
   });
   if (*name == '\0') return luaL_error(state, "unknown name '%s'%s", shown, hint.data());
+  if (!foreign.empty()) return luaL_error(state, "%s has no '%s'%s", name, shown, foreign.data());
   return luaL_error(state, "%s has no '%s'%s", name, shown, hint.data());
 }
 
@@ -266,6 +279,16 @@ void push_environment(lua_State* state) {
   lua_rawget(state, LUA_REGISTRYINDEX);
 }
 
+// There is no such module; the hint is one of the files that could have been meant.
+int refuse_module(lua_State* state, const char* name) {
+  const Hint hint = make_hint(state, name, [&](auto& names) {
+    names = core_of(state).owner->module_names();
+    names.emplace_back("kadans");
+  });
+  return luaL_error(state, "no module '%s': it is neither \"kadans\", nor beside this script, nor in behaviors/lib%s",
+                    name, std::strncmp(hint.data(), ", did", 5) == 0 ? hint.data() : "");
+}
+
 int sandbox_require(lua_State* state) {
   const char* name = luaL_checkstring(state, 1);
   lua_settop(state, 1);
@@ -277,8 +300,7 @@ int sandbox_require(lua_State* state) {
   if (!core_of(state).loading) return luaL_error(state, "require '%s' belongs at the top of the file", name);
   switch (push_module(state, name)) {
     case Found::nowhere:
-      return luaL_error(state, "no module '%s': it is neither \"kadans\", nor beside this script, nor in behaviors/lib",
-                        name);
+      return refuse_module(state, name);
     case Found::broken:
       return lua_error(state);
     case Found::loaded:

@@ -7,6 +7,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "script/bindings/snapshot_tables.h"
+#include "script/check/hint.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
@@ -42,6 +43,7 @@ struct Testing {
   int running = LUA_NOREF;           // the function of the test that runs
   std::array<char, 1024> message{};  // of what went wrong where nothing may raise
   std::string text;                  // given to Lua; a member, since Lua may raise
+  std::vector<std::string> texts;    // likewise
 };
 
 Testing& testing_of(lua_State* state) { return *static_cast<Testing*>(lua_touserdata(state, lua_upvalueindex(1))); }
@@ -120,6 +122,41 @@ bool read_text(Testing& testing, const TestStage& stage, const char* key) noexce
   return false;
 }
 
+// [-0 +1] { "act.arm.wave", "act.leg.step" }
+void push_active(lua_State* state, Testing& testing, const TestStage& stage) {
+  testing.texts = stage.active();
+  lua_createtable(state, static_cast<int>(testing.texts.size()), 0);
+  for (std::size_t i = 0; i < testing.texts.size(); ++i) {
+    lua_pushlstring(state, testing.texts[i].data(), testing.texts[i].size());
+    lua_rawseti(state, -2, static_cast<int>(i + 1));
+  }
+}
+
+std::optional<bool> look_for(Testing& testing, const TestStage& stage, const char* path) {
+  const std::optional<bool> in = stage.in(path);
+  if (!in) testing.text = "the behavior has no state '" + std::string(path) + "'" + hint_text(path, stage.paths());
+  return in;
+}
+
+// is_in(number, path) -> whether this state is active; nil, why: there is none.
+int is_in(lua_State* state) {
+  Played* played = played_in(state);
+  if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
+  Testing& testing = testing_of(state);
+  const std::optional<bool> in = look_for(testing, *played->stage, luaL_checkstring(state, 2));
+  if (in) return lua_pushboolean(state, *in ? 1 : 0), 1;
+  lua_pushnil(state);
+  lua_pushlstring(state, testing.text.data(), testing.text.size());
+  return 2;
+}
+
+int push_result(lua_State* state, Testing& testing, const TestStage& stage) {
+  testing.text = "return " + stage.result();
+  if (luaL_loadbuffer(state, testing.text.data(), testing.text.size(), "=result") != 0) return lua_error(state);
+  lua_call(state, 0, 1);
+  return 1;
+}
+
 // read(number, key): what the behavior is in, or a field of the snapshot.
 int read(lua_State* state) {
   Played* played = played_in(state);
@@ -130,6 +167,8 @@ int read(lua_State* state) {
     lua_pushlstring(state, testing.text.data(), testing.text.size());
     return 1;
   }
+  if (std::strcmp(key, "active") == 0) return push_active(state, testing, *played->stage), 1;
+  if (std::strcmp(key, "result") == 0) return push_result(state, testing, *played->stage);
   const Snapshot& snapshot = played->stage->snapshot();
   played->tables.refill(state, snapshot, snapshot.time_ns);
   lua_rawgeti(state, LUA_REGISTRYINDEX, played->snapshot);
@@ -211,11 +250,11 @@ int run_file(lua_State* state) {
   if (luaL_loadbuffer(state, test_prelude, sizeof test_prelude - 1, "=kadans test") != 0) return lua_error(state);
   push_environment(state);
   lua_setfenv(state, -2);
-  for (const lua_CFunction function : {play, advance, read, change, add_test}) {
+  for (const lua_CFunction function : {play, advance, read, change, add_test, is_in}) {
     lua_pushlightuserdata(state, &testing);
     lua_pushcclosure(state, function, 1);
   }
-  lua_call(state, 5, 5);
+  lua_call(state, 6, 5);
   open_test_names(state);
   if (!testing.lua.load_file(state, testing.file)) return lua_error(state);
   lua_call(state, 0, 0);
@@ -233,7 +272,7 @@ std::vector<TestOutcome> run_behavior_tests(const std::filesystem::path& root, c
                                             TestStages& stages, const std::string& only) {
   const ScriptLimits limits{.memory_bytes = memory_max_bytes};
   LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string(), .limits = limits});
-  Testing testing{lua, stages, root, file, {}, {}, LUA_NOREF, {}, {}};
+  Testing testing{lua, stages, root, file, {}, {}, LUA_NOREF, {}, {}, {}};
   testing.played.reserve(stages_max);
   if (!lua.call(run_file, &testing, load_instructions_max, 0)) {
     const ScriptError& error = lua.error();

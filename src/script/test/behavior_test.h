@@ -5,10 +5,12 @@
 //   local run = k.play "squat.lua"        a behavior beside this file, or a path from the project's root
 //   run:advance(2.0)                       virtual seconds
 //   expect(run.state).to_equal "squat"
+//   expect(run.active).to_equal { "squat" }    all innermost active states
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +27,13 @@ class TestStage {
   virtual const Snapshot& snapshot() const = 0;
   virtual const Catalog& catalog() const = 0;
   virtual std::string state() const = 0;
+  virtual std::vector<std::string> active() const = 0;  // all innermost active states, by path
+  // Whether the state with this path is active, innermost or not; nullopt: there is no such state.
+  virtual std::optional<bool> in(const std::string& path) const = 0;
+  virtual std::vector<std::string> paths() const = 0;  // of all states
   virtual std::string outcome() const = 0;
   virtual std::string error() const = 0;
+  virtual std::string result() const = 0;        // as text that Lua can read; "" when there is none
   virtual std::string control_sets() const = 0;  // names of the active ones
   virtual std::string said() const = 0;          // the lines that the behavior logged
   virtual std::string went() const = 0;          // the states that it went through, "settle squat rest"

@@ -15,9 +15,9 @@ void open_test_names(lua_State* state);
 inline constexpr const char* test_matchers[] = {"to_equal",   "to_be_near",  "to_be_above", "to_be_below", "to_contain",
                                                 "to_be_true", "to_be_false", "to_be_nil",   "to_raise"};
 
-// Given (play, advance, read, change, add_test); returns k.play, expect, before_each, it, describe.
+// Given (play, advance, read, change, add_test, is_in); returns k.play, expect, before_each, it, describe.
 inline constexpr char test_prelude[] = R"(
-local play, advance, read, change, add_test = ...
+local play, advance, read, change, add_test, is_in = ...
 local names, hooks, inside = {}, {}, false
 
 local function show(value, depth)
@@ -120,13 +120,17 @@ function methods.advance(run, seconds)
   end
   advance(run.id, seconds)
 end
--- Advances until the behavior is in this state; raises when it is not within max_s (default 60).
+-- Advances until this state, by its path, is active; raises when it is not within max_s (default 60).
 function methods.advance_to(run, state, max_s)
+  if type(state) ~= "string" then error("advance_to needs the path of a state", 2) end
   local left_s = max_s or 60
-  while run.state ~= state do
+  while true do
+    local there, unknown = is_in(run.id, state)
+    if there then return end
+    if unknown then error(unknown, 2) end
     if left_s <= 0 or run.outcome ~= "" then
-      error(string.format("%q was not reached within %g s: the behavior is in %q", state, max_s or 60,
-                          run.outcome == "" and run.state or run.outcome), 2)
+      error(string.format("%q was not reached within %g s: the behavior is in %s", state, max_s or 60,
+                          run.outcome == "" and table.concat(run.active, ", ") or show(run.outcome, 0)), 2)
     end
     advance(run.id, 0.01)
     left_s = left_s - 0.01

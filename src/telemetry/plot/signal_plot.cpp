@@ -134,7 +134,8 @@ SignalPlot plot_of(const RecordOutline& record, const std::vector<PanelWish>& wi
       panel.lines.push_back({wishes[i].signals[j].info.name, thinned[i][j].points()});
     plot.panels.push_back(std::move(panel));
   }
-  plot.lanes = state_lanes(record.transitions, plot.from_s, plot.to_s);
+  plot.lanes = record.active.empty() ? state_lanes(record.transitions, plot.from_s, plot.to_s)
+                                     : state_lanes(record.active, plot.from_s, plot.to_s);
   for (const ToldFault& fault : record.faults) {
     if (shown.holds(fault.time_ns)) plot.marks.push_back({seconds(fault.time_ns), fault_name(fault)});
   }
@@ -146,6 +147,11 @@ namespace {
 // Whether one path is the other, or lies inside it: "walk" and "walk.left".
 bool within(const std::string& inner, const std::string& outer) {
   return inner == outer || (inner.size() > outer.size() && inner.starts_with(outer) && inner[outer.size()] == '.');
+}
+
+// How much two paths have in common, in letters.
+std::size_t common(const std::string& a, const std::string& b) {
+  return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
 }
 
 struct Lane {
@@ -164,6 +170,34 @@ class Lanes {
     end(lane, time_s);
     lane.state = transition.to;
     lane.since_s = time_s;
+  }
+
+  // What goes on keeps its lane. A lane whose state is over takes the new state that is nearest to it; what is left
+  // takes the first lane in which nothing is active.
+  void show(const Event& active) {
+    const double time_s = seconds(active.transition.time_ns);
+    std::vector<std::string> fresh = active.states;
+    const auto is_its = [&](const Lane& lane) { return lane.behavior == active.transition.behavior; };
+    const auto goes_on = [&](const Lane& lane) {
+      return std::ranges::find(active.states, lane.state) != active.states.end();
+    };
+    std::erase_if(fresh, [&](const std::string& state) {
+      return std::ranges::any_of(lanes_, [&](const Lane& lane) { return is_its(lane) && lane.state == state; });
+    });
+    for (Lane& lane : lanes_) {
+      if (!is_its(lane) || lane.state.empty() || goes_on(lane)) continue;
+      end(lane, time_s);
+      const auto nearest =
+          std::ranges::max_element(fresh, {}, [&](const std::string& s) { return common(s, lane.state); });
+      begin(lane, fresh, nearest, time_s);
+    }
+    for (Lane& lane : lanes_) {
+      if (is_its(lane) && lane.state.empty()) begin(lane, fresh, fresh.begin(), time_s);
+    }
+    while (!fresh.empty()) {
+      lanes_.push_back({active.transition.behavior, "", 0, {}});
+      begin(lanes_.back(), fresh, fresh.begin(), time_s);
+    }
   }
 
   std::vector<PlotLane> take() {
@@ -196,6 +230,15 @@ class Lanes {
     return lanes_.back();
   }
 
+  static void begin(Lane& lane, std::vector<std::string>& fresh, std::vector<std::string>::iterator state,
+                    double time_s) {
+    lane.state.clear();
+    if (state == fresh.end()) return;
+    lane.state = std::move(*state);
+    lane.since_s = time_s;
+    fresh.erase(state);
+  }
+
   void end(Lane& lane, double time_s) const {
     const double from_s = std::max(lane.since_s, from_s_), to_s = std::min(time_s, to_s_);
     if (!lane.state.empty() && to_s > from_s) lane.bands.push_back({from_s, to_s, lane.state});
@@ -210,6 +253,12 @@ class Lanes {
 std::vector<PlotLane> state_lanes(const std::vector<Transition>& transitions, double from_s, double to_s) {
   Lanes lanes(from_s, to_s);
   for (const Transition& transition : transitions) lanes.add(transition);
+  return lanes.take();
+}
+
+std::vector<PlotLane> state_lanes(const std::vector<Event>& active, double from_s, double to_s) {
+  Lanes lanes(from_s, to_s);
+  for (const Event& told : active) lanes.show(told);
   return lanes.take();
 }
 

@@ -67,6 +67,8 @@ struct SignalPlot {
 // regions. A state begins with its transition. Before the first transition, the active state is the one that this
 // transition left.
 std::vector<PlotLane> state_lanes(const std::vector<Transition>& transitions, double from_s, double to_s);
+// The same by what is active (RecordOutline::active), which also knows the states in which regions begin.
+std::vector<PlotLane> state_lanes(const std::vector<Event>& active, double from_s, double to_s);
 
 // The signals that a panel shall show. Its unit is that of the signals.
 struct PanelWish {

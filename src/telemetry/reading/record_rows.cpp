@@ -110,6 +110,18 @@ std::string transition_text(const Transition& transition) {
 
 namespace {
 
+std::optional<Event> active_in(const RecordTopic& topic, std::string_view json, std::int64_t time_ns) {
+  if (!topic.is_json() || topic.schema != "kadans.Active") return std::nullopt;
+  const Json read = object_in(json);
+  Event event{.kind = Event::Kind::active, .transition = {time_ns, text_in(read, "behavior"), "", "", ""}};
+  const auto states = read.find("states");
+  if (states == read.end() || !states->is_array()) return event;
+  for (const Json& state : *states) {
+    if (state.is_string()) event.states.push_back(state.get<std::string>());
+  }
+  return event;
+}
+
 void add_message(const RecordRows& rows, RecordOutline& outline, TopicOutline& topic) {
   const std::int64_t time_ns = rows.time_ns();
   if (topic.messages == 0) topic.first_ns = time_ns;
@@ -126,6 +138,8 @@ void add_message(const RecordRows& rows, RecordOutline& outline, TopicOutline& t
   } else if (std::optional<ToldFault> fault = fault_in(rows.topic(), rows.text(), time_ns)) {
     outline.faults.push_back(std::move(*fault));
   } else if (rows.topic().signals.empty()) {
+    if (std::optional<Event> told = active_in(rows.topic(), rows.text(), time_ns))
+      outline.active.push_back(std::move(*told));
     StateHash hash;
     hash.add(topic.hash);
     for (const std::byte byte : rows.payload()) hash.add(static_cast<std::uint64_t>(byte));

@@ -93,6 +93,7 @@ struct RecordOutline {
   std::vector<TopicOutline> topics;        // by channel
   std::vector<Transition> transitions;
   std::vector<Event> log;
+  std::vector<Event> active;  // the active states, each time that they changed; none in older records
   std::vector<ToldFault> faults;
   std::map<std::string, TextMap> metadata;
   std::vector<McapAttachment> attachments;

@@ -36,17 +36,32 @@ EventLog::EventLog() : ring_(std::make_unique<Bytes>()) {}
 
 void EventLog::tell(const Line& line) {
   const Transition* t = line.transition;
-  outgoing_.clear();
-  outgoing_.put(std::uint32_t{0});
-  outgoing_.put(line.time_ns);
-  outgoing_.put(static_cast<std::uint8_t>(t != nullptr ? Event::Kind::transition : Event::Kind::message));
-  outgoing_.put_string(line.behavior);
+  begin(t != nullptr ? Event::Kind::transition : Event::Kind::message, line.time_ns, line.behavior);
   if (t != nullptr) {
     for (const std::string* text : {&t->from, &t->to, &t->why}) outgoing_.put_string(*text);
   } else {
     outgoing_.put(static_cast<std::uint8_t>(line.severity));
     outgoing_.put_string(line.text);
   }
+  push();
+}
+
+void EventLog::tell_active(const ActiveStates& active) {
+  begin(Event::Kind::active, active.time_ns, active.behavior);
+  outgoing_.put(static_cast<std::uint32_t>(active.states.size()));
+  for (const std::string_view state : active.states) outgoing_.put_string(state);
+  push();
+}
+
+void EventLog::begin(Event::Kind kind, std::int64_t time_ns, std::string_view behavior) {
+  outgoing_.clear();
+  outgoing_.put(std::uint32_t{0});
+  outgoing_.put(time_ns);
+  outgoing_.put(static_cast<std::uint8_t>(kind));
+  outgoing_.put_string(behavior);
+}
+
+void EventLog::push() noexcept {
   outgoing_.set(0, static_cast<std::uint32_t>(outgoing_.size() - head_bytes));
   if (!ring_->try_push(outgoing_.bytes())) dropped_.fetch_add(1, std::memory_order_relaxed);
 }
@@ -67,15 +82,28 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
   event.kind = static_cast<Event::Kind>(fields.take<std::uint8_t>());
   event.transition = {.time_ns = event_time_ns, .behavior = fields.take_string(), .from = {}, .to = {}, .why = {}};
   event.text.clear();
+  event.states.clear();
   if (event.kind == Event::Kind::transition) {
     event.transition.from = fields.take_string();
     event.transition.to = fields.take_string();
     event.transition.why = fields.take_string();
+  } else if (event.kind == Event::Kind::active) {
+    for (auto left = fields.take<std::uint32_t>(); left > 0 && fields.ok(); --left) {
+      event.states.push_back(fields.take_string());
+    }
   } else {
     event.severity = static_cast<BehaviorLog::Severity>(fields.take<std::uint8_t>());
     event.text = fields.take_string();
   }
   return true;
+}
+
+void Event::say_to(BehaviorLog& log) const {
+  if (kind == Kind::active) {
+    const std::vector<std::string_view> paths(states.begin(), states.end());
+    return log.active({transition.time_ns, transition.behavior, paths});
+  }
+  log.say(line());
 }
 
 std::string json_of(const Event& event) {
@@ -86,6 +114,9 @@ std::string json_of(const Event& event) {
     json["from"] = transition.from;
     json["to"] = transition.to;
     json["why"] = transition.why;
+  } else if (event.kind == Event::Kind::active) {
+    json["behavior"] = transition.behavior;
+    json["states"] = event.states;
   } else {
     json["level"] = foxglove_level(event.severity);
     json["message"] = event.text;
@@ -102,10 +133,6 @@ std::string json_of(const ToldFault& fault) {
                               {"name", fault.name}};
   put_what(json, fault);
   return json_text(json);
-}
-
-nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model) {
-  return fault_json(fault, told(fault, model));
 }
 
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what) {
@@ -167,6 +194,16 @@ const char* const transition_schema = R"({
     "to": { "type": "string", "description": "Path of the state that was entered" },
     "why": { "type": "string" }
   }
+})";
+
+const char* const active_schema = R"({
+  "title": "kadans.Active", "type": "object",
+  "description": "All innermost active states of a behavior, told when they change",
+  "properties": { "timestamp": { "type": "object", "title": "time",
+      "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
+    "behavior": { "type": "string" },
+    "states": { "type": "array", "items": { "type": "string" },
+      "description": "Their paths, in document order; none: the behavior is over" } }
 })";
 
 const char* const fault_schema = R"({

@@ -20,34 +20,38 @@
 namespace kadans {
 
 struct Event {
-  enum class Kind : std::uint8_t { message, transition };
+  enum class Kind : std::uint8_t { message, transition, active };
   Kind kind = Kind::message;
-  Transition transition;  // both kinds use its time_ns and behavior
+  Transition transition;  // all kinds use its time_ns and behavior
   BehaviorLog::Severity severity = BehaviorLog::Severity::info;
   std::string text;
+  std::vector<std::string> states;  // the active ones
 
-  // Valid as long as the event.
+  // Of a message or transition; valid as long as the event.
   Line line() const noexcept {
     return {transition.time_ns, severity, transition.behavior, text, kind == Kind::transition ? &transition : nullptr};
   }
+  void say_to(BehaviorLog& log) const;
 };
 
-// The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition and kadans.Fault.
+// The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition, kadans.Active and
+// kadans.Fault.
 std::string json_of(const Event& event);
 std::string json_of(const ToldFault& fault);
 // The JSON that reports and ctl tell: {code, tick, text, joint, value, limit, words, key}; no joint and no words where
 // there are none, and the key is of the robot's configuration.
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what);
-nlohmann::ordered_json fault_json(const Fault& fault, const RobotModel& model);
 extern const char* const log_schema;
 extern const char* const transition_schema;
+extern const char* const active_schema;
 extern const char* const fault_schema;
 
 class EventLog final : public LineSink {
  public:
   EventLog();
 
-  void tell(const Line& line) override;  // filling thread only
+  void tell(const Line& line) override;                   // filling thread only
+  void tell_active(const ActiveStates& active) override;  // likewise
 
   // Draining thread only. False when no event up to `time_ns` is waiting.
   [[nodiscard]] bool pop(std::int64_t time_ns, Event& event);
@@ -55,6 +59,9 @@ class EventLog final : public LineSink {
   std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }  // any thread
 
  private:
+  void begin(Event::Kind kind, std::int64_t time_ns, std::string_view behavior);
+  void push() noexcept;
+
   using Bytes = Ring<std::byte, std::size_t{1} << 18U>;
   static constexpr std::size_t head_bytes = sizeof(std::uint32_t) + sizeof(std::int64_t);
 

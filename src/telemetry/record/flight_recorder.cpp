@@ -167,19 +167,22 @@ FlightRecorder::FlightRecorder(const SignalTable& signals, const FlightSettings&
     : signals_(signals),
       record_(dump_settings(record)),
       kept_ns_(std::llround(settings.kept_s * 1e9)),
-      memory_(signals.size(), settings),
-      level_signal_(signals.find("safety.level")) {}
+      memory_(signals.size(), settings) {
+  for (SignalId id = 0; id < signals.size(); ++id) {
+    const std::string& name = signals.info(id).name;
+    if (name == "safety.level" || name.ends_with(".safety.level")) levels_.push_back({id});
+  }
+}
 
 void FlightRecorder::row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
   memory_.add(tick, time_ns, row);
   last_ns_ = time_ns;
-  if (level_signal_) watch(time_ns, row[*level_signal_]);
+  for (Level& level : levels_) watch(time_ns, std::exchange(level.now, row[level.signal]), row[level.signal]);
 }
 
-void FlightRecorder::watch(std::int64_t time_ns, double level) noexcept {
+void FlightRecorder::watch(std::int64_t time_ns, double before, double level) noexcept {
   constexpr auto hold = static_cast<double>(SafetyLevel::hold);
-  const bool latches = level >= hold && level_ < hold;
-  level_ = level;
+  const bool latches = level >= hold && before < hold;
   if (!latches || !watching_ || latched_ns_) return;
   if (last_latched_ns_ && time_ns < *last_latched_ns_ + kept_ns_) return;
   latched_ns_ = last_latched_ns_ = time_ns;

@@ -81,10 +81,10 @@ class FlightMemory {
   std::vector<float> values_;                 // row by row
 };
 
-// The recorder gets every row and event that the recorder drains, also when no record is open. When safety.level rises
-// to hold or beyond, a dump becomes due `aftermath` later, so that it shows what followed. A rise within kept_s after
-// the last such rise is ignored. The caller names the file. Each step() writes a few blocks, so that the draining
-// thread is not held up; meanwhile new rows go into memory. Values are in single precision.
+// The recorder gets every row and event that the recorder drains, also when no record is open. When the safety.level
+// of a robot rises to hold or beyond, a dump becomes due `aftermath` later, so that it shows what followed. A rise
+// within kept_s after the last such rise is ignored. The caller names the file. Each step() writes a few blocks, so
+// that the draining thread is not held up; meanwhile new rows go into memory. Values are in single precision.
 //
 // Use it on the draining thread only.
 class FlightRecorder {
@@ -125,7 +125,7 @@ class FlightRecorder {
   };
 
   void keep(Happening happening);
-  void watch(std::int64_t time_ns, double level) noexcept;
+  void watch(std::int64_t time_ns, double before, double level) noexcept;
   void write_happenings(std::int64_t until_ns);
 
   const SignalTable& signals_;
@@ -133,8 +133,11 @@ class FlightRecorder {
   std::int64_t kept_ns_;
   FlightMemory memory_;
   std::deque<Happening> happenings_;
-  std::optional<SignalId> level_signal_;
-  double level_ = 0;
+  struct Level {
+    SignalId signal;
+    double now = 0;
+  };
+  std::vector<Level> levels_;  // safety.level of each robot
   bool watching_ = true;
   std::int64_t last_ns_ = 0;
   std::optional<std::int64_t> latched_ns_, last_latched_ns_;

@@ -71,6 +71,7 @@ bool RecordWriter::open(const std::string& path) {
   }
   log_ = add_json("/log", "foxglove.Log", log_schema);
   transitions_ = add_json("/transitions", "kadans.Transition", transition_schema);
+  active_ = add_json("/active", "kadans.Active", active_schema);
   faults_ = add_json("/faults", "kadans.Fault", fault_schema);
   timing_ = add_json("/timing", "kadans.Timing", timing_schema);
   parameters_channel_ = add_json("/parameters", "kadans.Parameters", parameters_schema);
@@ -78,8 +79,11 @@ bool RecordWriter::open(const std::string& path) {
 }
 
 bool RecordWriter::describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns) {
-  if (!file_.attach(name + ".urdf", "application/xml", time_ns, bytes_of(urdf))) return false;
-  const ViewerChannel viewer = robot_description_channel();
+  return file_.attach(name + ".urdf", "application/xml", time_ns, bytes_of(urdf)) && describe_other("", urdf, time_ns);
+}
+
+bool RecordWriter::describe_other(const std::string& robot, const std::string& urdf, std::int64_t time_ns) {
+  const ViewerChannel viewer = robot_description_channel(robot);
   const std::uint16_t schema = file_.add_schema(viewer.schema_name, viewer.schema_encoding, viewer.schema);
   write_robot_description(urdf, message_);
   return file_.write(file_.add_channel(viewer.topic, viewer.encoding, schema), 0, time_ns, message_.bytes());
@@ -154,15 +158,15 @@ bool RecordWriter::put_parameters(std::int64_t time_ns) {
 }
 
 bool RecordWriter::event(const Event& event) {
-  const std::uint16_t channel = event.kind == Event::Kind::transition ? transitions_ : log_;
+  const std::uint16_t channel = event.kind == Event::Kind::transition ? transitions_
+                                : event.kind == Event::Kind::active   ? active_
+                                                                      : log_;
   return file_.write(channel, 0, event.transition.time_ns, bytes_of(json_of(event)));
 }
 
 bool RecordWriter::fault(const Fault& fault, std::int64_t time_ns) {
-  const std::vector<std::string>& joints = settings_.subjects.joints;
-  const std::string joint = fault.joint < joints.size() ? joints[fault.joint] : "";
   return file_.write(faults_, static_cast<std::uint32_t>(fault.tick), time_ns,
-                     bytes_of(json_of(told(fault, joint, time_ns))));
+                     bytes_of(json_of(told(fault, settings_.subjects, time_ns))));
 }
 
 bool RecordWriter::timing(const std::string& json, std::int64_t time_ns) {

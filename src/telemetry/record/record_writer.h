@@ -49,6 +49,8 @@ class RecordWriter {
   [[nodiscard]] bool describe(const std::string& name, const TextMap& facts) { return file_.add_metadata(name, facts); }
   // After open(). Attaches the URDF and publishes it on /robot_description, where viewers look for it.
   [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns);
+  // The same for a further robot of the world, on /ROBOT/robot_description alone.
+  [[nodiscard]] bool describe_other(const std::string& robot, const std::string& urdf, std::int64_t time_ns);
   // After open(). Writes the text that remote/instance/run_description.h makes on /description.
   [[nodiscard]] bool describe_parts(const std::string& description, std::int64_t time_ns);
 
@@ -88,7 +90,7 @@ class RecordWriter {
   std::vector<std::uint16_t> viewer_channels_;
   std::uint64_t stride_ = 0;
   McapWriter file_;
-  std::uint16_t log_ = 0, transitions_ = 0, faults_ = 0, timing_ = 0, parameters_channel_ = 0;
+  std::uint16_t log_ = 0, transitions_ = 0, active_ = 0, faults_ = 0, timing_ = 0, parameters_channel_ = 0;
   std::vector<double> parameters_;  // the values that were last written
   std::vector<double> values_;      // of one message
   std::vector<std::byte> payload_;  // the encoded `values_`

@@ -36,15 +36,8 @@ class Recorder final : public RecordSink {
 
   // Replaces an existing file. False: error() says why. After close() another file may be opened.
   [[nodiscard]] bool open(const std::string& path);
-  // After open(): see RecordWriter.
-  [[nodiscard]] bool describe_run(const RunInputs& inputs) { return file_->describe_run(inputs); }
-  [[nodiscard]] bool describe(const std::string& name, const TextMap& facts) { return file_->describe(name, facts); }
-  [[nodiscard]] bool describe_robot(const std::string& name, const std::string& urdf, std::int64_t time_ns) {
-    return file_->describe_robot(name, urdf, time_ns);
-  }
-  [[nodiscard]] bool describe_parts(const std::string& description, std::int64_t time_ns) {
-    return file_->describe_parts(description, time_ns);
-  }
+  // The file, for its descriptions: after open().
+  RecordWriter& file() noexcept { return *file_; }
   // Has an effect only while a file is open.
   void timing(const std::string& json, std::int64_t time_ns);
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/json/foreign_json.h"
+#include "kadans/signal/frames.h"
 #include "signal_topics.h"
 
 namespace kadans {
@@ -99,98 +100,118 @@ ViewerChannel of_ros(const std::string& topic, const char* type, const std::stri
   return {.topic = topic, .encoding = "cdr", .schema_name = type, .schema_encoding = "ros2msg", .schema = definition};
 }
 
+// "/left" for the robot "left", "" for the first.
+std::string topics_of(const std::string& robot) { return robot.empty() ? "" : "/" + robot; }
+
 }  // namespace
 
-ViewerMessages::ViewerMessages(const SignalTable& signals, ViewerSubjects subjects) : subjects_(std::move(subjects)) {
-  if (subjects_.empty()) return;
-  find_signals(signals);
-  channels_.push_back(
-      of_ros("/joint_states", "sensor_msgs/msg/JointState", joint_state_definition + std::string(header_definition)));
-  channels_.push_back({.topic = "/tf",
-                       .encoding = "json",
-                       .schema_name = "foxglove.FrameTransforms",
-                       .schema_encoding = "jsonschema",
-                       .schema = transforms_schema});
-  for (const std::string& foot : subjects_.feet) {
-    channels_.push_back(of_ros("/wrench/" + foot, "geometry_msgs/msg/WrenchStamped",
-                               wrench_definition + std::string(header_definition)));
-  }
+ToldFault told(const Fault& fault, const ViewerSubjects& subjects, std::int64_t time_ns) {
+  const ViewerSubjects& of = fault.robot == 0 ? subjects : subjects.others.at(fault.robot - 1U);
+  return told(fault, fault.joint < of.joints.size() ? of.joints[fault.joint] : "", time_ns, of.robot);
 }
 
-void ViewerMessages::find_signals(const SignalTable& signals) {
+ViewerMessages::ViewerMessages(const SignalTable& signals, const ViewerSubjects& subjects) {
+  if (subjects.empty()) return;
+  add(signals, subjects);
+  for (const ViewerSubjects& other : subjects.others) add(signals, other);
+}
+
+void ViewerMessages::add(const SignalTable& signals, const ViewerSubjects& subjects) {
+  const std::string topics = topics_of(subjects.robot), name = subjects.robot.empty() ? "" : subjects.robot + ".";
+  const auto find = [&](const std::string& signal) { return signals.find(name + signal); };
   const auto either = [&](const char* first, const char* second) {
-    const auto found = signals.find(first);
-    return found ? found : signals.find(second);
+    const auto found = find(first);
+    return found ? found : find(second);
   };
-  for (const std::string& joint : subjects_.joints) {
-    const std::string of = "joint." + joint;
-    joints_.push_back(
-        {signals.find(of + ".position_rad"), signals.find(of + ".velocity_rad_s"), signals.find(of + ".effort_Nm")});
+  const std::size_t number = robots_.size();
+  Robot robot{.subjects = subjects, .frames = topics.empty() ? "" : subjects.robot + "/", .joints = {}, .feet = {}};
+  const auto offer = [&](Content content, ViewerChannel channel) {
+    contents_.push_back(content);
+    channels_.push_back(std::move(channel));
+  };
+  offer({Content::Kind::joint_states, number}, of_ros(topics + "/joint_states", "sensor_msgs/msg/JointState",
+                                                      joint_state_definition + std::string(header_definition)));
+  if (number == 0) {
+    offer({Content::Kind::bases}, {.topic = "/tf",
+                                   .encoding = "json",
+                                   .schema_name = "foxglove.FrameTransforms",
+                                   .schema_encoding = "jsonschema",
+                                   .schema = transforms_schema});
   }
-  for (const std::string& foot : subjects_.feet) {
+  for (const std::string& joint : subjects.joints) {
+    const std::string of = "joint." + joint;
+    robot.joints.push_back({find(of + ".position_rad"), find(of + ".velocity_rad_s"), find(of + ".effort_Nm")});
+  }
+  for (const std::string& foot : subjects.feet) {
+    offer({Content::Kind::wrench, number, robot.feet.size()},
+          of_ros(topics + "/wrench/" + foot, "geometry_msgs/msg/WrenchStamped",
+                 wrench_definition + std::string(header_definition)));
     const std::string of = "foot." + foot;
-    feet_.push_back({signals.find(of + ".force_N"), signals.find(of + ".cop_x_m"), signals.find(of + ".cop_y_m")});
+    robot.feet.push_back({find(of + ".force_N"), find(of + ".cop_x_m"), find(of + ".cop_y_m")});
   }
   // As the model knows it where there is one, else as it is estimated.
-  base_ = {.roll = signals.find("base.roll_rad"),
-           .pitch = signals.find("base.pitch_rad"),
-           .yaw = either("plant.base.yaw_rad", "base.yaw_rad"),
-           .x = signals.find("plant.base.x_m"),
-           .y = signals.find("plant.base.y_m"),
-           .z = either("plant.base.height_m", "base.height_m")};
+  robot.base = {.roll = find("base.roll_rad"),
+                .pitch = find("base.pitch_rad"),
+                .yaw = either("plant.base.yaw_rad", "base.yaw_rad"),
+                .x = find("plant.base.x_m"),
+                .y = find("plant.base.y_m"),
+                .z = either("plant.base.height_m", "base.height_m")};
+  robots_.push_back(std::move(robot));
 }
 
-void ViewerMessages::write(std::size_t channel, std::int64_t time_ns, std::span<const double> row, ByteWriter& to) {
-  to.clear();
-  if (channel == 0) return write_joint_states(time_ns, row, to);
-  if (channel == 1) return write_base(time_ns, row, to);
-  write_wrench(channel - 2, time_ns, row, to);
-}
-
-void ViewerMessages::write_joint_states(std::int64_t time_ns, std::span<const double> row, ByteWriter& to) {
+void ViewerMessages::write_joint_states(const Robot& robot, std::int64_t time_ns, std::span<const double> row,
+                                        ByteWriter& to) {
   put_header(to, time_ns, "");
   align(to, 4);
-  to.put(static_cast<std::uint32_t>(joints_.size()));
-  for (const std::string& joint : subjects_.joints) put_cdr_string(to, joint);
+  to.put(static_cast<std::uint32_t>(robot.joints.size()));
+  for (const std::string& joint : robot.subjects.joints) put_cdr_string(to, joint);
   for (const auto member : {&Joint::position, &Joint::velocity, &Joint::effort}) {
     values_.clear();
-    for (const Joint& joint : joints_) values_.push_back(value_of(row, joint.*member));
+    for (const Joint& joint : robot.joints) values_.push_back(value_of(row, joint.*member));
     put_cdr_doubles(to, values_);
   }
 }
 
-void ViewerMessages::write_base(std::int64_t time_ns, std::span<const double> row, ByteWriter& to) const {
-  const double roll = value_of(row, base_.roll) / 2, pitch = value_of(row, base_.pitch) / 2;
-  const double yaw = value_of(row, base_.yaw) / 2;
-  const double cr = std::cos(roll), sr = std::sin(roll), cp = std::cos(pitch), sp = std::sin(pitch);
-  const double cy = std::cos(yaw), sy = std::sin(yaw);
-  const Json translation{{"x", value_of(row, base_.x)}, {"y", value_of(row, base_.y)}, {"z", value_of(row, base_.z)}};
-  const Json rotation{{"x", sr * cp * cy - cr * sp * sy},
-                      {"y", cr * sp * cy + sr * cp * sy},
-                      {"z", cr * cp * sy - sr * sp * cy},
-                      {"w", cr * cp * cy + sr * sp * sy}};
-  const Json transform{{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
-                       {"parent_frame_id", "world"},
-                       {"child_frame_id", subjects_.base},
-                       {"translation", translation},
-                       {"rotation", rotation}};
-  to.put(bytes_of(json_text(Json{{"transforms", Json::array({transform})}})));
+void ViewerMessages::write_bases(std::int64_t time_ns, std::span<const double> row, ByteWriter& to) const {
+  Json transforms = Json::array();
+  for (const Robot& robot : robots_) {
+    const Base& base = robot.base;
+    const double roll = value_of(row, base.roll) / 2, pitch = value_of(row, base.pitch) / 2;
+    const double yaw = value_of(row, base.yaw) / 2;
+    const double cr = std::cos(roll), sr = std::sin(roll), cp = std::cos(pitch), sp = std::sin(pitch);
+    const double cy = std::cos(yaw), sy = std::sin(yaw);
+    const Json translation{{"x", value_of(row, base.x)}, {"y", value_of(row, base.y)}, {"z", value_of(row, base.z)}};
+    const Json rotation{{"x", sr * cp * cy - cr * sp * sy},
+                        {"y", cr * sp * cy + sr * cp * sy},
+                        {"z", cr * cp * sy - sr * sp * cy},
+                        {"w", cr * cp * cy + sr * sp * sy}};
+    transforms.push_back({{"timestamp", {{"sec", time_ns / ns_per_s}, {"nsec", time_ns % ns_per_s}}},
+                          {"parent_frame_id", "world"},
+                          {"child_frame_id", robot.frames + robot.subjects.base},
+                          {"translation", translation},
+                          {"rotation", rotation}});
+  }
+  to.put(bytes_of(json_text(Json{{"transforms", transforms}})));
 }
 
-// The force on the sole stands up in the foot's frame, at the centre of pressure.
-void ViewerMessages::write_wrench(std::size_t foot, std::int64_t time_ns, std::span<const double> row,
-                                  ByteWriter& to) const {
-  const Foot& of = feet_[foot];
+void ViewerMessages::write(std::size_t channel, std::int64_t time_ns, std::span<const double> row, ByteWriter& to) {
+  to.clear();
+  const Content& content = contents_[channel];
+  if (content.kind == Content::Kind::bases) return write_bases(time_ns, row, to);
+  const Robot& robot = robots_[content.robot];
+  if (content.kind == Content::Kind::joint_states) return write_joint_states(robot, time_ns, row, to);
+  // The force on the sole stands up in the foot's frame, at the centre of pressure.
+  const Foot& of = robot.feet[content.foot];
   const double force_N = value_of(row, of.force);
-  put_header(to, time_ns, subjects_.feet[foot]);
+  put_header(to, time_ns, robot.frames + robot.subjects.feet[content.foot]);
   align(to, 8);
   for (const double value :
        {0.0, 0.0, force_N, value_of(row, of.cop_y) * force_N, -value_of(row, of.cop_x) * force_N, 0.0})
     to.put(value);
 }
 
-ViewerChannel robot_description_channel() {
-  return of_ros("/robot_description", "std_msgs/msg/String", "string data\n");
+ViewerChannel robot_description_channel(const std::string& robot) {
+  return of_ros(topics_of(robot) + "/robot_description", "std_msgs/msg/String", "string data\n");
 }
 
 void write_robot_description(const std::string& urdf, ByteWriter& to) {

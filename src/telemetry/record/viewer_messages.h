@@ -1,6 +1,7 @@
 // Makes messages that general viewers understand without configuration from a row of signals: joint states, the
 // transform of the base (viewers compute the links from the URDF and the joints), and the wrench on each sole. A record
-// holds the same messages that the live server sends.
+// holds the same messages that the live server sends. Topics and frames of a further robot of the world begin with its
+// name: /left/joint_states, left/torso. The transforms of all robots' bases are one message.
 //
 // Call all but write() before the loop; write() is called by one thread.
 #pragma once
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "engine/tick/tick_statistics.h"
+#include "kadans/signal/fault.h"
 #include "kadans/signal/signal.h"
 #include "signal/byte_order.h"
 
@@ -21,11 +23,15 @@ namespace kadans {
 // Names as in the model and in the signal table.
 struct ViewerSubjects {
   std::vector<std::string> joints;
-  std::string base;               // link
-  std::vector<std::string> feet;  // links
+  std::string base;                         // link
+  std::vector<std::string> feet;            // links
+  std::string robot = {};                   // name of a further robot, with which its signals begin
+  std::vector<ViewerSubjects> others = {};  // the further robots
 
   bool empty() const noexcept { return joints.empty() && base.empty() && feet.empty(); }
 };
+// A fault of the first robot or, where Fault::robot says so, of a further one.
+ToldFault told(const Fault& fault, const ViewerSubjects& subjects, std::int64_t time_ns);
 
 struct ViewerChannel {
   std::string topic, encoding, schema_name, schema_encoding, schema;
@@ -33,7 +39,7 @@ struct ViewerChannel {
 
 class ViewerMessages {
  public:
-  ViewerMessages(const SignalTable& signals, ViewerSubjects subjects);
+  ViewerMessages(const SignalTable& signals, const ViewerSubjects& subjects);
 
   // Empty when there are no subjects.
   const std::vector<ViewerChannel>& channels() const noexcept { return channels_; }
@@ -51,21 +57,31 @@ class ViewerMessages {
     std::optional<SignalId> roll, pitch, yaw, x, y, z;
   };
 
-  void find_signals(const SignalTable& signals);
-  void write_joint_states(std::int64_t time_ns, std::span<const double> row, ByteWriter& to);
-  void write_base(std::int64_t time_ns, std::span<const double> row, ByteWriter& to) const;
-  void write_wrench(std::size_t foot, std::int64_t time_ns, std::span<const double> row, ByteWriter& to) const;
+  struct Robot {
+    ViewerSubjects subjects;
+    std::string frames;  // what its frames begin with
+    std::vector<Joint> joints;
+    std::vector<Foot> feet;
+    Base base;
+  };
+  struct Content {
+    enum class Kind : std::uint8_t { joint_states, bases, wrench };
+    Kind kind;
+    std::size_t robot = 0, foot = 0;
+  };
 
-  ViewerSubjects subjects_;
+  void add(const SignalTable& signals, const ViewerSubjects& subjects);
+  void write_joint_states(const Robot& robot, std::int64_t time_ns, std::span<const double> row, ByteWriter& to);
+  void write_bases(std::int64_t time_ns, std::span<const double> row, ByteWriter& to) const;
+
+  std::vector<Robot> robots_;
   std::vector<ViewerChannel> channels_;
-  std::vector<Joint> joints_;
-  std::vector<Foot> feet_;
-  Base base_;
+  std::vector<Content> contents_;  // of the channels
   std::vector<double> values_;
 };
 
-// The URDF for viewers, which is one message at the start.
-ViewerChannel robot_description_channel();
+// The URDF for viewers, which is one message at the start. `robot`: as in ViewerSubjects.
+ViewerChannel robot_description_channel(const std::string& robot);
 void write_robot_description(const std::string& urdf, ByteWriter& to);
 
 // Histograms of the durations of ticks and tasks, which viewers read on /timing.

@@ -61,6 +61,36 @@ async function check_live(page, port) {
   check(true, 'a slider changes the parameter in the runtime');
 }
 
+// The chart: whole over the page, enlarged by the wheel, and what a transition waits for.
+async function check_chart(page) {
+  await until('the title names the active state', async () => (await page.title()).startsWith('squat in '));
+  check((await page.locator('.bar .lane[data-behavior="squat"] .band').count()) > 0, 'the bar has a row for the behavior');
+  await page.click('[role=tab]:has-text("Behavior")');
+  const shown = () =>
+    page.evaluate(() => {
+      const box = document.querySelector('.chart-box').getBoundingClientRect();
+      const states = [...document.querySelectorAll('.chart .state')].map((state) => state.getBoundingClientRect());
+      return { all: states.every((r) => r.left >= box.left && r.right <= box.right && r.top >= box.top && r.bottom <= box.bottom), width: states[0].width, page: box.width / innerWidth };
+    });
+  await page.click('.chart-tools button:has-text("Wide")');
+  await page.click('.chart-tools button:has-text("All")');
+  await until('all of it is seen over the whole page', async () => ((now) => now.all && now.page > 0.9)(await shown()));
+  const { width } = await shown();
+  await page.hover('.chart-box');
+  await page.mouse.wheel(0, -600);
+  await until('the wheel enlarges it', async () => (await shown()).width > 1.3 * width);
+  await page.keyboard.press('Escape');
+  await page.click('.chart-tools button:has-text("Close")');
+  await until('it is back in its panel', async () => (await shown()).page < 0.5);
+  check(true, 'the chart fits over the page, and is enlarged');
+  const number = await page.evaluate(() => globalThis.kadans.description.behaviors[0].chart.transitions.find((transition) => transition.guard)?.number);
+  await page.locator(`.edge[data-transition="${number}"]`).focus();
+  await until('its guard is shown', () => page.evaluate(() => /function/.test(document.querySelector('.transition-card pre')?.textContent ?? '')));
+  await until('why it is not taken', () => page.evaluate(() => /the guard gives false/.test(document.querySelector('.transition-card .held')?.textContent ?? '')));
+  await page.evaluate(() => document.activeElement.blur());
+  check(true, 'a transition shows its guard and why it is not taken');
+}
+
 // Where something of the scene is on the screen, two frames from now: `found` is a predicate on three.js's objects, as
 // text. Null: nothing that is seen is it.
 const place_now = (page, found) =>
@@ -177,6 +207,7 @@ run(async () => {
   watch(page);
   await page.goto(url);
   await check_live(page, port);
+  await check_chart(page);
   await check_hand(page);
   await check_plots(page);
   await check_between(page, problems);

@@ -61,7 +61,7 @@ run(async () => {
   both.client.close();
 
   const reader = await new Viewer(plain, ['foxglove.sdk.v1']).ready();
-  for (const topic of ['/joint', '/joint_states', '/tf', '/log', '/transitions', '/faults', '/timing', '/robot_description', '/description'])
+  for (const topic of ['/joint', '/joint_states', '/tf', '/log', '/transitions', '/active', '/faults', '/timing', '/robot_description', '/description'])
     check(reader.channels.has(topic), `there is a channel ${topic}`);
   const joints = reader.subscribe('/joint_states');
   const first = (await until('joint states come', () => reader.messages.get(joints))).timestamp;

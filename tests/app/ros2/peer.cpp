@@ -93,6 +93,7 @@ class Peer {
     // The run learns of the readers in this order: who has joint states is known to have results, too.
     results_ = reader(std_msgs_msg_dds__String__desc, "rt/kadans/command_result", false);
     description_ = reader(std_msgs_msg_dds__String__desc, "rt/robot_description", true);
+    active_ = reader(std_msgs_msg_dds__String__desc, "rt/kadans/active", true);
     tf_ = reader(tf2_msgs_msg_dds__TFMessage__desc, "rt/tf", false);
     imu_ = reader(sensor_msgs_msg_dds__Imu__desc, "rt/imu", false);
     clock_ = reader(rosgraph_msgs_msg_dds__Clock__desc, "rt/clock", false);
@@ -221,6 +222,9 @@ class Peer {
       say({{"topic", "robot_description"}, {"text", m.data}});
       described_ = true;
     });
+    take<std_msgs_msg_dds__String_>(active_, [&](const auto& m) {
+      say({{"topic", "active"}, {"told", Json::parse(m.data)}});
+    });
     take<std_msgs_msg_dds__String_>(results_, [&](const auto& m) {
       const Json answer = Json::parse(m.data);
       if (!answer.contains("id")) return;  // to rubbish
@@ -230,8 +234,8 @@ class Peer {
   }
 
   std::uint32_t number_;
-  dds_entity_t participant_ = 0, waitset_ = 0, results_ = 0, description_ = 0, tf_ = 0, imu_ = 0, clock_ = 0,
-               joint_states_ = 0, commands_ = 0;
+  dds_entity_t participant_ = 0, waitset_ = 0, results_ = 0, description_ = 0, active_ = 0, tf_ = 0, imu_ = 0,
+               clock_ = 0, joint_states_ = 0, commands_ = 0;
   std::int64_t newest_ns_ = -1;
   bool described_ = false;
   Json answered_;

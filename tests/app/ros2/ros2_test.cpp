@@ -173,6 +173,10 @@ TEST_CASE("another process of DDS sees a squatting TULip as its record and Bulle
   CHECK(lifted / static_cast<double>(topics["imu"].size()) == doctest::Approx(9.81).epsilon(0.03));
   REQUIRE(topics["robot_description"].size() == 1);  // kept for who comes late
   CHECK(topics["robot_description"][0]["text"] == read(project / "models/tulip/tulip.urdf"));
+  REQUIRE(topics["active"].size() == 2);  // likewise
+  CHECK(topics["active"][0]["told"]["states"] == Json::array({"settle"}));
+  CHECK(topics["active"][1]["told"]["behavior"] == "squat");
+  CHECK(topics["active"][1]["told"]["states"] == Json::array({"squat"}));
   CHECK(topics["command_result"][0]["answer"] == Json{{"id", 1}, {"verb", "speed"}, {"done", true}, {"text", ""}});
 }
 

@@ -1,11 +1,11 @@
 // A session from a run that goes on: the Foxglove WebSocket protocol, as far as this page speaks it. Connects again when
 // the server was away.
-import { Session } from './session.js';
+import { is_robot_topic, Session } from './session.js';
 import { is_single, read_numbers } from './numbers.js';
 
 const text_of = new TextDecoder();
 const bytes_of = new TextEncoder();
-const wanted_texts = new Set(['/log', '/transitions', '/faults', '/timing', '/drives', '/description', '/robot_description']);
+const wanted_texts = new Set(['/log', '/transitions', '/active', '/faults', '/timing', '/drives', '/description']);
 const again_ms = 500;
 
 class Remote {
@@ -76,6 +76,7 @@ class Remote {
     if (session.id !== undefined && session.id !== sessionId) {
       session.topics.clear();
       session.signals.clear();
+      session.others.clear();
       session.begin_anew(0); // another run
     }
     session.id = sessionId;
@@ -93,12 +94,13 @@ class Remote {
     const subscriptions = [];
     for (const channel of channels) {
       const signals = this.metadata[`signals${channel.topic}`];
-      if (signals === undefined && !wanted_texts.has(channel.topic)) continue;
+      if (signals === undefined && !wanted_texts.has(channel.topic) && !is_robot_topic(channel.topic)) continue;
       if (signals !== undefined) this.session.add_topic(channel.topic, signals);
       const width = this.session.topics.get(channel.topic)?.width ?? 0;
       this.subscriptions.set(channel.id, { topic: channel.topic, width, single: is_single(channel.schema), numbers: signals !== undefined });
       subscriptions.push({ id: channel.id, channelId: channel.id });
     }
+    this.session.active = new Map();
     this.session.transitions.length = this.session.log.length = this.session.faults.length = 0; // the server tells them again
     this.send({ op: 'subscribe', subscriptions });
   }
@@ -124,8 +126,8 @@ class Remote {
     this.send({ op: 'setParameters', parameters: [{ name, value }] });
   }
 
-  // The answer: {done, text}.
-  command(verb, { text = '', value = 0 } = {}) {
+  // The answer: {done, text}; of `why` also its reasons.
+  command(verb, { text = '', value = 0, quiet = false } = {}) {
     if (this.socket.readyState !== WebSocket.OPEN) {
       const answer = { done: false, text: `${verb}: the run does not answer` };
       return this.end_call(0, answer), Promise.resolve(answer);
@@ -141,11 +143,11 @@ class Remote {
     frame.set(bytes_of.encode('json'), 13);
     frame.set(request, 17);
     this.socket.send(frame);
-    return new Promise((resolve) => this.calls.set(call, resolve));
+    return new Promise((resolve) => this.calls.set(call, Object.assign(resolve, { quiet })));
   }
 
   end_call(call, answer) {
-    if (!answer.done) this.say(answer.text);
+    if (!answer.done && !this.calls.get(call)?.quiet) this.say(answer.text);
     this.calls.get(call)?.(answer);
     this.calls.delete(call);
   }

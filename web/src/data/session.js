@@ -3,8 +3,11 @@
 import { Topic } from './topic.js';
 
 const events_max = 5000;
-const json_topics = new Set(['/description', '/transitions', '/log', '/faults', '/timing', '/drives', '/parameters']);
+const json_topics = new Set(['/description', '/transitions', '/active', '/log', '/faults', '/timing', '/drives', '/parameters']);
 const text_of = new TextDecoder();
+
+const robot_topic = '/robot_description'; // of a further robot: /NAME/robot_description
+export const is_robot_topic = (topic) => topic.endsWith(robot_topic);
 
 const seconds = (stamp) => stamp.sec + stamp.nsec * 1e-9;
 
@@ -23,12 +26,14 @@ export class Session {
     this.topics = new Map();
     this.signals = new Map(); // name -> {topic, column, unit, doc}
     this.transitions = [];
+    this.active = new Map(); // behavior -> [{t, states}]: the innermost active states from that time on
     this.log = [];
     this.faults = [];
     this.timing = null;
     this.drives = null; // of a live run: what they said last
     this.description = null;
     this.urdf = null;
+    this.others = new Map(); // further robots of the world: name, which begins their signals -> URDF
     this.parameters = new Map(); // name -> value now
     this.start_s = 0;
     this.end_s = 0;
@@ -85,6 +90,7 @@ export class Session {
   begin_anew(t) {
     for (const topic of this.topics.values()) topic.count = 0;
     this.transitions = [];
+    this.active = new Map();
     this.log = [];
     this.faults = [];
     this.start_s = this.end_s = this.cursor_s = t;
@@ -92,9 +98,12 @@ export class Session {
   }
 
   add_text(topic, t, bytes) {
-    if (topic === '/robot_description') {
+    if (is_robot_topic(topic)) {
       const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(4, true);
-      this.urdf = text_of.decode(bytes.subarray(8, 8 + length - 1));
+      const urdf = text_of.decode(bytes.subarray(8, 8 + length - 1));
+      const other = topic.slice(1, -robot_topic.length);
+      if (other) this.others.set(other, urdf);
+      else this.urdf = urdf;
       return this.changed();
     }
     if (!json_topics.has(topic)) return; // for other viewers
@@ -104,6 +113,9 @@ export class Session {
       for (const p of json.parameters) if (!this.parameters.has(p.name)) this.parameters.set(p.name, p.value);
     } else if (topic === '/transitions') {
       keep(this.transitions, { t: seconds(json.timestamp), ...json });
+    } else if (topic === '/active') {
+      if (!this.active.has(json.behavior)) this.active.set(json.behavior, []);
+      keep(this.active.get(json.behavior), { t: seconds(json.timestamp), states: json.states });
     } else if (topic === '/log') {
       keep(this.log, { t: seconds(json.timestamp), ...json });
     } else if (topic === '/faults') {

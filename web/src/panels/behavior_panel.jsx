@@ -1,78 +1,22 @@
 // The charts of the behaviors with the active path lit, and below them every transition of the run.
-import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
-import { active_states, time_in_state } from '../data/active_states.js';
-import { chart_layout, path_of } from '../data/chart_layout.js';
-import { clock, useSession } from '../watching.js';
+import { useEffect, useRef, useState } from 'preact/hooks';
+import { active_paths, active_since } from '../data/active_states.js';
+import { useSession } from '../watching.js';
+import { Chart } from './chart.jsx';
 
-const least_scale = 0.72;
-
-function State({ node, active }) {
-  const [x, y] = [node.x - node.width / 2, node.y - node.height / 2];
-  if (node.start) return <circle class="dot" cx={node.x} cy={node.y} r="4" />;
-  const kind = `${node.cluster ? 'cluster' : 'state'}${node.any ? ' any' : ''}${active ? ' active' : ''}`;
-  return (
-    <g class={kind} data-state={node.label}>
-      <rect x={x} y={y} width={node.width} height={node.height} rx={node.cluster ? 10 : 8} />
-      <text x={node.x} y={node.cluster ? y + 14 : node.y + 4}>{node.label}</text>
-    </g>
-  );
-}
-
-function Edge({ edge, lit }) {
-  return (
-    <g class={lit ? 'edge lit' : 'edge'}>
-      <path d={path_of(edge.points)} marker-end={lit ? 'url(#tip-lit)' : 'url(#tip)'} />
-      {edge.label && <text x={edge.x} y={edge.y + 3}>{edge.label}<title>{edge.transition?.label}</title></text>}
-    </g>
-  );
-}
-
-const Tip = ({ id }) => (
-  <marker id={id} viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto-start-reverse"><path d="M0,0.6 L7.4,4 L0,7.4 z" /></marker>
-);
-
-function Chart({ session, behavior }) {
-  const drawing = useMemo(() => chart_layout(behavior.chart), [behavior]);
-  const t = session.cursor_s;
-  const active = active_states(session, behavior, t);
-  const last = session.last_transitions(t).get(behavior.name);
-  const { states } = behavior.chart;
-  const lit = (edge) => last && edge.transition && states[edge.transition.target].path === last.to && (edge.transition.source === 0 || states[edge.transition.source].path === last.from);
-  const clusters_first = [...drawing.nodes].sort((a, b) => Number(Boolean(b.cluster)) - Number(Boolean(a.cluster)));
-  return (
-    <svg class="chart" viewBox={`0 0 ${drawing.width} ${drawing.height}`} style={{ maxWidth: `${drawing.width * 1.15}px`, minWidth: `${drawing.width * least_scale}px` }} role="img" aria-label={`States of ${behavior.name}`}>
-      <defs><Tip id="tip" /><Tip id="tip-lit" /></defs>
-      {clusters_first.filter((node) => node.cluster).map((node) => <State key={node.id} node={node} active={active.has(node.id)} />)}
-      {drawing.edges.map((edge) => <Edge key={edge.key} edge={edge} lit={lit(edge)} />)}
-      {clusters_first.filter((node) => !node.cluster).map((node) => <State key={node.id} node={node} active={active.has(node.id)} />)}
-    </svg>
-  );
-}
-
+// The paths of all active states, a line each.
 function Now({ session, behavior }) {
-  const active = active_states(session, behavior, session.cursor_s);
-  const innermost = Math.max(-1, ...active);
-  const path = innermost >= 0 ? behavior.chart.states[innermost].path : '';
+  const paths = active_paths(session, behavior, session.cursor_s);
+  const for_s = (path) => (session.cursor_s - active_since(session, behavior, path, session.cursor_s)).toFixed(1);
   return (
-    <p class="now-state">
+    <div class="now-state">
       <b>{behavior.name}</b>
-      <span class="path">{path || 'not begun'}</span>
-      {path && <time title="Time in this state">for {time_in_state(session, behavior, session.cursor_s).toFixed(1)} s</time>}
-    </p>
+      <ul>
+        {paths.map((path) => <li key={path}><span class="path" title={path}>{path}</span><time title="Time in this state">for {for_s(path)} s</time></li>)}
+        {paths.length === 0 && <li class="muted">{session.last_transitions().has(behavior.name) ? 'over' : 'not begun'}</li>}
+      </ul>
+    </div>
   );
-}
-
-// Never smaller than can be read: a chart that is larger than its place scrolls, and the active state stays in sight.
-function ChartBox({ session, behavior }) {
-  const box = useRef();
-  const active = session.transitions.findLast((entry) => entry.behavior === behavior.name && entry.t <= session.cursor_s)?.to;
-  useEffect(() => {
-    const outer = box.current?.getBoundingClientRect();
-    const state = box.current?.querySelector('.state.active')?.getBoundingClientRect();
-    if (!state || (outer.width >= box.current.scrollWidth && outer.height >= box.current.scrollHeight)) return;
-    box.current.scrollBy({ left: state.x + state.width / 2 - outer.x - outer.width / 2, top: state.y + state.height / 2 - outer.y - outer.height / 2 });
-  }, [active, behavior]);
-  return <div class="chart-box" ref={box} tabIndex={0} aria-label="Chart"><Chart {...{ session, behavior }} /></div>;
 }
 
 export function TransitionLog({ session }) {
@@ -115,7 +59,7 @@ export function BehaviorPanel({ session }) {
           {behaviors.map((other, i) => <button key={i} aria-pressed={i === chosen} onClick={() => choose(i)}>{other.name}</button>)}
         </nav>
       )}
-      {behavior ? <><Now {...{ session, behavior }} /><ChartBox {...{ session, behavior }} /></> : <p class="hint">{session.description ? 'No behavior plays.' : 'No chart yet.'}</p>}
+      {behavior ? <><Now {...{ session, behavior }} /><Chart {...{ session, behavior }} /></> : <p class="hint">{session.description ? 'No behavior plays.' : 'No chart yet.'}</p>}
       <h3>Transitions</h3>
       <TransitionLog session={session} />
     </div>

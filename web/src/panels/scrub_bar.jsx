@@ -1,24 +1,30 @@
-// Time: play, step, speed, and a bar over the whole run whose bands are the states of its behaviors.
-import { useLayoutEffect, useRef } from 'preact/hooks';
+// Time: play, step, speed, and a bar over the whole run: a row a behavior, in it a lane a region, with bands for states.
+import { useLayoutEffect, useMemo, useRef } from 'preact/hooks';
+import { timeline } from '../data/timeline.js';
 import { clock, useSession, useShown } from '../watching.js';
 
+const lanes_shown = 8; // the bar scrolls
 const speeds = [0.1, 0.25, 0.5, 1, 2, 5];
 
-function bands_of(session) {
-  const bands = [];
-  for (const behavior of new Set(session.transitions.map((entry) => entry.behavior))) {
-    const own = session.transitions.filter((entry) => entry.behavior === behavior);
-    const states = [...new Set(own.flatMap((entry) => [entry.from, entry.to]))];
-    let from = session.start_s;
-    let state = own[0].from;
-    for (const entry of [...own, { t: session.end_s, to: '' }]) {
-      bands.push({ from, to: entry.t, state, tone: states.indexOf(state) % 6 });
-      [from, state] = [entry.t, entry.to];
-    }
-    break; // the first behavior's; the others stand in the log
-  }
-  return bands;
+// Its colors go by the names of its states, in the order in which they come.
+function Lane({ behavior, region, bands, share, end_s, named }) {
+  const states = [...new Set(bands.map((band) => band.state))];
+  const name = [behavior, region].filter(Boolean).join(' ');
+  return (
+    <div class="lane" data-behavior={behavior} data-region={region}>
+      {bands.map((band, i) => (
+        <div key={i} class={`band tone${states.indexOf(band.state) % 6}`} style={{ left: share(band.from), width: `calc(${share(band.to ?? end_s)} - ${share(band.from)})` }} title={`${name}: ${band.state}`}>
+          <span>{named && region === '' && <b>{behavior} </b>}{band.state}</span>
+        </div>
+      ))}
+    </div>
+  );
 }
+
+const bar_height = (rows) => {
+  const lanes = rows.reduce((sum, row) => sum + row.lanes.length, 0);
+  return `${lanes < 2 ? 26 : 2 + 16 * Math.min(lanes, lanes_shown)}px`;
+};
 
 export function ScrubBar({ session, frames }) {
   useSession(session, 8);
@@ -34,6 +40,7 @@ export function ScrubBar({ session, frames }) {
       }),
     [],
   );
+  const rows = useMemo(() => timeline(session), [session, session.version]);
   const span = session.end_s - session.start_s || 1;
   const share = (t) => `${(100 * (Math.max(t, session.start_s) - session.start_s)) / span}%`;
   // By the time that there is now: what was drawn last may be older.
@@ -55,12 +62,8 @@ export function ScrubBar({ session, frames }) {
           {speeds.map((speed) => <option key={speed} value={speed}>{speed}×</option>)}
         </select>
       )}
-      <div class="bar" ref={bar} role="slider" tabIndex={0} aria-label="Time" aria-valuemin={session.start_s} aria-valuemax={session.end_s} aria-valuenow={session.cursor_s} onPointerDown={seek} onPointerMove={seek}>
-        {bands_of(session).map((band, i) => (
-          <div key={i} class={`band tone${band.tone}`} style={{ left: share(band.from), width: `calc(${share(band.to)} - ${share(band.from)})` }} title={band.state}>
-            <span>{band.state}</span>
-          </div>
-        ))}
+      <div class="bar" ref={bar} style={{ height: bar_height(rows) }} role="slider" tabIndex={0} aria-label="Time" aria-valuemin={session.start_s} aria-valuemax={session.end_s} aria-valuenow={session.cursor_s} onPointerDown={seek} onPointerMove={seek}>
+        {rows.map(({ behavior, lanes }) => lanes.map((lane) => <Lane key={`${behavior} ${lane.region}`} {...{ behavior, share }} {...lane} end_s={session.end_s} named={rows.length > 1} />))}
         <div class="head" ref={head} />
         {session.loading > 0 && <div class="loading" style={{ width: `${100 * session.loading}%` }} />}
       </div>

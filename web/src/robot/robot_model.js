@@ -19,8 +19,9 @@ function masses_of(robot) {
 }
 
 export class RobotModel {
-  // `mesh_base`: where package:// leads to. Not `fine`: without gloss.
-  constructor(urdf, mesh_base, fine) {
+  // `mesh_base`: where package:// leads to. Not `fine`: without gloss. `prefix`: with which the robot's signals begin.
+  constructor(urdf, mesh_base, fine, prefix = '') {
+    this.prefix = prefix;
     const loader = new URDFLoader();
     loader.packages = (name) => `${mesh_base}${name}`;
     this.robot = loader.parse(urdf);
@@ -57,14 +58,15 @@ export class RobotModel {
   }
 
   pose(session, t) {
+    const value_of = (name) => session.value(this.prefix + name, t);
     for (const joint of this.joints) {
-      const position = session.value(`joint.${joint.name}.position_rad`, t);
+      const position = value_of(`joint.${joint.name}.position_rad`);
       if (Number.isFinite(position)) joint.setJointValue(position);
     }
     const or = (first, second, last) => {
-      const value = session.value(first, t);
+      const value = value_of(first);
       if (Number.isFinite(value)) return value;
-      const other = second ? session.value(second, t) : NaN;
+      const other = second ? value_of(second) : NaN;
       return Number.isFinite(other) ? other : last;
     };
     this.root.position.set(

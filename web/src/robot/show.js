@@ -1,4 +1,5 @@
-// What stands on the stage for a session: the robot, what bears it, where it looks. Made when its URDF is there.
+// What stands on the stage for a session: the robot, what bears it, where it looks, and the further robots of its world.
+// Made when its URDF is there.
 import { Vector3 } from 'three';
 import { BalanceMarks } from './balance_marks.js';
 import { GazeMark } from './gaze_mark.js';
@@ -14,17 +15,24 @@ export class Show {
   // Of a description only what is drawn: behaviors come and go in it.
   take(session) {
     const key = JSON.stringify([session.description?.robot, session.description?.objects]);
-    if (this.session === session && this.urdf === session.urdf && (this.description === session.description || this.key === key)) return;
+    const same = this.session === session && this.urdf === session.urdf && this.others?.length === session.others.size;
+    if (same && (this.description === session.description || this.key === key)) return;
     this.clear();
     const same_robot = this.session === session && this.urdf === session.urdf;
     Object.assign(this, { session, urdf: session.urdf, description: session.description, key });
     if (!session.urdf) return;
-    this.model = new RobotModel(session.urdf, session.mesh_base ?? './assets/', this.stage.fine);
+    const mesh_base = session.mesh_base ?? './assets/';
+    this.model = new RobotModel(session.urdf, mesh_base, this.stage.fine);
+    this.others = [...session.others].map(([name, urdf]) => new RobotModel(urdf, mesh_base, this.stage.fine, `${name}.`));
     this.marks = new BalanceMarks(session.description?.robot?.feet ?? []);
     this.gazes = (session.description?.objects ?? []).filter((object) => object.type === 'gaze').map((object) => new GazeMark(this.stage, object, this.model, () => this.sender()));
     this.marks.root.visible = this.stage.fine;
-    this.stage.scene.add(this.model.root, this.marks.root, ...this.gazes.map((gaze) => gaze.root));
+    this.stage.scene.add(...this.roots());
     this.framed = same_robot && this.framed;
+  }
+
+  roots() {
+    return [this.model.root, this.marks.root, ...[...this.gazes, ...this.others].map((part) => part.root)];
   }
 
   // Once it is known how large the robot is and where it is.
@@ -34,6 +42,14 @@ export class Show {
     const base = this.model.root.position;
     const { center, radius } = this.model.bounds();
     this.marks.com_ball.scale.setScalar(Math.min(1, radius / 0.6));
+    if (this.others.length > 0) {
+      const all = this.model.bounds();
+      for (const other of this.others) {
+        other.pose(this.session, this.session.cursor_s);
+        all.union(other.bounds());
+      }
+      return this.stage.frame(all.center, all.radius, base);
+    }
     if (this.gazes.length > 0) return this.stage.frame(center.setX(center.x + 0.4), Math.max(radius, 0.62), base, beside);
     const { radius: tall } = this.model;
     if (this.marks.feet.length > 0) return this.stage.frame(center.set(base.x, base.y, 0.86 * tall), 1.14 * tall, base); // as if it stood
@@ -42,7 +58,7 @@ export class Show {
 
   clear() {
     if (!this.model) return;
-    this.stage.scene.remove(this.model.root, this.marks.root, ...this.gazes.map((gaze) => gaze.root));
+    this.stage.scene.remove(...this.roots());
     for (const gaze of this.gazes) gaze.dispose();
     this.model = null;
   }
@@ -57,6 +73,7 @@ export class Show {
     if (this.model) {
       if (!this.framed) this.frame();
       this.marks.update(this.session, t, this.model, shown);
+      for (const other of this.others) other.pose(this.session, t);
       for (const gaze of this.gazes) gaze.update(this.session, t);
       this.stage.follow(this.model.root.position);
     }

@@ -1,6 +1,6 @@
 #include "rolling_rows.h"
 
-#include "plant/bullet/joint/coordinate_row.h"
+#include "plant/bullet/joint/joint_rows.h"
 
 namespace kadans::bullet {
 

@@ -32,6 +32,12 @@ inline constexpr double limit_erp = 0.05;
 
 struct TorqueLaw;  // drive.h
 
+// A row of Bullet's stock solver about one coordinate of one body, without its law. The coordinate counts 0..5 for the
+// base, then the joints. `link`: the link that it belongs to, -1 for the base. `response`: the change of the
+// coordinate's velocity by a unit impulse along it.
+btMultiBodySolverConstraint coordinate_row(btMultiBody& body, int link, const Coordinate& coordinate,
+                                           btMultiBodyJacobianData& data, double& response);
+
 class JointRows final : public btMultiBodyConstraint {
  public:
   enum Kind : std::uint8_t { linear, servo, friction, limit };

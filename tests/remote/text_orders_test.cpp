@@ -1,5 +1,5 @@
 // Orders as texts that come from anybody, and their answers.
-#include "remote/ros2/text_commands.h"
+#include "remote/ros2/text_orders.h"
 
 #include <string>
 
@@ -15,7 +15,7 @@ namespace {
 struct Desk {
   LiveInstance live;
   LivePace pace;
-  TextCommands commands;
+  TextOrders commands;
 
   explicit Desk(bool allowed = true)
       : commands({.instance = live.instance,

@@ -1,4 +1,4 @@
-// The request of a run on the command line, beside its scenario. It is kept in the record, so that the run can be
+// What was chosen for a run on the command line, beside its scenario. It is kept in the record, so that the run can be
 // repeated.
 #pragma once
 
@@ -22,7 +22,7 @@ struct RunBranch {
   bool empty() const noexcept { return set.empty() && play.empty() && push.empty(); }
 };
 
-struct RunRequest {
+struct RunChoices {
   std::string scenario;
   std::optional<std::uint64_t> seed;
   std::optional<double> duration_s;
@@ -39,18 +39,18 @@ NumberEntry parse_setting(const std::string& text, const std::string& option = "
 // Reads "torso=0,2,0" as a push at at_s. Throws InputError.
 ScenarioPush parse_push(const std::string& text, double at_s);
 
-// Reads the scenario and applies the request to it. Throws InputError.
-ScenarioConfig read_scenario(const RunRequest& request);
+// Reads the scenario and applies the choices to it. Throws InputError.
+ScenarioConfig read_scenario(const RunChoices& choices);
 
-// The command that makes the same request with this seed.
-std::string repeat_command(const RunRequest& request, std::uint64_t seed);
+// The command that makes the same choices with this seed.
+std::string repeat_command(const RunChoices& choices, std::uint64_t seed);
 
-// Writes a request and a branch as facts of a record, without the scenario's file. request_of and branch_of read them
+// Writes choices and a branch as facts of a record, without the scenario's file. choices_of and branch_of read them
 // back.
-void put_facts(const RunRequest& request, TextMap& facts);
+void put_facts(const RunChoices& choices, TextMap& facts);
 void put_facts(const RunBranch& branch, TextMap& facts);
-// request_of throws InputError that names the record when a fact is damaged.
-RunRequest request_of(const TextMap& facts, const std::string& record);
+// choices_of throws InputError that names the record when a fact is damaged.
+RunChoices choices_of(const TextMap& facts, const std::string& record);
 RunBranch branch_of(const TextMap& facts);
 
 }  // namespace kadans

@@ -24,7 +24,7 @@ namespace kadans {
 
 struct OrderRequest;
 
-class TextCommands {
+class TextOrders {
  public:
   static constexpr std::size_t text_max_bytes = 16 * 1024;
   static constexpr std::int64_t patience_ns = 10'000'000'000;  // then an order that was not taken up is withdrawn
@@ -37,7 +37,7 @@ class TextCommands {
     std::string refusal;  // when not allowed: says how to allow it
     std::string who;      // for the log
   };
-  explicit TextCommands(Parts parts) : p_(std::move(parts)) {}
+  explicit TextOrders(Parts parts) : p_(std::move(parts)) {}
 
   // Takes an order. Returns the answer when there is one at once.
   [[nodiscard]] std::optional<std::string> take(std::string_view json);

@@ -1,4 +1,4 @@
-#include "text_commands.h"
+#include "text_orders.h"
 
 #include <exception>
 
@@ -30,7 +30,7 @@ std::string id_of(const Json& json) {
 
 }  // namespace
 
-std::optional<std::string> TextCommands::take(std::string_view text) {
+std::optional<std::string> TextOrders::take(std::string_view text) {
   if (text.size() > text_max_bytes)
     return answer_text("", "", false, "an order may have " + std::to_string(text_max_bytes) + " bytes");
   Asked asked;
@@ -48,7 +48,7 @@ std::optional<std::string> TextCommands::take(std::string_view text) {
   }
 }
 
-std::optional<std::string> TextCommands::obey(Asked& asked, const OrderRequest& request) {
+std::optional<std::string> TextOrders::obey(Asked& asked, const OrderRequest& request) {
   if (!request.info->kind) {
     if (request.is("estop")) p_.instance.stop_now(p_.who);
     if (!request.is("estop")) p_.pace->obey(request);
@@ -63,7 +63,7 @@ std::optional<std::string> TextCommands::obey(Asked& asked, const OrderRequest& 
   return std::nullopt;
 }
 
-std::optional<std::string> TextCommands::next() {
+std::optional<std::string> TextOrders::next() {
   const std::int64_t now_ns = waiting_.empty() ? 0 : clock_.now_ns();
   for (const auto& [number, asked] : waiting_) {
     if (now_ns > asked.asked_ns + patience_ns) p_.port.withdraw(number);
@@ -81,7 +81,7 @@ std::optional<std::string> TextCommands::next() {
   return std::nullopt;
 }
 
-void TextCommands::save(const std::string& preset, const Answer& answer, bool& done, std::string& text) {
+void TextOrders::save(const std::string& preset, const Answer& answer, bool& done, std::string& text) {
   try {
     const auto overridden = save_changes(p_.instance, p_.port, answer, p_.who, preset);
     text = p_.instance.configuration().told(answer.changes.size(), overridden);

@@ -1,4 +1,4 @@
-#include "run_request.h"
+#include "run_choices.h"
 
 #include <cmath>
 #include <sstream>
@@ -64,27 +64,27 @@ ScenarioPush parse_push(const std::string& text, double at_s) {
   return push;
 }
 
-ScenarioConfig read_scenario(const RunRequest& request) {
-  ScenarioConfig scenario = read_scenario_config(request.scenario);
-  scenario.plugins = request.plugins;
-  if (!request.play.empty()) scenario.behaviors = read_play_items(request.play, "--play", folders_of(scenario));
-  for (const std::string& setting : request.set) scenario.set_last.push_back(parse_setting(setting));
+ScenarioConfig read_scenario(const RunChoices& choices) {
+  ScenarioConfig scenario = read_scenario_config(choices.scenario);
+  scenario.plugins = choices.plugins;
+  if (!choices.play.empty()) scenario.behaviors = read_play_items(choices.play, "--play", folders_of(scenario));
+  for (const std::string& setting : choices.set) scenario.set_last.push_back(parse_setting(setting));
   return scenario;
 }
 
-std::string repeat_command(const RunRequest& request, std::uint64_t seed) {
-  std::string command = "kadans sim " + shell_word(request.scenario) + " --seed " + std::to_string(seed);
-  if (!request.play.empty()) command += " --play " + shell_quoted(request.play);
-  for (const std::string& setting : request.set) command += " --set " + shell_quoted(setting);
-  if (request.duration_s) command += " --duration " + number_text(*request.duration_s);
+std::string repeat_command(const RunChoices& choices, std::uint64_t seed) {
+  std::string command = "kadans sim " + shell_word(choices.scenario) + " --seed " + std::to_string(seed);
+  if (!choices.play.empty()) command += " --play " + shell_quoted(choices.play);
+  for (const std::string& setting : choices.set) command += " --set " + shell_quoted(setting);
+  if (choices.duration_s) command += " --duration " + number_text(*choices.duration_s);
   return command;
 }
 
-void put_facts(const RunRequest& request, TextMap& facts) {
-  if (request.seed) facts["seed"] = std::to_string(*request.seed);
-  if (request.duration_s) facts["duration_s"] = exact_text(*request.duration_s);
-  if (!request.play.empty()) facts["play"] = request.play;
-  if (!request.set.empty()) facts["set"] = joined(request.set);
+void put_facts(const RunChoices& choices, TextMap& facts) {
+  if (choices.seed) facts["seed"] = std::to_string(*choices.seed);
+  if (choices.duration_s) facts["duration_s"] = exact_text(*choices.duration_s);
+  if (!choices.play.empty()) facts["play"] = choices.play;
+  if (!choices.set.empty()) facts["set"] = joined(choices.set);
 }
 
 void put_facts(const RunBranch& branch, TextMap& facts) {
@@ -94,16 +94,16 @@ void put_facts(const RunBranch& branch, TextMap& facts) {
   if (!branch.push.empty()) facts["branch_push"] = joined(branch.push);
 }
 
-RunRequest request_of(const TextMap& facts, const std::string& record) {
-  RunRequest request;
-  request.seed = number_of<std::uint64_t>(fact(facts, "seed"));
-  request.duration_s = number_of<double>(fact(facts, "duration_s"));
-  if (!request.seed || !request.duration_s ||
-      !(*request.duration_s > 0 && *request.duration_s <= scenario_duration_max_s))
+RunChoices choices_of(const TextMap& facts, const std::string& record) {
+  RunChoices choices;
+  choices.seed = number_of<std::uint64_t>(fact(facts, "seed"));
+  choices.duration_s = number_of<double>(fact(facts, "duration_s"));
+  if (!choices.seed || !choices.duration_s ||
+      !(*choices.duration_s > 0 && *choices.duration_s <= scenario_duration_max_s))
     throw InputError({.file = record, .message = "does not say with which seed and for how long it was recorded"});
-  request.play = fact(facts, "play");
-  request.set = split(fact(facts, "set"));
-  return request;
+  choices.play = fact(facts, "play");
+  choices.set = split(fact(facts, "set"));
+  return choices;
 }
 
 RunBranch branch_of(const TextMap& facts) {

@@ -1,0 +1,130 @@
+#include "skill_reference.h"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include <lua.hpp>
+
+#include "kadans/signal/input_error.h"
+#include "script/chart/chart_skills.h"
+#include "script/lua/lua_core.h"
+#include "script/lua/lua_state.h"
+#include "signal/number_text.h"
+
+namespace kadans {
+namespace {
+
+struct SkillReading {
+  LuaState& lua;
+  std::filesystem::path file;
+  std::map<std::string, std::string> skills{};  // by field: as Markdown
+};
+
+std::string text_of_field(lua_State* state, int table, const char* key) {
+  lua_getfield(state, table, key);
+  const std::string text = lua_type(state, -1) == LUA_TSTRING ? lua_tostring(state, -1) : "";
+  lua_pop(state, 1);
+  return text;
+}
+
+// The default of a declaration.
+std::string default_text(lua_State* state, int declared) {
+  lua_rawgeti(state, declared, 1);
+  std::string text = "a table";
+  if (lua_type(state, -1) == LUA_TNUMBER) text = number_text(lua_tonumber(state, -1));
+  if (lua_type(state, -1) == LUA_TBOOLEAN) text = lua_toboolean(state, -1) != 0 ? "true" : "false";
+  if (lua_type(state, -1) == LUA_TSTRING) text = "\"" + std::string(lua_tostring(state, -1)) + "\"";
+  lua_pop(state, 1);
+  return text;
+}
+
+std::string number_of_field(lua_State* state, int declared, const char* key) {
+  lua_getfield(state, declared, key);
+  const std::string text = lua_type(state, -1) == LUA_TNUMBER ? number_text(lua_tonumber(state, -1)) : "";
+  lua_pop(state, 1);
+  return text;
+}
+
+// "0.1..10 s", "\"left\", \"right\"".
+std::string allowed_text(lua_State* state, int declared) {
+  const std::string min = number_of_field(state, declared, "min"), max = number_of_field(state, declared, "max");
+  const std::string unit = text_of_field(state, declared, "unit");
+  std::string text = min.empty() && max.empty() ? unit : min + ".." + max + (unit.empty() ? "" : " " + unit);
+  lua_getfield(state, declared, "one_of");
+  const int choices = lua_gettop(state);
+  const auto count = lua_istable(state, choices) ? static_cast<int>(lua_objlen(state, choices)) : 0;
+  for (int i = 1; i <= count; ++i) {
+    lua_rawgeti(state, choices, i);
+    text += (text.empty() ? "\"" : ", \"") + std::string(lua_tostring(state, -1)) + "\"";
+    lua_pop(state, 1);
+  }
+  lua_pop(state, 1);
+  return text;
+}
+
+// Of the skill whose table is at `skill`.
+std::string skill_text(lua_State* state, int skill) {
+  std::string text = text_of_field(state, skill, "doc") + ".\n";
+  lua_getfield(state, skill, "args");
+  const int declared = lua_gettop(state);
+  std::map<std::string, std::string> rows;
+  for (lua_pushnil(state); lua_next(state, declared) != 0; lua_pop(state, 1)) {
+    const int one = lua_gettop(state);
+    rows[lua_tostring(state, one - 1)] =
+        default_text(state, one) + " | " + allowed_text(state, one) + " | " + text_of_field(state, one, "doc");
+  }
+  lua_pop(state, 1);
+  if (!rows.empty()) text += "\n| argument | default | allowed | |\n|---|---|---|---|\n";
+  for (const auto& [name, row] : rows) text += "| `" + name + "` | " + row + " |\n";
+  return text;
+}
+
+// Nothing here raises but the module, before a string is made.
+int read_skills(lua_State* state) {
+  auto& reading = *static_cast<SkillReading*>(lua_touserdata(state, 1));
+  if (!reading.lua.load_file(state, reading.file)) return lua_error(state);
+  lua_call(state, 0, 1);
+  const int module = lua_gettop(state);
+  luaL_checkstack(state, 16, "skills");
+  if (!lua_istable(state, module)) return 0;
+  for (lua_pushnil(state); lua_next(state, module) != 0; lua_settop(state, module + 1)) {
+    if (lua_type(state, module + 1) != LUA_TSTRING || !push_skill(state, module + 2)) continue;
+    reading.skills[lua_tostring(state, module + 1)] = skill_text(state, lua_gettop(state));
+  }
+  return 0;
+}
+
+std::string module_reference(const std::filesystem::path& root, const std::filesystem::path& file) {
+  LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string()});
+  SkillReading reading{lua, file};
+  if (!lua.call(read_skills, &reading, lua.settings().limits.load_instructions, 0)) {
+    const ScriptError& error = lua.error();
+    throw InputError({error.file.data(), error.line, 0, error.message.data()});
+  }
+  const std::string module = file.stem().string();
+  std::string text;
+  for (const auto& [field, skill] : reading.skills) {
+    text += "\n### `" + module + "." + field + "`\n\n" + skill;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string skill_reference(const std::filesystem::path& root) {
+  const std::filesystem::path folder = root / "behaviors/lib";
+  std::error_code none;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(".lua") && !name.ends_with("_test.lua")) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  std::string text;
+  for (const std::filesystem::path& file : files) text += module_reference(root, file);
+  if (text.empty()) return "";
+  return "\n## Skills of behaviors/lib: `MODULE.SKILL \"state\" { argument = value, transitions }`\n" + text;
+}
+
+}  // namespace kadans

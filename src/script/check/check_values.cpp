@@ -1,0 +1,324 @@
+#include "check_values.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+#include "hint.h"
+#include "script/bindings/api.h"
+#include "script/bindings/bindings.h"
+#include "script/motion/motion_options.h"
+
+namespace kadans {
+namespace {
+
+using TokenKind = SourceToken::Kind;
+using Tokens = std::vector<SourceToken>;
+
+bool compares(const SourceToken& token) { return token.is_any({"==", "~=", "<", ">", "<=", ">="}); }
+bool calculates(const SourceToken& token) { return token.is_any({"+", "-", "*", "/", "%", "^"}); }
+// Whether the token makes another value of what stands beside it.
+bool changes(const SourceToken& token) { return calculates(token) || token.is_any({"..", "#", "not"}); }
+bool goes_on(const SourceToken& token) { return changes(token) || token.is_any({".", ":", "[", "("}); }
+
+const SourceToken& before(const Tokens& tokens, std::size_t at, std::size_t steps = 1) {
+  static const SourceToken none;
+  return at >= steps ? tokens[at - steps] : none;
+}
+
+bool is_truth(const SourceToken& token) { return token.is("true") || token.is("false"); }
+bool is_literal(const SourceToken& token) {
+  return token.kind == TokenKind::text || token.kind == TokenKind::number || is_truth(token);
+}
+
+// Lua takes "1" for 1 where it calculates.
+bool is_numeral(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  (void)value;
+  return end != text.c_str() && std::string_view(end).find_first_not_of(' ') == std::string_view::npos;
+}
+
+std::string written(const Tokens& tokens, std::size_t from, std::size_t to) {
+  std::string text;
+  for (std::size_t i = from; i < to; ++i) text += tokens[i].text;
+  return text;
+}
+
+std::string listed(const std::vector<std::string>& texts) {
+  std::string all;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    all += (i == 0 ? "" : i + 1 == texts.size() ? " or " : ", ") + texts[i];
+  return all;
+}
+
+// The texts of a field whose type is written as 'moving'|'done'.
+std::vector<std::string> texts_in_api(std::string_view owner, std::string_view name) {
+  std::vector<std::string> texts;
+  for (const ApiEntry& entry : script_api()) {
+    if (owner != entry.owner || name != entry.name) continue;
+    std::string_view type = entry.type;
+    while (type.starts_with('\'')) {
+      const std::size_t end = type.find('\'', 1);
+      texts.emplace_back(type.substr(1, end - 1));
+      type.remove_prefix(std::min(end + 2, type.size()));
+    }
+  }
+  return texts;
+}
+
+// The function of a motion or of m whose first argument is what stands before the colon.
+bool without_colon(const SourceUse& use, const Tokens& tokens) {
+  return use.arguments != 0 && use.method.empty() &&
+         !(tokens[use.arguments - 1].is("(") && tokens[use.arguments].kind == TokenKind::name);
+}
+
+}  // namespace
+
+ValueCheck::ValueCheck(const Behavior::Parts& parts, const KnownNames& known)
+    : parts_(parts), known_(known), fields_(status_fields(parts.catalog.sensors)) {}
+
+ValueCheck::Type ValueCheck::field_of(StatusField::Part part, const std::string& name) const {
+  for (const StatusField& field : fields_) {
+    if (field.part != part || field.name != name) continue;
+    if (field.type == StatusField::Type::number) return {Kind::number, {}};
+    if (field.type == StatusField::Type::flag) return {Kind::flag, {}};
+    Type type{Kind::choice, {}};
+    for (std::size_t i = 0; i < field.choices; ++i) type.texts.emplace_back(field.choice(i));
+    return type;
+  }
+  return {};
+}
+
+ValueCheck::Type ValueCheck::type_of(const SourceMeaning& meaning) const {
+  using Part = StatusField::Part;
+  const auto& path = meaning.path;
+  if (meaning.role == SourceRole::motion && path.size() == 1) {
+    if (path[0] == "done") return {Kind::flag, {}};
+    if (path[0] == "outcome") return {Kind::choice, texts_in_api("motion", "outcome")};
+  }
+  if (meaning.role == SourceRole::machine && path == std::vector<std::string>{"time_s"}) return {Kind::number, {}};
+  if (meaning.role != SourceRole::snapshot || path.empty()) return {};
+  if (path.size() == 1 && (path[0] == "joints" || path[0] == "feet")) return {Kind::by_name, {}};
+  if (path.size() == 1) return field_of(Part::root, path[0]);
+  if (path.size() == 3 && path[0] == "joints") return field_of(Part::joint, path[2]);
+  if (path.size() == 3 && path[0] == "feet") return field_of(Part::foot, path[2]);
+  if (path.size() == 3 && path[0] == "base") return field_of(Part::rate, path[2]);
+  constexpr std::pair<const char*, Part> parts[] = {{"base", Part::base},
+                                                    {"support", Part::support},
+                                                    {"safety", Part::safety},
+                                                    {"joystick", Part::joystick},
+                                                    {"sensors", Part::sensors}};
+  for (const auto& [name, part] : parts) {
+    if (path.size() == 2 && path[0] == name) return field_of(part, path[1]);
+  }
+  return {};
+}
+
+// Compared with the literal at `value`; "" when that may be right.
+std::string ValueCheck::compared(const SourceUse& use, const Type& type, const Tokens& tokens, std::size_t value,
+                                 const SourceToken& sign) const {
+  const SourceToken& other = tokens[value];
+  const std::string name = written(tokens, use.at, use.next);
+  const bool text = other.kind == TokenKind::text, number = other.kind == TokenKind::number;
+  const std::string what = text ? "a text" : number ? "a number" : "true or false";
+  if (type.kind == Kind::number && !number) return name + " is a number, it is compared with " + what;
+  if (type.kind == Kind::flag && !is_truth(other))
+    return name + " is true or false, it is compared with " + what + ": write " + name + " or not " + name;
+  if (type.kind != Kind::choice) return "";
+  const std::string choices = name + " is " + listed(type.texts);
+  if (!text) return choices + ", it is compared with " + what;
+  if (!sign.is("==") && !sign.is("~=")) return choices + ": texts are compared with == or ~=";
+  if (std::ranges::find(type.texts, other.text) != type.texts.end()) return "";
+  return name + " is never \"" + other.text + "\"" + did_you_mean(other.text, type.texts) + "; it is " +
+         listed(type.texts);
+}
+
+void ValueCheck::operands(const SourceUse& use, const Type& type, const Tokens& tokens,
+                          std::vector<ArgumentProblem>& found) const {
+  const SourceToken& left = before(tokens, use.at);
+  const SourceToken& right = tokens[use.next];
+  const std::string name = written(tokens, use.at, use.next);
+  const auto tell = [&](const std::string& text) {
+    if (!text.empty()) found.push_back({use.line, text});
+  };
+  if (type.kind == Kind::by_name) {
+    const bool counted = before(tokens, use.at, 2).text == "ipairs" && left.is("(");
+    if (left.is("#") || counted || (right.is("[") && tokens[use.next + 1].kind == TokenKind::number))
+      tell(name + " goes by names, not by numbers: for name, one in pairs(" + name + ") do");
+    return;
+  }
+  if (compares(right) && is_literal(tokens[use.next + 1]) && !goes_on(tokens[use.next + 2])) {
+    if (left.is("not") && type.kind != Kind::flag) {
+      tell("not binds closer than " + right.text + ": write " + name + (right.is("==") ? " ~= ..." : " == ..."));
+    } else if (!changes(left)) {
+      tell(compared(use, type, tokens, use.next + 1, right));
+    }
+  }
+  if (compares(left) && is_literal(before(tokens, use.at, 2)) && !changes(before(tokens, use.at, 3)) && !changes(right))
+    tell(compared(use, type, tokens, use.at - 2, left));
+  if (type.kind == Kind::number) return;
+  const bool flag = type.kind == Kind::flag;
+  if (calculates(left) || calculates(right))
+    tell(name + (flag ? " is true or false, no number" : " is a text, no number"));
+  if (flag && (left.is("..") || right.is("..")))
+    tell(name + " is true or false, which .. does not join: write tostring(" + name + ")");
+}
+
+std::vector<ArgumentProblem> ValueCheck::of_use(const SourceUse& use, const Tokens& tokens) const {
+  std::vector<ArgumentProblem> found;
+  if (use.assigned) return found;
+  const std::string wrong = call(use, tokens);
+  if (!wrong.empty()) found.push_back({use.line, wrong});
+  SourceMeaning meaning = use.known ? use.meaning : SourceMeaning{};
+  const bool in_brackets = !meaning.path.empty() && meaning.path.back() == "*";  // s.joints[1]
+  if (in_brackets) meaning.path.pop_back();
+  const Type type = type_of(meaning);
+  if (in_brackets && type.kind != Kind::by_name) return found;
+  if (type.kind == Kind::unknown || !use.method.empty()) return found;
+  if (use.arguments == 0) {
+    operands(use, type, tokens, found);
+  } else if (tokens[use.arguments - 1].is("(") && type.kind != Kind::by_name) {
+    found.push_back({use.line, written(tokens, use.at, use.next - 1) + " is a value: it stands without brackets"});
+  }
+  return found;
+}
+
+// What is wrong with how something is called, or given to a call.
+std::string ValueCheck::call(const SourceUse& use, const Tokens& tokens) const {
+  using Path = std::vector<std::string>;
+  const auto& path = use.meaning.path;
+  const SourceRole role = use.meaning.role;
+  if (!use.known) {
+    if (use.name == "string" && path == Path{"format"}) return format_mistake(tokens, use.arguments, "string.format");
+    return use.name == "print" && path.empty() ? print_mistake(tokens, use.arguments) : "";
+  }
+  if (role == SourceRole::module && !path.empty() && path[0] == "log" && use.arguments != 0) {
+    if (path.size() == 1 && use.method.empty()) return "k.log is a table: write k.log.info(...), .warning or .error";
+    return path.size() == 2 ? format_mistake(tokens, use.arguments, "k.log." + path[1]) : "";
+  }
+  if (role == SourceRole::motion) {
+    const bool given = before(tokens, use.at, 2).text == "wait" && before(tokens, use.at, 3).is(":");
+    if (path.empty() && use.method.empty() && given && before(tokens, use.at).is("(") && tokens[use.next].is(")"))
+      return "m:wait takes seconds; a motion waits for itself: " + use.name + ":wait()";
+    if (path.size() == 1 && (path[0] == "wait" || path[0] == "cancel") && without_colon(use, tokens))
+      return "call it with a colon: " + use.name + ":" + path[0] + "()";
+  }
+  return role == SourceRole::machine ? machine_call(use, tokens) : "";
+}
+
+std::string ValueCheck::machine_call(const SourceUse& use, const Tokens& tokens) const {
+  const auto& path = use.meaning.path;
+  if (use.arguments == 0) return "";
+  const bool bracket = tokens[use.arguments - 1].is("(");
+  if (path.size() == 1 && use.method.empty()) {
+    for (const char* method : {"wait", "emit", "on", "clear_faults", "use"}) {
+      if (path[0] == method && without_colon(use, tokens))
+        return "call it with a colon: " + use.name + ":" + path[0] + "(...)";
+    }
+    return "";
+  }
+  if (path.size() == 1) {  // of a control object
+    const std::size_t after = end_of_call(tokens, use.arguments);
+    const std::string& next = tokens[after + 1].text;
+    if (tokens[after].is(".") && (next == "wait" || next == "cancel") && tokens[after + 2].is("("))
+      return "call it with a colon: " + use.method + "(...):" + next + "()";
+    const bool motion = std::ranges::any_of(motion_methods(), [&](const auto& one) { return use.method == one.name; });
+    const bool given = before(tokens, use.at).is("(") && before(tokens, use.at, 2).text == "wait";
+    return motion && given && tokens[after].is(")")
+               ? "m:wait takes seconds; a motion waits for itself: move(...):wait()"
+               : "";
+  }
+  if (!path.empty()) return "";
+  if (use.method == "on") return armed(use, tokens);
+  if (use.method != "wait") return "";
+  const SourceToken& first = tokens[use.arguments];
+  if (first.is(")") && bracket) return "m:wait needs seconds: m:wait(1)";
+  if (is_literal(first) && first.kind != TokenKind::number && !goes_on(tokens[use.arguments + 1]))
+    return "m:wait takes seconds, a number without quotes: m:wait(1)";
+  if (first.is("{") || first.is("function") || first.is("nil")) return "m:wait takes seconds: m:wait(1)";
+  if (first.is("-") && tokens[use.arguments + 1].kind == TokenKind::number && tokens[use.arguments + 2].is(")"))
+    return "m:wait takes seconds >= 0";
+  return "";
+}
+
+// A condition of m:on that is written out. What is measured has a name in the table, if anything measured has.
+std::string ValueCheck::condition(const std::string& text) const {
+  const ConditionText read = read_condition_text(text);
+  if (read.wrong != nullptr) return std::string("m:on: ") + read.wrong;
+  const std::string given(read.signal);
+  if (is_truth_of_simulation(given)) return "m:on: '" + given + "' is the truth of a simulation, which no robot knows";
+  constexpr std::pair<const char*, const char*> in_snapshot[] = {{"feet.", "foot."}, {"joints.", "joint."}, {"s.", ""}};
+  for (const auto& [wrong, right] : in_snapshot) {
+    if (given.starts_with(wrong))
+      return "m:on: unknown signal '" + given + "', did you mean '" + right + given.substr(std::string(wrong).size()) +
+             "'?";
+  }
+  const SignalTable& signals = parts_.catalog.signals;
+  const SignalName known = condition_signal(parts_.bindings, given);
+  const std::string topic = given.substr(0, given.find('.') + 1);
+  constexpr std::string_view measured[] = {"joint.", "base.", "foot.", "support."};
+  const bool listed = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
+  if (!listed || signals.find_key(signal_key(known.data()))) return "";
+  return std::string("m:on: unknown signal '") + known.data() + "'" +
+         hint_text(known.data(), signals_near(parts_.bindings, known.data()));
+}
+
+// m:on(condition, function(c) ... end, { within_s = })
+std::string ValueCheck::armed(const SourceUse& use, const Tokens& tokens) const {
+  if (!tokens[use.arguments - 1].is("("))
+    return "m:on takes three things: m:on(condition, function(c) ... end, { within_s = 1 })";
+  const std::vector<std::size_t> given = parts_of(tokens, use.arguments);
+  const std::size_t end = end_of_call(tokens, use.arguments) - 1;
+  if (!given.empty() && tokens[given[0]].kind == TokenKind::text && tokens[given[0] + 1].is_any({",", ")"})) {
+    std::string wrong = condition(tokens[given[0]].text);
+    if (!wrong.empty()) return wrong;
+  }
+  const std::size_t done = given.size() > 1 ? given[1] : end;
+  const std::size_t done_end = given.size() > 2 ? given[2] - 1 : end;
+  bool acts = false;  // m.posture:hold() in place of the function
+  for (std::size_t i = done; i < done_end && !tokens[done].is("function"); ++i) acts = acts || tokens[i].is(":");
+  if (given.size() < 2 || acts || is_literal(tokens[done]) || tokens[done].is("{"))
+    return "m:on needs a function that says what to do: function(c) c.posture:hold() end";
+  for (std::size_t i = done; tokens[done].is("function") && i < done_end; ++i) {
+    if (tokens[i].is(":") && tokens[i + 1].text == "wait")
+      return "m:on: the function runs once, when it is armed, and only records what to send: it cannot wait";
+  }
+  if (given.size() == 2 && tokens[done].is("function"))
+    return "m:on needs { within_s = seconds } at the end: for how long it may wait";
+  if (given.size() < 3 || !tokens[given[2]].is("{")) return "";
+  bool timed = false;
+  for (const std::size_t key : parts_of(tokens, given[2] + 1)) {
+    const std::string& name = tokens[key].text;
+    if (tokens[key].kind != TokenKind::name || !tokens[key + 1].is("=")) return "";
+    if (name != "within_s" && name != "every_time" && name != "event")
+      return "m:on has no option '" + name + "'" + hint_text(name, {"within_s", "every_time", "event"});
+    timed = timed || name == "within_s";
+  }
+  return timed ? "" : "m:on needs within_s = seconds: for how long it may wait";
+}
+
+std::vector<ArgumentProblem> ValueCheck::of_literals(const Tokens& tokens) const {
+  std::vector<ArgumentProblem> found;
+  for (std::size_t i = 1; i + 1 < tokens.size(); ++i) {
+    const SourceToken& token = tokens[i];
+    const SourceToken& left = tokens[i - 1];
+    const SourceToken& right = tokens[i + 1];
+    const bool nothing = token.is("nil") || is_truth(token);
+    if (nothing && (left.is("..") || right.is("..")))
+      found.push_back({token.line, ".. joins texts and numbers, not " + token.text});
+    if (token.kind != TokenKind::text || is_numeral(token.text)) continue;
+    const bool of_call = left.kind == TokenKind::name || left.kind == TokenKind::text || left.is_any({")", "]", "}"});
+    if (of_call) continue;  // f "text" + 1
+    if (right.is("%")) {
+      found.push_back({token.line, "% does not fill a text: write string.format(text, ...)"});
+    } else if (right.is("+") || left.is("+")) {
+      found.push_back({token.line, "+ adds numbers, .. joins texts"});
+    } else if (calculates(right) || calculates(left)) {
+      found.push_back({token.line, "\"" + token.text + "\" is a text, no number"});
+    }
+  }
+  return found;
+}
+
+}  // namespace kadans

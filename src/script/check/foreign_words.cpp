@@ -1,0 +1,126 @@
+#include "foreign_words.h"
+
+#include <algorithm>
+#include <cctype>
+#include <initializer_list>
+#include <iterator>
+
+namespace kadans {
+namespace {
+
+struct ForeignName {
+  std::initializer_list<std::string_view> names;
+  std::string_view hint;
+};
+
+const ForeignName foreign_names[] = {
+    {{"null", "None", "NULL", "nullptr", "undefined", "Nil"}, ": Lua writes nil"},
+    {{"True", "TRUE"}, ": Lua writes true"},
+    {{"False", "FALSE"}, ": Lua writes false"},
+    {{"self", "this"}, ": the functions of a state get m and s: function(m, s)"},
+    {{"sleep", "wait", "delay", "usleep", "msleep", "setTimeout"},
+     ": write m:wait(seconds) inside run, or a transition with after = seconds"},
+    {{"os", "time", "clock", "millis", "now"},
+     ": the time is m.time_s, since the state was entered, or s.time_s, of the engine"},
+    {{"io", "open", "file"}, ": a behavior opens no files; k.params takes values, k.log.info writes lines"},
+    {{"printf", "console", "fprintf", "echo", "puts", "log", "logging"},
+     ": write k.log.info(format, ...) or print(...)"},
+    {{"len"}, ": write #list"},
+    {{"range"}, ": write for i = 1, n do"},
+    {{"str"}, ": write tostring(x)"},
+    {{"int", "float", "double", "bool", "var", "let", "const", "auto"}, ": Lua writes local x = ..."},
+    {{"def", "func", "fn", "lambda"}, ": Lua writes function(m) ... end"},
+    {{"switch", "case", "default"}, ": Lua has no switch: write if ... elseif ... end"},
+    {{"elif", "elsif"}, ": Lua writes elseif"},
+    {{"continue"}, ": Lua has no continue: put the rest of the loop into an if"},
+    {{"try", "catch", "except", "throw", "raise"}, ": an error is raised by error(text)"},
+    {{"import", "include", "from", "using"}, ": write local name = require \"name\""},
+    {{"abs",  "sin",  "cos",   "tan", "sqrt", "min",  "max",  "floor", "ceil", "asin",
+      "acos", "atan", "atan2", "pi",  "exp",  "huge", "fabs", "pow",   "fmod", "random"},
+     ": it is a field of math: math.pi, math.sin(x)"},
+    {{"rad", "deg", "radians", "degrees", "deg2rad", "rad2deg"}, ": write math.rad(degrees)"},
+    {{"m"}, ": only functions have it: function(m, s) in enter, exit, during, run and action, function(s, m) in when"},
+    {{"s"}, ": only functions have it: function(s, m) in when, function(m, s) in enter, exit, during, run and action"},
+    {{"k", "kadans"}, ": write local k = require \"kadans\" at the top"},
+    {{"P", "params"}, ": write local P = k.params { ... } at the top"},
+    {{"state", "behavior", "final", "parallel", "region", "history", "call", "pose"}, ": write it with k., as k.state"},
+    {{"joints", "base", "feet", "safety", "joystick", "support"}, ": it is a field of s: s.base"},
+    {{"vars", "args", "time_s", "emit"}, ": it is a field of m: m.vars"},
+};
+
+struct ForeignKey {
+  std::initializer_list<std::string_view> names;
+  std::string_view here;
+};
+
+const ForeignKey foreign_keys[] = {
+    {{"event", "events", "trigger", "signal", "message"}, "on"},
+    {{"target", "next", "dest", "dst", "destination", "goto_state", "state"}, "to"},
+    {{"guard", "cond", "condition", "predicate", "check"}, "when"},
+    {{"timeout", "delay", "after_s", "time_s", "time"}, "after"},
+    {{"effect", "actions", "exec"}, "action"},
+    {{"reason", "label", "comment"}, "why"},
+    {{"entry", "on_entry", "onentry", "on_enter", "onEnter", "start", "setup", "init"}, "enter"},
+    {{"on_exit", "onexit", "onExit", "leave", "on_leave", "stop", "cleanup"}, "exit"},
+    {{"update", "doo", "tick", "step", "loop", "each_tick", "do_activity", "execute"}, "during"},
+    {{"coroutine", "thread", "body", "main", "task", "script"}, "run"},
+    {{"start_state", "first", "initial_state"}, "initial"},
+    {{"common", "common_transition", "any", "global"}, "always"},
+    {{"result", "outcome_name", "status"}, "outcome"},
+    {{"data", "variables", "locals", "datamodel"}, "vars"},
+    {{"set", "controllers", "control_set"}, "controls"},
+};
+
+constexpr std::string_view list_keys[] = {"states", "transitions", "children", "substates", "regions",
+                                          "trans",  "finals",      "substate", "machines",  "transition"};
+
+constexpr std::string_view text_keys[] = {"to", "on", "initial", "outcome", "controls", "why"};  // values are texts
+
+constexpr std::string_view of_machine[] = {"vars", "args", "wait", "emit", "clear_faults"};
+constexpr std::string_view of_snapshot[] = {"base", "joints", "feet", "support", "safety", "joystick", "sensors"};
+
+template <typename Table>
+auto entry_of(const Table& table, std::string_view name) noexcept {
+  return std::ranges::find_if(table,
+                              [&](const auto& one) { return std::ranges::find(one.names, name) != one.names.end(); });
+}
+
+}  // namespace
+
+std::string_view foreign_name_hint(std::string_view name) noexcept {
+  if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) >= 0x80; }))
+    return ": texts stand in plain quotes, names have plain letters";
+  const auto found = entry_of(foreign_names, name);
+  return found == std::end(foreign_names) ? std::string_view{} : found->hint;
+}
+
+std::string_view foreign_key(std::string_view key) noexcept {
+  const auto found = entry_of(foreign_keys, key);
+  return found == std::end(foreign_keys) ? std::string_view{} : found->here;
+}
+
+bool names_a_list(std::string_view key) noexcept { return std::ranges::find(list_keys, key) != std::end(list_keys); }
+
+std::string_view unquoted_value_key(std::string_view line, std::string_view name) noexcept {
+  const auto trim = [&](std::string_view text) { return text.substr(0, text.find_last_not_of(" \t") + 1); };
+  for (std::size_t at = line.find(name); at != std::string_view::npos; at = line.find(name, at + 1)) {
+    std::string_view before = trim(line.substr(0, at));
+    if (!before.ends_with('=')) continue;
+    before = trim(before.substr(0, before.size() - 1));
+    for (const std::string_view key : text_keys) {
+      if (!before.ends_with(key)) continue;
+      const std::size_t begin = before.size() - key.size();
+      const bool whole = begin == 0 || std::isalnum(static_cast<unsigned char>(before[begin - 1])) == 0;
+      if (whole && (begin == 0 || before[begin - 1] != '_')) return key;
+    }
+  }
+  return {};
+}
+
+std::string_view swapped_hint(std::string_view owner, std::string_view field) noexcept {
+  const bool swapped = (owner == "s" && std::ranges::find(of_machine, field) != std::end(of_machine)) ||
+                       (owner == "m" && std::ranges::find(of_snapshot, field) != std::end(of_snapshot));
+  return swapped ? order_hint : std::string_view{};
+}
+
+}  // namespace kadans

@@ -1,0 +1,26 @@
+// Words of other languages, libraries and statechart tools that authors write out of habit, each with what is written
+// here instead. Used in messages about unknown names and keys, before a run and in it.
+#pragma once
+
+#include <string_view>
+
+namespace kadans {
+
+// How the message about an unknown name goes on, ": Lua writes nil"; "" for a name that is none of these.
+std::string_view foreign_name_hint(std::string_view name) noexcept;
+
+// What a key of another statechart language is called here, "when" for "guard"; "" for none of these.
+std::string_view foreign_key(std::string_view key) noexcept;
+
+// Whether such a key holds states or transitions, which stand in the table without a key.
+bool names_a_list(std::string_view key) noexcept;
+
+// The key before a name that stands in the line without its quotes, "to" of `{ after = 1, to = stand }`; "" for none.
+std::string_view unquoted_value_key(std::string_view line, std::string_view name) noexcept;
+
+// Names of `m` that are read from `s`, or the other way round: the arguments stand in the wrong order. "" for none.
+std::string_view swapped_hint(std::string_view owner, std::string_view field) noexcept;
+inline constexpr std::string_view order_hint =
+    "; the order is (m, s) in enter, exit, during, run and action, and (s, m) in when";
+
+}  // namespace kadans
