@@ -87,6 +87,8 @@ const char* other_type(const std::vector<SourceToken>& tokens, std::size_t at, c
       return type == "boolean" ? nullptr : " must be true or false";
     case MotionOption::Type::text:
       return type == "string" ? nullptr : " must be a text";
+    case MotionOption::Type::list:
+      return " must be a list { ... }";
   }
   return nullptr;
 }
