@@ -142,7 +142,7 @@ TEST_CASE("what is out of reach is told with how far it is, and nothing is sent"
                "print(moving, why, distance_m, setpoint)"));
   Body body(stage.robot);
   stage.tick();
-  CHECK(stage.said() == "nil\tout_of_reach\t0.25\tcom_z_m\n");
+  CHECK(stage.said() == "nil out_of_reach 0.25 com_z_m\n");
   CHECK(std::isnan(value_of(stage, "com_z_m")));
   CHECK(std::isnan(parameter_of(stage, "com.weight")));
   CHECK(std::isnan(value_of(stage, "contact.right")));

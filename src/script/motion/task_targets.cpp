@@ -207,8 +207,8 @@ void read_contacts(lua_State* state, const ObjectInfo& object, TaskOptions& opti
           lua_type(state, -1) == LUA_TSTRING && std::strcmp(lua_tostring(state, -1), names[count - 1]) == 0;
       lua_pop(state, 1);
       stands = stands || this_one;
-      taken += this_one ? 1 : 0;
     }
+    taken += stands ? 1 : 0;
     add(state, options, {.kind = CommandKind::set_point, .index = id, .value = stands ? 1.0 : 0.0});
   }
   if (count == 0) luaL_error(state, "move: '%s' has no contacts", object.name.c_str());
