@@ -205,9 +205,9 @@ void ControlSets::fill(Snapshot& snapshot) const noexcept {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     snapshot.objects[i] = {.active = runs(static_cast<std::uint32_t>(i)),
                            .motion_remaining_s = objects_[i]->motion_remaining_s()};
-    if (dwell_.demanded())
-      snapshot.objects[i].dwell_s = static_cast<float>(dwell_.left_s(static_cast<std::uint32_t>(i)));
   }
+  for (std::uint32_t i = 0; dwell_.demanded() && i < objects_.size(); ++i)
+    snapshot.objects[i].dwell_s = static_cast<float>(dwell_.left_s(i));
 }
 
 void ControlSets::update(std::uint64_t behavior_tick, const Snapshot& snapshot) {

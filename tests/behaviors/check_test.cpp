@@ -60,6 +60,34 @@ const Mistake in_a_function[] = {
 
 // A whole chart, after `local k = require 'kadans'` in line 1.
 const Mistake in_the_chart[] = {
+    {"return k.behavior 't' { initial = 'a',\nk.state 'a' { { to = 'b' } },\nk.state 'b' { { after = 0, to = 'a' } } }",
+     "3: states 'b' and 'a' lead to each other and take no time: give one of these transitions a condition of its own, "
+     "an "
+     "event or after > 0"},
+    {"return k.behavior 't' {\nk.state 'a' { { when = function() return true end, to = 'a' } } }",
+     "3: state 'a' leads to itself and takes no time"},
+    {"local function near(s) return s.time_s > 1 end\nreturn k.behavior 't' { initial = 'a',\nk.state 'a' { { when = "
+     "near, "
+     "to = 'b' } },\nk.state 'b' { { when = near, to = 'a' } } }",
+     "4: states 'b' and 'a' lead to each other and take no time while their condition holds"},
+    {"return k.behavior 't' { initial = 'a',\nk.state 'a' { enter = function(m) m:emit 'go' end,\n{ on = 'go', to = "
+     "'b' } },"
+     "\nk.state 'b' { enter = function(m)\nm:emit('back')\nend, { on = 'back', to = 'a' } } }",
+     "4: states 'b' and 'a' lead to each other and take no time"},
+    {"return k.behavior 't' { initial = 'a',\nk.state 'a' { { when = function(s) return s.time_s > 1 end, to = 'b' } "
+     "},\n"
+     "k.state 'b' { { to = 'a' } } }",
+     ""},
+    {"return k.behavior 't' { initial = 'a',\nk.state 'a' { enter = function(m) if m.time_s > 1 then m:emit 'go' end "
+     "end,\n{ "
+     "on = 'go', to = 'b' } },\nk.state 'b' { { to = 'a' } } }",
+     ""},
+    {"return k.behavior 't' { k.state 'a' { endless = true, enter = function(m) m:emit 'heat.knee' m:emit 'heated' "
+     "end,\n"
+     "{ on = { 'heat.*', 'heated' }, action = function() end },\n{ on = 'haet.*', to = 'a' } } }",
+     "4: nobody emits an event like 'haet.*' here"},
+    {"return k.behavior 't' {\nk.state 'a' { { after = 1, action = function() end } } }",
+     "3: state 'a' has no way out: give it a transition, or say endless = true"},
     {"return k.behavior 't' { initial = 'a',\nk.state 'a' { { after = 1, to = 'b' } },\nk.state 'b' {} }",
      "4: state 'b' has no way out: give it a transition, or say endless = true"},
     {"return k.behavior 't' { initial = 'a',\nk.state 'a' { { after = 1, to = 'a' } },\nk.state 'b' { { to = 'a' } } }",

@@ -16,6 +16,10 @@ TEST_CASE("every file of the chapter on composing is right, every command of it 
   document::check_page("behaviors_composition.md", "composition");
 }
 
+TEST_CASE("every file of the page on what charts mean is right") {
+  document::check_page("behaviors_semantics.md", "semantics");
+}
+
 TEST_CASE("every file of the page on reflexes is right, every command of it works and prints what it shows") {
   document::check_page("reflexes.md", "reflexes");
 }

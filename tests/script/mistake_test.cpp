@@ -72,6 +72,66 @@ const Mistake at_load[] = {
      "behaviors/test.lua:3: a parameter has its value when the behavior runs"},
     {"local k = require 'kadans'\nlocal p = k.pose 'stnd'",
      "behaviors/test.lua:2: unknown pose 'stnd', did you mean 'stand'?"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { k.state 'a' {\n{ on = 'x', to = {} } } }",
+     "behaviors/test.lua:3: 'to' lists 1 to 32 states, in regions of one k.parallel"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { k.state 'a' {\n{ on = 'x', to = { 1 } } } }",
+     "behaviors/test.lua:3: 'to' must be the name of a state, or a list of names, not a list with a number"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' {\ninitial = 3, k.state 'a' {} }",
+     "behaviors/test.lua:3: 'initial' must be the name of a state, or a list of names, not a number"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { k.state 'a' {\n{ on = 'x', action = print, internal = true } "
+     "} }",
+     "behaviors/test.lua:3: 'internal' says how a transition leads into its state: it needs 'to'"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { initial = 'a', k.state 'a' {\n{ on = 'x', to = 'b', internal "
+     "= "
+     "true } }, k.state 'b' {} }",
+     "behaviors/test.lua:3: internal = true is for a target inside 'a', and 'b' is not"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { k.parallel 'p' {\n{ on = 'x', to = 'a', internal = true },\n"
+     "k.region 'r' { k.state 'a' {} } } }",
+     "behaviors/test.lua:3: internal = true: a k.parallel has no states but its regions; write the transition into "
+     "the"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { k.state 'a' {\n{ on = 'fault*', to = 'a' } } }",
+     "behaviors/test.lua:3: on = \"fault*\": '*' stands for all words behind a dot, on = \"fault.*\", or alone"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { k.state 'a' {\n{ on = { 'a.*.b' }, to = 'a' } } }",
+     "behaviors/test.lua:3: on = \"a.*.b\": '*' stands for all words behind a dot"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { initial = 'a', k.state 'a' {\n{ on = 'x', to = { 'b', 'c' } "
+     "} },\n"
+     "k.parallel 'p' { k.region 'r' { initial = 'b', k.state 'b' {}, k.state 'c' {} } } }",
+     "behaviors/test.lua:3: 'p.r.b' and 'p.r.c' cannot be active together: both are in region 'p.r', name one state of "
+     "each region"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { initial = 'a', k.state 'a' {\n{ on = 'x', to = { 'a', 'b' } "
+     "} },\n"
+     "k.state 'b' {} }",
+     "behaviors/test.lua:3: 'a' and 'b' cannot be active together: several targets are states in regions of one"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { initial = 'a', k.state 'a' {\n{ on = 'x', to = { 'p', 'b' } "
+     "} },\n"
+     "k.parallel 'p' { k.region 'r' { k.state 'b' {} } } }",
+     "behaviors/test.lua:3: 'p.r.b' is inside 'p': name the inner one alone"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { initial = 'a', k.state 'a' {\n{ on = 'x', to = { 'b', 'b' } "
+     "} },\n"
+     "k.state 'b' {} }",
+     "behaviors/test.lua:3: 'b' is named twice"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { initial = 'a', k.state 'a' {\n{ on = 'x', to = { 'h', 'b' } "
+     "} },\n"
+     "k.parallel 'p' { k.history 'h' { deep = true }, k.region 'r' { k.state 'b' {} } } }",
+     "behaviors/test.lua:3: 'p.h' brings back all regions: name it alone"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { initial = 'b',\nk.state 'a' { k.state 'b' {} } }",
+     "behaviors/test.lua:2: unknown initial state 'b', did you mean 'a.b'?"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' {\nk.parallel 'p' { initial = 'r.b',\nk.region 'r' { initial = "
+     "'a', k.state 'a' {}, k.state 'b' {} } } }",
+     "behaviors/test.lua:4: 'p.r' has an initial of its own, and its k.parallel names another one: keep one of them"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' {\nk.parallel 'p' {\nk.history 'h' {}, k.region 'r' { k.state "
+     "'a' "
+     "{} } } }",
+     "behaviors/test.lua:4: k.history 'h' of a k.parallel needs deep = true: its regions are all active"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' {\nk.parallel 'p' { k.history 'h' { deep = true } } }",
+     "behaviors/test.lua:3: k.parallel 'p' has no k.region"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { k.state 'w' { initial = 'h',\nk.history 'h' {}, k.state 'a' "
+     "{} } }",
+     "behaviors/test.lua:3: history 'h' needs to = \"...\": the state to enter when there is nothing to remember"},
+    {"local k = require 'kadans'\nreturn k.behavior 't' { k.state 'w' {\nk.history 'h' { to = 'h' }, k.state 'a' {} } "
+     "}",
+     "behaviors/test.lua:3: history 'h' needs to = \"...\": the state to enter when there is nothing to remember, not "
+     "a"},
 };
 
 const Mistake in_a_tick[] = {

@@ -36,6 +36,17 @@ TEST_CASE("a transition's line is its own, whatever holds its target's name befo
                  "}\n") == std::vector<int>{5, 6, 9, 12, 13, 11});
 }
 
+TEST_CASE("a transition without a target, and one with several, have their own lines, too") {
+  CHECK(lines_of("local k = require 'kadans'\n"
+                 "return k.behavior 'test' { k.parallel 'p' {\n"
+                 "  { on = 'x', action = print },\n"
+                 "  { on = { 'y', 'z' },\n"
+                 "    to = { 'a', 'b' } },\n"
+                 "  { on = 'u', action = print },\n"
+                 "  k.region 'l' { k.state 'a' {} }, k.region 'r' { k.state 'b' {} },\n"
+                 "  { on = 'a', to = 'a' } } }\n") == std::vector<int>{3, 5, 5, 6, 8});
+}
+
 TEST_CASE("an unknown target is told at its transition's line") {
   CHECK(load_error("local k = require 'kadans'\nreturn k.behavior 'test' { initial = 'a', k.state 'a' {\n"
                    "enter = function() print 'ris' end,\n{ after = 1, to = 'ris' } }, k.state 'rise' {} }")

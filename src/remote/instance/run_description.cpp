@@ -58,7 +58,11 @@ Json chart_of(const Behavior& behavior) {
     if (i - source.first_always < source.always_count) one["always"] = true;
     if (const GuardSource& guard = guards[i]; !guard.file.empty())
       one["guard"] = {{"file", guard.file}, {"line", guard.line}, {"text", guard.text}};
-    transitions.push_back(std::move(one));
+    transitions.push_back(one);
+    for (const StateIndex target : transition.also) {
+      one["target"] = target;
+      transitions.push_back(one);
+    }
   }
   return {{"states", states}, {"transitions", transitions}};
 }

@@ -304,6 +304,16 @@ void Behavior::Parts::out_of_steps(const char* chunk, int line) noexcept {
   say_with(BehaviorLog::Severity::warning, text);
 }
 
+void Behavior::Parts::restless(const Chart::State& from, const Chart::State& to, int line,
+                               std::uint32_t ticks) noexcept {
+  char text[640];
+  std::snprintf(text, sizeof text,
+                "%.200s:%d: for %u ticks a state followed another at once, now '%.80s' after '%.80s': nothing takes "
+                "time. Should one wait, for a condition, an event or after > 0? (told once)",
+                from.chunk.c_str(), line, ticks, to.path.c_str(), from.path.c_str());
+  say_with(BehaviorLog::Severity::warning, text);
+}
+
 void Behavior::Parts::recovered(const ScriptError& taken) noexcept {
   say_with(BehaviorLog::Severity::warning, ("error taken as an event: " + taken.text()).c_str());
 }
@@ -438,7 +448,7 @@ std::int64_t Behavior::clock_ns(const Snapshot& snapshot) const noexcept {
 }
 
 bool Behavior::post(const std::string& event) noexcept {
-  const EventId id = parts_->chart.find_event(event);
+  const EventId id = parts_->chart.find_or_learn(event);
   return id != no_event && !parts_->chart.made_by_runner(id) && parts_->runner->post(id);
 }
 

@@ -64,6 +64,7 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void event_dropped(const char* event) noexcept override;
   void out_of_steps(const char* chunk, int line) noexcept override;
   void recovered(const ScriptError& error) noexcept override;
+  void restless(const Chart::State& from, const Chart::State& to, int line, std::uint32_t ticks) noexcept override;
   void tell_refused() noexcept;  // logs what the control engine has refused since the last call
   void tell_armed() noexcept;    // logs what became of armed transactions since the last call, and posts their events
   // Asks in the next tick for the control sets of the active states that are not active.

@@ -99,6 +99,7 @@ int ask_guards(lua_State* state) {
       if (!attempt(look_up_field)) lua_settop(state, 1);
     }
     question.asked = true;
+    std::snprintf(question.value.data(), question.value.size(), "no answer within its budget");
     if (attempt(ask_guard)) continue;
     const char* raised = lua_tostring(state, -1);
     std::snprintf(question.value.data(), question.value.size(), "raises: %s", raised != nullptr ? raised : "an error");

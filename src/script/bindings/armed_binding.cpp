@@ -202,7 +202,7 @@ struct Options {
   EventId event = no_event;
 };
 
-Options read_options(lua_State* state, int index, const Chart& chart) {
+Options read_options(lua_State* state, int index, Chart& chart) {
   Options options;
   if (!lua_istable(state, index)) luaL_error(state, "m:on needs { within_s = seconds }: for how long it may wait");
   bool timed = false;
@@ -249,7 +249,7 @@ void push_handle(lua_State* state, std::uint32_t sequence, std::uint16_t which) 
 
 // m:on(condition, function(c) ... end, { within_s = }) -> handle | nil, "queue_full". Upvalue: the chart.
 int on(lua_State* state) {
-  const auto& chart = *static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
+  auto& chart = *static_cast<Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
   Bindings& bindings = bindings_of(state);
   lua_settop(state, 4);
   core_of(state).budget.charge(state, arm_instructions);

@@ -155,7 +155,7 @@ void push_plain_copy(lua_State* state, int index);
 // The number of the control object at `index`, a handle; nullptr: it is something else.
 const std::uint32_t* to_object(lua_State* state, int index) noexcept;
 // The event of this name, when scripts may send it. Raises.
-EventId check_event(lua_State* state, const Chart& chart, const char* name);
+EventId check_event(lua_State* state, Chart& chart, const char* name);
 // The object on which the method was called; `number` is its index in the catalog. Raises.
 const ObjectInfo& check_object(lua_State* state, std::uint32_t& number);
 // The name without the prefix of the object's name.

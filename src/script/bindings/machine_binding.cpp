@@ -262,12 +262,13 @@ void push_event_data(lua_State* state, int index, int depth, int& fields) {
 
 void push_plain_copy(lua_State* state, int index) { push_copy(state, index, 0); }
 
-EventId check_event(lua_State* state, const Chart& chart, const char* name) {
+EventId check_event(lua_State* state, Chart& chart, const char* name) {
   if (reserved_for_reports(name))
     luaL_error(state, "'%s' reports what happened to the behavior, it cannot be emitted: give the event another name",
                name);
-  const EventId event = chart.find_event(name);
+  const EventId event = chart.find_or_learn(name);
   if (event == no_event) luaL_error(state, "nothing in this behavior waits for the event '%s'", name);
+  if (Chart::is_pattern(name)) luaL_error(state, "'%s' stands for several events: emit one of them", name);
   if (chart.made_by_runner(event))
     luaL_error(state, "'%s' says how a state or a run ended, it cannot be emitted: give the event another name", name);
   return event;
@@ -278,7 +279,7 @@ namespace {
 int emit(lua_State* state) {
   if (bindings_of(state).recording)
     return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
-  const auto& chart = *static_cast<const Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
+  auto& chart = *static_cast<Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
   const EventId event = check_event(state, chart, luaL_checkstring(state, 2));
   ChartRunner& runner = *bindings_of(state).runner;
   const bool with_data = !lua_isnoneornil(state, 3);

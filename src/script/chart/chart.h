@@ -40,29 +40,41 @@ struct Chart {
     bool outcome_given = false;  // of a final state: the author wrote the outcome
     bool machine_root = false;   // root of a behavior, the played one or a called one
     StateIndex parent = no_state;
-    StateIndex end = 0;             // one past the last state inside
-    StateIndex initial = no_state;  // child entered by default; of a history state: the target without a history
+    StateIndex end = 0;                // one past the last state inside
+    StateIndex initial = no_state;     // child entered by default; of a history state: the target without a history
+    std::vector<StateIndex> defaults;  // what is entered by default: `initial`, or what is further inside of it
     std::uint16_t machine = 0;
     std::uint16_t first_transition = 0, transition_count = 0;
     std::uint16_t first_always = 0, always_count = 0;
     int enter = no_function, exit = no_function, during = no_function, run = no_function;  // registry references
     int result = no_function;    // final states: makes the data of the end
     EventId outcome = no_event;  // final states
-    std::string initial_name, outcome_name;
+    std::vector<std::string> initial_names;
+    std::string outcome_name;
     std::vector<std::string> controls;  // names of the control sets that it runs on; none: those of the state around it
     SetMask sets = 0;                   // its own or inherited; 0: no state around it names any
   };
   struct Transition {
-    StateIndex source = 0, target = no_state;
-    StateIndex domain = 0;  // active states inside it are left
+    StateIndex source = 0, target = no_state;  // no target: the action alone
+    StateIndex domain = no_state;              // active states inside it are left; without a target none are
     int when = no_function, action = no_function;
     EventId on = no_event;
+    std::int16_t pattern = -1;  // of `on`, when it is one
+    bool internal = false;      // leads into its source, which is not left
+    bool once = false;          // without a target: comes once each time its state is entered
     bool timed = false;
     double after_s = 0;
     std::int32_t after_parameter = no_parameter;
-    std::string target_name, why;
+    std::vector<StateIndex> also;  // further targets, in other regions
+    std::vector<std::string> target_names;
+    std::string why;
     int line = 0;
     bool listed = false;  // a further event of on = { "a", "b" }: otherwise the same as the one before
+  };
+  // on = "fault.*": the events whose name is "fault" or begins with "fault."; on = "*": all. Never the end of a state.
+  struct Pattern {
+    EventId event = no_event;  // stands for the pattern itself; nobody can send it
+    std::vector<bool> takes;   // by EventId
   };
   // What a call gives to a parameter of the behavior that it calls, or, when that is no constant, to an argument.
   struct Given {
@@ -90,6 +102,7 @@ struct Chart {
   std::vector<Transition> transitions;  // those of one state are contiguous
   std::vector<Machine> machines;
   std::vector<std::string> events{"run.done", "done"};
+  std::vector<Pattern> patterns;
   // Reports, events that tell what happened to the behavior: errors, refused transactions, faults. no_event: no
   // transition waits for them.
   EventId error_event = no_event, refused_event = no_event;
@@ -100,21 +113,40 @@ struct Chart {
   bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // true also for the ancestor itself
     return state >= ancestor && state < states[ancestor].end;
   }
+  template <typename Visit>
+  void each_region(StateIndex parallel, Visit visit) const {
+    const StateIndex end_of_all = states[parallel].end;
+    for (auto region = static_cast<StateIndex>(parallel + 1); region < end_of_all; region = states[region].end) {
+      if (states[region].kind == Kind::region) visit(region);
+    }
+  }
   // Whether the end of `ended` is an event for `state`: for itself and the states around it in its behavior, up to the
   // region that it is in.
   bool hears_end(StateIndex state, StateIndex ended) const noexcept;
   bool is_report(EventId event) const noexcept;
-  // Events that only the runner makes: the ends of coroutines and of states, and reports.
+  // Events that nobody can send: the ends of coroutines and of states, reports, and patterns.
   bool made_by_runner(EventId event) const noexcept { return ends_[static_cast<std::size_t>(event)]; }
   StateIndex size() const noexcept { return static_cast<StateIndex>(states.size()); }
   EventId intern(std::string_view event);
   EventId find_event(std::string_view event) const noexcept;
+  // Also an event that only a pattern takes: its name becomes known when it is sent for the first time, up to
+  // late_events_max names.
+  EventId find_or_learn(std::string_view event);
+  static constexpr std::size_t late_events_max = 64, late_event_length_max = 64, patterns_max = 64;
+  static bool is_pattern(std::string_view event) noexcept { return event.ends_with('*'); }
+  std::int16_t intern_pattern(std::string_view pattern);
+  bool any_pattern_takes(std::string_view event) const noexcept;
+  bool takes_by_pattern(const Transition& transition, EventId event) const noexcept {
+    return transition.pattern >= 0 &&
+           patterns[static_cast<std::size_t>(transition.pattern)].takes[static_cast<std::size_t>(event)];
+  }
 
   // Resolves all names and finds every mistake.
   void resolve(std::vector<InputProblem>& problems);
 
  private:
-  std::vector<bool> ends_;  // by event; made by resolve()
+  std::vector<bool> ends_{true, true};  // by event
+  std::size_t late_ = 0;                // names learnt
 };
 
 }  // namespace kadans

@@ -1,5 +1,7 @@
 // Draws a chart as Graphviz dot or as a Mermaid state diagram. Nested states are inside their parents, parallel regions
-// beside each other. The label of a transition shows its event, its time, "[when]" for a guard, and its reason.
+// beside each other, as UML has it: a filled circle leads to what is entered first, H and H* are histories, a bar leads
+// into several regions, and an action alone is a line in its state. The label of a transition shows its event, its
+// time, "[when]" for a guard, and its reason; «always» and {local} (internal = true) are marked.
 #pragma once
 
 #include <string>

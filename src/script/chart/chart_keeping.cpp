@@ -64,12 +64,37 @@ void ChartRunner::keep(ByteWriter& bytes) const {
                                         (run.run_done ? bit_run_done : 0) | (run.passed_over ? bit_passed_over : 0)));
     bytes.put(run.entered_ns);
     put_event(run.outcome);
+    keep_acted(chart_.states[i], bytes);
   }
   keep_histories(bytes);
   bytes.put(static_cast<std::uint32_t>(queue_.size()));
   for (std::size_t i = 0; i < queue_.size(); ++i) {  // between ticks no end of a state waits
     put_event(queue_[i].id);
     bytes.put(queue_[i].place);
+  }
+}
+
+// Of a state's transitions those that come once and have come, by their place among all of its own.
+void ChartRunner::keep_acted(const Chart::State& state, ByteWriter& bytes) const {
+  const int count = state.transition_count + state.always_count;
+  const auto came = [&](int place) { return acted(static_cast<std::uint16_t>(state.first_transition + place)); };
+  std::uint16_t total = 0;
+  for (int i = 0; i < count; ++i) {
+    if (came(i)) ++total;
+  }
+  bytes.put(total);
+  for (int i = 0; i < count; ++i) {
+    if (came(i)) bytes.put(static_cast<std::uint16_t>(i));
+  }
+}
+
+void ChartRunner::restore_acted(StateIndex index, ByteReader& bytes) {
+  for (auto left = bytes.take<std::uint16_t>(); left > 0 && bytes.ok(); --left) {
+    const auto place = bytes.take<std::uint16_t>();
+    if (index == no_state) continue;
+    const Chart::State& state = chart_.states[index];
+    if (place >= state.transition_count + state.always_count) continue;
+    guards_[static_cast<std::size_t>(state.first_transition) + place].acted_ns = run_[index].entered_ns;
   }
 }
 
@@ -96,7 +121,7 @@ bool ChartRunner::restore(ByteReader& bytes) {
   }
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
-    const EventId event = chart_.find_event(text_of(bytes));
+    const EventId event = chart_.find_or_learn(text_of(bytes));
     const auto place = bytes.take<std::int8_t>();
     if (event == no_event || chart_.made_by_runner(event) || !post(event, place)) ++unhandled_;
   }
@@ -112,15 +137,18 @@ bool ChartRunner::restore_state(ByteReader& bytes, std::vector<bool>& listed) {
   const auto bits = bytes.take<std::uint8_t>();
   const auto entered_ns = bytes.take<std::int64_t>();
   const EventId outcome = chart_.find_event(text_of(bytes));
+  if (index != no_state) {
+    if (listed[index]) return false;
+    listed[index] = true;
+    run_[index].entered_ns = entered_ns;
+  }
+  restore_acted(index, bytes);
   if (index == no_state || !bytes.ok()) return true;
-  if (listed[index]) return false;
-  listed[index] = true;
   const Chart::State& state = chart_.states[index];
   StateRun& run = run_[index];
   run.outcome = outcome;
   run.run_done = (bits & bit_run_done) != 0;
   run.passed_over = (bits & bit_passed_over) != 0;
-  run.entered_ns = entered_ns;
   if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return true;
   const auto there = [&](StateIndex i) { return run_[i].active || run_[i].entering; };
   bool alone = true;
@@ -143,6 +171,12 @@ void ChartRunner::restore_history(ByteReader& bytes) {
     if (history == no_state || state == no_state || histories_[history].empty()) continue;
     const StateIndex around = chart_.states[history].parent, its = chart_.states[state].parent;
     if (state == around || !chart_.inside(state, around) || (its != around && !histories_[history][its])) continue;
+    bool alone = true;
+    for (StateIndex other = static_cast<StateIndex>(its + 1); other < chart_.states[its].end;
+         other = chart_.states[other].end) {
+      alone = alone && (other == state || !histories_[history][other]);
+    }
+    if (!alone && chart_.states[its].kind != Chart::Kind::parallel) continue;
     histories_[history][state] = remembered_[history] = true;
   }
 }
@@ -162,16 +196,18 @@ void ChartRunner::fill_gaps() noexcept {
     for (StateIndex child = static_cast<StateIndex>(index + 1); child < around.end; child = chart_.states[child].end) {
       const bool there = run_[child].active || run_[child].entering;
       any = any || there;
-      if (parallel && !there) fill(index, child);
+      if (parallel && !there && chart_.states[child].kind == Chart::Kind::region) fill(index, child);
     }
-    if (!parallel && !any && around.initial != no_state) fill(index, around.initial);
+    if (!parallel && !any && !around.defaults.empty()) fill(index, no_state);
   }
 }
 
+// Enters this state, or what is entered by default.
 void ChartRunner::fill(StateIndex around, StateIndex entered) noexcept {
   filling_ = true;
   run_[around].outcome = no_event;
-  mark_entry(entered);
+  if (entered != no_state) return mark_entry(entered);
+  mark_defaults(around, around);
 }
 
 std::vector<bool> ChartRunner::gone_from(const ChartRunner& other) const {

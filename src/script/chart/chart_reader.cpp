@@ -4,13 +4,12 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
-#include <map>
+#include <iterator>
 #include <string>
 
 #include "chart_arguments.h"
 #include "chart_calls.h"
 #include "kadans/signal/capacity.h"
-#include "script/check/source_lexer.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/handle.h"
@@ -29,10 +28,10 @@ constexpr const char* behavior_keys[] = {"version", "controls", "vars",   "args"
                                          "enter",   "exit",     "during", "run",  "endless", nullptr};
 constexpr const char* state_keys[] = {"controls", "initial", "enter",   "exit", "during",
                                       "run",      "always",  "endless", nullptr};
-constexpr const char* parallel_keys[] = {"controls", "enter", "exit", "during", "run", "always", nullptr};
+constexpr const char* parallel_keys[] = {"controls", "initial", "enter", "exit", "during", "run", "always", nullptr};
 constexpr const char* final_keys[] = {"outcome", "result", "enter", nullptr};
 constexpr const char* history_keys[] = {"deep", "to", nullptr};
-constexpr const char* transition_keys[] = {"when", "on", "after", "to", "why", "action", nullptr};
+constexpr const char* transition_keys[] = {"when", "on", "after", "to", "why", "action", "internal", nullptr};
 
 const char* const* keys_of(NodeKind kind) noexcept {
   switch (kind) {
@@ -54,14 +53,17 @@ const char* wanted_type(const char* key) noexcept {
   for (const char* name : {"enter", "exit", "during", "run", "migrate", "when", "action", "result"}) {
     if (std::strcmp(key, name) == 0) return "function";
   }
-  for (const char* name : {"initial", "outcome", "to", "why"}) {
+  for (const char* name : {"outcome", "why"}) {
     if (std::strcmp(key, name) == 0) return "string";
   }
   for (const char* name : {"vars", "args", "always"}) {
     if (std::strcmp(key, name) == 0) return "table";
   }
   if (std::strcmp(key, "version") == 0) return "number";
-  return std::strcmp(key, "deep") == 0 || std::strcmp(key, "endless") == 0 ? "boolean" : nullptr;
+  for (const char* name : {"deep", "endless", "internal"}) {
+    if (std::strcmp(key, name) == 0) return "boolean";
+  }
+  return nullptr;
 }
 
 void check_types(lua_State* state, int table, const ScriptPlace& place, const char* const* names) {
@@ -108,6 +110,30 @@ void check_controls(lua_State* state, int table, const ScriptPlace& place) {
   lua_pop(state, 1);
 }
 
+// to = "a" or to = { "p.x", "q.y" }, and `initial` likewise
+void check_targets(lua_State* state, int table, const ScriptPlace& place, const char* key) {
+  lua_getfield(state, table, key);
+  const int value = lua_gettop(state);
+  const bool list = lua_istable(state, value);
+  const auto target = [&] {
+    if (lua_type(state, -1) != LUA_TSTRING)
+      raise_at(state, place, key, "'%s' must be the name of a state, or a list of names, not a %s%s", key,
+               list ? "list with a " : "", luaL_typename(state, -1));
+    if (lua_objlen(state, -1) > text_max)
+      raise_at(state, place, key, "'%s' is longer than %d characters", key, static_cast<int>(text_max));
+  };
+  const auto count = list ? static_cast<int>(lua_objlen(state, value)) : 0;
+  if (list && (count == 0 || count > listed_max))
+    raise_at(state, place, key, "'%s' lists 1 to %d states, in regions of one k.parallel", key, listed_max);
+  for (int i = 1; i <= count; ++i) {
+    lua_rawgeti(state, value, i);
+    target();
+    lua_pop(state, 1);
+  }
+  if (!list && !lua_isnil(state, value)) target();
+  lua_settop(state, value - 1);
+}
+
 void check_after(lua_State* state, int table, const ScriptPlace& place) {
   lua_getfield(state, table, "after");
   std::size_t number = 0;
@@ -129,6 +155,12 @@ void check_on(lua_State* state, int table, const ScriptPlace& place) {
     if (lua_objlen(state, -1) > text_max)
       raise_at(state, place, "on", "'on' is longer than %d characters", static_cast<int>(text_max));
     if (lua_objlen(state, -1) == 0) raise_at(state, place, "on", "'on' is the name of an event, not an empty text");
+    const char* star = std::strchr(lua_tostring(state, -1), '*');
+    const bool first = star == lua_tostring(state, -1);
+    if (star != nullptr && (star[1] != '\0' || (!first && (star[-1] != '.' || star == lua_tostring(state, -1) + 1))))
+      raise_at(state, place, lua_tostring(state, -1),
+               "on = \"%s\": '*' stands for all words behind a dot, on = \"fault.*\", or alone for all events",
+               lua_tostring(state, -1));
   };
   if (lua_istable(state, on)) {
     const int count = static_cast<int>(lua_objlen(state, on));
@@ -147,20 +179,25 @@ void check_on(lua_State* state, int table, const ScriptPlace& place) {
 
 void check_transition(lua_State* state, int table, const ScriptPlace& place) {
   core_of(state).budget.charge(state, transition_instructions);
-  lua_getfield(state, table, "to");
-  const char* to = lua_tostring(state, -1);
-  ScriptPlace nearer = place;
-  if (to == nullptr) {
-    check_keys(state, table, nearer, "a transition", transition_keys);  // `target` says more than a missing `to`
+  const auto has = [&](const char* key) {
+    lua_getfield(state, table, key);
+    const bool there = lua_toboolean(state, -1) != 0;
+    lua_pop(state, 1);
+    return there;
+  };
+  if (!has("to") && !has("action")) {
+    check_keys(state, table, place, "a transition", transition_keys);  // `target` says more than a missing `to`
     lua_getfield(state, table, "on");
-    const char* on = lua_tostring(state, -1);
-    raise_at(state, place, on, "a transition needs 'to': the state it leads to");
+    raise_at(state, place, lua_tostring(state, -1),
+             "a transition needs 'to': the state it leads to; or an 'action' alone, which leaves no state");
   }
-  check_keys(state, table, nearer, "a transition", transition_keys);
-  check_types(state, table, nearer, transition_keys);
-  check_on(state, table, nearer);
-  check_after(state, table, nearer);
-  lua_pop(state, 1);
+  check_keys(state, table, place, "a transition", transition_keys);
+  check_types(state, table, place, transition_keys);
+  check_on(state, table, place);
+  check_targets(state, table, place, "to");
+  check_after(state, table, place);
+  if (has("internal") && !has("to"))
+    raise_at(state, place, "internal", "'internal' says how a transition leads into its state: it needs 'to'");
 }
 
 void check_transitions(lua_State* state, int list, const ScriptPlace& place, bool nodes_too) {
@@ -224,6 +261,7 @@ int finish_node(lua_State* state) {
   check_keys(state, 1, place, node_word(kind), keys_of(kind));
   check_types(state, 1, place, keys_of(kind));
   check_controls(state, 1, place);
+  check_targets(state, 1, place, kind == NodeKind::history ? "to" : "initial");
   check_transitions(state, 1, place, true);
   if (kind == NodeKind::final_state && lua_objlen(state, 1) > 0)
     raise_at(state, place, nullptr, "a k.final is an end: no transition leaves it, and no state is in it");
@@ -261,7 +299,8 @@ int begin_node(lua_State* state) {
     const std::string& main_chunk = core_of(state).owner->sources().front().chunk;
     const bool placed = place.line > 0;
     return raise_at(state, placed ? place : ScriptPlace{main_chunk.c_str(), 1}, placed ? nullptr : node_word(kind) + 2,
-                    "%s \"%s\" { ... } takes its table behind the name, without a comma", node_word(kind), lua_tostring(state, 1));
+                    "%s \"%s\" { ... } takes its table behind the name, without a comma", node_word(kind),
+                    lua_tostring(state, 1));
   }
   push_node_maker(state, kind, 1, place);
   return 1;
@@ -319,6 +358,10 @@ ScriptPlace node_place(lua_State* state, int index) {
   return place;
 }
 
+std::vector<std::string> transition_key_names() {
+  return {std::begin(transition_keys), std::prev(std::end(transition_keys))};
+}
+
 void check_node_name(lua_State* state, const char* word, const ScriptPlace& place) { check_name(state, word, place); }
 
 void push_node_maker(lua_State* state, NodeKind kind, int name, const ScriptPlace& place) {
@@ -371,6 +414,18 @@ struct Reader {
     return value != nullptr ? value : "";
   }
 
+  void read_names(int table, const char* key, std::vector<std::string>& names) const {
+    lua_getfield(state, table, key);
+    if (lua_type(state, -1) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -1));
+    const int count = lua_istable(state, -1) ? static_cast<int>(lua_objlen(state, -1)) : 0;
+    for (int i = 1; i <= count; ++i) {
+      lua_rawgeti(state, -1, i);
+      if (lua_type(state, -1) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -1));
+      lua_pop(state, 1);
+    }
+    lua_pop(state, 1);
+  }
+
   // Both look through what is there already.
   int find_line(const ScriptPlace& place, const char* text) const {
     const LuaState& owner = *core_of(state).owner;
@@ -405,11 +460,21 @@ struct Reader {
       raise_at(state, place, nullptr, "more than %d transitions", static_cast<int>(transitions_max));
     Chart::Transition& made = chart.transitions.emplace_back();
     made.source = source;
-    made.target_name = text(table, "to");
-    made.line = find_line(place, made.target_name.c_str());
+    read_names(table, "to", made.target_names);
+    made.line = find_line(place, !made.target_names.empty() ? made.target_names.front().c_str()
+                                 : *on != '\0'              ? on
+                                                            : "action");
     made.when = reference(table, "when");
     made.action = reference(table, "action");
+    lua_getfield(state, table, "internal");
+    made.internal = lua_toboolean(state, -1) != 0;
+    lua_pop(state, 1);
     if (*on != '\0') made.on = intern(on);
+    if (Chart::is_pattern(on)) {
+      made.pattern = chart.intern_pattern(on);
+      if (chart.patterns.size() > Chart::patterns_max)
+        raise_at(state, place, on, "more than %d different names with '*'", static_cast<int>(Chart::patterns_max));
+    }
     lua_getfield(state, table, "after");
     std::size_t number = 0;
     made.timed = !lua_isnil(state, -1);
@@ -455,20 +520,8 @@ struct Reader {
     return index;
   }
 
-  void read_controls(int body, StateIndex index) {
-    lua_getfield(state, body, "controls");
-    if (lua_type(state, -1) == LUA_TSTRING) chart.states[index].controls.emplace_back(lua_tostring(state, -1));
-    const int count = lua_istable(state, -1) ? static_cast<int>(lua_objlen(state, -1)) : 0;
-    for (int i = 1; i <= count; ++i) {
-      lua_rawgeti(state, -1, i);
-      if (lua_type(state, -1) == LUA_TSTRING) chart.states[index].controls.emplace_back(lua_tostring(state, -1));
-      lua_pop(state, 1);
-    }
-    lua_pop(state, 1);
-  }
-
   void read_body(int body, StateIndex index, const ScriptPlace& place, int depth) {
-    read_controls(body, index);
+    read_names(body, "controls", chart.states[index].controls);
     {
       Chart::State& made = chart.states[index];
       made.enter = reference(body, "enter");
@@ -476,7 +529,7 @@ struct Reader {
       made.during = reference(body, "during");
       made.run = reference(body, "run");
       made.result = reference(body, "result");
-      made.initial_name = text(body, made.kind == Chart::Kind::history ? "to" : "initial");
+      read_names(body, made.kind == Chart::Kind::history ? "to" : "initial", made.initial_names);
       made.outcome_name = text(body, "outcome");
       if (made.kind == Chart::Kind::final_state) {
         made.outcome_given = !made.outcome_name.empty();
@@ -592,60 +645,15 @@ void charge_resolving(lua_State* state, const Chart& chart) {
   double source_bytes = 0;
   for (const LuaState::Source& source : core_of(state).owner->sources())
     source_bytes += static_cast<double>(source.text.size());
-  const auto states = static_cast<double>(chart.states.size()),
-             transitions = static_cast<double>(chart.transitions.size());
-  core_of(state).budget.charge(state, states * (states + transitions) / looks_per_instruction);
+  const auto states = static_cast<double>(chart.states.size());
+  double names = states;
+  for (const Chart::State& one : chart.states) names += static_cast<double>(one.initial_names.size());
+  for (const Chart::Transition& one : chart.transitions) {  // each target is compared with the ones before it, too
+    const auto count = static_cast<double>(one.target_names.size());
+    names += count + count * count / 4;
+  }
+  core_of(state).budget.charge(state, states * names / looks_per_instruction);
   core_of(state).budget.charge(state, states * source_bytes / bytes_per_instruction);
-}
-
-using Tokens = std::vector<SourceToken>;
-
-// The opening brace of `k.state "name" {` from this line on; 0: not written so.
-std::size_t body_of(const Tokens& tokens, int line, const std::string& name) {
-  const auto first = std::ranges::lower_bound(tokens, line, {}, &SourceToken::line);
-  for (auto i = static_cast<std::size_t>(first - tokens.begin()); i + 2 < tokens.size(); ++i) {
-    if (tokens[i].kind != SourceToken::Kind::text || tokens[i].text != name) continue;
-    const std::size_t behind = tokens[i + 1].is(")") ? i + 2 : i + 1;
-    if (tokens[behind].is("{")) return behind;
-  }
-  return 0;
-}
-
-// Of the transition { ... to = "name" ... } at `at`; 0 when it is none.
-std::size_t target_of(const Tokens& tokens, std::size_t at) {
-  if (!tokens[at].is("{")) return 0;
-  for (const std::size_t part : parts_of(tokens, at + 1)) {
-    if (tokens[part].kind != SourceToken::Kind::name || tokens[part].text != "to") continue;
-    return tokens[part + 1].is("=") && tokens[part + 2].kind == SourceToken::Kind::text ? part + 2 : 0;
-  }
-  return 0;
-}
-
-// Gives the transitions from `first` on their lines, those written in the braces at `at`, in their order.
-void place(const Tokens& tokens, std::size_t at, Chart& chart, std::uint16_t first, std::uint16_t count) {
-  std::vector<bool> placed(count, false);
-  for (const std::size_t part : parts_of(tokens, at + 1)) {
-    const std::size_t target = target_of(tokens, part);
-    for (std::uint16_t i = 0; target != 0 && i < count; ++i) {
-      Chart::Transition& transition = chart.transitions[static_cast<std::size_t>(first + i)];
-      if (placed[i] || transition.target_name != tokens[target].text) continue;
-      do {
-        placed[i] = true;
-        chart.transitions[static_cast<std::size_t>(first + i)].line = tokens[target].line;
-        ++i;
-      } while (i < count && chart.transitions[static_cast<std::size_t>(first + i)].listed);
-      break;
-    }
-  }
-}
-
-std::size_t always_of(const Tokens& tokens, std::size_t at) {
-  for (const std::size_t part : parts_of(tokens, at + 1)) {
-    const bool found = tokens[part].kind == SourceToken::Kind::name && tokens[part].text == "always" &&
-                       tokens[part + 1].is("=") && tokens[part + 2].is("{");
-    if (found) return part + 2;
-  }
-  return 0;
 }
 
 }  // namespace
@@ -655,26 +663,6 @@ void read_chart(lua_State* state, int index, Chart& chart) {
   chart.name = node_name(state, index);
   reader.read_machine(index, no_state, 0);
   charge_resolving(state, chart);
-}
-
-void find_transition_lines(const std::vector<LuaState::Source>& sources, Chart& chart) {
-  std::map<std::string, Tokens> files;
-  for (const Chart::State& state : chart.states) {
-    if (state.transition_count == 0 && state.always_count == 0) continue;
-    auto file = files.find(state.chunk);
-    for (const LuaState::Source& source : sources) {
-      if (file == files.end() && source.chunk == state.chunk)
-        file = files.emplace(state.chunk, lex_source(source.text)).first;
-    }
-    if (file == files.end()) continue;
-    const Tokens& tokens = file->second;
-    const std::string& name = state.machine_root ? chart.machines[state.machine].name : state.name;
-    const std::size_t body = body_of(tokens, state.line, name);
-    if (body == 0) continue;
-    place(tokens, body, chart, state.first_transition, state.transition_count);
-    const std::size_t always = state.always_count > 0 ? always_of(tokens, body) : 0;
-    if (always != 0) place(tokens, always, chart, state.first_always, state.always_count);
-  }
 }
 
 }  // namespace kadans

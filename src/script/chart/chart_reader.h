@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <lua.hpp>
@@ -36,6 +37,8 @@ void open_nodes(lua_State* state);
 void open_parameters(lua_State* state);
 // True when the value at `index` is a parameter; then `number` is its index in LuaCore::parameters.
 bool is_parameter(lua_State* state, int index, std::size_t* number);
+
+std::vector<std::string> transition_key_names();
 
 // Reads the behavior at `index` of the stack and all behaviors that it calls into `chart`. Functions and tables get
 // registry references. Raises on anything that cannot be read; wrong names are found later by Chart::resolve().

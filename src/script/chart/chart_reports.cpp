@@ -1,5 +1,6 @@
 #include "chart_reports.h"
 
+#include <algorithm>
 #include <string>
 
 #include "script/check/hint.h"
@@ -28,6 +29,9 @@ void find_reports(Chart& chart, std::vector<InputProblem>& problems) {
   chart.refused_event = chart.find_event("refused");
   chart.fault_events.clear();
   const std::vector<std::string> names = fault_names();
+  for (const std::string& fault : names) {  // known now to what waits for "fault.*"
+    if (chart.any_pattern_takes(fault)) chart.intern(fault);
+  }
   for (std::size_t code = 0; code < names.size(); ++code) {
     const EventId event = chart.find_event(names[code]);
     if (event != no_event) chart.fault_events.emplace_back(static_cast<FaultCode>(code + 1), event);
@@ -38,7 +42,9 @@ void find_reports(Chart& chart, std::vector<InputProblem>& problems) {
     if (transition.on == no_event || problems.size() >= reported_max) continue;
     if (transition.on == chart.error_event) chart.takes_errors[transition.source] = true;
     const std::string& event = chart.events[static_cast<std::size_t>(transition.on)];
-    if (!event.starts_with(fault_prefix) || chart.is_report(transition.on)) continue;
+    const bool some = std::ranges::any_of(
+        chart.fault_events, [&](const auto& fault) { return chart.takes_by_pattern(transition, fault.second); });
+    if (!event.starts_with(fault_prefix) || chart.is_report(transition.on) || some) continue;
     problems.push_back({chart.states[transition.source].chunk, transition.line, 0,
                         "the safety layer knows no '" + event + "'" + hint_text(event, names)});
   }

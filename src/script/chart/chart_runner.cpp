@@ -16,7 +16,7 @@ constexpr std::size_t state_steps = 2;  // to look at a state for one transition
 
 }  // namespace
 
-ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, TransitionSink& sink)
+ChartRunner::ChartRunner(Chart& chart, const RunnerTables& tables, TransitionSink& sink)
     : chart_(chart),
       tables_(tables),
       sink_(sink),
@@ -25,7 +25,7 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
       histories_(chart.states.size()),
       remembered_(chart.states.size(), false),
       queue_(chart.states.size()),
-      told_(chart.events.size(), false) {
+      told_(chart.events.size() + Chart::late_events_max, false) {
   active_.reserve(chart.states.size());
   selected_.reserve(chart.transitions.size() + 1);
   for (std::size_t i = 0; i < chart.states.size(); ++i) {
@@ -34,6 +34,7 @@ ChartRunner::ChartRunner(const Chart& chart, const RunnerTables& tables, Transit
 }
 
 void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
+  before_ns_ = now_ns_;
   now_ns_ = now_ns;
   if (finished_) return;
   if (chart_.error_event != no_event) recoverable_ = true;
@@ -96,9 +97,7 @@ void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
   shown_ = event;
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
   lua_pushliteral(state, "name");
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_names);
-  lua_rawgeti(state, -1, event.id + 1);
-  lua_remove(state, -2);
+  push_event_name(state, event.id);
   lua_rawset(state, -3);
   lua_pushliteral(state, "data");
   if (event.place >= 0) {
@@ -118,6 +117,19 @@ void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
   lua_pop(state, 1);
 }
 
+// [-0 +1] A name that was learnt is not in the table yet.
+void ChartRunner::push_event_name(lua_State* state, EventId event) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_names);
+  lua_rawgeti(state, -1, event + 1);
+  if (lua_isnil(state, -1)) {
+    lua_pop(state, 1);
+    lua_pushstring(state, chart_.events[static_cast<std::size_t>(event)].c_str());
+    lua_pushvalue(state, -1);
+    lua_rawseti(state, -3, event + 1);
+  }
+  lua_remove(state, -2);
+}
+
 void ChartRunner::hide_event(lua_State* state) {
   shown_ = {};
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
@@ -135,13 +147,12 @@ void ChartRunner::push_outcomes(lua_State* state, StateIndex parallel) {
   lua_createtable(state, 0, 4);
   lua_createtable(state, 0, 4);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_names);
-  const StateIndex end = chart_.states[parallel].end;
-  for (auto region = static_cast<StateIndex>(parallel + 1); region < end; region = chart_.states[region].end) {
+  chart_.each_region(parallel, [&](StateIndex region) {
     lua_pushstring(state, chart_.states[region].name.c_str());
     lua_rawgeti(state, -2, run_[region].outcome + 1);
     lua_rawset(state, -4);
     if (push_result_in(state, region)) lua_setfield(state, -4, chart_.states[region].name.c_str());
-  }
+  });
   lua_pop(state, 1);
   lua_setfield(state, -3, "outcomes");
   lua_setfield(state, -2, "results");
@@ -188,14 +199,16 @@ void ChartRunner::stop(lua_State* state, std::int64_t now_ns) {
 void ChartRunner::take_step(lua_State* state) {
   if (selected_.empty() && !entering_) return;
   StepMeter meter(state);
-  meter.spend(state_steps * selected_.size() * (active_.size() + chart_.size()));
+  std::size_t targets = selected_.size();
+  for (const std::uint16_t number : selected_) targets += chart_.transitions[number].also.size();
+  meter.spend(state_steps * targets * (active_.size() + chart_.size()));
   meter.settle();
   const SetMask sets_before = bindings_of(state).all_sets != 0 ? sets_asked() : 0;
-  for (const std::uint16_t number : selected_) report(number);
+  for (const std::uint16_t number : selected_) report(state, number);
   for (const StateIndex index : active_) {
     for (const std::uint16_t number : selected_) {
       const StateIndex domain = chart_.transitions[number].domain;
-      if (index != domain && chart_.inside(index, domain)) run_[index].leaving = true;
+      if (domain != no_state && index != domain && chart_.inside(index, domain)) run_[index].leaving = true;
     }
   }
   for (const StateIndex index : active_) {
@@ -204,15 +217,8 @@ void ChartRunner::take_step(lua_State* state) {
   for (std::size_t i = active_.size(); i > 0; --i) {
     if (run_[active_[i - 1]].leaving) leave(state, active_[i - 1]);
   }
-  for (const std::uint16_t number : selected_) {
-    const Chart::Transition& transition = chart_.transitions[number];
-    if (transition.action != Chart::no_function) call(state, transition.action, transition.source);
-  }
-  for (const std::uint16_t number : selected_) {
-    const Chart::Transition& transition = chart_.transitions[number];
-    mark_entry(transition.target);
-    mark_ancestors(transition.target, transition.domain);
-  }
+  for (const std::uint16_t number : selected_) act(state, number);
+  for (const std::uint16_t number : selected_) mark_targets(chart_.transitions[number]);
   entering_ = false;
   if (Bindings& bindings = bindings_of(state); bindings.all_sets != 0) {
     const SetMask sets = sets_asked();
@@ -224,6 +230,12 @@ void ChartRunner::take_step(lua_State* state) {
     if (!run_[index].active) enter(state, index);
   }
   list_active();
+}
+
+void ChartRunner::act(lua_State* state, std::uint16_t number) {
+  const Chart::Transition& transition = chart_.transitions[number];
+  if (transition.once) guards_[number].acted_ns = run_[transition.source].entered_ns;
+  if (transition.action != Chart::no_function) call(state, transition.action, transition.source);
 }
 
 void ChartRunner::leave(lua_State* state, StateIndex index) {
@@ -264,13 +276,13 @@ void ChartRunner::complete(StateIndex index, EventId outcome) noexcept {
   if (waits_for_end(index, outcome)) queue_.end(index, outcome);
   if (ended.kind != Chart::Kind::region) return;
   EventId together = no_event;  // the first outcome that is not "done", else "done"
-  for (StateIndex region = static_cast<StateIndex>(ended.parent + 1); region < chart_.states[ended.parent].end;
-       region = chart_.states[region].end) {
+  bool all = true;
+  chart_.each_region(ended.parent, [&](StateIndex region) {
     const EventId its = run_[region].outcome;
-    if (its == no_event) return;
+    all = all && its != no_event;
     if (together == no_event || together == done_event) together = its;
-  }
-  complete(ended.parent, together);
+  });
+  if (all) complete(ended.parent, together);
 }
 
 // The opposite: a final state of `index` is left while what is around it stays.
@@ -287,7 +299,9 @@ bool ChartRunner::has_transition_for(StateIndex index, EventId event) const noex
   const Chart::State& at = chart_.states[index];
   const auto has = [&](std::uint16_t first, std::uint16_t count) {
     const auto begin = chart_.transitions.begin() + first;
-    return std::any_of(begin, begin + count, [&](const Chart::Transition& one) { return one.on == event; });
+    return std::any_of(begin, begin + count, [&](const Chart::Transition& one) {
+      return one.on == event || (chart_.is_report(event) && chart_.takes_by_pattern(one, event));
+    });
   };
   return has(at.first_transition, at.transition_count) || has(at.first_always, at.always_count);
 }
@@ -314,14 +328,26 @@ void ChartRunner::mark_entry(StateIndex target) noexcept {
   entering_ = run_[target].entering = true;
   if (marked_inside(target) && entered.kind != Chart::Kind::parallel) return;
   if (entered.kind == Chart::Kind::parallel) {
-    for (StateIndex region = static_cast<StateIndex>(target + 1); region < entered.end;
-         region = chart_.states[region].end) {
+    chart_.each_region(target, [&](StateIndex region) {
       if (!run_[region].entering) mark_entry(region);
-    }
-  } else if (entered.initial != no_state) {
-    mark_entry(entered.initial);
-    mark_ancestors(entered.initial, target);
+    });
+  } else {
+    mark_defaults(target, target);
   }
+}
+
+// SCXML, computeEntrySet: all targets with what is in them, then what is around them.
+void ChartRunner::mark_targets(const Chart::Transition& transition) noexcept {
+  if (transition.target == no_state) return;
+  mark_entry(transition.target);
+  for (const StateIndex target : transition.also) mark_entry(target);
+  mark_ancestors(transition.target, transition.domain);
+  for (const StateIndex target : transition.also) mark_ancestors(target, transition.domain);
+}
+
+void ChartRunner::mark_defaults(StateIndex index, StateIndex around) noexcept {
+  for (const StateIndex target : chart_.states[index].defaults) mark_entry(target);
+  for (const StateIndex target : chart_.states[index].defaults) mark_ancestors(target, around);
 }
 
 // What lies between a target and the domain of its transition; a parallel on the way starts its other regions too.
@@ -335,17 +361,20 @@ void ChartRunner::mark_ancestors(StateIndex target, StateIndex domain) noexcept 
 
 void ChartRunner::mark_history(StateIndex history) noexcept {
   const StateIndex parent = chart_.states[history].parent;
-  if (!remembered_[history]) {
-    const StateIndex fallback = chart_.states[history].initial;
-    if (fallback == no_state) return;
-    mark_entry(fallback);
-    return mark_ancestors(fallback, parent);
+  if (!remembered_[history]) return mark_defaults(history, parent);
+  const bool deep = chart_.states[history].deep;
+  const std::vector<bool>& remembered = histories_[history];
+  StateIndex next = chart_.states[parent].end;  // of the remembered states the one behind in document order
+  for (StateIndex index = next; index > parent + 1; --index) {
+    const auto i = static_cast<StateIndex>(index - 1);
+    if (!remembered[i]) continue;
+    if (deep ? next >= chart_.states[i].end : chart_.states[i].parent == parent) mark_entry(i);
+    next = i;
   }
-  for (StateIndex i = static_cast<StateIndex>(parent + 1); i < chart_.states[parent].end; ++i) {
-    if (histories_[history][i] && chart_.states[history].deep) entering_ = run_[i].entering = true;
-  }
-  for (StateIndex i = static_cast<StateIndex>(parent + 1); i < chart_.states[parent].end; ++i) {
-    if (histories_[history][i] && !chart_.states[history].deep && chart_.states[i].parent == parent) mark_entry(i);
+  for (StateIndex i = static_cast<StateIndex>(parent + 1); deep && i < chart_.states[parent].end; ++i) {
+    if (!remembered[i]) continue;
+    run_[i].entering = true;
+    if (chart_.states[i].kind == Chart::Kind::parallel) mark_entry(i);  // a reload may have brought further regions
   }
 }
 
@@ -368,13 +397,32 @@ void ChartRunner::list_active() noexcept {
 }
 
 // The innermost active state of what the transition leaves, and where it leads.
-void ChartRunner::report(std::uint16_t number) noexcept {
+void ChartRunner::report(lua_State* state, std::uint16_t number) noexcept {
   const Chart::Transition& transition = chart_.transitions[number];
+  if (transition.target == no_state) return;
   StateIndex from = transition.source;
   for (const StateIndex index : active_) {
     if (chart_.states[index].parent == from) from = index;
   }
   sink_.transitioned(chart_.states[from].path, chart_.states[transition.target].path, transition.why);
+  if (shown_.id == no_event) note_restless(state, transition, from);
+}
+
+// A state that was entered in the tick before and is left by a transition without an event and without time to wait.
+// With an event it may be right: somebody sends one in each tick.
+void ChartRunner::note_restless(lua_State* state, const Chart::Transition& transition, StateIndex from) noexcept {
+  if (transition.timed && after_s(state, transition) > 0) return;
+  std::uint32_t ticks = 0;
+  for (StateIndex index = from; index != transition.domain; index = chart_.states[index].parent) {
+    const StateRun& run = run_[index];
+    if (run.entered_ns == before_ns_) ticks = std::max(ticks, run.restless_ns == before_ns_ ? run.restless + 1 : 1);
+  }
+  StateRun& entered = run_[transition.target];
+  entered.restless = ticks;
+  entered.restless_ns = now_ns_;
+  if (ticks < restless_ticks || told_restless_) return;
+  told_restless_ = true;
+  sink_.restless(chart_.states[from], chart_.states[transition.target], transition.line, ticks);
 }
 
 StateIndex ChartRunner::innermost(StateIndex around) const noexcept {

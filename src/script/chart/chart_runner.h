@@ -6,6 +6,7 @@
 //   2. Each that found none looks among their other transitions, from the inside out, in the order written.
 //   3. Of transitions that would leave the same state the first one is taken, unless a later one starts further inside
 //      (SCXML, section D, removeConflictingTransitions). So an `always` of any region goes before other transitions.
+//      A transition without a target leaves nothing. Without an event it takes nobody's turn: the search goes on.
 //   4. All exits run, innermost and last first, then the actions, then all entries, outermost and first first. Between
 //      actions and entries the control sets are switched to that the active states run on from now on.
 //
@@ -22,6 +23,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -63,15 +65,19 @@ class TransitionSink {
   // transition in this line.
   virtual void event_dropped(const char* event) noexcept = 0;
   virtual void out_of_steps(const char* chunk, int line) noexcept = 0;
+  // Told once: for so many ticks in a row states followed each other at once, these the last ones.
+  virtual void restless(const Chart::State& from, const Chart::State& to, int line, std::uint32_t ticks) noexcept = 0;
   virtual void recovered(const ScriptError& error) noexcept = 0;  // a transition for "error" is taken
 };
 
 class ChartRunner {
  public:
   // Make it before the first tick. All references must outlive the runner.
-  ChartRunner(const Chart& chart, const RunnerTables& tables, TransitionSink& sink);
+  ChartRunner(Chart& chart, const RunnerTables& tables, TransitionSink& sink);
 
   static constexpr std::uint32_t steps_max = 16;
+  static constexpr std::uint32_t restless_ticks =
+      500;  // 5 s at 100 Hz: a chart that counts or searches is over by then
 
   void tick(lua_State* state, std::int64_t now_ns);
   // Leaves all active states, `exit` innermost first.
@@ -144,10 +150,14 @@ class ChartRunner {
     bool thread_started = false;
     Motion* motion = nullptr;  // the motion that it waits for
     std::int64_t wake_ns = 0;
+    std::uint32_t restless = 0;    // ticks in a row in which states took no time, up to its entry
+    std::int64_t restless_ns = 0;  // at that entry
   };
+  static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::min();
   struct Guard {
     std::uint64_t look = 0;  // when it was evaluated
     bool yes = false;
+    std::int64_t acted_ns = never_ns;  // when the state was entered in which a transition that comes once has come
   };
 
   // With an event: among the transitions that have it; without one: among those that have none.
@@ -159,16 +169,22 @@ class ChartRunner {
   void push_guard(lua_State* state, std::uint16_t transition);
   bool has_transition_for(StateIndex index, EventId event) const noexcept;
   bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
-  bool happened(const Chart::Transition& transition, const WaitingEvent* event) const noexcept;
-  bool due(lua_State* state, const Chart::Transition& transition) const noexcept;
+  bool happened(std::uint16_t transition, const WaitingEvent* event) const noexcept;
+  bool due(lua_State* state, std::uint16_t transition) const noexcept;
+  double after_s(lua_State* state, const Chart::Transition& transition) const noexcept;
   bool guard(lua_State* state, std::uint16_t transition);
+  bool there_already(const Chart::Transition& transition) const noexcept;
+  bool acted(std::uint16_t transition) const noexcept;
+  bool lets_pass(StepMeter& meter, std::uint16_t transition, const WaitingEvent* event);
   void add_selected(std::uint16_t transition) noexcept;
+  bool passes_over(std::uint16_t taken, std::uint16_t due) const noexcept;
   bool conflict(std::uint16_t one, std::uint16_t other) const noexcept;
 
   void first_step(lua_State* state);
   bool select_event(lua_State* state, bool ends_only = false);
   void drop_events(lua_State* state, std::uint32_t steps);
   void show_event(lua_State* state, const WaitingEvent& event);
+  void push_event_name(lua_State* state, EventId event);
   void hide_event(lua_State* state);
   void forget_data(lua_State* state, const WaitingEvent& event);
   void push_outcomes(lua_State* state, StateIndex parallel);
@@ -182,15 +198,21 @@ class ChartRunner {
   bool waits_for_end(StateIndex ended, EventId outcome) const noexcept;
   void go_on(StateIndex index) noexcept;
   void mark_entry(StateIndex target) noexcept;
+  void mark_defaults(StateIndex index, StateIndex around) noexcept;
+  void mark_targets(const Chart::Transition& transition) noexcept;
   void mark_ancestors(StateIndex target, StateIndex domain) noexcept;
   bool marked_inside(StateIndex index) const noexcept;
   void mark_history(StateIndex history) noexcept;
   void remember(StateIndex index) noexcept;
   void list_active() noexcept;
-  void report(std::uint16_t transition) noexcept;
+  void act(lua_State* state, std::uint16_t transition);
+  void report(lua_State* state, std::uint16_t transition) noexcept;
+  void note_restless(lua_State* state, const Chart::Transition& transition, StateIndex from) noexcept;
 
   void fill_gaps() noexcept;
   void fill(StateIndex around, StateIndex entered) noexcept;
+  void keep_acted(const Chart::State& state, ByteWriter& bytes) const;
+  void restore_acted(StateIndex index, ByteReader& bytes);
   void keep_histories(ByteWriter& bytes) const;
   [[nodiscard]] bool restore_state(ByteReader& bytes, std::vector<bool>& listed);
   void restore_history(ByteReader& bytes);
@@ -221,7 +243,7 @@ class ChartRunner {
   void cancel_run(lua_State* state, StateIndex index);
   bool ready(lua_State* state, StateRun& run, lua_State* thread, int& arguments) const noexcept;
 
-  const Chart& chart_;
+  Chart& chart_;  // learns names of events
   const RunnerTables& tables_;
   TransitionSink& sink_;
   std::vector<StateRun> run_;
@@ -233,10 +255,10 @@ class ChartRunner {
   std::vector<bool> remembered_;
   EventQueue queue_;
   std::vector<bool> told_;  // events that were told as dropped
-  bool told_steps_ = false;
+  bool told_steps_ = false, told_restless_ = false;
   WaitingEvent shown_;  // the event of the step, for s.event
   std::uint64_t unhandled_ = 0;
-  std::int64_t now_ns_ = 0;
+  std::int64_t now_ns_ = 0, before_ns_ = 0;  // of this tick and of the one before
   StateIndex acting_ = 0;
   bool started_ = false, finished_ = false;
   bool recoverable_ = false;  // an error of a function can be an event: none was yet in this tick

@@ -37,39 +37,52 @@ bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
   if (guard.look != look_) {  // several innermost states may ask
     push_guard(state, number);
     if (recoverable_ && !call_recoverably(state, transition.source, 2, 1)) {
-      guard = {look_, false};
+      guard.look = look_;
+      guard.yes = false;
       return false;
     }
     if (!recoverable_) lua_call(state, 2, 1);
-    guard = {look_, lua_toboolean(state, -1) != 0};
+    guard.look = look_;
+    guard.yes = lua_toboolean(state, -1) != 0;
     lua_pop(state, 1);
   }
   return guard.yes;
 }
 
 // The end of a coroutine is no event that waits: it is looked at as a guard is.
-bool ChartRunner::happened(const Chart::Transition& transition, const WaitingEvent* event) const noexcept {
+bool ChartRunner::happened(std::uint16_t number, const WaitingEvent* event) const noexcept {
+  const Chart::Transition& transition = chart_.transitions[number];
   if (event == nullptr) {
-    return transition.on == no_event || (transition.on == run_done_event && run_[transition.source].run_done);
+    if (transition.on == no_event) return true;
+    return transition.on == run_done_event && run_[transition.source].run_done && !acted(number);
   }
+  if (event->from == no_state) return transition.on == event->id || chart_.takes_by_pattern(transition, event->id);
   if (transition.on != event->id) return false;
-  if (event->from == no_state) return true;
   return event->id == chart_.error_event ? chart_.inside(event->from, transition.source)
                                          : chart_.hears_end(transition.source, event->from);
 }
 
-bool ChartRunner::due(lua_State* state, const Chart::Transition& transition) const noexcept {
+// Whether it came already since its state was entered, and comes once.
+bool ChartRunner::acted(std::uint16_t number) const noexcept {
+  const Chart::Transition& transition = chart_.transitions[number];
+  return transition.once && guards_[number].acted_ns == run_[transition.source].entered_ns;
+}
+
+bool ChartRunner::due(lua_State* state, std::uint16_t number) const noexcept {
+  const Chart::Transition& transition = chart_.transitions[number];
   if (!transition.timed) return true;
-  const double after_s = transition.after_parameter != Chart::no_parameter
-                             ? parameter_value(state, static_cast<std::size_t>(transition.after_parameter),
-                                               chart_.states[transition.source].machine)
-                             : transition.after_s;
-  return state_time_s(transition.source) >= after_s;
+  return state_time_s(transition.source) >= after_s(state, transition) && !acted(number);
+}
+
+double ChartRunner::after_s(lua_State* state, const Chart::Transition& transition) const noexcept {
+  return transition.after_parameter != Chart::no_parameter
+             ? parameter_value(state, static_cast<std::size_t>(transition.after_parameter),
+                               chart_.states[transition.source].machine)
+             : transition.after_s;
 }
 
 bool ChartRunner::enabled(lua_State* state, std::uint16_t number, const WaitingEvent* event) {
-  const Chart::Transition& transition = chart_.transitions[number];
-  return happened(transition, event) && due(state, transition) && guard(state, number);
+  return happened(number, event) && due(state, number) && guard(state, number);
 }
 
 std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, StateIndex leaf,
@@ -83,8 +96,8 @@ std::uint16_t ChartRunner::select_always(lua_State* state, StepMeter& meter, Sta
     for (std::uint16_t i = 0; i < outer.always_count; ++i) {
       const auto number = static_cast<std::uint16_t>(outer.first_always + i);
       meter.spend(transition_steps);
-      if (run_[chart_.transitions[number].target].active) continue;  // it is there already
-      if (enabled(state, number, event)) return number;
+      if (there_already(chart_.transitions[number])) continue;
+      if (enabled(state, number, event) && !lets_pass(meter, number, event)) return number;
     }
     const std::uint16_t found = passed_over ? select_passed_over(state, meter, around) : none;
     if (found != none) return found;
@@ -97,7 +110,8 @@ std::uint16_t ChartRunner::select_passed_over(lua_State* state, StepMeter& meter
   for (std::uint16_t i = 0; i < at.transition_count; ++i) {
     meter.spend(transition_steps);
     const auto number = static_cast<std::uint16_t>(at.first_transition + i);
-    if (chart_.transitions[number].timed && enabled(state, number, nullptr)) return number;
+    if (chart_.transitions[number].timed && enabled(state, number, nullptr) && !lets_pass(meter, number, nullptr))
+      return number;
   }
   return none;
 }
@@ -109,10 +123,23 @@ std::uint16_t ChartRunner::select_ordinary(lua_State* state, StepMeter& meter, S
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
       meter.spend(transition_steps);
       const auto number = static_cast<std::uint16_t>(at.first_transition + i);
-      if (enabled(state, number, event)) return number;
+      if (enabled(state, number, event) && !lets_pass(meter, number, event)) return number;
     }
   }
   return none;
+}
+
+bool ChartRunner::there_already(const Chart::Transition& transition) const noexcept {
+  if (transition.target == no_state || !run_[transition.target].active) return false;
+  return std::ranges::all_of(transition.also, [&](StateIndex target) { return run_[target].active; });
+}
+
+// An action alone, without an event that it would use up, is taken beside what else is found.
+bool ChartRunner::lets_pass(StepMeter& meter, std::uint16_t number, const WaitingEvent* event) {
+  if (chart_.transitions[number].target != no_state || event != nullptr) return false;
+  meter.spend(selected_steps * selected_.size());
+  add_selected(number);
+  return true;
 }
 
 // After the first step's selection: each `after` that is due and is not taken, for what is taken leaves the same
@@ -123,18 +150,27 @@ void ChartRunner::note_passed_over(lua_State* state, StepMeter& meter) {
     for (std::uint16_t i = 0; i < at.transition_count; ++i) {
       const auto number = static_cast<std::uint16_t>(at.first_transition + i);
       const Chart::Transition& transition = chart_.transitions[number];
-      if (!transition.timed || transition.on != no_event || !due(state, transition)) continue;
+      if (!transition.timed || transition.on != no_event || !due(state, number)) continue;
       meter.spend(selected_steps * selected_.size());
+      if (std::ranges::find(selected_, number) != selected_.end()) continue;
       for (const std::uint16_t taken : selected_) {
-        if (taken != number && conflict(taken, number)) run_[index].passed_over = true;
+        if (passes_over(taken, number)) run_[index].passed_over = true;
       }
     }
     meter.spend(transition_steps * at.transition_count);
   }
 }
 
+// A transition with a target that was found further inside hides an action alone, which conflicts with nothing.
+bool ChartRunner::passes_over(std::uint16_t taken, std::uint16_t due) const noexcept {
+  const Chart::Transition &one = chart_.transitions[taken], &other = chart_.transitions[due];
+  if (other.target != no_state) return conflict(taken, due);
+  return one.target != no_state && chart_.inside(one.source, other.source);
+}
+
 bool ChartRunner::conflict(std::uint16_t one, std::uint16_t other) const noexcept {
   const StateIndex domain = chart_.transitions[one].domain, its = chart_.transitions[other].domain;
+  if (domain == no_state || its == no_state) return false;  // one of them leaves nothing
   return chart_.inside(domain, its) || chart_.inside(its, domain);
 }
 

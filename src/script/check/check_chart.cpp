@@ -43,11 +43,20 @@ class ChartCheck {
     for (bool more = true; more;) {
       more = false;
       for (const Chart::Transition& transition : chart_.transitions) {
-        if (!reached_[transition.source] || reached_[transition.target]) continue;
-        enter(transition.target);
-        more = true;
+        if (!reached_[transition.source]) continue;
+        each_target(transition, [&](StateIndex target) {
+          if (reached_[target]) return;
+          enter(target);
+          more = true;
+        });
       }
     }
+  }
+
+  template <typename Visit>
+  static void each_target(const Chart::Transition& transition, Visit visit) {
+    if (transition.target != no_state) visit(transition.target);
+    for (const StateIndex target : transition.also) visit(target);
   }
 
   // The state, those around it, and what is entered with them.
@@ -61,7 +70,7 @@ class ChartCheck {
       const Chart::State& state = chart_.states[at];
       if (state.parent != no_state && !reached_[state.parent]) waiting.push_back(state.parent);
       // A transition past `initial` still makes the parent's default reachable only through the parent itself.
-      if (state.initial != no_state && at_entry(at, index)) waiting.push_back(state.initial);
+      if (at_entry(at, index)) waiting.insert(waiting.end(), state.defaults.begin(), state.defaults.end());
       for (StateIndex i = at + 1; i < state.end; ++i) {
         const bool region = state.kind == Chart::Kind::parallel && chart_.states[i].parent == at;
         const bool called = chart_.states[i].machine_root && chart_.states[i].parent == at && state.initial == no_state;
@@ -76,7 +85,8 @@ class ChartCheck {
   void never_entered(StateIndex index) {
     const Chart::State& state = chart_.states[index];
     if (reached_[index] || state.parent == no_state || !reached_[state.parent]) return;
-    problem(state, state.line, "state '" + state.name + "' is never entered: no transition leads to it, with to = \"" + state.name + "\"");
+    problem(state, state.line,
+            "state '" + state.name + "' is never entered: no transition leads to it, with to = \"" + state.name + "\"");
   }
 
   void no_way_out(StateIndex index) {
@@ -85,10 +95,14 @@ class ChartCheck {
     if (!leaf || state.kind == Chart::Kind::final_state || state.kind == Chart::Kind::parallel) return;
     for (StateIndex around = index; around != no_state; around = chart_.states[around].parent) {
       const Chart::State& at = chart_.states[around];
-      if (at.endless || at.transition_count > 0) return;
-      const auto leads_away = [&](std::uint16_t number) { return chart_.transitions[number].target != index; };
+      if (at.endless) return;
+      const auto leads_on = [&](std::uint16_t number) { return chart_.transitions[number].target != no_state; };
+      for (std::uint16_t i = 0; i < at.transition_count; ++i) {
+        if (leads_on(static_cast<std::uint16_t>(at.first_transition + i))) return;
+      }
       for (std::uint16_t i = 0; i < at.always_count; ++i) {
-        if (leads_away(static_cast<std::uint16_t>(at.first_always + i))) return;
+        const auto number = static_cast<std::uint16_t>(at.first_always + i);
+        if (leads_on(number) && chart_.transitions[number].target != index) return;
       }
     }
     const std::string shown = state.name.empty() ? chart_.name : state.name;
@@ -98,9 +112,10 @@ class ChartCheck {
   void shadowed(StateIndex index, std::uint16_t first, std::uint16_t count) {
     for (std::uint16_t i = 0; i + 1 < count; ++i) {
       const Chart::Transition& transition = chart_.transitions[static_cast<std::size_t>(first) + i];
-      if (transition.when != Chart::no_function || transition.on != no_event || transition.timed) continue;
+      const bool open = transition.when != Chart::no_function || transition.on != no_event || transition.timed;
+      if (open || transition.target == no_state) continue;
       problem(chart_.states[index], chart_.transitions[static_cast<std::size_t>(first) + i + 1].line,
-              "this transition is never looked at: the one before it, to '" + transition.target_name +
+              "this transition is never looked at: the one before it, to '" + transition.target_names.front() +
                   "', is always taken");
       return;
     }
@@ -111,7 +126,8 @@ class ChartCheck {
     for (std::uint16_t i = 0; i < state.transition_count; ++i) {
       const Chart::Transition& transition = chart_.transitions[static_cast<std::size_t>(state.first_transition) + i];
       if (transition.on != run_done_event || state.run != Chart::no_function) continue;
-      problem(state, transition.line, "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");
+      problem(state, transition.line,
+              "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");
     }
   }
 
@@ -132,6 +148,14 @@ struct Emitted {
   bool may_be(const std::string& event) const {
     return unknown || events.contains(event) ||
            std::ranges::any_of(beginnings, [&](const std::string& start) { return event.starts_with(start); });
+  }
+  // Whether one may be that this takes: "fault.*", or "*", which events from outside may mean, too.
+  bool may_be_like(const std::string& pattern) const {
+    const std::string words = pattern.substr(0, pattern.size() - 1);
+    const auto fits = [&](const std::string& text) { return (text + ".").starts_with(words); };
+    return unknown || words.empty() || std::ranges::any_of(events, fits) ||
+           std::ranges::any_of(beginnings,
+                               [&](const std::string& start) { return fits(start) || words.starts_with(start); });
   }
 };
 
@@ -199,7 +223,7 @@ Ends own_ends(const Chart& chart, StateIndex index);
 Ends ends_of_parallel(const Chart& chart, StateIndex index) {
   Ends all;
   bool each_ends = true, each_done = true;
-  each_child(chart, index, [&](StateIndex region) {
+  chart.each_region(index, [&](StateIndex region) {
     Ends its = own_ends(chart, region);
     each_ends = each_ends && !its.empty();
     each_done = each_done && its.contains("done");
@@ -312,8 +336,11 @@ void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::
   for (const Chart::Transition& transition : chart.transitions) {
     if (transition.on == no_event || transition.on == run_done_event || chart.is_report(transition.on)) continue;
     const std::string& event = chart.events[static_cast<std::size_t>(transition.on)];
-    const bool end = chart.made_by_runner(transition.on);
-    if (!end && emitted.may_be(event)) continue;
+    const bool pattern = transition.pattern >= 0, end = !pattern && chart.made_by_runner(transition.on);
+    const bool fault = std::ranges::any_of(
+        chart.fault_events, [&](const auto& one) { return chart.takes_by_pattern(transition, one.second); });
+    if (fault) continue;
+    if (pattern ? emitted.may_be_like(event) : !end && emitted.may_be(event)) continue;
     Ends ends = heard_ends(chart, transition.source);
     if (ends.contains(event)) continue;
     if (!end) ends.insert(emitted.events.begin(), emitted.events.end());
@@ -321,7 +348,7 @@ void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::
     const Chart::State& source = chart.states[transition.source];
     const std::string told =
         end ? "nothing in '" + (source.name.empty() ? chart.name : source.name) + "' ends with '" + event + "'"
-            : "nobody emits the event '" + event + "' here";
+            : std::string(pattern ? "nobody emits an event like '" : "nobody emits the event '") + event + "' here";
     problems.push_back({source.chunk, transition.line, 0, told + hint_text(event, {ends.begin(), ends.end()})});
   }
 }

@@ -393,7 +393,7 @@ class SourceCheck final : public SourceListener {
                                           "' says how a state or a run ended, it cannot be emitted: give the event "
                                           "another name");
     }
-    if (id != no_event) return;
+    if (id != no_event || parts_.chart.any_pattern_takes(tokens[at].text)) return;
     problem(tokens[at].line, "nothing in this behavior waits for the event '" + tokens[at].text + "'" +
                                  hint_text(tokens[at].text, parts_.chart.events));
   }

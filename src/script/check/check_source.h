@@ -53,6 +53,9 @@ void check_chart(const Chart& chart, std::vector<InputProblem>& problems);
 // requires and calls, nor by a final state inside the waiting state.
 void check_events(const Chart& chart, const std::vector<ReadSource>& read, std::vector<InputProblem>& problems);
 
+// Finds states that lead to each other for ever and take no time.
+void check_livelocks(Behavior::Parts& parts, std::vector<InputProblem>& problems);
+
 // Checks that `vars`, `args` and the arguments of k.call are plain data, because entering copies them and a reload
 // keeps them. Anything else would raise as soon as the behavior is entered.
 // `parts` is a loaded behavior.

@@ -22,8 +22,8 @@ bool changes(const SourceToken& token) { return calculates(token) || token.is_an
 bool goes_on(const SourceToken& token) { return changes(token) || token.is_any({".", ":", "[", "("}); }
 
 const SourceToken& before(const Tokens& tokens, std::size_t at, std::size_t steps = 1) {
-  static const SourceToken none;
-  return at >= steps ? tokens[at - steps] : none;
+  static const SourceToken no_token;
+  return at >= steps ? tokens[at - steps] : no_token;
 }
 
 bool is_truth(const SourceToken& token) { return token.is("true") || token.is("false"); }
@@ -39,13 +39,13 @@ bool is_numeral(const std::string& text) {
   return end != text.c_str() && std::string_view(end).find_first_not_of(' ') == std::string_view::npos;
 }
 
-std::string written(const Tokens& tokens, std::size_t from, std::size_t to) {
+std::string as_written(const Tokens& tokens, std::size_t from, std::size_t to) {
   std::string text;
   for (std::size_t i = from; i < to; ++i) text += tokens[i].text;
   return text;
 }
 
-std::string listed(const std::vector<std::string>& texts) {
+std::string all_of_them(const std::vector<std::string>& texts) {
   std::string all;
   for (std::size_t i = 0; i < texts.size(); ++i)
     all += (i == 0 ? "" : i + 1 == texts.size() ? " or " : ", ") + texts[i];
@@ -119,26 +119,26 @@ ValueCheck::Type ValueCheck::type_of(const SourceMeaning& meaning) const {
 std::string ValueCheck::compared(const SourceUse& use, const Type& type, const Tokens& tokens, std::size_t value,
                                  const SourceToken& sign) const {
   const SourceToken& other = tokens[value];
-  const std::string name = written(tokens, use.at, use.next);
+  const std::string name = as_written(tokens, use.at, use.next);
   const bool text = other.kind == TokenKind::text, number = other.kind == TokenKind::number;
   const std::string what = text ? "a text" : number ? "a number" : "true or false";
   if (type.kind == Kind::number && !number) return name + " is a number, it is compared with " + what;
   if (type.kind == Kind::flag && !is_truth(other))
     return name + " is true or false, it is compared with " + what + ": write " + name + " or not " + name;
   if (type.kind != Kind::choice) return "";
-  const std::string choices = name + " is " + listed(type.texts);
+  const std::string choices = name + " is " + all_of_them(type.texts);
   if (!text) return choices + ", it is compared with " + what;
   if (!sign.is("==") && !sign.is("~=")) return choices + ": texts are compared with == or ~=";
   if (std::ranges::find(type.texts, other.text) != type.texts.end()) return "";
   return name + " is never \"" + other.text + "\"" + did_you_mean(other.text, type.texts) + "; it is " +
-         listed(type.texts);
+         all_of_them(type.texts);
 }
 
 void ValueCheck::operands(const SourceUse& use, const Type& type, const Tokens& tokens,
                           std::vector<ArgumentProblem>& found) const {
   const SourceToken& left = before(tokens, use.at);
   const SourceToken& right = tokens[use.next];
-  const std::string name = written(tokens, use.at, use.next);
+  const std::string name = as_written(tokens, use.at, use.next);
   const auto tell = [&](const std::string& text) {
     if (!text.empty()) found.push_back({use.line, text});
   };
@@ -179,7 +179,7 @@ std::vector<ArgumentProblem> ValueCheck::of_use(const SourceUse& use, const Toke
   if (use.arguments == 0) {
     operands(use, type, tokens, found);
   } else if (tokens[use.arguments - 1].is("(") && type.kind != Kind::by_name) {
-    found.push_back({use.line, written(tokens, use.at, use.next - 1) + " is a value: it stands without brackets"});
+    found.push_back({use.line, as_written(tokens, use.at, use.next - 1) + " is a value: it stands without brackets"});
   }
   return found;
 }
@@ -258,8 +258,8 @@ std::string ValueCheck::condition(const std::string& text) const {
   const SignalName known = condition_signal(parts_.bindings, given);
   const std::string topic = given.substr(0, given.find('.') + 1);
   constexpr std::string_view measured[] = {"joint.", "base.", "foot.", "support."};
-  const bool listed = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
-  if (!listed || signals.find_key(signal_key(known.data()))) return "";
+  const bool named = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
+  if (!named || signals.find_key(signal_key(known.data()))) return "";
   return std::string("m:on: unknown signal '") + known.data() + "'" +
          hint_text(known.data(), signals_near(parts_.bindings, known.data()));
 }

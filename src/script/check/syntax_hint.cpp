@@ -403,8 +403,8 @@ class Explainer {
       const SourceToken& before = tokens_[i - 1];
       if (!near_.ends_with(tokens_[i].text) && tokens_[i].kind != Kind::text) continue;
       if (!may_end_entry(before) || !may_begin_entry(tokens_[i]) || goes_on(i)) continue;
-      const std::string written = before.kind == Kind::text ? "\"" + before.text + "\"" : before.text;
-      return tell_line(before.line, "a comma is missing behind " + written);
+      const std::string before_it = before.kind == Kind::text ? "\"" + before.text + "\"" : before.text;
+      return tell_line(before.line, "a comma is missing behind " + before_it);
     }
     return false;
   }

@@ -11,7 +11,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::uint32_t kept_format = 1;
+constexpr std::uint32_t kept_format = 2;
 
 // Each state with the signal of the region that it is in; not those in regions that have no signal.
 void add_states(const Chart& chart, const std::string& name, const SignalTable& signals, std::vector<SignalState>& to) {
