@@ -1,5 +1,5 @@
-// docs/behaviors.md, behaviors_composition.md, behaviors_tasks.md and reflexes.md are true: their files are written into
-// a copy of the project, their commands are run there, and what they show is what these print.
+// docs/behaviors.md, behaviors_composition.md, behaviors_tasks.md and reflexes.md are true: their files are written
+// into a copy of the project, their commands are run there, and what they show is what these print.
 #include <algorithm>
 
 #include <doctest/doctest.h>
