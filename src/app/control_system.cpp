@@ -31,6 +31,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   ADD_TYPE(gaze);
   ADD_TYPE(spring_torque);
   ADD_TYPE(task_impedance);
+  ADD_TYPE(whole_body);
 }
 #undef ADD_TYPE
 
@@ -173,7 +174,8 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
                     .presets = {},
                     .divisor = object.divisor,
                     .high_level_divisor = object.high_level_divisor,
-                    .switch_dwell_s = object.switch_dwell_s};
+                    .switch_dwell_s = object.switch_dwell_s,
+                    .foresight = system->objects.back()->foresight()};
     for (ParameterId id = first_parameter; id < catalog.parameters.size(); ++id) info.parameters.push_back(id);
     for (SetpointId id = first_setpoint; id < catalog.setpoints.size(); ++id) info.setpoints.push_back(id);
     catalog.objects.push_back(std::move(info));

@@ -23,6 +23,7 @@ struct Breakage {
 };
 
 constexpr const char* robot = "config/tulip/robot.json";
+constexpr const char* reaching = "config/reaching/robot.json";
 constexpr const char* stand = "behaviors/tulip/stand.lua";
 constexpr const char* getting_up = "behaviors/tulip/get_up.lua";
 constexpr const char* rises = "set_gains(\"rise\")";
@@ -31,7 +32,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 59> breakages = {{
+constexpr std::array<Breakage, 63> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -101,6 +102,12 @@ constexpr std::array<Breakage, 59> breakages = {{
     {"touched_feet", "behaviors/hanging/touched.lua", "c:use(\"held\")", "c:use(\"loose\")",
      "held in the tick of a contact, loose in the tick after the last one"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
+    {"whole_body", "behaviors/reaching/reach.lua", "weight = 30", "weight = 0", "stretches the arm, rad"},
+    {"whole_body", reaching, "\"*_ankle_pitch.stiffness_Nm_per_rad\": 300", "\"*_ankle_pitch.stiffness_Nm_per_rad\": 1",
+     "stays up, lowest height in m"},
+    {"whole_body_switched", reaching, "\"*_ankle_pitch.stiffness_Nm_per_rad\": 300",
+     "\"*_ankle_pitch.stiffness_Nm_per_rad\": 10", "no step in torque over 2 % of a limit"},
+    {"whole_body_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "stays up, lowest height in m"},
 }};
 
 bool has_row(const std::string& scenario) {

@@ -37,7 +37,8 @@ std::vector<Row> rows() {
                         {"stance", leg_robot, all, feet},
                         {"gravity_compensation", leg_robot, {2, 3, 4}},
                         {"gaze", head, {0, 1, 2, 3, 4, 5, 6}, test::eyes()},
-                        {"task_impedance", leg_robot, {2, 3, 4}, {{{"link", "l_foot"}}}}};
+                        {"task_impedance", leg_robot, {2, 3, 4}, {{{"link", "l_foot"}}}},
+                        {"whole_body", leg_robot, all, feet}};
   for (const char* type : {"joint_pid", "joint_cascade", "joint_impedance", "joint_integrator", "joint_velocity",
                            "trajectory_list", "profile_position", "feedforward_player", "spring_torque"})
     rows.push_back({type, leg_robot, {2, 3}});

@@ -65,7 +65,8 @@ TEST_CASE("repl plays lists, pauses and resumes, a wrong list changes nothing") 
 
 TEST_CASE("repl without a scenario takes the project's only robot") {
   const auto project = project_copy("repl_robot");
-  for (const char* other : {"head", "jiwiy", "hanging"}) std::filesystem::remove_all(project / "config" / other);
+  for (const char* other : {"head", "jiwiy", "hanging", "reaching"})
+    std::filesystem::remove_all(project / "config" / other);
   write(project / "lines.txt", "s.joints.l_knee ~= nil\n:status\n");
   const Outcome outcome = run("repl <lines.txt", project);
   CHECK(outcome.out == "true\nnothing plays\n");

@@ -1,5 +1,6 @@
-// docs/behaviors.md, docs/behaviors_composition.md, docs/behaviors_events.md and docs/reflexes.md are true: their files
-// are written into a copy of the project, their commands are run there, and what they show is what these print.
+// docs/behaviors.md, the pages behaviors_composition.md, behaviors_events.md and behaviors_tasks.md, and reflexes.md are
+// true: their files are written into a copy of the project, their commands are run there, and what they show is what
+// these print.
 #include <algorithm>
 
 #include <doctest/doctest.h>
@@ -26,6 +27,10 @@ TEST_CASE("every file of the page on what charts mean is right") {
 
 TEST_CASE("every file of the page on reflexes is right, every command of it works and prints what it shows") {
   document::check_page("reflexes.md", "reflexes");
+}
+
+TEST_CASE("every file of the page on tasks is right, every command of it works and prints what it shows") {
+  document::check_page("behaviors_tasks.md", "tasks");
 }
 
 TEST_CASE("the guide is short") {

@@ -18,5 +18,6 @@ std::unique_ptr<ControlObject> make_computed_torque(const ObjectSetup& setup);
 std::unique_ptr<ControlObject> make_gravity_compensation(const ObjectSetup& setup);
 std::unique_ptr<ControlObject> make_task_impedance(const ObjectSetup& setup);
 std::unique_ptr<ControlObject> make_gaze(const ObjectSetup& setup);
+std::unique_ptr<ControlObject> make_whole_body(const ObjectSetup& setup);
 
 }  // namespace kadans

@@ -100,7 +100,7 @@ class TestedObject {
   }
 
   ControlObject* object_ = nullptr;
-  std::array<MinimumJerk, 16> motions_;
+  std::array<MinimumJerk, 64> motions_;
   std::vector<double> row_;
 };
 

@@ -101,7 +101,7 @@ void Engine::apply() {
     double& until_s = moving_until_s_[robot.catalog.setpoints[command.index].owner];
     until_s = std::max(until_s, static_cast<double>(snapshot.time_ns) * 1e-9 + command.duration_s);
     const auto joint = robot.catalog.setpoints[command.index].joint;
-    snapshot.joints.joints[joint].position_rad = command.value;
+    if (joint < max_joints) snapshot.joints.joints[joint].position_rad = command.value;
   }
 }
 

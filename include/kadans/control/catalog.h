@@ -19,6 +19,8 @@
 
 namespace kadans {
 
+class Foresight;
+
 // Named values for some of an object's parameters: gains "soft", gains "stiff".
 struct Preset {
   std::string name;
@@ -35,6 +37,7 @@ struct ObjectInfo {
   std::uint32_t divisor = 1;             // low level every n-th control tick
   std::uint32_t high_level_divisor = 1;  // high level every n-th behavior tick
   double switch_dwell_s = 0;             // least time between two switches of it (switch_dwell.h)
+  Foresight* foresight = nullptr;        // what it can say about reach (control_object.h); behavior thread
 };
 
 struct ControlSetInfo {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -67,6 +68,25 @@ struct ObjectSetup {
   std::vector<DriveLaw> drives{};  // one per joint of the model; empty: not known
 };
 
+// Says before set-points are sent whether an object can reach them. Behavior thread, or a process that plays behaviors:
+// there it belongs to an object that never runs. Bounded; it changes nothing of the object.
+class Foresight {
+ public:
+  struct Goal {
+    std::uint32_t channel = 0;
+    double value = 0;
+  };
+  struct Miss {
+    double by = 0;              // 0: they are reached, as far as it knows
+    std::uint32_t channel = 0;  // of the set-point, or the first of its group, that is missed by this much
+  };
+  Foresight() = default;
+  virtual ~Foresight() = default;
+  Foresight(const Foresight&) = delete;
+  Foresight& operator=(const Foresight&) = delete;
+  virtual Miss miss(std::span<const Goal> goals, const Snapshot& snapshot) noexcept = 0;
+};
+
 class ControlObject {
  public:
   virtual ~ControlObject() = default;
@@ -111,6 +131,9 @@ class ControlObject {
   // Between ticks: saves or restores all that changes from tick to tick (state_bytes.h). An object without such state
   // leaves it out.
   virtual void pass_state(StateBytes& bytes) noexcept { (void)bytes; }
+
+  // Before the loop: nullptr for an object that cannot know. It lives as long as the object.
+  virtual Foresight* foresight() noexcept { return nullptr; }
 
   // Behavior thread: the high level.
   virtual void update(const Snapshot& snapshot) { (void)snapshot; }

@@ -61,6 +61,8 @@ const char* type_name(const MotionOption& option) noexcept {
       return "'minimum_jerk'|'trapezoid'";
     case MotionOption::Type::flag:
       return "boolean";
+    case MotionOption::Type::list:
+      return "string[]";
   }
   return "any";
 }
@@ -116,7 +118,11 @@ std::string motion_option_reference() {
       if ((option.methods & table.method) != 0) where += (where.empty() ? "" : ", ") + std::string(table.title);
     }
     std::string value = range(option);
-    if (value.empty()) value = option.type == MotionOption::Type::flag ? "boolean" : "text";
+    if (value.empty()) {
+      value = option.type == MotionOption::Type::flag   ? "boolean"
+              : option.type == MotionOption::Type::list ? "list"
+                                                        : "text";
+    }
     text += "| `" + std::string(option.name) + "` | " + where + " | " + value + " | " + option.doc + " |\n";
   }
   return text;
@@ -183,8 +189,9 @@ constexpr ApiEntry written[] = {
      "Clears the faults of the safety layer, but no emergency stop; commands later in the same tick count already; "
      "nil, \"queue_full\""},
 
-    {"object", "move(pose, options)", "kadans.Motion?, string?",
-     "Moves to a pose, by name or as joint = rad, in { time_s = }; nil, \"queue_full\""},
+    {"object", "move(pose, options)", "kadans.Motion?, string?, number?, string?",
+     "Moves to a pose, by name or as joint = rad, or to tasks, in { time_s = }; nil, \"queue_full\", or nil, "
+     "\"out_of_reach\", how far, set-point"},
     {"object", "move_through(points, options)", "kadans.Motion?, string?",
      "Moves on a smooth curve through { { pose, time_s = }, ... } to rest at the last; nil, \"queue_full\""},
     {"object", "follow(pose, limits)", "boolean?, string?",

@@ -8,6 +8,7 @@
 #include "hint.h"
 #include "script/bindings/bindings.h"
 #include "script/motion/motion_options.h"
+#include "script/motion/task_targets.h"
 
 namespace kadans {
 namespace {
@@ -86,6 +87,8 @@ const char* other_type(const std::vector<SourceToken>& tokens, std::size_t at, c
       return type == "boolean" ? nullptr : " must be true or false";
     case MotionOption::Type::text:
       return type == "string" ? nullptr : " must be a text";
+    case MotionOption::Type::list:
+      return " must be a list { ... }";
   }
   return nullptr;
 }
@@ -173,12 +176,30 @@ std::vector<ArgumentCheck::Range> ArgumentCheck::parameters(const ObjectInfo& ob
   return all;
 }
 
+// { task = value, ... } at `at` (task_targets.h): the words outside; what is in their tables shows in the run.
+Mistakes ArgumentCheck::task_table(const ObjectInfo& object, const std::vector<Range>& ranges, const Tokens& tokens,
+                                   std::size_t at) {
+  Mistakes problems;
+  std::vector<std::string> words;
+  for (const Range& range : ranges) {
+    const TaskWord word = task_word(range.name);
+    words.push_back(word.group.empty() ? word.key : word.group);
+  }
+  for (const std::size_t key : keys_of_table(tokens, at)) {
+    const std::string& name = tokens[key].text;
+    if (std::ranges::find(words, name) != words.end()) continue;
+    problems.push_back({tokens[key].line, "'" + object.name + "' has no task '" + name + "'" + hint_text(name, words)});
+  }
+  return problems;
+}
+
 // { joint = number, ... } at `at`.
 Mistakes ArgumentCheck::pose_table(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const {
   Mistakes problems;
   const std::vector<Range> ranges = setpoints(object);
   std::vector<std::string> joints;
   for (const std::size_t joint : object.joints) joints.push_back(catalog_.model->joints[joint].name);
+  if (has_tasks(catalog_, object)) return task_table(object, ranges, tokens, at);
   for (const std::size_t key : keys_of_table(tokens, at)) {
     const std::string& name = tokens[key].text;
     const auto range = std::find_if(ranges.begin(), ranges.end(),

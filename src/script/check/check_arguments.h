@@ -36,6 +36,8 @@ class ArgumentCheck {
   std::vector<ArgumentProblem> pose(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const;
   std::vector<ArgumentProblem> pose_table(const ObjectInfo& object, const Tokens& tokens, std::size_t at,
                                           bool offsets) const;
+  static std::vector<ArgumentProblem> task_table(const ObjectInfo& object, const std::vector<Range>& ranges,
+                                                 const Tokens& tokens, std::size_t at);
   std::vector<ArgumentProblem> named_value(const ObjectInfo& object, const std::vector<Range>& ranges,
                                            const std::string& kind, const Tokens& tokens, std::size_t at,
                                            bool offset = false) const;

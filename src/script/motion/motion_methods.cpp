@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "engine/motion/setpoint_motions.h"
+#include "kadans/control/control_object.h"
 #include "motion_options.h"
 #include "script/bindings/bindings.h"
 #include "script/lua/script_error.h"
 #include "script/sandbox/sandbox.h"
+#include "task_targets.h"
 
 namespace kadans {
 namespace {
@@ -82,7 +84,36 @@ void charge_pose(lua_State* state, const ObjectInfo& object) {
   core_of(state).budget.charge(state, pose_instructions + joint_instructions * looks);
 }
 
-// object:move(pose, { time_s = }) -> motion | nil, "queue_full". The pose is a name, or a table joint = rad.
+// [-0 +1..4] Whether the object can reach the targets, as far as it knows; else nil, "out_of_reach", how far it is
+// from there, and the set-point that it misses most.
+bool within_reach(lua_State* state, const ObjectInfo& object, const MotionTargets& targets, const TaskOptions& tasks) {
+  constexpr double foresight_instructions = 10000;
+  Bindings& bindings = bindings_of(state);
+  if (object.foresight == nullptr || bindings.recording) return true;
+  core_of(state).budget.charge(state, foresight_instructions);
+  std::array<Foresight::Goal, max_joints + TaskOptions::commands_max> goals{};
+  std::size_t count = 0;
+  const auto add = [&](SetpointId id, double value) {
+    goals[count++] = {bindings.catalog->setpoints[id].channel, value};
+  };
+  for (const MotionTarget& target : targets) add(target.id, target.value);
+  for (std::uint32_t i = 0; i < tasks.count; ++i) {
+    if (tasks.commands[i].kind == CommandKind::set_point) add(tasks.commands[i].index, tasks.commands[i].value);
+  }
+  const Foresight::Miss miss = object.foresight->miss({goals.data(), count}, *bindings.snapshot);
+  if (!(miss.by > 0)) return true;
+  lua_pushnil(state);
+  lua_pushliteral(state, "out_of_reach");
+  lua_pushnumber(state, miss.by);
+  for (const SetpointId id : object.setpoints) {
+    const Setpoint& setpoint = bindings.catalog->setpoints[id];
+    if (setpoint.channel == miss.channel) return lua_pushstring(state, short_name(object, setpoint.name)), false;
+  }
+  return lua_pushnil(state), false;
+}
+
+// object:move(pose, { time_s = }) -> motion | nil, "queue_full" | nil, "out_of_reach", distance, set-point. The pose is
+// a name, a table joint = rad, or a table of tasks (task_targets.h).
 int move(lua_State* state) {
   std::uint32_t number = 0;
   const ObjectInfo& object = check_object(state, number);
@@ -94,6 +125,12 @@ int move(lua_State* state) {
   MotionTargets targets;
   read_pose(state, 2, object, "move", targets);
   place_targets(state, options, options.trapezoid, targets);
+  TaskOptions tasks;
+  read_task_options(state, 3, object, targets, tasks);
+  if (!within_reach(state, object, targets, tasks)) return 4;
+  for (std::uint32_t i = 0; i < tasks.count; ++i) {
+    if (!bindings_of(state).send(tasks.commands[i])) return queue_full(state);
+  }
   return send_motion(state, number, options, targets);
 }
 

@@ -8,6 +8,7 @@
 #include "script/bindings/bindings.h"
 #include "script/check/hint.h"
 #include "script/lua/script_error.h"
+#include "task_targets.h"
 
 namespace kadans {
 namespace {
@@ -90,6 +91,8 @@ void pose_table(lua_State* state, int index, const ObjectInfo& object, MotionTar
 
 void read_pose(lua_State* state, int index, const ObjectInfo& object, const char* called, MotionTargets& targets) {
   targets.count = 0;
+  if (lua_istable(state, index) && has_tasks(*bindings_of(state).catalog, object))
+    return read_tasks(state, index, object, called, targets);
   if (lua_istable(state, index)) return pose_table(state, index, object, targets);
   if (lua_type(state, index) != LUA_TSTRING)
     luaL_error(state, "%s needs a pose: its name, or a table joint = position in rad", called);
@@ -163,6 +166,10 @@ constexpr MotionOption known_options[] = {
      "Largest acceleration of a trapezoidal profile"},
     {"relative", Type::flag, 0, 0, "", nullptr, move_set | MotionOption::through,
      "Whether values are relative to the present set-points"},
+    {"weight", Type::number, 0, 1000, "", nullptr, MotionOption::move, "How much the moved tasks count beside others"},
+    {"priority", Type::number, 1, 2, "", nullptr, MotionOption::move,
+     "1, or 2: the moved tasks get what those of 1 leave"},
+    {"contacts", Type::list, 0, 0, "", nullptr, MotionOption::move, "The feet that stand; all others are free"},
 };
 
 constexpr MotionMethod methods[] = {
@@ -220,6 +227,10 @@ void take(lua_State* state, const MotionOption& option, const char* called, cons
         luaL_error(state, "%s: %s must be true or false, not a %s", called, option.name, luaL_typename(state, -1));
       options.relative = lua_toboolean(state, -1) != 0;
       return;
+    case Type::list:
+      if (!lua_istable(state, -1))
+        luaL_error(state, "%s: %s must be a list { ... }, not a %s", called, option.name, luaL_typename(state, -1));
+      return;
     case Type::number:
       break;
   }
@@ -227,6 +238,8 @@ void take(lua_State* state, const MotionOption& option, const char* called, cons
   if (starts_with(option.name, "time")) {
     options.timed = true;
     options.time_s = value;
+  } else if (starts_with(option.name, "weight") || starts_with(option.name, "priority")) {
+    return;  // of tasks (task_targets.h)
   } else if (starts_with(option.name, "velocity")) {
     options.velocity_name = option.name;
     options.velocity_max = value;

@@ -20,7 +20,7 @@ namespace kadans {
 
 struct MotionOption {
   enum Method : std::uint8_t { move = 1, set = 2, through = 4, point = 8, follow = 16 };
-  enum class Type : std::uint8_t { number, text, flag };
+  enum class Type : std::uint8_t { number, text, flag, list };
   const char* name;
   Type type;
   double min, max;     // range of a number

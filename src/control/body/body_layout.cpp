@@ -1,0 +1,52 @@
+#include "body_layout.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "signal/nearest_name.h"
+
+namespace kadans {
+namespace {
+
+std::optional<std::size_t> link_of(const ObjectSetup& setup, const char* option) {
+  const std::string* const name = setup.options.find(option);
+  if (name == nullptr) return std::nullopt;
+  const auto link = setup.model.find_link(*name);
+  if (!link)
+    throw OptionError(option, "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
+  return link;
+}
+
+}  // namespace
+
+BodyLayout::BodyLayout(const ObjectSetup& setup) : model(&setup.model), joints(joint_axes(setup)) {
+  const auto add = [&](BodyTask::Kind kind, const char* name, std::size_t link) {
+    tasks.push_back({kind, name, link, joint_channel});
+    joint_channel += tasks.back().channels();
+  };
+  using enum BodyTask::Kind;
+  const auto left = link_of(setup, "left_foot"), right = link_of(setup, "right_foot");
+  if (left.has_value() != right.has_value())
+    throw OptionError(left ? "left_foot" : "right_foot", "a robot that stands needs left_foot and right_foot");
+  floating = left.has_value();
+  if (floating) {
+    add(com, "com", 0);
+    feet = {tasks.size(), tasks.size() + 1};
+    add(foot, "foot_left", *left);
+    add(foot, "foot_right", *right);
+  }
+  if (const auto link = link_of(setup, "trunk"); link || floating) add(trunk, "trunk", link.value_or(0));
+  if (const auto link = link_of(setup, "left_hand")) add(hand, "hand_left", *link);
+  if (const auto link = link_of(setup, "right_hand")) add(hand, "hand_right", *link);
+  if (const auto link = link_of(setup, "gaze")) add(gaze, "gaze", *link);
+  contact_channel = joint_channel;
+  joint_channel += static_cast<std::uint32_t>(feet.size());
+  for (std::size_t i = 0; i < setup.model.joints.size(); ++i) {
+    if (std::ranges::find(joints, i, &JointAxis::joint) != joints.end()) continue;
+    (setup.model.joints[i].passive() ? passive : locked).push_back(i);
+  }
+  rotor_inertia_kg_m2.assign(setup.model.joints.size(), 0);
+  for (std::size_t i = 0; i < setup.drives.size(); ++i) rotor_inertia_kg_m2[i] = setup.drives[i].rotor_inertia_kg_m2;
+}
+
+}  // namespace kadans

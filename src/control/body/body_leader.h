@@ -1,0 +1,46 @@
+// The high level of a whole-body object: a robot in thought that the tasks lead and the real one follows.
+//
+// Its state begins as the robot's was measured. Each behavior tick it moves on with the accelerations that the program
+// found in the last one, and a new program is solved for the state where it is now. The control thread gets positions,
+// velocities, accelerations and torques of the joints, and closes their loops around them. So noise and delays of the
+// measurements do not go through the program; what the real robot deviates is the joints' loops to hold. The floor
+// counts as flat, and a foot that comes to stand as flat on it.
+//
+// Behavior thread. Only the constructor allocates or throws.
+#pragma once
+
+#include "body_problem.h"
+
+namespace kadans {
+
+class BodyLeader {
+ public:
+  explicit BodyLeader(const BodyLayout& layout);
+
+  // From the state in `aim`, which is of a new activation.
+  void begin(const BodyAim& aim) noexcept;
+  // Moves on by dt_s, then solves anew.
+  void step(const BodyAim& aim, double dt_s, BodyLead& lead) noexcept;
+  void pass_state(StateBytes& bytes) noexcept;
+
+ private:
+  void stand(const BodyAim& aim, double dt_s) noexcept;
+  void weigh(const BodyAim& aim, double dt_s) noexcept;
+  void fill(const BodyAim& aim, BodyLead& lead) const noexcept;
+
+  const BodyLayout* layout_;
+  BodyModel model_;
+  BodyProblem problem_;
+  std::array<BodyStand, body_feet_max> feet_;
+  BodyRanks ranks_;
+  Eigen::VectorXd acceleration_, way_;
+  bool fresh_ = true;  // begun, not moved on yet
+};
+
+// Where the robot of `aim` stands, and what its set-points are there: for the start, and for reach.
+Pose body_start(const BodyLayout& layout, const BodySettings& settings, Kinematics& kinematics,
+                std::span<const double> position_rad, const Quat& base) noexcept;
+void present_setpoints(const BodyLayout& layout, const BodySettings& settings, const Kinematics& kinematics,
+                       std::array<SetpointState, body_channels_max>& setpoints) noexcept;
+
+}  // namespace kadans

@@ -1,0 +1,110 @@
+// A small dense quadratic program, strictly convex:
+//
+//   minimise 1/2 x' H x + g' x   subject to   lower_i <= a_i' x <= upper_i
+//
+// A row with lower == upper is an equality; an infinite bound is none. H is symmetric and positive definite: whoever
+// states a problem regularises it, and says how.
+//
+// The method is the dual active-set method of Goldfarb and Idnani (1983, Mathematical Programming 27). It begins at the
+// minimum without constraints and takes in the constraint that is violated most, until none is. Each iteration keeps
+// the conditions of optimality, so that no feasible point is needed to begin with, and a problem without solution ends
+// with the constraint that contradicts the active ones. The active rows' normals N are kept as
+//
+//   J' N = (R; 0),   J = L^-T Q,   H = L L',
+//
+// with R upper triangular, updated by Givens rotations when a row comes or goes. An equality never goes; one that
+// depends on others is left out when it agrees with them.
+//
+// At a solution (Nocedal and Wright 2006, Numerical Optimization, section 16.1)
+//
+//   H x + g = sum y_i a_i,   y_i >= 0 at the lower bound, y_i <= 0 at the upper bound, else y_i = 0.
+//
+// One owner, any thread. Only the constructor allocates; solve() takes at most iterations_max iterations, each of
+// O(n^2 + rows n) operations.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace kadans {
+
+class QuadraticProgram {
+ public:
+  enum class Status : std::uint8_t {
+    solved,
+    infeasible,            // no point fulfils all constraints
+    iterations_exhausted,  // x fulfils those that were taken in so far
+    refused  // a number is not finite, a lower bound is above the upper one, or H is not positive definite
+  };
+
+  static constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+  // Room for problems up to this size.
+  QuadraticProgram(Eigen::Index variables_max, Eigen::Index rows_max);
+
+  // Begins a problem: everything is 0, and there is no row. Sizes must be within the room.
+  void begin(Eigen::Index variables) noexcept;
+  Eigen::Index variables() const noexcept { return n_; }
+  Eigen::Index rows() const noexcept { return m_; }
+  // H and g, to be filled or added to.
+  auto hessian() noexcept { return hessian_.topLeftCorner(n_, n_); }
+  auto gradient() noexcept { return gradient_.head(n_); }
+  // Adds `weight` (a' x - b)^2 / 2 to what is minimised; a(k) gives the first `size` components, the others are 0.
+  template <typename Normal>
+  void add_square(Eigen::Index size, const Normal& a, double b, double weight) noexcept {
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const double share = weight * a(k);
+      if (share == 0) continue;
+      gradient_[k] -= share * b;
+      for (Eigen::Index i = 0; i < size; ++i) hessian_(i, k) += share * a(i);
+    }
+  }
+  // Adds a row whose normal the caller fills. There must be room.
+  auto add_row(double lower, double upper) noexcept {
+    lower_[m_] = lower;
+    upper_[m_] = upper;
+    normals_.col(m_).head(n_).setZero();
+    return normals_.col(m_++).head(n_);
+  }
+
+  [[nodiscard]] Status solve(int iterations_max) noexcept;
+
+  auto solution() const noexcept { return x_.head(n_); }
+  auto multipliers() const noexcept { return multiplier_.head(m_); }  // y, one a row
+  int iterations() const noexcept { return iterations_; }             // of the last solve()
+
+ private:
+  enum class Side : std::int8_t { none = 0, lower = 1, upper = -1 };
+  struct Candidate {
+    Eigen::Index row = -1;
+    double sign = 1;  // -1: at its upper bound
+  };
+  bool finite() const noexcept;
+  bool factorise() noexcept;
+  bool is_equality(Eigen::Index row) const noexcept { return lower_[row] == upper_[row]; }
+  Candidate most_violated() const noexcept;
+  void directions() noexcept;
+  double blocking(Eigen::Index& position) const noexcept;
+  bool take_in(const Candidate& candidate, double multiplier) noexcept;
+  void let_go(Eigen::Index position) noexcept;
+  Status bring_in(Candidate candidate, int iterations_max) noexcept;
+  void store_multipliers() noexcept;
+
+  Eigen::MatrixXd hessian_, normals_;  // the rows' normals are columns
+  Eigen::VectorXd gradient_, lower_, upper_;
+  Eigen::MatrixXd factor_, j_, r_;
+  Eigen::VectorXd x_, multiplier_, scale_;  // scale: the length of a row's normal
+  Eigen::VectorXd normal_, d_, z_, step_;   // of the row that comes in
+  Eigen::VectorXd active_multiplier_;
+  std::vector<Eigen::Index> active_;
+  std::vector<double> active_sign_;
+  std::vector<Side> side_;
+  std::vector<bool> skipped_;  // rows that hold because the active ones do
+  Eigen::Index n_ = 0, m_ = 0, count_ = 0;
+  int iterations_ = 0;
+};
+
+}  // namespace kadans

@@ -1,0 +1,269 @@
+// The whole-body object: an arm that its own dynamics move, and a biped whose joints follow exactly.
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <doctest/doctest.h>
+
+#include "arm_bench.h"
+#include "control/body/body_leader.h"
+#include "kadans/testing/allocation_count.h"
+#include "kadans/testing/real_time_guard.h"
+#include "leg_robot.h"
+#include "made_objects.h"
+
+using namespace kadans;
+using kadans::test::ArmBench;
+using kadans::test::leg_robot;
+using kadans::test::TestedObject;
+
+namespace {
+
+// The arm with its wheel as the right hand; gains that a stiff joint has.
+struct HandBench : ArmBench {
+  explicit HandBench(std::map<std::string, std::string> options = {{"right_hand", "wheel"}})
+      : ArmBench(make_whole_body, ObjectOptions(std::move(options))) {
+    for (const std::string joint : {"shoulder", "elbow"}) {
+      set(joint + ".stiffness_Nm_per_rad", 200);
+      set(joint + ".damping_Nms_per_rad", 5);
+    }
+    place(0.3, -0.8);
+  }
+  Vec3 hand_m() const {
+    const double a = joints.joints[0].position_rad, b = a + joints.joints[1].position_rad;
+    return {-0.3 * (std::sin(a) + std::sin(b)), 0, -0.3 * (std::cos(a) + std::cos(b))};
+  }
+};
+
+// A biped with crouched legs, flat on the floor; each joint is where it is led.
+class StandBench : public TestedObject {
+ public:
+  StandBench()
+      : model(leg_robot()),
+        object(make_whole_body(
+            {model, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}}})) {
+    declare(*object, 10);
+    set("sole_m", 0);
+    for (std::size_t i = 0; i < 10; ++i)
+      joints.joints[i] = {.position_rad = std::array{0.0, 0.0, -0.3, 0.6, -0.3}[i % 5]};
+    object->start(input());
+    tick();
+  }
+  void tick() {
+    control_tick();
+    for (std::size_t i = 0; i < 10; ++i) {
+      const std::string joint = model.joints[i].name;
+      joints.joints[i].position_rad = signal(joint + ".reference_rad");
+      joints.joints[i].velocity_rad_s = signal(joint + ".reference_velocity_rad_s");
+      most_Nm = std::max(most_Nm, std::abs(computed.joints[i].effort_Nm));
+    }
+    snapshot.setpoint_count = static_cast<std::uint32_t>(catalog.setpoints.size());
+    for (SetpointId id = 0; id < catalog.setpoints.size(); ++id) {
+      SetpointState at;
+      (void)object->setpoint_state(catalog.setpoints[id].channel, at);
+      snapshot.setpoints[id] = {at.value, at.velocity};
+    }
+    time_ns += 1'000'000;
+  }
+  void run(int ticks) {
+    for (int i = 0; i < ticks; ++i) tick();
+  }
+  SetpointId id(const std::string& name) const {
+    const auto id = catalog.setpoints.find("it." + name);
+    REQUIRE_MESSAGE(id, name);
+    return *id;
+  }
+  void move(const std::string& name, double value, double time_s) {
+    TestedObject::set_point(catalog.setpoints[id(name)].channel, value, time_s);
+  }
+  double setpoint(const std::string& name) const { return snapshot.setpoints[id(name)].value; }
+  Foresight::Miss foresee(const std::string& name, double value) {
+    const Foresight::Goal goal{catalog.setpoints[id(name)].channel, value};
+    snapshot.joints = joints;
+    return object->foresight()->miss({&goal, 1}, snapshot);
+  }
+
+  RobotModel model;
+  std::unique_ptr<ControlObject> object;
+  double most_Nm = 0;
+};
+
+}  // namespace
+
+TEST_CASE("an arm brings its hand to a point that is given in space, and keeps it there against gravity") {
+  HandBench bench;
+  bench.start();
+  bench.run(300);
+  const Vec3 before = bench.hand_m();
+  bench.set_point("hand_right_x_m", before[0] + 0.1, 0.8);
+  bench.set_point("hand_right_z_m", before[2] + 0.15, 0.8);
+  bench.run(2500);
+  const Vec3 after = bench.hand_m();
+  CHECK(after[0] == doctest::Approx(before[0] + 0.1).epsilon(0.005));
+  CHECK(after[2] == doctest::Approx(before[2] + 0.15).epsilon(0.005));
+  CHECK(bench.signal("failures") == 0);
+}
+
+TEST_CASE(
+    "a task of the second level gets what the first leaves: two joints bring the hand there, not the link's turn") {
+  double missed_m[2] = {};
+  for (const int priority : {1, 2}) {
+    HandBench bench({{"right_hand", "wheel"}, {"trunk", "fore"}});
+    bench.set("trunk.priority", priority);
+    bench.start();
+    bench.run(300);
+    const Vec3 before = bench.hand_m();
+    bench.set_point("hand_right_x_m", before[0] + 0.1, 0.8);
+    bench.set_point("hand_right_z_m", before[2] + 0.15, 0.8);
+    bench.run(3000);
+    const Vec3 after = bench.hand_m();
+    missed_m[priority - 1] = std::hypot(after[0] - before[0] - 0.1, after[2] - before[2] - 0.15);
+    CHECK(bench.signal("failures") == 0);
+  }
+  CHECK(missed_m[0] > 0.03);
+  CHECK(missed_m[1] < 0.003);
+}
+
+TEST_CASE("an arm keeps still and carries its weight before any task is asked for") {
+  HandBench bench;
+  bench.start();
+  bench.run(1000);
+  CHECK(bench.joints.joints[0].position_rad == doctest::Approx(0.3).epsilon(0.01));
+  CHECK(bench.joints.joints[1].position_rad == doctest::Approx(-0.8).epsilon(0.01));
+}
+
+TEST_CASE("a biped moves its centre of mass, and its feet bear its weight and stay where they stand") {
+  StandBench bench;
+  bench.run(300);
+  const double x_m = bench.setpoint("com_x_m"), z_m = bench.setpoint("com_z_m");
+  const double left_m = bench.setpoint("foot_left.position_x_m");
+  const double weight_N = 9.81 * bench.model.mass_kg();
+  CHECK(bench.signal("load_left_N") + bench.signal("load_right_N") == doctest::Approx(weight_N).epsilon(0.01));
+  bench.move("com_x_m", x_m + 0.03, 1);
+  bench.move("com_z_m", z_m - 0.05, 1);
+  bench.run(3000);
+  CHECK(bench.signal("com_x_m") == doctest::Approx(x_m + 0.03).epsilon(0.002));
+  CHECK(bench.signal("com_z_m") == doctest::Approx(z_m - 0.05).epsilon(0.002));
+  CHECK(bench.setpoint("foot_left.position_x_m") == doctest::Approx(left_m).epsilon(0.001));
+  CHECK(bench.signal("load_left_N") + bench.signal("load_right_N") == doctest::Approx(weight_N).epsilon(0.01));
+  CHECK(bench.signal("failures") == 0);
+  CHECK(bench.most_Nm < 0.9 * 25 + 0.01);
+}
+
+TEST_CASE(
+    "a wrench stays in its friction pyramid and over the sole, torques in their limits, whatever a task asks for") {
+  const RobotModel model = leg_robot();
+  const BodyLayout layout(
+      {model, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}}});
+  BodyModel body(model, Dynamics::Base::floating, layout.rotor_inertia_kg_m2);
+  for (std::size_t i = 0; i < 10; ++i) body.position_rad[i] = std::array{0.0, 0.0, -0.3, 0.6, -0.3}[i % 5];
+  BodyAim aim;
+  aim.settings.sole_m = 0;
+  Kinematics kinematics(model);
+  body.base = body_start(layout, aim.settings, kinematics, body.position_rad, {1, 0, 0, 0});
+  body.update();
+  present_setpoints(layout, aim.settings, kinematics, aim.setpoints);
+  std::array<BodyStand, body_feet_max> feet;
+  for (std::size_t i = 0; i < 2; ++i) feet[i].pose = kinematics.link(layout.tasks[layout.feet[i]].link);
+  BodyProblem problem(layout);
+  BodyRanks ranks;
+  ranks[0].weight = ranks[3].weight = 1;
+  const SetpointState com_x = aim.setpoints[0], com_z = aim.setpoints[2];
+  int at_friction = 0, at_edge = 0, at_torque = 0;
+  for (const double way_m : {-2.0, -0.3, -0.05, 0.0, 0.05, 0.3, 2.0}) {
+    for (const double up_m : {0.0, 0.2, 3.0}) {
+      aim.setpoints[0].value = com_x.value + way_m;
+      aim.setpoints[2].value = com_z.value + up_m;
+      REQUIRE(problem.solve(body, aim, ranks, feet));
+      for (std::size_t foot = 0; foot < 2; ++foot) {
+        const Eigen::Vector<double, 6> w = problem.wrench(foot);
+        const double grip_N = aim.settings.friction / std::sqrt(2.0) * w[2], slack = 1e-6 * (1 + w.norm());
+        const double reach_m = 0.1 - aim.settings.edge_m, side_m = aim.settings.side_m - aim.settings.edge_m;
+        CHECK(w[2] >= -slack);
+        CHECK(std::max(std::abs(w[0]), std::abs(w[1])) <= grip_N + slack);
+        CHECK(std::abs(w[4]) <= reach_m * w[2] + slack);
+        CHECK(std::abs(w[3]) <= side_m * w[2] + slack);
+        at_friction += std::abs(w[0]) > grip_N - slack ? 1 : 0;
+        at_edge += std::abs(w[4]) > reach_m * w[2] - slack ? 1 : 0;
+      }
+      for (std::size_t joint = 0; joint < 10; ++joint) {
+        CHECK(std::abs(problem.effort_Nm(joint)) <= 0.9 * 25 + 1e-6);
+        at_torque += std::abs(problem.effort_Nm(joint)) > 0.9 * 25 - 1e-6 ? 1 : 0;
+      }
+    }
+  }
+  CHECK(at_edge > 4);
+  CHECK(at_torque > 4);
+  INFO(at_friction);
+}
+
+TEST_CASE("what cannot be reached is told before it moves, with how far it is, and what can be is not") {
+  StandBench bench;
+  bench.run(300);
+  const double z_m = bench.setpoint("com_z_m"), x_m = bench.setpoint("com_x_m");
+  CHECK(bench.foresee("com_z_m", z_m - 0.05).by == 0);
+  CHECK(bench.foresee("com_x_m", x_m + 0.03).by == 0);
+  // The legs are 0.55 m long and were bent by 0.6 rad: 0.02 m are left.
+  const Foresight::Miss high = bench.foresee("com_z_m", z_m + 0.10);
+  CHECK(high.by == doctest::Approx(0.08).epsilon(0.1));
+  CHECK(high.channel == bench.catalog.setpoints[bench.id("com_x_m")].channel);
+  // The soles end 0.1 m before and behind the feet.
+  CHECK(bench.foresee("com_x_m", 0.15).by > 0.04);
+  CHECK(bench.foresee("com_x_m", 0.08).by == 0);
+}
+
+TEST_CASE("a foot in the air is led, and put down it stands where it came to be") {
+  StandBench bench;
+  bench.run(300);
+  bench.move("contact.right", 0, 0);
+  bench.move("com_y_m", bench.setpoint("foot_left.position_y_m"), 1);
+  bench.run(1500);
+  bench.move("foot_right.position_z_m", 0.03, 0.6);
+  bench.run(1500);
+  INFO(bench.signal("status"));
+  CHECK(bench.signal("load_right_N") == 0);
+}
+
+TEST_CASE(
+    "the whole-body object neither allocates nor locks in the tick, nor allocates in its high level or in advance") {
+  StandBench bench;
+  long high_level = 0;
+  const std::uint32_t com_z = bench.catalog.setpoints[bench.id("com_z_m")].channel;
+  {
+    const kadans::testing::RealTimeGuard guard;
+    bench.object->start(bench.input());
+    for (int i = 0; i < 100; ++i) {
+      bench.object->follow(com_z, {.value = 0.5, .velocity = 0.01});
+      bench.object->step(bench.input(), bench.computed);
+      bench.time_ns += 1'000'000;
+    }
+  }
+  {
+    const kadans::testing::AllocationCount heap;
+    for (int i = 0; i < 10; ++i) {
+      bench.time_ns += 10'000'000;
+      bench.update();
+      const Foresight::Goal goal{com_z, 0.45};
+      (void)bench.object->foresight()->miss({&goal, 1}, bench.snapshot);
+    }
+    high_level = heap.count();
+  }
+  CHECK(high_level == 0);
+  CHECK(bench.signal("failures") == 0);
+}
+
+TEST_CASE("a joint that is not measured gets a torque that is not finite, and is led on afterwards") {
+  HandBench bench;
+  bench.start();
+  bench.run(100);
+  const JointState good = bench.joints.joints[0];
+  bench.joints.joints[0].velocity_rad_s = std::numeric_limits<double>::quiet_NaN();
+  bench.object->step(bench.input(), bench.computed);
+  CHECK_FALSE(is_finite(bench.computed.joints[0]));
+  CHECK(is_finite(bench.computed.joints[1]));
+  bench.joints.joints[0] = good;
+  bench.object->step(bench.input(), bench.computed);
+  CHECK(is_finite(bench.computed.joints[0]));
+}
