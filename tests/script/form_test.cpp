@@ -98,7 +98,7 @@ TEST_CASE("a region's transition inwards leaves the whole parallel, with interna
   CHECK(to_b(", internal = true") == "r+ a- b+ ");
 }
 
-TEST_CASE("a name with a star takes the events that begin with its words, a star alone all; neither takes an end") {
+TEST_CASE("a name with a star takes the events that begin with its words, a star alone all, and neither takes an end") {
   const auto taken = [](const std::string& on, const std::string& event) {
     return played("return k.behavior 't' { initial = 'a', k.state 'a' { { on = '" + on +
                       "', to = 'b', action = function(_, s) print(s.event.name) end }, { on = { 'heat', 'heat.hot', "
@@ -137,7 +137,7 @@ TEST_CASE("a name with a star takes events whose names nobody wrote down, up to 
   CHECK(output_of("m:emit 'heat.*'").find("nothing in this behavior waits") != std::string::npos);
 }
 
-TEST_CASE("a transition leads into several regions; the others begin as ever") {
+TEST_CASE("a transition leads into several regions, and the others begin as ever") {
   CHECK(played(R"(
     local function region(name, a, b)
       return k.region(name) { initial = a, k.state(a) { enter = log(a) }, k.state(b) { enter = log(b) } }
