@@ -134,7 +134,8 @@ TEST_CASE("A held joint refuses a switch that concerns it, by its name, and no o
   CHECK(rig.sets.active() == 0b1);
 }
 
-TEST_CASE("What was armed for a joint that is held when its condition comes is refused with the joint, and another acts") {
+TEST_CASE(
+    "What was armed for a joint that is held when its condition comes is refused with the joint, and another acts") {
   Rig rig;
   const Command now{.kind = CommandKind::condition, .count = static_cast<std::uint32_t>(ConditionKind::after)};
   const Command arm{.kind = CommandKind::arm, .index = 1, .count = 2, .duration_s = 10};
