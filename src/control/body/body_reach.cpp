@@ -104,7 +104,8 @@ void BodyReach::find_edges() noexcept {
   }
   edge_count_ = 0;
   if (count == 0) return;
-  std::sort(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(count));
+  const auto last = corners.begin() + static_cast<std::ptrdiff_t>(count);
+  std::partial_sort(corners.begin(), last, last);  // gcc believes that std::sort leaves so small an array
   std::array<Vec3, 8 * body_feet_max + 1> hull{};
   std::size_t size = 0;
   const auto add = [&](const Vec3& corner, std::size_t kept) {
