@@ -23,9 +23,9 @@ return arms
 
 struct Skilled : Cast {
   Skilled() { scripts.write("behaviors/lib/arms.lua", library); }
-  std::string refused(const std::string& states, const std::string& head = "") {
+  std::string refused(const std::string& states, const std::string& before = "") {
     write("main",
-          "local arms = require 'arms'\n" + head + "return k.behavior 'main' { initial = 'a',\n" + states + " }");
+          "local arms = require 'arms'\n" + before + "return k.behavior 'main' { initial = 'a',\n" + states + " }");
     return refusal({"main"});
   }
 };
