@@ -41,7 +41,7 @@ std::string enter(const std::string& before, const std::string& body) {
 std::string guard(const std::string& before, const std::string& when) {
   return before +
          "\nreturn k.behavior 't' { k.state 'a' { enter = function(m) m:emit 'seen' end,"
-         " { on = 'seen', to = 'a' }, {\nwhen = " +
+         " { on = 'seen', after = 1, to = 'a' }, {\nwhen = " +
          when + ", to = 'a' } } }";
 }
 

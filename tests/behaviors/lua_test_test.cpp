@@ -47,7 +47,7 @@ TEST_CASE("a mistake in a test is told with its line and what there is") {
              "it('d', function() k.play('squat.lua'):emit('jump') end)\n"
              "it('e', function() k.play('squat.lua'):set_parameter('repeats', 1000) end)\n"
              "it('f', function() local x = k.play('squat.lua').joints.l_kne end)\n"
-             "it('g', function() local run = k.play('squat.lua') run:advance_to('rise', 0.1) end)\n");
+             "it('g', function() local run = k.play('squat.lua') run:advance_to('rest', 0.1) end)\n");
   CHECK(outcome.exit_code == 1);
   CHECK(has(outcome.out, "my_test.lua:2: expect(...) has no 'to_equals'"));
   CHECK(has(outcome.out, "my_test.lua:3: "));
@@ -55,7 +55,7 @@ TEST_CASE("a mistake in a test is told with its line and what there is") {
   CHECK(has(outcome.out, "my_test.lua:5: nothing waits for the event 'jump'"));
   CHECK(has(outcome.out, "my_test.lua:6: no parameter 'repeats', or the value is outside its range"));
   CHECK(has(outcome.out, "my_test.lua:7: s.joints has no 'l_kne', did you mean 'l_knee'?"));
-  CHECK(has(outcome.out, "my_test.lua:8: \"rise\" was not reached within 0.1 s"));
+  CHECK(has(outcome.out, "my_test.lua:8: \"rest\" was not reached within 0.1 s"));
   CHECK(has(outcome.out, "0 passed, 7 failed"));
 }
 

@@ -154,7 +154,7 @@ return k.behavior 'x' { initial = 'in', vars = { n = 3 },
       { when = function(s, m)
           return s.base.pitch_rad > 0.5 and m.vars.n > 2
         end, to = 'c' },
-      { when = function(s) return s.base.nothing end, to = 'in.d' } },
+      { when = function(s) return s.base.pitch_rad == 0.25 and s.base.nothing end, to = 'in.d' } },
     k.state 'b' { endless = true }, k.state 'c' { endless = true }, k.state 'd' { endless = true } },
   k.final 'off' {} }
 )");

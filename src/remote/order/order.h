@@ -90,7 +90,6 @@ struct OrderArgument {
   const char* lists = "";  // one or two words of `list`, by which a shell completes it
   bool required = false;
   double min = std::numeric_limits<double>::lowest(), max = std::numeric_limits<double>::max();  // range of a number
-
   bool is_option() const noexcept { return shown[0] == '-'; }
 };
 

@@ -22,7 +22,7 @@ const HandleKey node_key = 0;
 constexpr int listed_max = 32;                        // events in one on = { ... }
 constexpr std::size_t name_max = 64, text_max = 256;  // characters: charts keep them outside the script's memory
 
-constexpr double node_instructions = 300, transition_instructions = 110;  // to check one
+constexpr double node_instructions = 300, transition_instructions = 160;  // to check one
 
 constexpr const char* behavior_keys[] = {"version", "controls", "vars",   "args", "migrate", "initial", "always",
                                          "enter",   "exit",     "during", "run",  "endless", nullptr};

@@ -136,7 +136,9 @@ int move(lua_State* state) {
 
 // object:set(setpoint, value [, { time_s = }]) -> motion | nil, "queue_full".
 int set(lua_State* state) {
+  constexpr double set_instructions = 40;
   std::uint32_t number = 0;
+  core_of(state).budget.charge(state, set_instructions);
   const ObjectInfo& object = check_object(state, number);
   const SetpointId id = read_setpoint(state, 2, object);
   const double value = luaL_checknumber(state, 3);

@@ -197,7 +197,7 @@ TEST_CASE("orders over DDS change what runs, and a flood of rubbish changes noth
   REQUIRE(results.size() == 4);
   CHECK(results[0]["answer"]["done"] == true);
   CHECK(has(results[1]["answer"]["text"], "did you mean 'squat'"));
-  CHECK(has(results[2]["answer"]["text"], "'dance' is no order; there are enable_drives disable_drives"));
+  CHECK(has(results[2]["answer"]["text"], "'dance' is no order; there are why enable_drives disable_drives"));
   CHECK(results[3]["answer"]["done"] == true);
   const std::string out = read(project / "out");
   const Json result = Json::parse(out.substr(out.rfind("\n{") + 1));
