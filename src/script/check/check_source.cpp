@@ -156,7 +156,7 @@ class SourceCheck final : public SourceListener {
         problems_(problems),
         machine_(known.machine),
         arguments_(parts),
-        values_(parts, known),
+        values_(parts),
         flow_(parts.catalog, known, known.vars.contains(source.chunk)) {
     const auto vars = known.vars.find(source.chunk);
     has_behavior_ = vars != known.vars.end();

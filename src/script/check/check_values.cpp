@@ -75,8 +75,7 @@ bool without_colon(const SourceUse& use, const Tokens& tokens) {
 
 }  // namespace
 
-ValueCheck::ValueCheck(const Behavior::Parts& parts, const KnownNames& known)
-    : parts_(parts), known_(known), fields_(status_fields(parts.catalog.sensors)) {}
+ValueCheck::ValueCheck(const Behavior::Parts& parts) : parts_(parts), fields_(status_fields(parts.catalog.sensors)) {}
 
 ValueCheck::Type ValueCheck::field_of(StatusField::Part part, const std::string& name) const {
   for (const StatusField& field : fields_) {

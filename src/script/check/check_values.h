@@ -15,7 +15,7 @@ namespace kadans {
 class ValueCheck {
  public:
   using Tokens = std::vector<SourceToken>;
-  ValueCheck(const Behavior::Parts& parts, const KnownNames& known);
+  explicit ValueCheck(const Behavior::Parts& parts);
 
   // What is wrong with what stands around one use of a name.
   std::vector<ArgumentProblem> of_use(const SourceUse& use, const Tokens& tokens) const;
@@ -41,7 +41,6 @@ class ValueCheck {
   std::string condition(const std::string& text) const;
 
   const Behavior::Parts& parts_;
-  const KnownNames& known_;
   std::vector<StatusField> fields_;
 };
 
