@@ -57,10 +57,11 @@ class Search {
     pattern.share = std::clamp(pattern.share, least, 1 - least);
     const SwitchedMotion motion = switched_motion(make_, found_.first, found_.second, pattern, search_);
     ++found_.motions;
-    // Positively, so that what is not finite is the worst.
-    if (!(motion.energy_J <= found_.most_energy.energy_J)) found_.most_energy = motion;
-    if (!(motion.rms_error_rad <= found_.most_error.rms_error_rad)) found_.most_error = motion;
-    if (!(motion.growth <= found_.most_growth.growth)) found_.most_growth = motion;
+    // What is not finite is the worst, and stays it.
+    const auto worse = [](double now, double before) { return std::isfinite(before) && !(now <= before); };
+    if (worse(motion.energy_J, found_.most_energy.energy_J)) found_.most_energy = motion;
+    if (worse(motion.rms_error_rad, found_.most_error.rms_error_rad)) found_.most_error = motion;
+    if (worse(motion.growth, found_.most_growth.growth)) found_.most_growth = motion;
   }
   void try_grid() {
     const double ratio = search_.period_max_s / search_.period_min_s;
@@ -131,6 +132,8 @@ SwitchedMotion switched_motion(const MakeBench& make, std::string_view first, st
   first_half.add(second_half.lowest);
   first_half.add(second_half.highest);
   motion.energy_J = first_half.size();
+  // The bench replaces such torques by 0.
+  if (bench->not_finite_ticks() > 0) motion.energy_J = motion.rms_error_rad = std::numeric_limits<double>::quiet_NaN();
   return motion;
 }
 

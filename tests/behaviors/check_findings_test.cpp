@@ -96,7 +96,8 @@ const Case wrong[] = {
      "return k.behavior 't' { k.final 'a' { outcome = 'done', result = function(m)\nm:wait(1) return {} end } }",
      "t.lua:3: a wait where 'result' runs"},
     {"a report that is emitted",
-     "return k.behavior 't' { k.state 'a' { enter = function(m)\nm:emit 'error' end, { on = 'error', after = 1, to = 'a' } } }",
+     "return k.behavior 't' { k.state 'a' { enter = function(m)\nm:emit 'error' end, { on = 'error', after = 1, to = "
+     "'a' } } }",
      "t.lua:3: 'error' reports what happened to the behavior, it cannot be emitted"},
     {"a misspelt name in a function that a call gives",
      "return k.behavior 't' { k.state 'a' { endless = true, k.call 'takes' {\nhow_m = function(_, s) return s.tiem_s "

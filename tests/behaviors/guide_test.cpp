@@ -1,6 +1,6 @@
-// docs/behaviors.md, the pages behaviors_composition.md, behaviors_events.md and behaviors_tasks.md, and reflexes.md are
-// true: their files are written into a copy of the project, their commands are run there, and what they show is what
-// these print.
+// docs/behaviors.md, the pages behaviors_composition.md, behaviors_events.md and behaviors_tasks.md, and reflexes.md
+// are true: their files are written into a copy of the project, their commands are run there, and what they show is
+// what these print.
 #include <algorithm>
 
 #include <doctest/doctest.h>
@@ -23,6 +23,10 @@ TEST_CASE("every file of the chapter on composing is right, every command of it 
 
 TEST_CASE("every file of the page on what charts mean is right") {
   document::check_page("behaviors_semantics.md", "semantics");
+}
+
+TEST_CASE("every file of the page on a behavior that lasts is right, every command works and prints what it shows") {
+  document::check_page("behaviors_mission.md", "mission");
 }
 
 TEST_CASE("every file of the page on reflexes is right, every command of it works and prints what it shows") {

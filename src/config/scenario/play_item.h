@@ -45,6 +45,7 @@ struct PlayedEvent {
   std::vector<PlayArgument> data{};  // its fields, each name once
   std::string who{};                 // who sent it: "scenario", "uid 1000 (develop)", "joystick.button_1"
   bool ordered = false;              // given while the run went on: only the record knows of it
+  bool of_input = false;             // a button or a sensor sent it
   TextPlace place{};                 // of the name
 };
 

@@ -70,9 +70,12 @@ void BodyLeader::begin(const BodyAim& aim) noexcept {
 
 // A foot takes its load, or leaves it, before it is free.
 void BodyLeader::stand(const BodyAim& aim, double dt_s) noexcept {
+  const auto asked = [&](std::size_t i) { return aim.setpoints[layout_->contact_channel + i].value > 0.5; };
+  bool any = false;
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) any = any || asked(i);
   for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
     BodyStand& foot = feet_[i];
-    const bool wanted = aim.setpoints[layout_->contact_channel + i].value > 0.5;
+    const bool wanted = asked(i) || (!any && foot.stands());  // the last ones stay: it would fall
     if (wanted && !foot.stands()) {
       const Pose& link = model_.link(layout_->tasks[layout_->feet[i]].link);
       foot.pose = {{link.position_m[0], link.position_m[1], aim.settings.sole_m},

@@ -44,6 +44,11 @@ Foresight::Miss BodyReach::miss(std::span<const Goal> goals, const Snapshot& sna
       if (goal.channel >= task.channel && goal.channel < task.channel + task.channels()) asked_[i] = true;
     }
   }
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) {  // what it balances with stays where it was told to be
+    for (std::size_t task = 0; task < layout_->tasks.size(); ++task) {
+      if (!stands(i) && layout_->tasks[task].kind == BodyTask::Kind::com) asked_[task] = true;
+    }
+  }
   find_edges();
   for (int step = 0; step < steps_max && improve(); ++step) {
   }

@@ -207,7 +207,7 @@ QuadraticProgram::Status QuadraticProgram::solve(int iterations_max) noexcept {
   for (Candidate worst = most_violated(); worst.row >= 0 && status == Status::solved; worst = most_violated())
     status = bring_in(worst, iterations_max);
   store_multipliers();
-  return status;
+  return 0 * x_.head(n_).sum() == 0 ? status : Status::refused;
 }
 
 }  // namespace kadans

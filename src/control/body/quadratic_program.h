@@ -37,7 +37,8 @@ class QuadraticProgram {
     solved,
     infeasible,            // no point fulfils all constraints
     iterations_exhausted,  // x fulfils those that were taken in so far
-    refused  // a number is not finite, a lower bound is above the upper one, or H is not positive definite
+    refused  // a number is not finite, of the problem or of x, a lower bound is above the upper one, or H is not
+             // positive definite
   };
 
   static constexpr double unbounded = std::numeric_limits<double>::infinity();

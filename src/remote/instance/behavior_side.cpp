@@ -21,6 +21,8 @@
 namespace kadans {
 namespace {
 
+constexpr std::size_t orders_in_tick = 64;  // of one kind of client
+
 constexpr std::int64_t control_answers_in_ns = 1'000'000'000, drives_answer_in_ns = 5'000'000'000;
 
 // Whether a drive says that it has done what it was asked for.
@@ -60,7 +62,8 @@ std::string undone_text(DriveOrder order, JointMask joints, const PowerStatus& p
 // Whether the line is about the event of this order: others may have come in the same tick.
 bool tells_of(const std::string& line, const Order& order) {
   const std::string name = order.text.substr(0, order.text.find_first_of(" \t{"));
-  return line.find(name) != std::string::npos && line.find(order.who) != std::string::npos;
+  const bool names = line.starts_with("event " + name + " ") || line.starts_with("event '" + name + "'");
+  return names && line.find(" from " + order.who) != std::string::npos;
 }
 
 bool names_transaction(const Snapshot& snapshot, std::uint32_t sequence, Refusal& refusal) {
@@ -77,8 +80,11 @@ void BehaviorSide::beside_tick(std::int64_t time_ns) {
   heed_stop();
   settle(time_ns);
   for (const auto& port : p_.instance.ports()) {
-    while (std::unique_ptr<OrderCase> order = port->behaviors_.take())
+    for (std::size_t left = orders_in_tick; left > 0; --left) {  // whoever asks again at once waits for the next tick
+      std::unique_ptr<OrderCase> order = port->behaviors_.take();
+      if (order == nullptr) break;
       carry_out(std::move(order), port->behaviors_, time_ns);
+    }
   }
   if (next_ != nullptr) next_->beside_tick(time_ns);
 }
@@ -335,6 +341,8 @@ void BehaviorSide::tell_why(const std::string& name, Answer& answer) {
     throw InputError({.message = "behaviors play in a process of their own, which tells no reasons: "
                                  "run with --behaviors thread"});
   }
+  if (std::exchange(why_tick_, p_.engine.ticks() + 1) == p_.engine.ticks() + 1)  // it costs a reload
+    throw InputError({.message = "somebody else asked why in the same tick: ask again"});
   const auto snapshot = p_.exchange.snapshot.read(0);
   answer.reasons = p_.host->why(name, *snapshot);
   answer.text = reasons_text(answer.reasons);
@@ -394,7 +402,8 @@ std::string BehaviorSide::told(const Pending& pending, bool& done) {
   for (const LineEcho::Heard& line : lines_) {
     const bool supervisor = line.behavior == "supervisor";
     if (reload ? supervisor || (!order.text.empty() && line.behavior != order.text) : !supervisor) continue;
-    if (pending.given == PlayOrder::Kind::emit && !tells_of(line.text, order)) continue;
+    const bool of_event = line.text.starts_with("event ");  // also those of others in the same tick
+    if (pending.given == PlayOrder::Kind::emit ? !tells_of(line.text, order) : of_event && !reload) continue;
     if (line.severity != BehaviorLog::Severity::info) done = false;
     text += (text.empty() ? "" : "\n") + (supervisor ? "" : line.behavior + ": ") + line.text;
   }

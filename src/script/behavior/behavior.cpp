@@ -351,6 +351,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
   bindings.sent_events.clear();
+  if (parts.chart.fault_events.empty()) parts.reports.faults_seen = snapshot.status.safety.faults_raised;
   if (bindings.armed_count > 0) parts.tell_armed();
   bindings.take_back_orphans();
   if (snapshot.transactions_refused != bindings.refusals_seen) parts.tell_refused();
@@ -464,13 +465,14 @@ struct Posting {
   Behavior::Parts& parts;
   const PlayedEvent& event;
   EventId id;
+  bool with_data = false;  // the event declares fields: its data is a table, also when none of them is given
   bool taken = false;
 };
 
 int post_event(lua_State* state) {
   Posting& posting = *static_cast<Posting*>(lua_touserdata(state, 1));
   ChartRunner& runner = *posting.parts.runner;
-  const bool with_data = !posting.event.data.empty();
+  const bool with_data = posting.with_data;
   lua_rawgeti(state, LUA_REGISTRYINDEX, posting.parts.tables.event_data);
   if (with_data) push_event_data(state, posting.event);
   const std::int8_t place = with_data ? runner.events().free_place() : std::int8_t{-1};
@@ -487,7 +489,7 @@ std::string Behavior::post(const PlayedEvent& event) {
   const EventId id = parts.chart.find_event(event.name);
   if (failed() || finished() || declared == nullptr || id == no_event) return "'" + name() + "' does not declare it";
   if (WrongData wrong = wrong_data(*declared, event); !wrong.why.empty()) return wrong.why;
-  Posting posting{parts, event, id};
+  Posting posting{parts, event, id, !declared->fields.empty()};
   if (!parts.run(post_event, &posting)) return "'" + name() + "' has no memory for it";
   return posting.taken ? "" : "'" + name() + "' has as many events waiting as a tick may have";
 }
@@ -549,8 +551,8 @@ void Behavior::number_states() {
     const auto found = std::ranges::find_if(states, is_it);
     region_states_.push_back(found == states.end() ? no_state : static_cast<StateIndex>(found - states.begin()));
   }
-  told_.clear();
-  told_.reserve(states.size());
+  told_.reserve(states.size() + 1);
+  told_.assign(1, no_state);  // equals nothing that is active, not even nothing
   told_paths_.reserve(ActiveStates::told_max);
 }
 

@@ -70,7 +70,8 @@ void take_armed(Behavior::Parts& parts, ByteReader& bytes) {
     armed.fired = bytes.take<std::uint32_t>();
     const auto owner = std::ranges::find(parts.chart.states, bytes.take_string(), &Chart::State::path);
     if (owner != parts.chart.states.end()) armed.owner = static_cast<StateIndex>(owner - parts.chart.states.begin());
-    armed.event = parts.chart.find_event(bytes.take_string());
+    armed.event = parts.chart.find_or_learn(bytes.take_string());
+    if (armed.event != no_event && parts.chart.made_by_runner(armed.event)) armed.event = no_event;
     if (bytes.ok() && bindings.armed_count < bindings.armed.size()) bindings.armed[bindings.armed_count++] = armed;
   }
 }
@@ -288,7 +289,11 @@ void put_event_data(Behavior::Parts& parts, ByteWriter& bytes) {
     bytes.put(events[i].place);
     lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.event_data);
     lua_rawgeti(state, -1, events[i].place + 1);
-    (void)put_value(state, top + 2, bytes, why);  // plain data: m:emit checked that
+    ByteWriter value;
+    if (put_value(state, top + 2, value, why))
+      bytes.put(value.bytes());
+    else
+      bytes.put<std::uint8_t>(tag_nil);  // m:emit checked it; a script that got hold of it has changed it
     lua_settop(state, top);
   }
   bytes.put<std::uint8_t>(0);
@@ -313,11 +318,14 @@ void put_results(Behavior::Parts& parts, ByteWriter& bytes) {
   std::string why;
   for (StateIndex i = 0; i < parts.chart.size() && lua_checkstack(state, 8) != 0; ++i) {
     if (!parts.runner->active(i) || parts.chart.states[i].result == Chart::no_function) continue;
-    bytes.put<std::uint8_t>(1);
-    bytes.put_string(parts.chart.states[i].path);
     lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
     lua_rawgeti(state, -1, i + 1);
-    (void)put_value(state, top + 2, bytes, why);  // plain data: it was checked when it was made
+    ByteWriter value;
+    if (put_value(state, top + 2, value, why)) {  // a script that got hold of it may have changed it
+      bytes.put<std::uint8_t>(1);
+      bytes.put_string(parts.chart.states[i].path);
+      bytes.put(value.bytes());
+    }
     lua_settop(state, top);
   }
   bytes.put<std::uint8_t>(0);

@@ -1,5 +1,6 @@
 // The result of a behavior as text that Lua can read: { place = "left", steps = 3 }.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -32,7 +33,11 @@ std::string text_literal(lua_State* state, int index) {
 }
 
 bool is_name(const std::string& text) {
-  return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) == 0 &&
+  constexpr std::array<std::string_view, 21> keywords{"and", "break",    "do",     "else", "elseif", "end",   "false",
+                                                      "for", "function", "if",     "in",   "local",  "nil",   "not",
+                                                      "or",  "repeat",   "return", "then", "true",   "until", "while"};
+  return !text.empty() && std::ranges::find(keywords, text) == keywords.end() &&
+         std::isdigit(static_cast<unsigned char>(text[0])) == 0 &&
          std::ranges::all_of(text, [](unsigned char c) { return c == '_' || std::isalnum(c) != 0; });
 }
 

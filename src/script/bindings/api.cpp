@@ -226,7 +226,8 @@ constexpr ApiEntry written[] = {
     {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
     {"event", "name", "string?", "Its name"},
     {"event", "data", "table?",
-     "What its sender gave it; of an end: { result = }, of a k.parallel: { outcomes = { region = outcome }, results = { "
+     "What its sender gave it; of an end: { result = }, of a k.parallel: { outcomes = { region = outcome }, results = "
+     "{ "
      "region "
      "= result } }; of error: { message =, file =, line =, cause =, state = }; of refused: { reason =, what = }; of "
      "fault.NAME: { joint =, value =, limit = }"},

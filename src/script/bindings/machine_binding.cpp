@@ -291,8 +291,8 @@ int emit(lua_State* state) {
     return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
   auto& chart = *static_cast<Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
   const char* name = luaL_checkstring(state, 2);
-  const bool with_data = !lua_isnoneornil(state, 3);
-  if (with_data && !lua_istable(state, 3)) {
+  const bool given = !lua_isnoneornil(state, 3);
+  if (given && !lua_istable(state, 3)) {
     return luaL_error(state, "the data of an event is a table { name = value }, not a %s", luaL_typename(state, 3));
   }
   const ScriptEvent* declared = find_event(core_of(state).events, name);
@@ -300,8 +300,10 @@ int emit(lua_State* state) {
   const EventId event = check_event(state, chart, name);
   if (declared != nullptr) check_event_data(state, *declared, 3);
   ChartRunner& runner = *bindings_of(state).runner;
+  const bool with_data = given || (declared != nullptr && !declared->fields.empty());
   int fields = 0;
-  if (with_data) push_event_data(state, 3, 1, fields);
+  if (given) push_event_data(state, 3, 1, fields);
+  if (with_data && !given) lua_newtable(state);
   const std::int8_t place = with_data ? runner.events().free_place() : std::int8_t{-1};
   if (!runner.post(event, place)) return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
   if (with_data) {

@@ -40,7 +40,7 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
   if (chart_.error_event != no_event) recoverable_ = true;
   first_step(state);
   std::uint32_t steps = 1;
-  for (; run_[0].outcome == no_event && steps < steps_max; ++steps) {
+  for (; (failed_ || run_[0].outcome == no_event) && steps < steps_max; ++steps) {
     if (failed_) {
       recover(state);
       continue;
@@ -52,7 +52,7 @@ void ChartRunner::tick(lua_State* state, std::int64_t now_ns) {
       break;
     }
   }
-  if (failed_) raise_failure(state);
+  if (failed_) recover(state);
   if (shown_.id != no_event) hide_event(state);
   if (run_[0].outcome != no_event) return stop(state, now_ns);
   if (queue_.size() > 0) drop_events(state, steps);
@@ -85,6 +85,7 @@ bool ChartRunner::select_event(lua_State* state, bool ends_only) {
     if (ends_only && event.from == no_state) continue;
     show_event(state, event);
     select(state, &event);
+    if (selected_.empty() && failed_) return false;  // a guard's error comes before all that wait
     if (selected_.empty()) continue;
     queue_.remove(i);
     return true;
@@ -230,6 +231,8 @@ void ChartRunner::take_step(lua_State* state) {
     if (!run_[index].active) enter(state, index);
   }
   list_active();
+  Bindings& bindings = bindings_of(state);
+  if (failed_ && bindings.all_sets != 0) bindings.want(sets_asked(), sets_asked());  // not all of them was entered
 }
 
 void ChartRunner::act(lua_State* state, std::uint16_t number) {
@@ -287,7 +290,10 @@ void ChartRunner::complete(StateIndex index, EventId outcome) noexcept {
 
 // The opposite: a final state of `index` is left while what is around it stays.
 void ChartRunner::go_on(StateIndex index) noexcept {
-  if (index == 0) return;
+  if (index == 0) {
+    if (!finished_) run_[0].outcome = no_event;
+    return;
+  }
   run_[index].outcome = no_event;
   queue_.withdraw(index);
   const Chart::State& ended = chart_.states[index];
@@ -367,12 +373,12 @@ void ChartRunner::mark_history(StateIndex history) noexcept {
   StateIndex next = chart_.states[parent].end;  // of the remembered states the one behind in document order
   for (StateIndex index = next; index > parent + 1; --index) {
     const auto i = static_cast<StateIndex>(index - 1);
-    if (!remembered[i]) continue;
+    if (!remembered[i] || chart_.states[i].machine != chart_.states[history].machine) continue;  // a call begins anew
     if (deep ? next >= chart_.states[i].end : chart_.states[i].parent == parent) mark_entry(i);
     next = i;
   }
   for (StateIndex i = static_cast<StateIndex>(parent + 1); deep && i < chart_.states[parent].end; ++i) {
-    if (!remembered[i]) continue;
+    if (!remembered[i] || chart_.states[i].machine != chart_.states[history].machine) continue;
     run_[i].entering = true;
     if (chart_.states[i].kind == Chart::Kind::parallel) mark_entry(i);  // a reload may have brought further regions
   }
@@ -417,7 +423,8 @@ void ChartRunner::note_restless(lua_State* state, const Chart::Transition& trans
     const StateRun& run = run_[index];
     if (run.entered_ns == before_ns_) ticks = std::max(ticks, run.restless_ns == before_ns_ ? run.restless + 1 : 1);
   }
-  StateRun& entered = run_[transition.target];
+  const bool by_history = chart_.states[transition.target].kind == Chart::Kind::history;
+  StateRun& entered = run_[by_history ? chart_.states[transition.target].parent : transition.target];
   entered.restless = ticks;
   entered.restless_ns = now_ns_;
   if (ticks < restless_ticks || told_restless_) return;

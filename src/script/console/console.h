@@ -4,7 +4,8 @@
 // go on.
 //
 // Besides the sandbox Lua sees: s (as behaviors do), signals.<name>, parameters.<name> of the control objects,
-// behaviors.<name>.{state, active, outcome, error, parameters}, m, and k (require "kadans"). Globals stay from line to line.
+// behaviors.<name>.{state, active, outcome, error, parameters}, m, and k (require "kadans"). Globals stay from line to
+// line.
 //
 // Behavior thread, between its ticks. Only the constructor throws.
 #pragma once

@@ -11,6 +11,19 @@ namespace kadans {
 
 using Severity = BehaviorLog::Severity;
 
+namespace {
+
+// A line tells the beginning; the record has all of the data in /events.
+std::string shortened(std::string text) {
+  constexpr std::size_t told = 200;
+  if (text.size() <= told) return text;
+  std::size_t end = told;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;  // not inside a character
+  return text.substr(0, end) + "...";
+}
+
+}  // namespace
+
 EventDelivery::EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs)
     : log_(log), inputs_(std::move(inputs)), levels_(inputs_.size(), Level::unknown) {}
 
@@ -43,8 +56,21 @@ std::string EventDelivery::refusal(const PlayedEvent& event, PlayList& list, boo
 
 void EventDelivery::refuse(const PlayedEvent& event, const std::string& why, PlayList& list, const Snapshot& snapshot) {
   list.count_event(false);
-  log_.message(snapshot.time_ns, Severity::warning, "supervisor",
-               "event " + in_quotes(event.name) + " from " + event.who + " was refused: " + why);
+  tell(event, Severity::warning, in_quotes(event.name) + " from " + event.who + " was refused: " + why, snapshot);
+}
+
+// Lines about inputs are bounded: a switch that bounces sends events for ever.
+void EventDelivery::tell(const PlayedEvent& event, Severity severity, const std::string& text,
+                         const Snapshot& snapshot) {
+  if (event.of_input) {
+    const LogBound::Answer answer = input_lines_.admit(snapshot.time_ns);
+    if (answer == LogBound::Answer::drop) return;
+    if (answer == LogBound::Answer::warn)
+      return log_.message(snapshot.time_ns, Severity::warning, "supervisor",
+                          "event lines of inputs: more than " + std::to_string(LogBound::lines_max) +
+                              " in this second, the others are not told");
+  }
+  log_.message(snapshot.time_ns, severity, "supervisor", "event " + text);
 }
 
 void EventDelivery::deliver(const PlayedEvent& event, PlayList& list, const Snapshot& snapshot, bool paused) {
@@ -59,14 +85,13 @@ void EventDelivery::deliver(const PlayedEvent& event, PlayList& list, const Snap
   if (!wrong.empty()) refuse(event, wrong, list, snapshot);
   if (takers.empty()) return;
   list.count_event(true);
-  log_.message(snapshot.time_ns, Severity::info, "supervisor",
-               "event " + event_text(event) + " from " + event.who + " to " + takers);
   log_.emitted({.time_ns = snapshot.time_ns,
                 .tick = snapshot.tick,
                 .event = event.name,
                 .data = data_json(event.data),
                 .who = event.who,
                 .ordered = event.ordered});
+  tell(event, Severity::info, shortened(event_text(event)) + " from " + event.who + " to " + takers, snapshot);
 }
 
 EventDelivery::Level EventDelivery::level_of(const InputEvent& input, const Snapshot& snapshot) noexcept {
@@ -91,7 +116,7 @@ void EventDelivery::look_at_inputs(PlayList& list, const Snapshot& snapshot, boo
 void EventDelivery::input_says(const InputEvent& input, const std::string& event, PlayList& list,
                                const Snapshot& snapshot, bool paused) {
   if (event.empty()) return;
-  const PlayedEvent played{.name = event, .who = input.input};
+  const PlayedEvent played{.name = event, .who = input.input, .of_input = true};
   bool declared = false;
   list.each_in_turn([&](const PlayList::Entry& entry) {
     declared = declared || find_event(entry.behavior->events(), event) != nullptr;

@@ -49,6 +49,8 @@ class EventDelivery {
   void input_says(const InputEvent& input, const std::string& event, PlayList& list, const Snapshot& snapshot,
                   bool paused);
   void refuse(const PlayedEvent& event, const std::string& why, PlayList& list, const Snapshot& snapshot);
+  void tell(const PlayedEvent& event, BehaviorLog::Severity severity, const std::string& text,
+            const Snapshot& snapshot);
   bool told(const std::string& what) { return told_.size() >= told_max || !told_.insert(what).second; }
 
   static constexpr std::size_t told_max = 256;
@@ -57,6 +59,7 @@ class EventDelivery {
   std::vector<Level> levels_;  // of the inputs
   std::vector<SentEvent> sent_;
   std::set<std::string> told_;  // what is told only once
+  LogBound input_lines_;
 };
 
 }  // namespace kadans

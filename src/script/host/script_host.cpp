@@ -211,7 +211,8 @@ void ScriptHost::check_event(const PlayOrder& order) {
   const auto waiting =
       std::ranges::count(orders_, PlayOrder::Kind::emit, [](const Due& due) { return due.order.kind; });
   std::string why = out_of_bounds(order.event.data);
-  if (why.empty()) why = EventDelivery::refusal(order.event, list_, pause_.paused());
+  // What another process kept is in the list from the first tick on; the event is judged again when it is delivered.
+  if (why.empty() && settings_.kept.empty()) why = EventDelivery::refusal(order.event, list_, pause_.paused());
   if (why.empty() && static_cast<std::size_t>(waiting) >= EventDelivery::ordered_max)
     why = std::to_string(EventDelivery::ordered_max) + " events wait for the next tick already";
   if (why.empty()) return;

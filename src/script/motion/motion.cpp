@@ -113,9 +113,7 @@ Motion* push_motion(lua_State* state, std::uint32_t count) {
   return motion;
 }
 
-Motion* to_motion(lua_State* state, int index) {
-  return static_cast<Motion*>(to_handle(state, index, motion_key));
-}
+Motion* to_motion(lua_State* state, int index) { return static_cast<Motion*>(to_handle(state, index, motion_key)); }
 
 void open_motions(lua_State* state) {
   const luaL_Reg methods[] = {{"wait", wait_for_motion}, {"cancel", cancel}};

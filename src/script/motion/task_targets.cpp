@@ -193,7 +193,9 @@ void read_parameter_option(lua_State* state, const char* option, std::string_vie
 void read_contacts(lua_State* state, const ObjectInfo& object, TaskOptions& options) {
   const Catalog& catalog = *bindings_of(state).catalog;
   const auto given = static_cast<int>(lua_objlen(state, -1));
-  int taken = 0;
+  int taken = 0, entries = 0;
+  charge_table(state, lua_gettop(state));
+  for (lua_pushnil(state); lua_next(state, -2) != 0; lua_pop(state, 1)) ++entries;
   std::array<const char*, max_feet + 1> names{};
   std::size_t count = 0;
   for (const SetpointId id : object.setpoints) {
@@ -212,11 +214,11 @@ void read_contacts(lua_State* state, const ObjectInfo& object, TaskOptions& opti
     add(state, options, {.kind = CommandKind::set_point, .index = id, .value = stands ? 1.0 : 0.0});
   }
   if (count == 0) luaL_error(state, "move: '%s' has no contacts", object.name.c_str());
-  if (taken == given) return;
+  if (taken == given && entries == given && given > 0) return;
   const Hint hint = make_hint(state, "", [&](auto& known) {
     for (std::size_t i = 0; i < count; ++i) known.emplace_back(names[i]);
   });
-  luaL_error(state, "move: contacts must be a list of its contacts, each once%s", hint.data());
+  luaL_error(state, "move: contacts must be a list of at least one of its contacts, each once%s", hint.data());
 }
 
 }  // namespace

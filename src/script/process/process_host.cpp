@@ -33,6 +33,11 @@ bool is_event(const std::vector<std::byte>& order) noexcept {
   return !order.empty() && order.front() == std::byte{static_cast<std::uint8_t>(PlayOrder::Kind::emit)};
 }
 
+// Whether a line of the process is a message, and neither a transition nor another event of the run.
+bool is_said(std::span<const std::byte> line) noexcept {
+  return !line.empty() && std::to_integer<std::uint8_t>(line.front()) < transition_line;
+}
+
 bool is_name(std::string_view name) noexcept {
   return !name.empty() && std::ranges::all_of(name, [](char c) { return c > ' ' && c < '\x7f'; });
 }
@@ -115,7 +120,7 @@ void ChildAnswer::send_on(CommandSender& commands, std::int64_t time_ns) const n
   }
 }
 
-bool ChildAnswer::tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t time_ns) {
+bool ChildAnswer::tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t time_ns, bool counts) {
   const std::size_t waiting = link.lines.size();
   if (waiting > link.lines.capacity()) return false;
   bytes_.resize(waiting);
@@ -125,7 +130,8 @@ bool ChildAnswer::tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t 
   ByteReader lines(bytes_);
   while (lines.left() > 0) {
     const auto line = lines.take_bytes(lines.take<std::uint32_t>());
-    if (!lines.ok() || !tell_line(line, log, time_ns)) return false;
+    if (!lines.ok()) return false;
+    if ((counts || is_said(line)) && !tell_line(line, log, time_ns)) return false;
   }
   return true;
 }
@@ -375,7 +381,7 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
 void ProcessHost::bury(const std::string& why, bool alive) noexcept {
   std::string how = why;
   if (child_) {
-    (void)answer_.tell_lines(child_->link, log_, now_ns_);  // its last words
+    (void)answer_.tell_lines(child_->link, log_, now_ns_, false);  // its last words: of a tick that does not count
     if (alive) child_->process.kill();
     const std::string end = child_->process.end();
     if (!alive) how = end;

@@ -62,7 +62,8 @@ class ChildAnswer {
   [[nodiscard]] bool take_commands(BehaviorLink& link);
   void send_on(CommandSender& commands, std::int64_t time_ns) const noexcept;
   // Passes the lines to the log with `time_ns` as their time.
-  [[nodiscard]] bool tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t time_ns);
+  // With `counts` false only what is said: the tick that the process was in does not count.
+  [[nodiscard]] bool tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t time_ns, bool counts = true);
   // Replaces `kept` when it changed; nullopt: the state cannot be kept.
   [[nodiscard]] bool take_kept(BehaviorLink& link, std::optional<std::vector<std::byte>>& kept);
   static void take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept;

@@ -1,5 +1,5 @@
-// Values that only this program makes: control objects, motions, armed transactions, parameters, nodes of a chart. Their
-// kind is their metatable, which is known by the address of a key. Scripts cannot read or change it.
+// Values that only this program makes: control objects, motions, armed transactions, parameters, nodes of a chart.
+// Their kind is their metatable, which is known by the address of a key. Scripts cannot read or change it.
 #pragma once
 
 #include <span>

@@ -90,7 +90,8 @@ class RecordWriter {
   std::vector<std::uint16_t> viewer_channels_;
   std::uint64_t stride_ = 0;
   McapWriter file_;
-  std::uint16_t log_ = 0, transitions_ = 0, active_ = 0, emitted_ = 0, faults_ = 0, timing_ = 0, parameters_channel_ = 0;
+  std::uint16_t log_ = 0, transitions_ = 0, active_ = 0, emitted_ = 0, faults_ = 0, timing_ = 0,
+                parameters_channel_ = 0;
   std::vector<double> parameters_;  // the values that were last written
   std::vector<double> values_;      // of one message
   std::vector<std::byte> payload_;  // the encoded `values_`
