@@ -105,9 +105,9 @@ const Mistake mistakes[] = {
     {"m.posture:move({ com_m = { 0 } }, { time_s = 1, contacts = 'left' })",
      "contacts must be a list { ... }, not a string"},
     {"m.posture:move({ com_m = { 0 } }, { time_s = 1, contacts = { 'lefd' } })",
-     "contacts must be a list of its contacts, each once; there is: left, right"},
+     "contacts must be a list of at least one of its contacts, each once; there is: left, right"},
     {"m.posture:move({ com_m = { 0 } }, { time_s = 1, contacts = { 'left', 'left' } })",
-     "contacts must be a list of its contacts, each once"},
+     "contacts must be a list of at least one of its contacts, each once"},
 };
 
 }  // namespace
