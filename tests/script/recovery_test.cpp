@@ -233,3 +233,22 @@ TEST_CASE("reports cannot be emitted, and faults that do not exist and outcomes 
   CHECK(load_error(head + "return k.behavior 't' {\nk.final 'a' { outcome = 'error' } }")
             .find("behaviors/test.lua:5: final 'a' cannot end with 'error'") == 0);
 }
+
+TEST_CASE("a guard's error is taken before the events that wait behind the one it was asked for") {
+  const std::string said =
+      played(failing("enter = function(m) m:emit 'one' m:emit 'two' end,\n"
+                     "{ on = 'one', when = function() error 'x' end, to = 'b' }, { on = 'two', to = 'b' }"),
+             2);
+  CHECK(said.find(told("x", "when", 6)) == 0);  // and neither event led to 'b'
+}
+
+TEST_CASE("an error in the step that ends a behavior is taken, and the behavior goes on") {
+  Stage stage(
+      head +
+      "return k.behavior 't' { controls = 'posture', initial = 'a', always = { { on = 'error', to = 'safe' } },\n"
+      "k.state 'a' { exit = function() error 'x' end, { after = 0.02, to = 'over' } },\n"
+      "k.state 'safe' { enter = log 'safe', endless = true }, k.final 'over' {} }");
+  stage.tick(6);
+  CHECK_FALSE(stage.behavior->failed());
+  CHECK(stage.behavior->state() == "safe");
+}

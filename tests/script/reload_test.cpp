@@ -244,3 +244,32 @@ TEST_CASE("a module that a behavior requires counts as part of it") {
   CHECK(log.joined().find("old\nreload refused, the old version goes on: behaviors/lib/words.lua:1:") == 0);
   CHECK(log.messages.back() == "test: new");
 }
+
+TEST_CASE("a reload begins nothing that an error has stopped: neither what was not entered nor a run that raised") {
+  const std::string told = "{ on = 'error', action = function() print 'told' end }";
+  const std::string entered = chart("k.state 's' { initial = 'inner', run = function() print 'run' end, " + told +
+                                    ",\nenter = function() error 'x' end,\n"
+                                    "k.state 'inner' { enter = function() print 'inner' end } }");
+  const std::string ran = chart("k.state 's' { run = function() print 'run' error 'x' end, " + told + " }");
+  for (const std::string& text : {entered, ran}) {
+    Stage stage(text);
+    stage.tick(3);
+    const std::string before = stage.said();
+    REQUIRE(before.find("told\n") != std::string::npos);
+    REQUIRE(reload(stage, text + "-- another text\n") == Behavior::Reload::taken);
+    stage.tick(3);
+    CHECK(stage.said() == before + "reloaded behaviors/test.lua\n");
+  }
+}
+
+TEST_CASE("a parameter that was set back to its default stays so, though its behavior was played with another value") {
+  const std::string text =
+      chart("k.state 'a' { during = function() print(P.x) end }", "local P = k.params { x = 1 }\n");
+  Stage stage(text);
+  REQUIRE(stage.behavior->set_parameter("x", 5));
+  REQUIRE(reload(stage, text + "-- 2\n") == Behavior::Reload::taken);
+  REQUIRE(stage.behavior->set_parameter("x", 1));
+  REQUIRE(reload(stage, text + "-- 3\n") == Behavior::Reload::taken);
+  stage.tick();
+  CHECK(stage.said().find("\n1\n") != std::string::npos);
+}

@@ -89,10 +89,13 @@ std::string set(ScriptParameter& parameter, double value, const std::string& beh
          number(parameter.min) + ".." + number(parameter.max) + (parameter.unit.empty() ? "" : " " + parameter.unit);
 }
 
-// What a robot's file calls it: the chunk, or, when the behavior was reloaded from another file, that of its first one.
+}  // namespace
+
 const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk) {
   return chunk == parts.lua->sources().front().chunk ? parts.settings.chunk : chunk;
 }
+
+namespace {
 
 // What is wrong with it, or "".
 std::string give(Behavior::Parts& parts, const BehaviorValue& given) {
@@ -607,6 +610,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   if (!parts.problems.empty()) throw InputError(parts.problems);
   give_robot_values(parts);
   give_arguments(parts, instructions);
+  for (ScriptParameter& parameter : parts.lua->core().parameters) parameter.loaded = parameter.value;
   if (!parts.lua->call(open_bindings, &parts, instructions, settings.limits.load_wall_ns)) {
     throw InputError(problem_of(parts.lua->error()));
   }

@@ -17,22 +17,25 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<RandomStream>);
 
-void put_parameters(const LuaCore& core, ByteWriter& bytes) {
-  for (const ScriptParameter& parameter : core.parameters) {
-    if (parameter.value == parameter.initial) continue;
+// Those that were set since the behavior was loaded. Files that it calls may have parameters of the same names.
+void put_parameters(const Behavior::Parts& parts, ByteWriter& bytes) {
+  for (const ScriptParameter& parameter : parts.lua->core().parameters) {
+    if (parameter.value == parameter.loaded) continue;
     bytes.put<std::uint8_t>(1);
+    bytes.put_string(first_name(parts, parameter.chunk));
     bytes.put_string(parameter.name);
     bytes.put(parameter.value);
   }
   bytes.put<std::uint8_t>(0);
 }
 
-void take_parameters(LuaCore& core, ByteReader& bytes) {
+void take_parameters(Behavior::Parts& parts, ByteReader& bytes) {
   while (bytes.take<std::uint8_t>() != 0) {
-    const std::string name = bytes.take_string();
+    const std::string chunk = bytes.take_string(), name = bytes.take_string();
     const auto value = bytes.take<double>();
-    for (ScriptParameter& parameter : core.parameters) {
-      if (parameter.name == name && value >= parameter.min && value <= parameter.max) parameter.value = value;
+    for (ScriptParameter& parameter : parts.lua->core().parameters) {
+      const bool is_it = parameter.name == name && first_name(parts, parameter.chunk) == chunk;
+      if (is_it && value >= parameter.min && value <= parameter.max) parameter.value = value;
     }
   }
 }
@@ -467,7 +470,7 @@ int take_machines(lua_State* state) {
 std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
   bytes.put<std::uint8_t>(parts.failed);
   bytes.put(parts.transactions_refused);
-  put_parameters(parts.lua->core(), bytes);
+  put_parameters(parts, bytes);
   bytes.put<std::uint8_t>(parts.reports.queue_full);
   bytes.put(parts.reports.faults_seen);
   bytes.put(std::as_bytes(std::span(&parts.lua->core().random, 1)));
@@ -485,7 +488,7 @@ bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snaps
   LuaCore& core = parts.lua->core();
   parts.failed = bytes.take<std::uint8_t>() != 0;
   parts.transactions_refused = bytes.take<std::uint64_t>();
-  take_parameters(core, bytes);
+  take_parameters(parts, bytes);
   parts.reports.queue_full = bytes.take<std::uint8_t>() != 0;
   parts.reports.faults_seen = bytes.take<std::uint64_t>();
   GoingOn going_on{parts, bytes, core.random, guards_tried};

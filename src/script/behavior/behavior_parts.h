@@ -83,6 +83,9 @@ struct Behavior::Past {
 // Reads the file, makes the chart and the bindings. `instructions` 0: the limit for loading. Throws InputError.
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
 
+// What a robot's file calls it: the chunk, or, when the behavior was reloaded from another file, that of its first one.
+const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk);
+
 // Sets the parameters of the behavior and of those that it calls to the values in the robot's
 // configuration. Throws InputError.
 void give_robot_values(Behavior::Parts& parts);

@@ -13,7 +13,7 @@
 namespace kadans {
 namespace {
 
-enum Bit : std::uint8_t { bit_active = 1, bit_entering = 2, bit_run_done = 4, bit_passed_over = 8 };
+enum Bit : std::uint8_t { bit_active = 1, bit_entering = 2, bit_run_done = 4, bit_passed_over = 8, bit_stopped = 16 };
 
 bool same_kind(const Chart::State& one, const Chart::State& other) noexcept {
   return one.kind == other.kind && one.machine_root == other.machine_root;
@@ -61,7 +61,8 @@ void ChartRunner::keep(ByteWriter& bytes) const {
     if (!told(run)) continue;
     put_state(chart_.states[i], bytes);
     bytes.put(static_cast<std::uint8_t>((run.active ? bit_active : 0) | (run.entering ? bit_entering : 0) |
-                                        (run.run_done ? bit_run_done : 0) | (run.passed_over ? bit_passed_over : 0)));
+                                        (run.run_done ? bit_run_done : 0) | (run.passed_over ? bit_passed_over : 0) |
+                                        (run.stopped ? bit_stopped : 0)));
     bytes.put(run.entered_ns);
     put_event(run.outcome);
     keep_acted(chart_.states[i], bytes);
@@ -149,6 +150,7 @@ bool ChartRunner::restore_state(ByteReader& bytes, std::vector<bool>& listed) {
   run.outcome = outcome;
   run.run_done = (bits & bit_run_done) != 0;
   run.passed_over = (bits & bit_passed_over) != 0;
+  run.stopped = (bits & bit_stopped) != 0;
   if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return true;
   const auto there = [&](StateIndex i) { return run_[i].active || run_[i].entering; };
   bool alone = true;
@@ -183,13 +185,15 @@ void ChartRunner::restore_history(ByteReader& bytes) {
 
 void ChartRunner::start_runs(lua_State* state) {
   for (const StateIndex index : active_) {
-    if (chart_.states[index].run != Chart::no_function && !run_[index].run_done) start_run(state, index);
+    const bool goes_on = !run_[index].run_done && !run_[index].stopped;
+    if (chart_.states[index].run != Chart::no_function && goes_on) start_run(state, index);
   }
 }
 
 // What is active and has states, none of them active: they are entered by default.
 void ChartRunner::fill_gaps() noexcept {
   for (const StateIndex index : active_) {
+    if (run_[index].stopped) continue;
     const Chart::State& around = chart_.states[index];
     const bool parallel = around.kind == Chart::Kind::parallel;
     bool any = false;

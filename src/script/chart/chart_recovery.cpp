@@ -81,6 +81,7 @@ int ChartRunner::resume_recoverably(lua_State* state, StateIndex index, int argu
   keep_run_error(state, thread);
   note_failure(state, index, attempt);
   cancel_run(state, index);
+  run_[index].stopped = true;
   return -1;
 }
 
@@ -156,6 +157,7 @@ void ChartRunner::recover_late(lua_State* state) {
 
 // Nothing of what is inside is entered.
 void ChartRunner::enter_no_further(StateIndex index) noexcept {
+  run_[index].stopped = true;
   for (StateIndex i = index; i < chart_.states[index].end; ++i) run_[i].entering = false;
 }
 

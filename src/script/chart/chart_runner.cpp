@@ -257,7 +257,7 @@ void ChartRunner::enter(lua_State* state, StateIndex index) {
   const Chart::State& entered = chart_.states[index];
   StateRun& run = run_[index];
   run.active = true;
-  run.run_done = run.passed_over = false;
+  run.run_done = run.passed_over = run.stopped = false;
   run.outcome = no_event;
   run.entered_ns = now_ns_;
   if (entered.machine_root) {  // a call begins anew: nothing is left of the one before

@@ -144,6 +144,7 @@ class ChartRunner {
     bool entering = false, leaving = false;
     bool decided = false;      // an `always` was found for it in this step
     bool passed_over = false;  // one of its `after` was due, and a transition was taken that would not let it
+    bool stopped = false;      // by an error: its `run` does not go on, and what was not entered inside it stays so
     EventId outcome = no_event;
     std::int64_t entered_ns = 0;
     lua_State* thread = nullptr;

@@ -12,6 +12,7 @@ struct ScriptParameter {
   std::string doc;
   double initial = 0, min = 0, max = 0;
   double value = 0;
+  double loaded = 0;  // its value when the behavior was loaded, with its arguments and those of robot.json
 };
 
 }  // namespace kadans
