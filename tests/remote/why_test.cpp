@@ -1,6 +1,7 @@
-// Why transitions wait, asked of a run that goes on.
+// Why transitions wait, asked of a run that goes on; and how viewers get the transitions.
 #include <doctest/doctest.h>
 
+#include "remote/instance/run_description.h"
 #include "remote/live_instance.h"
 
 using namespace kadans;
@@ -30,4 +31,34 @@ TEST_CASE("why tells what the transitions of a behavior wait for, and an unknown
   CHECK(has(answer, "s.time_s = "));
   CHECK(has(live.ask({{"verb", "why"}, {"behavior", "wiat"}}), "did you mean 'wait'"));
   CHECK(live.ask({{"verb", "why"}}, Role::read)["ok"] == false);  // it costs the behavior thread time
+}
+
+TEST_CASE("a chart is described with actions alone, internal transitions and an entry for each of several targets") {
+  const Project project;
+  project.write(
+      "behaviors/bench/forms.lua",
+      "local k = require 'kadans'\n"
+      "local function side(name) return k.region(name) { initial = 'x', k.state 'x' {}, k.state 'y' {} } end\n"
+      "return k.behavior 'forms' { initial = 'a',\n"
+      "  k.state 'a' { initial = 'b', k.state 'b' {}, k.state 'c' {},\n"
+      "    { on = 'warning.*', action = function() end },\n"
+      "    { on = 'go', to = 'c', internal = true },\n"
+      "    { on = 'both', to = { 'l.y', 'r.y' } } },\n"
+      "  k.parallel 'p' { side 'l', side 'r' } }\n");
+  const LiveRobot robot;
+  BehaviorLog log;
+  const ScriptHost host({.root = project.root, .play = {{.file = "behaviors/bench/forms.lua"}}}, robot.catalog, log);
+  const Json chart = Json::parse(behaviors_description(&host))[0]["chart"];
+  const Json& transitions = chart["transitions"];
+  REQUIRE(transitions.size() == 4);
+  CHECK(transitions[0]["label"] == "warning.*");
+  CHECK(transitions[0]["target"].is_null());
+  CHECK(transitions[1]["internal"] == true);
+  CHECK_FALSE(transitions[0].contains("internal"));
+  CHECK(transitions[2]["number"] == transitions[3]["number"]);
+  const auto target = [&](int entry) {
+    return chart["states"][transitions[entry]["target"].get<std::size_t>()]["path"];
+  };
+  CHECK(target(2) == "p.l.y");
+  CHECK(target(3) == "p.r.y");
 }

@@ -34,6 +34,7 @@ const char* kind_name(Chart::Kind kind) noexcept {
 
 Json number_of(StateIndex state) { return state == no_state ? Json(nullptr) : Json(state); }
 
+// A transition has an entry for each of its targets, or one without a target when it is an action alone.
 Json chart_of(const Behavior& behavior) {
   const Chart& chart = behavior.chart();
   const std::vector<ScriptParameter> parameters = behavior.parameters();
@@ -49,14 +50,14 @@ Json chart_of(const Behavior& behavior) {
   const std::vector<GuardSource> guards = behavior.guards();
   for (std::size_t i = 0; i < chart.transitions.size(); ++i) {
     const Chart::Transition& transition = chart.transitions[i];
-    if (transition.target == no_state) continue;
     const Chart::State& source = chart.states[transition.source];
     Json one{{"number", i},
              {"source", transition.source},
-             {"target", transition.target},
+             {"target", number_of(transition.target)},
              {"label", transition_label(chart, transition, parameters)},
              {"line", source.chunk + ":" + std::to_string(transition.line)}};
     if (i - source.first_always < source.always_count) one["always"] = true;
+    if (transition.internal) one["internal"] = true;
     if (const GuardSource& guard = guards[i]; !guard.file.empty())
       one["guard"] = {{"file", guard.file}, {"line", guard.line}, {"text", guard.text}};
     transitions.push_back(one);

@@ -2,11 +2,12 @@
 // is asked for; wheel, drag and keys move it, and until a hand has moved it the active states stay in sight.
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { active_since, active_states } from '../data/active_states.js';
-import { chart_layout, path_of } from '../data/chart_layout.js';
+import { chart_layout, grouped, line_height, lines_from, path_of } from '../data/chart_layout.js';
 import { TransitionCard } from './transition_card.jsx';
 
 const [readable, least, most] = [0.78, 0.08, 3];
 
+// A state's name stands in the middle of its box, or at its top when it has others or actions below.
 function State({ node, active }) {
   const [x, y] = [node.x - node.width / 2, node.y - node.height / 2];
   if (node.start) return <circle class="dot" cx={node.x} cy={node.y} r="4" />;
@@ -16,41 +17,67 @@ function State({ node, active }) {
     <g class={kind} data-state={node.label} data-path={node.path}>
       {round ? <circle cx={node.x} cy={node.y} r="13" /> : <rect x={x} y={y} width={node.width} height={node.height} rx={node.cluster ? 10 : 8} />}
       {node.kind === 'final' && !node.cluster && <rect class="inner" x={x + 3} y={y + 3} width={node.width - 6} height={node.height - 6} rx="6" />}
-      <text x={node.x} y={node.cluster ? y + 14 : node.y + 4}>{node.label}</text>
+      <text x={node.x} y={node.cluster ? y + 14 : y + (lines_from(node) - y) / 2 + 4}>{node.label}</text>
+      {!node.cluster && node.lines?.length > 0 && <path class="rule" d={`M${x},${lines_from(node)}h${node.width}`} />}
       <title>{node.path}</title>
     </g>
   );
 }
 
-function Edge({ edge, lit, show, hide }) {
-  const { transition } = edge;
-  const line = path_of(edge.points);
+// What shows the card of a transition.
+const hands = (transition, { show, hide }) => ({ 'data-transition': transition.number, tabindex: -1, onPointerEnter: (event) => show(transition, event), onPointerLeave: hide, onFocus: (event) => show(transition, event), onBlur: hide });
+
+// The arrow of a transition, or its arrows and the bar from which they go.
+function Edge({ edges, bar, lit, ...card }) {
+  const [{ transition, label, x, y }] = edges;
   const kind = `edge${lit ? ' lit' : ''}${transition?.always ? ' always' : ''}`;
-  const hands = transition ? { tabindex: -1, onPointerEnter: (event) => show(transition, event), onPointerLeave: hide, onFocus: (event) => show(transition, event), onBlur: hide } : {};
   return (
-    <g class={kind} data-transition={transition?.number} {...hands}>
-      <path d={line} marker-end={lit ? 'url(#tip-lit)' : 'url(#tip)'} />
-      {transition && <path class="reach" d={line} />}
-      {edge.label && <text x={edge.x} y={edge.y + 3}>{edge.label}</text>}
+    <g class={kind} {...(transition ? hands(transition, card) : {})}>
+      {edges.map(({ key, points }) => <path key={key} class="line" d={path_of(points)} marker-end={lit ? 'url(#tip-lit)' : 'url(#tip)'} />)}
+      {transition && edges.map(({ key, points }) => <path key={key} class="reach" d={path_of(points)} />)}
+      {bar && <rect class="fork" x={bar.x - bar.width / 2} y={bar.y - bar.height / 2} width={bar.width} height={bar.height} rx="2" />}
+      {label && <text x={x} y={y + 3}>{label}</text>}
     </g>
   );
+}
+
+// The actions alone of a state.
+function Lines({ node, active, ...card }) {
+  const x = node.x - node.width / 2;
+  return node.lines.map(({ transition, text }, i) => {
+    const y = lines_from(node) + 2 + i * line_height;
+    return (
+      <g key={transition.number} class={`edge alone${active && !node.cluster ? ' inside' : ''}`} {...hands(transition, card)}>
+        <rect class="reach" x={x + 3} y={y} width={node.width - 6} height={line_height} />
+        <text x={x + 10} y={y + 10}>{text}</text>
+      </g>
+    );
+  });
 }
 
 const Tip = ({ id }) => (
   <marker id={id} viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto-start-reverse"><path d="M0,0.6 L7.4,4 L0,7.4 z" /></marker>
 );
 
-function Drawing({ session, behavior, drawing, active, show, hide }) {
-  const last = session.last_transitions(session.cursor_s).get(behavior.name);
-  const { states } = behavior.chart;
-  const lit = ({ transition }) => last && transition && states[transition.target].path === last.to && (transition.source === 0 || states[transition.source].path === last.from);
+// The number of the transition that came last; of several with the same ends: all.
+function lit_numbers({ states, transitions }, last) {
+  const found = transitions.filter(({ source, target }) => last && states[target]?.path === last.to && `${last.from}.`.startsWith(source === 0 ? '' : `${states[source].path}.`));
+  const inner = Math.max(...found.map(({ source }) => states[source].path.length));
+  return new Set(found.filter(({ source }) => states[source].path.length === inner).map(({ number }) => number));
+}
+
+function Drawing({ session, behavior, drawing, active, ...card }) {
+  const lit = lit_numbers(behavior.chart, session.last_transitions(session.cursor_s).get(behavior.name));
   // What is around others lies below them.
   const clusters = drawing.nodes.filter((node) => node.cluster).sort((a, b) => a.id - b.id);
+  const groups = grouped(drawing.edges, (edge) => edge.group ?? edge.key);
+  const bars = new Map(drawing.nodes.filter((node) => node.fork).map((node) => [node.fork, node]));
   return (
     <>
       {clusters.map((node) => <State key={node.id} node={node} active={active.has(node.id)} />)}
-      {drawing.edges.map((edge) => <Edge key={edge.key} edge={edge} lit={lit(edge)} {...{ show, hide }} />)}
-      {drawing.nodes.filter((node) => !node.cluster).map((node) => <State key={node.id} node={node} active={active.has(node.id)} />)}
+      {[...groups].map(([key, edges]) => <Edge key={key} edges={edges} bar={bars.get(key)} lit={lit.has(edges[0].transition?.number)} {...card} />)}
+      {drawing.nodes.filter((node) => !node.cluster && !node.fork).map((node) => <State key={node.id} node={node} active={active.has(node.id)} />)}
+      {drawing.nodes.filter((node) => node.lines?.length > 0).map((node) => <Lines key={node.id} node={node} active={active.has(node.id)} {...card} />)}
     </>
   );
 }

@@ -27,11 +27,17 @@ export function TransitionCard({ session, behavior, active, transition, at }) {
   const asks = Boolean(waits && session.live && session.following && session.remote?.writes && session.remote.verbs.has('why'));
   const reason = useReason(session, behavior, transition.number, asks);
   const { guard } = transition;
+  const name = (index) => <b>{states[index].path || 'any state'}</b>;
+  const alone = transition.target === null;
+  // It has an entry for each of its targets.
+  const targets = behavior.chart.transitions.filter((one) => one.number === transition.number && !alone).map((one) => one.target);
   const place = { top: `${Math.min(at.bottom + 6, innerHeight - 190)}px`, left: `${Math.max(8, Math.min(at.x, innerWidth - 428))}px` };
   return (
     <div class="transition-card" role="tooltip" style={place}>
-      <p><b>{states[transition.source].path || 'any state'}</b> → <b>{states[transition.target].path}</b></p>
+      <p>{name(transition.source)}{targets.map((target, i) => <>{i === 0 ? ' → ' : ' and '}{name(target)}</>)}</p>
       <p>{transition.always && <i>always </i>}{transition.label} <small>{transition.line}</small></p>
+      {alone && <p class="muted">The action alone: no state is left.</p>}
+      {transition.internal && <p class="muted">It does not leave {states[transition.source].path}.</p>}
       {guard && <pre>{guard.text}</pre>}
       {guard && `${guard.file}:${guard.line}` !== transition.line && <small>{guard.file}:{guard.line}</small>}
       {reason && <p class={reason.free ? 'free' : 'held'}>{reason.free ? 'nothing holds it back' : reason.why}</p>}
