@@ -41,6 +41,32 @@ std::string seconds_text(double seconds) {
 
 }  // namespace
 
+const char* refusal_word(RefusalReason reason) noexcept {
+  switch (reason) {
+    case RefusalReason::none:
+      return "none";
+    case RefusalReason::malformed:
+      return "malformed";
+    case RefusalReason::unknown:
+      return "unknown";
+    case RefusalReason::out_of_range:
+      return "out_of_range";
+    case RefusalReason::motion:
+      return "motion";
+    case RefusalReason::too_old:
+      return "too_old";
+    case RefusalReason::robot_held:
+      return "robot_held";
+    case RefusalReason::joint_held:
+      return "joint_held";
+    case RefusalReason::armed_full:
+      return "armed_full";
+    case RefusalReason::set_dwells:
+      return "set_dwells";
+  }
+  return "none";
+}
+
 std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
   const std::string name = target(refusal, catalog);
   const std::string of = name.empty() ? "" : name + ": ";

@@ -9,6 +9,8 @@
 
 namespace kadans {
 
+// The reason as behaviors read it: "out_of_range".
+const char* refusal_word(RefusalReason reason) noexcept;
 std::string refusal_text(const Refusal& refusal, const Catalog& catalog);
 // The same into `text`, cut to its size and ended with 0.
 void copy_refusal_text(const Refusal& refusal, const Catalog& catalog, std::span<char> text);

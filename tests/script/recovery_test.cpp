@@ -1,4 +1,6 @@
 // Errors of a chart's functions, refused transactions and faults as events.
+#include <set>
+
 #include <doctest/doctest.h>
 
 #include "script/cast.h"
@@ -175,6 +177,27 @@ TEST_CASE("a refused transaction is an event for who waits for it, with the reas
   refuse();
   stage.tick();
   CHECK(stage.behavior->events_unhandled() == 0);  // nobody waits for it any more
+}
+
+TEST_CASE("each reason of a refusal has a word of its own, which s.event.data.reason shows") {
+  const std::string text =
+      head +
+      "return k.behavior 't' { controls = 'posture', initial = 'a', k.state 'a' { endless = true,\n"
+      "{ on = 'refused', action = function(m, s) print(s.event.data.reason) end } } }";
+  Stage stage(text);
+  stage.tick();
+  std::set<std::string> words;
+  for (int reason = 1; reason <= static_cast<int>(RefusalReason::set_dwells); ++reason) {
+    Refusal& refusal = stage.snapshot.refusals[stage.snapshot.transactions_refused++ % refusals_shown];
+    refusal = {.sequence = stage.sender.last_sequence(),
+               .kind = CommandKind::switch_set,
+               .reason = static_cast<RefusalReason>(reason),
+               .joint = 0};
+    stage.tick();
+    words.insert(stage.log.messages.back());
+  }
+  CHECK(words.size() == static_cast<std::size_t>(RefusalReason::set_dwells));
+  CHECK(words.contains("t: set_dwells"));
 }
 
 TEST_CASE("a tick whose commands found no place is told as refused in the next one") {

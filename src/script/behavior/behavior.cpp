@@ -475,12 +475,8 @@ struct Posting {
 int post_event(lua_State* state) {
   Posting& posting = *static_cast<Posting*>(lua_touserdata(state, 1));
   ChartRunner& runner = *posting.parts.runner;
-  const bool with_data = posting.with_data;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, posting.parts.tables.event_data);
-  if (with_data) push_event_data(state, posting.event);
-  const std::int8_t place = with_data ? runner.events().free_place() : std::int8_t{-1};
-  posting.taken = runner.post(posting.id, place);
-  if (posting.taken && with_data) lua_rawseti(state, -2, place + 1);
+  if (posting.with_data) push_event_data(state, posting.event);
+  posting.taken = posting.with_data ? runner.post_with_data(state, posting.id) : runner.post(posting.id);
   return 0;
 }
 

@@ -7,31 +7,13 @@
 namespace kadans {
 namespace {
 
-// [-0 +0] Makes the table at the top of the stack, which is popped, the data of an event.
-void post(lua_State* state, Behavior::Parts& parts, EventId event) {
-  const std::int8_t place = parts.runner->events().free_place();
-  if (parts.runner->post(event, place)) {
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.event_data);
-    lua_pushvalue(state, -2);
-    lua_rawseti(state, -2, place + 1);
-    lua_pop(state, 1);
-  }
-  lua_pop(state, 1);
-}
-
-const char* word(RefusalReason reason) noexcept {
-  constexpr const char* words[] = {"none",    "malformed",  "unknown",    "out_of_range", "motion",
-                                   "too_old", "robot_held", "joint_held", "armed_full"};  // as RefusalReason
-  return words[static_cast<std::size_t>(reason)];
-}
-
 void post_refusal(lua_State* state, Behavior::Parts& parts, const char* reason, const char* what) {
   lua_createtable(state, 0, 2);
   lua_pushstring(state, reason);
   lua_setfield(state, -2, "reason");
   lua_pushstring(state, what);
   lua_setfield(state, -2, "what");
-  post(state, parts, parts.chart.refused_event);
+  parts.runner->post_with_data(state, parts.chart.refused_event);
 }
 
 void post_refusals(lua_State* state, Behavior::Parts& parts) {
@@ -43,7 +25,7 @@ void post_refusals(lua_State* state, Behavior::Parts& parts) {
   for (std::uint32_t i = 0; i < count; ++i) {
     std::array<char, 256> text{};
     copy_refusal_text(reports.refused[i], parts.catalog, text);
-    post_refusal(state, parts, word(reports.refused[i].reason), text.data());
+    post_refusal(state, parts, refusal_word(reports.refused[i].reason), text.data());
   }
 }
 
@@ -58,7 +40,7 @@ void post_fault(lua_State* state, Behavior::Parts& parts, const NewFault& fault,
   lua_setfield(state, -2, "value");
   lua_pushnumber(state, fault.limit);
   lua_setfield(state, -2, "limit");
-  post(state, parts, event);
+  parts.runner->post_with_data(state, event);
 }
 
 // Those since the last tick, as far as the snapshot shows them. In the first tick nobody waits yet.

@@ -160,7 +160,7 @@ int wait(lua_State* state) {
 
 // m:emit(event, data?, { to = }?) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the
 // next. With `to` it goes to other behaviors, which get it in their next tick.
-int emit(lua_State* state);  // upvalues: the chart, the reference of the events' data
+int emit(lua_State* state);  // upvalue: the chart
 
 // Reading what m does not have; upvalues: its content, its number.
 int refuse_read(lua_State* state) {
@@ -304,13 +304,8 @@ int emit(lua_State* state) {
   int fields = 0;
   if (given) push_event_data(state, 3, 1, fields);
   if (with_data && !given) lua_newtable(state);
-  const std::int8_t place = with_data ? runner.events().free_place() : std::int8_t{-1};
-  if (!runner.post(event, place)) return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
-  if (with_data) {
-    lua_rawgeti(state, LUA_REGISTRYINDEX, static_cast<int>(lua_tointeger(state, lua_upvalueindex(2))));
-    lua_insert(state, -2);
-    lua_rawseti(state, -2, place + 1);
-  }
+  const bool posted = with_data ? runner.post_with_data(state, event) : runner.post(event);
+  if (!posted) return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
   return lua_pushboolean(state, 1), 1;
 }
 
@@ -325,8 +320,7 @@ int make_result(lua_State* state) {
   return 1;
 }
 
-void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, const RunnerTables& tables,
-                          std::size_t number) {
+void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, std::size_t number) {
   lua_newtable(state);
   for (std::uint32_t object = 0; object < bindings.catalog->objects.size(); ++object) {
     if (!bindings.has_object(number, object)) continue;
@@ -346,8 +340,7 @@ void push_machine_content(lua_State* state, const Chart& chart, const Bindings& 
   lua_pushcfunction(state, clear_faults);
   lua_setfield(state, -2, "clear_faults");
   lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
-  lua_pushinteger(state, tables.event_data);
-  lua_pushcclosure(state, emit, 2);
+  lua_pushcclosure(state, emit, 1);
   lua_setfield(state, -2, "emit");
   open_armed(state, chart);
 }
@@ -372,7 +365,7 @@ void open_machines(lua_State* state, const Chart& chart, const Bindings& binding
   lua_pushcfunction(state, make_result);
   tables.make_result = luaL_ref(state, LUA_REGISTRYINDEX);
   for (std::size_t i = 0; i < chart.machines.size(); ++i) {
-    push_machine_content(state, chart, bindings, tables, i);
+    push_machine_content(state, chart, bindings, i);
     lua_pushvalue(state, -1);
     tables.machines[i].content = luaL_ref(state, LUA_REGISTRYINDEX);
     lua_createtable(state, 0, 1);

@@ -236,12 +236,8 @@ bool push_followed_refusal(lua_State* state, int declared, const ScriptParameter
 void open_arguments(lua_State* state) {
   lua_newtable(state);
   lua_setfield(state, LUA_REGISTRYINDEX, by_file);
-  lua_createtable(state, 0, 3);
-  lua_pushcfunction(state, read_argument);
-  lua_setfield(state, -2, "__index");
-  lua_pushcfunction(state, refuse_argument_write);
-  lua_setfield(state, -2, "__newindex");
-  open_kind(state, arguments_key);
+  const luaL_Reg functions[] = {{"__index", read_argument}, {"__newindex", refuse_argument_write}};
+  open_kind(state, arguments_key, functions);
   lua_pushcfunction(state, args);
   lua_setfield(state, -2, "args");
 }

@@ -269,9 +269,7 @@ bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
 // [-0 +1 when true]
 bool ChartRunner::push_given_by(lua_State* state, StateIndex caller, int function) {
   push_call(state, function, caller);
-  if (recoverable_) return call_recoverably(state, caller, 2, 1);
-  lua_call(state, 2, 1);
-  return true;
+  return call_recoverably(state, caller, 2, 1);
 }
 
 void ChartRunner::push_arguments(lua_State* state) const {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "chart_reader.h"
+#include "chart_reports.h"
 #include "config/scenario/event_text.h"
 #include "script/bindings/bindings.h"
 #include "script/lua/lua_core.h"
@@ -24,24 +25,6 @@ constexpr std::size_t events_max = 256, doc_max = 512, unit_max = 32;
 constexpr double event_instructions = 300, field_instructions = 200, checked_instructions = 40;
 constexpr const char* field_keys[] = {"min", "max", "optional", "doc", nullptr};
 constexpr const char* emit_keys[] = {"to", nullptr};
-
-// [-0 +0] Calls visit(key, value), two places on the stack, for the entries of the table at `index`, in order.
-template <typename Visit>
-void each_in_order(lua_State* state, int index, Visit visit) {
-  luaL_checkstack(state, 8, "k.events");
-  lua_pushcfunction(state, sandbox_pairs);
-  lua_pushvalue(state, index);
-  lua_call(state, 1, 1);
-  const int next = lua_gettop(state);
-  for (;;) {
-    lua_pushvalue(state, next);
-    lua_call(state, 0, 2);
-    if (lua_isnil(state, next + 1)) break;
-    visit(next + 1, next + 2);
-    lua_settop(state, next);
-  }
-  lua_settop(state, next - 1);
-}
 
 // Of a text within bounds: it is kept outside the script's memory.
 const char* text_at(lua_State* state, int index, std::size_t most, const char* what, const ScriptPlace& place) {
@@ -123,10 +106,8 @@ void read_field(lua_State* state, const char* name, int value, ScriptEvent& even
   if (table) read_options(state, value, field, place);
 }
 
-bool is_reserved(const char* name) noexcept {
-  const auto is = [&](const char* other) { return std::strcmp(name, other) == 0; };
-  const auto begins = [&](const char* start) { return std::strncmp(name, start, std::strlen(start)) == 0; };
-  return is("done") || is("error") || is("refused") || begins("run.") || begins("fault.");
+bool is_reserved(std::string_view name) noexcept {
+  return name == "done" || name.starts_with("run.") || reserved_for_reports(name);
 }
 
 void read_event(lua_State* state, const char* name, int value, const ScriptPlace& place) {
@@ -214,8 +195,7 @@ void check_field(lua_State* state, const ScriptEvent& event, const Field& field)
 }  // namespace
 
 void open_events(lua_State* state) {
-  lua_newtable(state);
-  open_kind(state, type_key);
+  open_kind(state, type_key, {});
   lua_pushcfunction(state, events);
   lua_setfield(state, -2, "events");
   add_type(state, "flag", Field::Type::flag);

@@ -124,7 +124,7 @@ bool ChartRunner::restore(ByteReader& bytes) {
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
     const EventId event = chart_.find_or_learn(text_of(bytes));
     const auto place = bytes.take<std::int8_t>();
-    if (event == no_event || chart_.made_by_runner(event) || !post(event, place)) ++unhandled_;
+    if (event == no_event || chart_.made_by_runner(event) || !queue_.send(event, place)) ++unhandled_;
   }
   list_active();
   fill_gaps();

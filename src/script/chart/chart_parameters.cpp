@@ -109,26 +109,17 @@ int params(lua_State* state) {
   if (!lua_istable(state, 1)) return raise_at(state, place, nullptr, "k.params needs a table { name = { ... } }");
   lua_settop(state, 1);
   lua_newtable(state);
-  lua_pushcfunction(state, sandbox_pairs);  // in order, so that parameters are numbered the same in every run
-  lua_pushvalue(state, 1);
-  lua_call(state, 1, 1);
-  for (;;) {
-    lua_settop(state, 3);
-    lua_pushvalue(state, 3);
-    lua_call(state, 0, 2);
-    if (lua_isnil(state, 4)) break;
-    if (lua_type(state, 4) != LUA_TSTRING)
-      return raise_at(state, place, nullptr, "k.params: every parameter needs a name");
+  each_in_order(state, 1, [&](int key, int) {  // so that parameters are numbered the same in every run
+    if (lua_type(state, key) != LUA_TSTRING) raise_at(state, place, nullptr, "k.params: every parameter needs a name");
     core_of(state).budget.charge(state, parameter_instructions);
-    add_parameter(state, read_spec(state, lua_tostring(state, 4), place), place);
+    add_parameter(state, read_spec(state, lua_tostring(state, key), place), place);
     auto* handle = static_cast<std::size_t*>(lua_newuserdata(state, sizeof(std::size_t)));
     *handle = core_of(state).parameters.size() - 1;
     set_kind(state, handle_key);
-    lua_pushvalue(state, 4);
+    lua_pushvalue(state, key);
     lua_insert(state, -2);
     lua_rawset(state, 2);
-  }
-  lua_settop(state, 2);
+  });
   push_reader(state, read_parameter, refuse_write);
   return 1;
 }

@@ -375,10 +375,8 @@ void push_node_maker(lua_State* state, NodeKind kind, int name, const ScriptPlac
 void push_node_body(lua_State* state, int index) { lua_getfield(state, index, "body"); }
 
 void open_nodes(lua_State* state) {
-  lua_createtable(state, 0, 2);
-  lua_pushcfunction(state, take_arguments);
-  lua_setfield(state, -2, "__call");
-  open_kind(state, node_key);
+  const luaL_Reg functions[] = {{"__call", take_arguments}};
+  open_kind(state, node_key, functions);
   constexpr NodeKind kinds[] = {NodeKind::behavior, NodeKind::state,       NodeKind::parallel,
                                 NodeKind::region,   NodeKind::final_state, NodeKind::history};
   for (const NodeKind kind : kinds) {

@@ -56,7 +56,7 @@ ChartRunner::Attempt ChartRunner::begin_attempt(lua_State* state) const noexcept
 }
 
 bool ChartRunner::call_recoverably(lua_State* state, StateIndex index, int arguments, int results) {
-  if (!chart_.takes_errors[index]) return lua_call(state, arguments, results), true;
+  if (!recoverable_ || !chart_.takes_errors[index]) return lua_call(state, arguments, results), true;
   const Attempt attempt = begin_attempt(state);
   const int function = lua_gettop(state) - arguments;
   lua_rawgeti(state, LUA_REGISTRYINDEX, core_of(state).handler);

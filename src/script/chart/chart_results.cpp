@@ -14,12 +14,7 @@ bool ChartRunner::make_result(lua_State* state, StateIndex index) {
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.results);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.make_result);
   push_call(state, function, index);
-  bool made = true;
-  if (recoverable_) {
-    made = call_recoverably(state, index, 3, 1);
-  } else {
-    lua_call(state, 3, 1);
-  }
+  const bool made = call_recoverably(state, index, 3, 1);
   if (made) lua_rawseti(state, -2, index + 1);
   lua_pop(state, 1);
   return made;
@@ -37,8 +32,7 @@ StateIndex ChartRunner::final_in(StateIndex index) const noexcept {
 }
 
 // [-0 +1 when true]
-bool ChartRunner::push_result_in(lua_State* state, StateIndex index) {
-  const StateIndex ended = final_in(index);
+bool ChartRunner::push_result_of(lua_State* state, StateIndex ended) const {
   if (ended == no_state || chart_.states[ended].result == Chart::no_function) return false;
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.results);
   lua_rawgeti(state, -1, ended + 1);
@@ -46,12 +40,6 @@ bool ChartRunner::push_result_in(lua_State* state, StateIndex index) {
   return true;
 }
 
-bool ChartRunner::push_result(lua_State* state) const {
-  if (finished_by_ == no_state || chart_.states[finished_by_].result == Chart::no_function) return false;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.results);
-  lua_rawgeti(state, -1, finished_by_ + 1);
-  lua_remove(state, -2);
-  return true;
-}
+bool ChartRunner::push_result(lua_State* state) const { return push_result_of(state, finished_by_); }
 
 }  // namespace kadans

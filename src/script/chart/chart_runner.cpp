@@ -94,6 +94,20 @@ bool ChartRunner::select_event(lua_State* state, bool ends_only) {
 }
 
 // s.event: name and data of the event whose transitions are looked at, or taken.
+bool ChartRunner::post_with_data(lua_State* state, EventId event) {
+  const std::int8_t place = queue_.free_place();
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
+  lua_insert(state, -2);
+  const bool posted = queue_.send(event, place);
+  if (posted) {
+    lua_rawseti(state, -2, place + 1);
+  } else {
+    lua_pop(state, 1);
+  }
+  lua_pop(state, 1);
+  return posted;
+}
+
 void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
   shown_ = event;
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
@@ -107,7 +121,7 @@ void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
     lua_remove(state, -2);
   } else if (event.from != no_state && chart_.states[event.from].kind == Chart::Kind::parallel) {
     push_outcomes(state, event.from);
-  } else if (event.from != no_state && push_result_in(state, event.from)) {
+  } else if (event.from != no_state && push_result_of(state, final_in(event.from))) {
     lua_createtable(state, 0, 1);
     lua_insert(state, -2);
     lua_setfield(state, -2, "result");
@@ -152,7 +166,7 @@ void ChartRunner::push_outcomes(lua_State* state, StateIndex parallel) {
     lua_pushstring(state, chart_.states[region].name.c_str());
     lua_rawgeti(state, -2, run_[region].outcome + 1);
     lua_rawset(state, -4);
-    if (push_result_in(state, region)) lua_setfield(state, -4, chart_.states[region].name.c_str());
+    if (push_result_of(state, final_in(region))) lua_setfield(state, -4, chart_.states[region].name.c_str());
   });
   lua_pop(state, 1);
   lua_setfield(state, -3, "outcomes");
@@ -479,9 +493,7 @@ void ChartRunner::push_call(lua_State* state, int function, StateIndex index) {
 
 bool ChartRunner::call(lua_State* state, int function, StateIndex index) {
   push_call(state, function, index);
-  if (recoverable_) return call_recoverably(state, index, 2, 0);
-  lua_call(state, 2, 0);
-  return true;
+  return call_recoverably(state, index, 2, 0);
 }
 
 void ChartRunner::start_run(lua_State* state, StateIndex index) {

@@ -84,7 +84,8 @@ class ChartRunner {
   void stop(lua_State* state, std::int64_t now_ns);
 
   // False when the queue is full.
-  bool post(EventId event, std::int8_t place = -1) noexcept { return queue_.send(event, place); }
+  bool post(EventId event) noexcept { return queue_.send(event, -1); }
+  bool post_with_data(lua_State* state, EventId event);  // [-1 +0] with the data at the top of the stack
   const EventQueue& events() const noexcept { return queue_; }
   bool waits_for(EventId event) const noexcept;  // whether an active state has a transition for it
 
@@ -190,7 +191,7 @@ class ChartRunner {
   void forget_data(lua_State* state, const WaitingEvent& event);
   void push_outcomes(lua_State* state, StateIndex parallel);
   StateIndex final_in(StateIndex index) const noexcept;
-  bool push_result_in(lua_State* state, StateIndex index);
+  bool push_result_of(lua_State* state, StateIndex ended) const;  // [-0 +1 when true] of a final state
   bool make_result(lua_State* state, StateIndex index);
   void take_step(lua_State* state);
   void leave(lua_State* state, StateIndex index);

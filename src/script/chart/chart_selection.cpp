@@ -36,15 +36,10 @@ bool ChartRunner::guard(lua_State* state, std::uint16_t number) {
   Guard& guard = guards_[number];
   if (guard.look != look_) {  // several innermost states may ask
     push_guard(state, number);
-    if (recoverable_ && !call_recoverably(state, transition.source, 2, 1)) {
-      guard.look = look_;
-      guard.yes = false;
-      return false;
-    }
-    if (!recoverable_) lua_call(state, 2, 1);
+    const bool answered = call_recoverably(state, transition.source, 2, 1);
     guard.look = look_;
-    guard.yes = lua_toboolean(state, -1) != 0;
-    lua_pop(state, 1);
+    guard.yes = answered && lua_toboolean(state, -1) != 0;
+    if (answered) lua_pop(state, 1);
   }
   return guard.yes;
 }

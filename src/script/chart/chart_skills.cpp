@@ -189,12 +189,8 @@ bool push_skill(lua_State* state, int index) {
 }
 
 void open_skills(lua_State* state) {
-  lua_createtable(state, 0, 3);
-  lua_pushcfunction(state, name_state);
-  lua_setfield(state, -2, "__call");
-  lua_pushcfunction(state, refuse_change);
-  lua_setfield(state, -2, "__newindex");
-  open_kind(state, skill_key);
+  const luaL_Reg functions[] = {{"__call", name_state}, {"__newindex", refuse_change}};
+  open_kind(state, skill_key, functions);
   lua_pushcfunction(state, begin_skill);
   lua_setfield(state, -2, "skill");
 }

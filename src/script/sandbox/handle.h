@@ -12,6 +12,8 @@ using HandleKey = char;  // a constant of the file that makes the kind: its addr
 
 // [-1 +0] The table at the top of the stack is the metatable of the kind from now on.
 void open_kind(lua_State* state, const HandleKey& key);
+// [-0 +0] Opens a kind whose metatable has these functions.
+void open_kind(lua_State* state, const HandleKey& key, std::span<const luaL_Reg> functions);
 // [-0 +0] Opens a kind of user data: reading a field calls read_field, whose upvalue 1 is the table of methods.
 void open_kind(lua_State* state, const HandleKey& key, std::span<const luaL_Reg> methods, lua_CFunction read_field);
 // [-0 +0] Gives the kind to the value at the top of the stack.

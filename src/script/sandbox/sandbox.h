@@ -33,6 +33,26 @@ void open_tables(lua_State* state);     // the same for the table library
 void check_writable(lua_State* state);  // raises when the first argument is no table, or a read-only one
 int sandbox_sort(lua_State* state);
 int sandbox_pairs(lua_State* state);
+
+// [-0 +0] Calls visit(key, value), two places on the stack, the value at its top, for the entries of the table at
+// `index`, in the order of sandbox_pairs.
+template <typename Visit>
+void each_in_order(lua_State* state, int index, Visit visit) {
+  luaL_checkstack(state, 8, "a table");
+  lua_pushcfunction(state, sandbox_pairs);
+  lua_pushvalue(state, index);
+  lua_call(state, 1, 1);
+  const int next = lua_gettop(state);
+  for (;;) {
+    lua_pushvalue(state, next);
+    lua_call(state, 0, 2);
+    if (lua_isnil(state, next + 1)) break;
+    visit(next + 1, next + 2);
+    lua_settop(state, next);
+  }
+  lua_settop(state, next - 1);
+}
+
 int sandbox_require(lua_State* state);
 void open_kadans_module(lua_State* state);  // [-0 +1]
 
