@@ -154,6 +154,24 @@ void BehaviorLog::active(const ActiveStates& active) {
   for (LineSink* sink : facts_) sink->tell_active(active);
 }
 
+void put_event(const EmittedEvent& event, ByteWriter& bytes) {
+  bytes.put(event.tick);
+  bytes.put<std::uint8_t>(event.ordered);
+  for (const std::string* text : {&event.event, &event.data, &event.who}) bytes.put_string(*text);
+}
+
+EmittedEvent take_event(ByteReader& bytes, std::int64_t time_ns) {
+  EmittedEvent event{.time_ns = time_ns, .tick = bytes.take<std::uint64_t>()};
+  event.ordered = bytes.take<std::uint8_t>() != 0;
+  for (std::string* text : {&event.event, &event.data, &event.who}) *text = bytes.take_string();
+  return event;
+}
+
+void put_states(const ActiveStates& active, ByteWriter& bytes) {
+  bytes.put(static_cast<std::uint32_t>(active.states.size()));
+  for (const std::string_view state : active.states) bytes.put_string(state);
+}
+
 void ActiveNow::take(const ActiveStates& told) {
   const auto known = all_.find(told.behavior);
   if (told.states.empty() && known != all_.end()) all_.erase(known);

@@ -22,6 +22,9 @@ class sink;
 
 namespace kadans {
 
+class ByteReader;
+class ByteWriter;
+
 // One change of state of a behavior, for the record and the console.
 struct Transition {
   std::int64_t time_ns = 0;
@@ -40,6 +43,10 @@ struct EmittedEvent {
   std::string who{};
   bool ordered = false;  // given while the run went on: only the record knows of it
 };
+// An event as bytes, without its time.
+void put_event(const EmittedEvent& event, ByteWriter& bytes);
+EmittedEvent take_event(ByteReader& bytes, std::int64_t time_ns);
+
 // The innermost active states of a behavior: those of all its regions and of the behaviors that it calls, by path, in
 // document order. Told when they have changed, at the end of a tick; none: the behavior is over. Valid while it is
 // told.
@@ -52,6 +59,8 @@ struct ActiveStates {
 
   std::vector<std::string> copies() const { return {states.begin(), states.end()}; }
 };
+void put_states(const ActiveStates& active, ByteWriter& bytes);  // their number, and their paths
+
 // What is active now: the states by behavior, of at most behaviors_max of them; none that is over.
 class ActiveNow {
  public:

@@ -16,10 +16,10 @@
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
-#include "engine/behavior_log.h"
 #include "kadans/signal/input_error.h"
 #include "remote/ctl/ctl_folder.h"
 #include "remote/order/order.h"
+#include "remote/order/order_json.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -71,7 +71,7 @@ std::string behavior_text(const Json& behavior) {
     return name + ": " + behavior.at("outcome").get<std::string>() +
            (behavior.contains("result") ? " " + behavior.at("result").get<std::string>() : "");
   if (!behavior.value("plays", false)) return name + ": stopped";
-  return name + (behavior.contains("active") ? " in " + listed(behavior.at("active")) : " waits");
+  return name + (behavior.contains("active") ? " in " + joined(behavior.at("active")) : " waits");
 }
 
 std::string status_text(const Json& answer) {
@@ -415,8 +415,7 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
   }
   ctl->add_subcommand(console, console_doc)->fallthrough();
   ctl->get_subcommand("list")->add_flag("--names", options.names, "Print only names, one a line");
-  ctl->get_subcommand("list")->get_option("what")->check(
-      CLI::IsMember({"behaviors", "sets", "objects", "parameters", "signals", "joints", "events"}));
+  ctl->get_subcommand("list")->get_option("what")->check(CLI::IsMember(list_kinds()));
   ctl->get_subcommand("watch")
       ->add_option("--count", options.count, "End after N samples")
       ->type_name("N")

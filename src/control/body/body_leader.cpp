@@ -51,15 +51,15 @@ BodyLeader::BodyLeader(const BodyLayout& layout)
     : layout_(&layout),
       model_(*layout.model, layout.floating ? Dynamics::Base::floating : Dynamics::Base::fixed,
              layout.rotor_inertia_kg_m2),
+      kinematics_(*layout.model),
       problem_(layout),
       acceleration_(model_.velocity),
       way_(model_.velocity) {}
 
 void BodyLeader::begin(const BodyAim& aim) noexcept {
-  Kinematics kinematics(*layout_->model);
   std::ranges::copy_n(aim.start_rad.begin(), static_cast<std::ptrdiff_t>(model_.position_rad.size()),
                       model_.position_rad.begin());
-  model_.base = body_start(*layout_, aim.settings, kinematics, model_.position_rad, aim.base);
+  model_.base = body_start(*layout_, aim.settings, kinematics_, model_.position_rad, aim.base);
   model_.velocity.setZero();
   for (std::size_t i = 0; i < model_.position_rad.size(); ++i)
     model_.velocity[model_.base_size() + static_cast<Eigen::Index>(i)] = aim.start_rad_s[i];

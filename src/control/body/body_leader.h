@@ -30,6 +30,7 @@ class BodyLeader {
 
   const BodyLayout* layout_;
   BodyModel model_;
+  Kinematics kinematics_;  // for the start
   BodyProblem problem_;
   std::array<BodyStand, body_feet_max> feet_;
   BodyRanks ranks_;

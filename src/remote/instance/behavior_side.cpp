@@ -341,7 +341,7 @@ void BehaviorSide::tell_why(const std::string& name, Answer& answer) {
     throw InputError({.message = "behaviors play in a process of their own, which tells no reasons: "
                                  "run with --behaviors thread"});
   }
-  if (std::exchange(why_tick_, p_.engine.ticks() + 1) == p_.engine.ticks() + 1)  // it costs a reload
+  if (std::exchange(why_tick_, p_.engine.ticks()) == p_.engine.ticks())  // it costs a reload
     throw InputError({.message = "somebody else asked why in the same tick: ask again"});
   const auto snapshot = p_.exchange.snapshot.read(0);
   answer.reasons = p_.host->why(name, *snapshot);

@@ -115,9 +115,9 @@ class BehaviorSide final : public BesideTick {
 
   Parts p_;
   BesideTick* next_;
-  bool stopped_ = false;        // by the emergency stop, as of the last tick
-  std::uint16_t lifts_ = 0;     // of the emergency stop, as of the last tick
-  std::uint64_t why_tick_ = 0;  // one more than the tick in which a `why` was answered last
+  bool stopped_ = false;                   // by the emergency stop, as of the last tick
+  std::uint16_t lifts_ = 0;                // of the emergency stop, as of the last tick
+  std::optional<std::uint64_t> why_tick_;  // in which a `why` was answered last
   std::vector<Pending> pending_;
   ParameterHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client

@@ -58,8 +58,7 @@ Json chart_of(const Behavior& behavior) {
              {"line", source.chunk + ":" + std::to_string(transition.line)}};
     if (i - source.first_always < source.always_count) one["always"] = true;
     if (transition.internal) one["internal"] = true;
-    if (const GuardSource& guard = guards[i]; !guard.file.empty())
-      one["guard"] = {{"file", guard.file}, {"line", guard.line}, {"text", guard.text}};
+    if (!guards[i].file.empty()) one["guard"] = guard_json(guards[i]);
     transitions.push_back(one);
     for (const StateIndex target : transition.also) {
       one["target"] = target;
@@ -156,6 +155,8 @@ Json parameters_of(const Catalog& catalog) {
 }
 
 }  // namespace
+
+Json guard_json(const GuardSource& guard) { return {{"file", guard.file}, {"line", guard.line}, {"text", guard.text}}; }
 
 Json event_json(const ScriptEvent& event) {
   constexpr const char* types[] = {"number", "flag", "text"};

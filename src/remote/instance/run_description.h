@@ -12,6 +12,7 @@
 
 #include "config/robot/robot_config.h"
 #include "kadans/control/catalog.h"
+#include "script/behavior/behavior_why.h"
 #include "script/host/script_host.h"
 #include "telemetry/record/record_writer.h"
 
@@ -29,6 +30,8 @@ struct RobotTexts {
 
 // An event that a behavior declares: {name, doc, fields: [{name, type, unit, doc, min, max, optional}]}.
 nlohmann::ordered_json event_json(const ScriptEvent& event);
+// {file, line, text}
+nlohmann::ordered_json guard_json(const GuardSource& guard);
 // Writes the texts that there are into a record that has just been opened.
 void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t time_ns);
 

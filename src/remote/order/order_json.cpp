@@ -146,9 +146,7 @@ Json reasons_json(const Answer& answer) {
       Json one{{"behavior", behavior.name}, {"number", reason.transition}, {"from", reason.from}, {"to", reason.to},
                {"label", reason.label},     {"free", reason.free},         {"why", reason.why}};
       if (!reason.saw.empty()) one["saw"] = reason.saw;
-      if (!reason.guard.file.empty()) {
-        one["guard"] = {{"file", reason.guard.file}, {"line", reason.guard.line}, {"text", reason.guard.text}};
-      }
+      if (!reason.guard.file.empty()) one["guard"] = guard_json(reason.guard);
       all.push_back(std::move(one));
     }
   }
@@ -196,6 +194,12 @@ Json status_json(const Instance& instance, const InstanceStatus& status) {
           {"record", record_json(status.record)}};
 }
 
+const std::vector<std::string>& list_kinds() {
+  static const std::vector<std::string> kinds{"behaviors", "sets",   "objects", "parameters",
+                                              "signals",   "joints", "events"};
+  return kinds;
+}
+
 Json list_json(const std::string& what, const Instance& instance, const InstanceStatus& status, const Answer& report) {
   const Catalog& catalog = instance.catalog();
   if (what == "behaviors") return all_behaviors_json(instance, report);
@@ -205,8 +209,7 @@ Json list_json(const std::string& what, const Instance& instance, const Instance
   if (what == "sets") return sets_json(catalog, status.control_sets);
   if (what == "joints") return joints_json(*catalog.model);
   if (what == "events") return events_json(report);
-  const std::vector<std::string> kinds{"behaviors", "sets", "objects", "parameters", "signals", "joints", "events"};
-  throw InputError({.message = unknown_name("kind of list", what, kinds)});
+  throw InputError({.message = unknown_name("kind of list", what, list_kinds())});
 }
 
 namespace {

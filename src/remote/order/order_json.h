@@ -28,8 +28,9 @@ Json status_json(const Instance& instance, const InstanceStatus& status);
 // {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
 Json drives_json(const PowerStatus& power, const RobotModel& model);
 
-// Lists all items of a kind: "behaviors", "sets", "objects", "parameters", "signals", "joints", "events". `report` is
-// used for behaviors, parameters and events, `status` for sets. Throws InputError on another kind.
+const std::vector<std::string>& list_kinds();  // what can be listed: "behaviors", "sets" ...
+// Lists all items of a kind. `report` is used for behaviors, parameters and events, `status` for sets. Throws
+// InputError on another kind.
 Json list_json(const std::string& what, const Instance& instance, const InstanceStatus& status, const Answer& report);
 
 // A request of a client, checked against the table of orders.

@@ -13,10 +13,7 @@ namespace kadans {
 
 bool SpokenLines::push(const Line& line) {
   const Transition* t = line.transition;
-  line_.clear();
-  line_.put(std::uint32_t{0});
-  line_.put(t != nullptr ? transition_line : static_cast<std::uint8_t>(line.severity));
-  line_.put_string(line.behavior);
+  begin(t != nullptr ? transition_line : static_cast<std::uint8_t>(line.severity), line.behavior);
   if (t != nullptr) {
     for (const std::string* text : {&t->from, &t->to, &t->why}) line_.put_string(*text);
   } else {
@@ -26,13 +23,16 @@ bool SpokenLines::push(const Line& line) {
 }
 
 void SpokenLines::tell_active(const ActiveStates& active) {
+  begin(active_line, active.behavior);
+  put_states(active, line_);
+  dropped_ += push() ? 0 : 1;
+}
+
+void SpokenLines::begin(std::uint8_t kind, std::string_view behavior) {
   line_.clear();
   line_.put(std::uint32_t{0});
-  line_.put(active_line);
-  line_.put_string(active.behavior);
-  line_.put(static_cast<std::uint32_t>(active.states.size()));
-  for (const std::string_view state : active.states) line_.put_string(state);
-  dropped_ += push() ? 0 : 1;
+  line_.put(kind);
+  line_.put_string(behavior);
 }
 
 bool SpokenLines::push() {
@@ -53,15 +53,9 @@ void SpokenLines::tell_dropped(std::int64_t time_ns) {
 }
 
 void SpokenLines::tell_emitted(const EmittedEvent& event) {
-  line_.clear();
-  line_.put(std::uint32_t{0});
-  line_.put(emitted_line);
-  line_.put_string("");
-  line_.put(event.tick);
-  line_.put<std::uint8_t>(event.ordered);
-  for (const std::string* text : {&event.event, &event.data, &event.who}) line_.put_string(*text);
-  line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
-  if (!link_.lines.try_push(line_.bytes())) ++dropped_;
+  begin(emitted_line, "");
+  put_event(event, line_);
+  dropped_ += push() ? 0 : 1;
 }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,

@@ -144,9 +144,7 @@ bool ChildAnswer::tell_line(std::span<const std::byte> line, BehaviorLog& log, s
     const Transition transition{time_ns, behavior, fields.take_string(), fields.take_string(), fields.take_string()};
     if (fields.ok()) log.transition(transition);
   } else if (kind == emitted_line) {
-    EmittedEvent event{.time_ns = time_ns, .tick = fields.take<std::uint64_t>()};
-    event.ordered = fields.take<std::uint8_t>() != 0;
-    for (std::string* text : {&event.event, &event.data, &event.who}) *text = fields.take_string();
+    const EmittedEvent event = take_event(fields, time_ns);
     if (fields.ok()) log.emitted(event);
   } else if (kind == active_line) {
     std::array<std::string_view, ActiveStates::told_max> states;

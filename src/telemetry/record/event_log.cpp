@@ -48,16 +48,13 @@ void EventLog::tell(const Line& line) {
 
 void EventLog::tell_emitted(const EmittedEvent& event) {
   begin(Event::Kind::emitted, event.time_ns, "");
-  outgoing_.put(event.tick);
-  outgoing_.put<std::uint8_t>(event.ordered);
-  for (const std::string* text : {&event.event, &event.data, &event.who}) outgoing_.put_string(*text);
+  put_event(event, outgoing_);
   push();
 }
 
 void EventLog::tell_active(const ActiveStates& active) {
   begin(Event::Kind::active, active.time_ns, active.behavior);
-  outgoing_.put(static_cast<std::uint32_t>(active.states.size()));
-  for (const std::string_view state : active.states) outgoing_.put_string(state);
+  put_states(active, outgoing_);
   push();
 }
 
@@ -96,10 +93,7 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
     event.transition.to = fields.take_string();
     event.transition.why = fields.take_string();
   } else if (event.kind == Event::Kind::emitted) {
-    event.emitted = {.time_ns = event_time_ns, .tick = fields.take<std::uint64_t>()};
-    event.emitted.ordered = fields.take<std::uint8_t>() != 0;
-    for (std::string* text : {&event.emitted.event, &event.emitted.data, &event.emitted.who})
-      *text = fields.take_string();
+    event.emitted = take_event(fields, event_time_ns);
   } else if (event.kind == Event::Kind::active) {
     for (auto left = fields.take<std::uint32_t>(); left > 0 && fields.ok(); --left) {
       event.states.push_back(fields.take_string());
@@ -116,6 +110,7 @@ void Event::say_to(BehaviorLog& log) const {
     const std::vector<std::string_view> paths(states.begin(), states.end());
     return log.active({transition.time_ns, transition.behavior, paths});
   }
+  if (kind == Kind::emitted) return log.emitted(emitted);
   log.say(line());
 }
 
