@@ -118,7 +118,7 @@ struct ChargedScript::Parts {
   void begin() {
     behavior.bindings.begin(engine.sender, engine.snapshot, engine.snapshot.time_ns);
     behavior.bindings.armed_count = 0;
-    behavior.snapshot_tables.refill(behavior.lua->get(), engine.snapshot, 0);
+    behavior.snapshot_tables.refill(engine.snapshot, 0);
   }
 };
 

@@ -221,8 +221,10 @@ void SetpointMotions::fill(Snapshot& snapshot) const noexcept {
   for (SetpointId id = 0; id < shown; ++id) {
     const Setpoint& setpoint = setpoints_[id];
     SetpointStatus& status = snapshot.setpoints[id];
-    status = {};
-    if (!setpoint.follows || !sets_.runs(setpoint.owner)) continue;
+    if (!setpoint.follows || !sets_.runs(setpoint.owner)) {
+      status = {};
+      continue;
+    }
     SetpointState state;
     (void)sets_.object(setpoint.owner).setpoint_state(setpoint.channel, state);
     status = {state.value, state.velocity};

@@ -113,7 +113,6 @@ bool ArmedTransactions::holds(const Command& condition, double waited_s) const n
 }
 
 bool ArmedTransactions::due(std::size_t index, std::int64_t time_ns) noexcept {
-  if (status_[index].state != ArmedState::waits) return false;
   Slot& slot = slots_[index];
   if (time_ns > slot.expires_ns) {
     end(index, status_[index].fired > 0 ? ArmedState::done : ArmedState::expired);

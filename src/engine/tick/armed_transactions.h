@@ -48,7 +48,7 @@ class ArmedTransactions {
   template <typename CarryOut>
   void step(std::uint64_t tick, std::int64_t time_ns, CarryOut carry_out) noexcept {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-      if (!due(i, time_ns)) continue;
+      if (status_[i].state != ArmedState::waits || !due(i, time_ns)) continue;
       Slot& slot = slots_[i];
       note(i, tick, carry_out(status_[i].sequence, std::span<const Command>(slot.commands.data(), slot.command_count)));
     }

@@ -165,7 +165,7 @@ constexpr const char* rehearsal_text =
 
 int tick_chart(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
-  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
   if (parts.chart.waits_for_reports) post_reports(state, parts);
   parts.runner->tick(state, parts.bindings.now_ns);
   return 0;
@@ -176,7 +176,7 @@ int tick_chart(lua_State* state) {
 int rehearse_tick(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   Behavior::Parts::Rehearsal& rehearsal = parts.rehearsal;
-  parts.snapshot_tables.refill(state, *rehearsal.snapshot, rehearsal.now_ns);
+  parts.snapshot_tables.refill(*rehearsal.snapshot, rehearsal.now_ns);
   if (rehearsal.function == LUA_NOREF) {
     if (luaL_loadstring(state, rehearsal_text) != 0) return lua_error(state);
     lua_call(state, 0, 1);
@@ -190,7 +190,7 @@ int rehearse_tick(lua_State* state) {
 
 int stop_chart(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
-  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
   parts.runner->stop(state, parts.bindings.now_ns);
   return 0;
 }

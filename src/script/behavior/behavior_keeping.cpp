@@ -454,7 +454,7 @@ int take_machines(lua_State* state) {
   take_event_data(state, parts, going_on.bytes);
   take_results(state, parts, going_on.bytes);
   ByteReader again = going_on.bytes;
-  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
   renew_machines(state, parts, going_on.bytes);
   parts.runner->be_at(parts.bindings.now_ns);
   parts.runner->start_runs(state);
@@ -533,7 +533,7 @@ struct Leaving {
 int leave(lua_State* state) {
   const Leaving& leaving = *static_cast<const Leaving*>(lua_touserdata(state, 1));
   Behavior::Parts& parts = leaving.parts;
-  parts.snapshot_tables.refill(state, *parts.bindings.snapshot, parts.bindings.now_ns);
+  parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
   parts.runner->leave_marked(state, leaving.marks, parts.bindings.now_ns);
   return 0;
 }

@@ -50,13 +50,25 @@ Sizes sizes_at(const void* table, std::ptrdiff_t place) noexcept {
 
 }  // namespace
 
+void SnapshotTables::open_shelf(lua_State* state) {
+  shelf_ = lua_newthread(state);
+  luaL_ref(state, LUA_REGISTRYINDEX);
+}
+
+// [-1 +0]
+void SnapshotTables::put_on_shelf(lua_State* state) {
+  if (lua_checkstack(shelf_, 8) == 0) luaL_error(state, "not enough memory for the snapshot");
+  lua_xmove(state, shelf_, 1);
+}
+
 // [-0 +1] An empty table, content of a part.
 void SnapshotTables::push_part(lua_State* state, Kind kind, std::size_t index) {
   core_of(state).heap.for_ticks(true);
   lua_createtable(state, 0, kind == Kind::joint ? 3 : 8);
   core_of(state).heap.for_ticks(false);
   lua_pushvalue(state, -1);
-  parts_.push_back({kind, static_cast<std::uint32_t>(index), luaL_ref(state, LUA_REGISTRYINDEX)});
+  put_on_shelf(state);
+  parts_.push_back({kind, static_cast<std::uint32_t>(index)});
 }
 
 // The content of part `number`, at the top, becomes read-only; it is filled when something reads it.
@@ -102,6 +114,7 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, const std::ve
                          bool on_demand) {
   on_demand_ = on_demand;
   fields_ = status_fields(catalog.sensors);
+  open_shelf(state);
   push_names(state);
   push_part(state, Kind::root, 0);
   push_joints(state, *catalog.model);
@@ -152,33 +165,21 @@ int SnapshotTables::push_choices(lua_State* state, const StatusField& field) {
 }
 
 void SnapshotTables::push_names(lua_State* state) {
-  lua_createtable(state, static_cast<int>(fields_.size()), 0);
-  for (std::size_t i = 0; i < fields_.size(); ++i) {
-    lua_pushstring(state, fields_[i].name);
-    lua_rawseti(state, -2, static_cast<int>(i) + 1);
-    choices_.push_back(fields_[i].type == Type::choice ? push_choices(state, fields_[i]) : LUA_NOREF);
+  for (const StatusField& field : fields_) {
+    lua_pushstring(state, field.name);
+    put_on_shelf(state);
+    choices_.push_back(field.type == Type::choice ? push_choices(state, field) : LUA_NOREF);
   }
-  keys_ = luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
-void SnapshotTables::refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns) {
+void SnapshotTables::refill(const Snapshot& snapshot, std::int64_t now_ns) {
   snapshot_ = &snapshot;
   now_ns_ = now_ns;
-  if (read_.empty()) return;
-  luaL_checkstack(state, 8, "snapshot");
-  lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
-  const int keys = lua_gettop(state);
-  for (const Read read : read_) fill(state, read, keys);
-  lua_pop(state, 1);
-}
-
-void SnapshotTables::fill(lua_State* state, Read read, int keys) const {
-  const Part& part = parts_[read.part];
-  lua_rawgeti(state, LUA_REGISTRYINDEX, part.content);
-  lua_rawgeti(state, keys, read.field + 1);
-  push_value(state, read.field, part.index);
-  lua_rawset(state, -3);
-  lua_pop(state, 1);
+  for (const Read read : read_) {  // fields that are there: no memory is asked for
+    lua_pushvalue(shelf_, read.field + 1);
+    push_value(shelf_, read.field, parts_[read.part].index);
+    lua_rawset(shelf_, content(read.part));
+  }
 }
 
 // [-0 +1]
@@ -210,11 +211,14 @@ void SnapshotTables::read_whole(lua_State* state, std::size_t part) {
 void SnapshotTables::read_field(lua_State* state, std::size_t part, std::size_t field) {
   if (parts_[part].read[field]) return;
   luaL_checkstack(state, 8, "snapshot");
-  const Read read{static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(field)};
-  lua_rawgeti(state, LUA_REGISTRYINDEX, keys_);
-  fill(state, read, lua_gettop(state));
+  lua_pushvalue(shelf_, content(part));
+  lua_pushvalue(shelf_, static_cast<int>(field) + 1);
+  lua_xmove(shelf_, state, 2);
+  push_value(state, field, parts_[part].index);
+  lua_rawset(state, -3);
   lua_pop(state, 1);
   parts_[part].read[field] = true;
+  const Read read{static_cast<std::uint16_t>(part), static_cast<std::uint16_t>(field)};
   read_.insert(std::ranges::upper_bound(read_, read.part, {}, &Read::part), read);
 }
 

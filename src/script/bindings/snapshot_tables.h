@@ -24,8 +24,7 @@ class SnapshotTables {
   // After open(): registry reference of the content of s.event, which the chart's runner fills.
   int event() const noexcept { return event_; }
   // The snapshot must live as long as functions of this tick run. Existing fields are replaced without allocation.
-  // Raises only when out of memory.
-  void refill(lua_State* state, const Snapshot& snapshot, std::int64_t now_ns);
+  void refill(const Snapshot& snapshot, std::int64_t now_ns);
   // From now on fills the field that the string at `key` names. False: the part has no such field.
   bool read_first(lua_State* state, std::size_t part, int key);
   // From now on fills all fields of a part.
@@ -37,13 +36,15 @@ class SnapshotTables {
   struct Part {
     Kind kind;
     std::uint32_t index;
-    int content;              // registry reference
     std::bitset<128> read{};  // its fields that were read
   };
   struct Read {
     std::uint16_t part, field;
   };
 
+  void open_shelf(lua_State* state);
+  void put_on_shelf(lua_State* state);
+  int content(std::size_t part) const noexcept { return static_cast<int>(fields_.size() + part) + 1; }
   void push_names(lua_State* state);
   static int push_choices(lua_State* state, const StatusField& field);
   void push_part(lua_State* state, Kind kind, std::size_t index);
@@ -52,7 +53,6 @@ class SnapshotTables {
   void push_joints(lua_State* state, const RobotModel& model);
   void read_field(lua_State* state, std::size_t part, std::size_t field);
   void push_value(lua_State* state, std::size_t field, std::size_t index) const;
-  void fill(lua_State* state, Read read, int keys) const;
 
   bool on_demand_ = true;
   std::vector<Part> parts_;
@@ -62,7 +62,9 @@ class SnapshotTables {
   std::int64_t now_ns_ = 0;
   std::vector<StatusField> fields_;
   std::vector<int> choices_;  // registry references, by field
-  int keys_ = 0;
+  // A coroutine that never runs. On its stack lie the names of the fields, and then the contents of the parts, so that
+  // a tick need not fetch them from tables. What is done there must not raise: nothing would catch it.
+  lua_State* shelf_ = nullptr;
   int event_ = LUA_NOREF;
 };
 

@@ -303,7 +303,7 @@ int open_console(lua_State* state) {
 
 // [-0 +0] Refills s, signals, parameters and behaviors.
 void refill_console(lua_State* state, Console::Parts& parts, const Console::View& view) {
-  parts.snapshot_tables.refill(state, view.snapshot, view.snapshot.time_ns);
+  parts.snapshot_tables.refill(view.snapshot, view.snapshot.time_ns);
   parts.signals.refill(state, view.signals);
   parts.parameters.refill(state, view.parameters);
   lua_rawgeti(state, LUA_REGISTRYINDEX, parts.content);

@@ -171,7 +171,7 @@ int read(lua_State* state) {
   if (std::strcmp(key, "active") == 0) return push_active(state, testing, *played->stage), 1;
   if (std::strcmp(key, "result") == 0) return push_result(state, testing, *played->stage);
   const Snapshot& snapshot = played->stage->snapshot();
-  played->tables.refill(state, snapshot, snapshot.time_ns);
+  played->tables.refill(snapshot, snapshot.time_ns);
   lua_rawgeti(state, LUA_REGISTRYINDEX, played->snapshot);
   lua_getfield(state, -1, key);
   return 1;
