@@ -69,8 +69,8 @@ std::size_t steering_length(std::string_view text, std::size_t at) noexcept {
   if (first == 0xC2U) return second >= 0x80U && second <= 0x9FU ? 2 : 0;  // U+0080..9F
   if (first == 0xD8U) return second == 0x9CU ? 2 : 0;                     // U+061C
   if (first != 0xE2U) return 0;
-  const bool mark = second == 0x80U && (third == 0x8EU || third == 0x8FU);    // U+200E, U+200F
-  const bool line = second == 0x80U && third >= 0xA8U && third <= 0xAEU;      // U+2028..202E
+  const bool mark = second == 0x80U && (third == 0x8EU || third == 0x8FU);   // U+200E, U+200F
+  const bool line = second == 0x80U && third >= 0xA8U && third <= 0xAEU;     // U+2028..202E
   const bool isolate = second == 0x81U && third >= 0xA6U && third <= 0xA9U;  // U+2066..2069
   return mark || line || isolate ? 3 : 0;
 }

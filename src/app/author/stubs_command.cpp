@@ -117,9 +117,8 @@ int run_params(const ParamsOptions& options) {
     return exit_passed;
   }
   for (const Row& row : rows) {
-    print_text(
-        printed("%-40s %10g %-8s %g..%g  ", row.name.c_str(), row.value, row.unit.c_str(), row.min, row.max) + row.doc +
-        "\n");
+    print_text(printed("%-40s %10g %-8s %g..%g  ", row.name.c_str(), row.value, row.unit.c_str(), row.min, row.max) +
+               row.doc + "\n");
   }
   return exit_passed;
 }

@@ -34,7 +34,8 @@ std::string in_quotes(std::string_view name) {
   std::size_t end = std::min(name.size(), name_length_max);
   while (end < name.size() && end > 0 && inside_character(name[end])) --end;  // half a character shows nothing
   std::string text = shown_text(name.substr(0, end));
-  std::ranges::replace_if(text, [](char c) { return c == '\n' || c == '\t'; }, '?');
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\t'; }, '?');
   return "'" + text + (end < name.size() ? "...'" : "'");
 }
 

@@ -42,8 +42,8 @@ class TextReport {
     std::vector<std::pair<std::int64_t, std::string>> said;
     for (const Transition& t : subject_.log.transitions()) {
       const std::string way = (t.from.empty() ? "" : t.from + " ") + arrow + " " + t.to;
-      said.emplace_back(t.time_ns, shown_text(t.behavior + ": " + way) +
-                                       (t.why.empty() ? "" : dim("  (" + shown_text(t.why) + ")")));
+      said.emplace_back(
+          t.time_ns, shown_text(t.behavior + ": " + way) + (t.why.empty() ? "" : dim("  (" + shown_text(t.why) + ")")));
     }
     for (const LogLine& line : subject_.log.lines()) {
       if (line.severity == BehaviorLog::Severity::error || !style_.verbose) continue;
@@ -83,7 +83,8 @@ class TextReport {
   void troubles() {
     const RunResult& result = subject_.result;
     for (const LogLine& line : subject_.log.lines()) {
-      if (line.severity == BehaviorLog::Severity::error) text_ += "\n" + red("  error: ") + shown_text(line.text) + '\n';
+      if (line.severity == BehaviorLog::Severity::error)
+        text_ += "\n" + red("  error: ") + shown_text(line.text) + '\n';
     }
     if (!result.error.empty()) text_ += "\n" + red("  the run ended early: ") + shown_text(result.error) + '\n';
     constexpr std::size_t shown = 5;
