@@ -8,6 +8,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "terminal.h"
+
 namespace kadans {
 namespace {
 
@@ -52,7 +54,8 @@ void LineEditor::prompt(const std::string& text) {
 }
 
 void LineEditor::print(const std::string& text) {
-  std::printf("\r\033[K%s\n", text.c_str());
+  std::fputs("\r\033[K", stdout);
+  print_text(text + "\n");
   std::fflush(stdout);
   rl_forced_update_display();
 }

@@ -12,6 +12,7 @@
 
 #include "engine/behavior_log.h"
 #include "script/lua/budget.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 namespace {
@@ -51,6 +52,8 @@ void print_error(const std::string& message) {
 void print_line(const std::string& text) {
   program_log().message(Line::no_time, BehaviorLog::Severity::info, "", text);
 }
+
+void print_text(const std::string& text) { std::fputs(shown_text(text).c_str(), stdout); }
 
 void print_problems(const InputError& error) {
   for (const InputProblem& problem : error.problems()) print_error(problem.text());

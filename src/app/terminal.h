@@ -17,6 +17,8 @@ bool stderr_is_terminal();
 void print_problems(const InputError& error);
 void print_error(const std::string& message);
 void print_line(const std::string& text);  // on stderr
+// On stdout, where no text from a script or a program elsewhere steers the terminal.
+void print_text(const std::string& text);
 
 // Calls `run` and returns the exit code of the program: the code that `run` returns, or the code for its exception,
 // which is printed on stderr. The code is never 0 when output to stdout was lost, for example on a full disk. Throws

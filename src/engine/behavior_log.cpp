@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 namespace {
@@ -88,9 +89,8 @@ class LineFormatter final : public spdlog::formatter {
   }
   // What is said may come from a script: it must not steer the terminal.
   void put_said(std::string_view part, spdlog::level::level_enum level, spdlog::memory_buf_t& text) const {
-    for (const char c : part) {
-      const bool shows = (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) || c == '\n' || c == '\t';
-      text.push_back(shows ? c : '?');
+    for (const char c : shown_text(part)) {
+      text.push_back(c);
       if (c == '\n') put_priority(level, text);
     }
   }

@@ -63,6 +63,33 @@ void append_utf8(std::uint32_t code, std::string& text) {
   }
 }
 
+std::size_t steering_length(std::string_view text, std::size_t at) noexcept {
+  const std::uint32_t first = byte(text, at), second = byte(text, at + 1), third = byte(text, at + 2);
+  if (first < 0x80U) return (first < 0x20U && first != '\n' && first != '\t') || first == 0x7FU ? 1 : 0;
+  if (first == 0xC2U) return second >= 0x80U && second <= 0x9FU ? 2 : 0;  // U+0080..9F
+  if (first == 0xD8U) return second == 0x9CU ? 2 : 0;                     // U+061C
+  if (first != 0xE2U) return 0;
+  const bool mark = second == 0x80U && (third == 0x8EU || third == 0x8FU);   // U+200E, U+200F
+  const bool line = second == 0x80U && third >= 0xA8U && third <= 0xAEU;     // U+2028..202E
+  const bool isolate = second == 0x81U && third >= 0xA6U && third <= 0xA9U;  // U+2066..2069
+  return mark || line || isolate ? 3 : 0;
+}
+
+std::string shown_text(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text, i), steers = steering_length(text, i);
+    if (length == 0 || steers > 0) {
+      shown += '?';
+    } else {
+      shown += text.substr(i, length);
+    }
+    i += length == 0 ? 1 : length;
+  }
+  return shown;
+}
+
 std::string xml_characters(std::string_view text) {
   std::string kept;
   for (std::size_t i = 0; i < text.size();) {

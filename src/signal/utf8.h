@@ -20,6 +20,13 @@ std::size_t find_invalid_utf8(std::string_view text) noexcept;
 constexpr bool inside_character(char c) noexcept { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 // Appends the character of this code, which must be a valid one.
 void append_utf8(std::uint32_t code, std::string& text);
+// Number of bytes of the character at `at` when a terminal obeys it instead of showing it; 0: it shows it. These are
+// the control characters (C0, DEL, C1) but tab and line feed, and those that turn the direction of what stands around
+// them.
+std::size_t steering_length(std::string_view text, std::size_t at) noexcept;
+// The text as a terminal may be given it: '?' in place of each character that it would obey and of each byte that is
+// not UTF-8, for a terminal may take such a byte for a control character.
+std::string shown_text(std::string_view text);
 // The text with U+FFFD in place of each byte that is not UTF-8, and without the characters that XML cannot hold in any
 // form: all control characters but tab and line ends.
 std::string xml_characters(std::string_view text);

@@ -44,3 +44,11 @@ TEST_CASE("JSON of strangers that is refused is named by its place, without a by
 TEST_CASE("bytes of strangers that are no UTF-8 do not keep a tree from being written") {
   CHECK(json_text({{"said", "a\xFF"}}) == "{\"said\":\"a\xEF\xBF\xBD\"}");
 }
+
+TEST_CASE("JSON is written with no character in it that a terminal obeys, and is read back as it was") {
+  const nlohmann::ordered_json said{{"text", "\xc2\x9b[2J \x7f \xe2\x80\xae \xc3\xa9 \033"}};
+  const std::string text = json_text(said);
+  CHECK(text == R"({"text":"\u009b[2J \u007f \u202e )"
+                "\xc3\xa9 \\u001b\"}");
+  CHECK(read_foreign_json(text) == said);
+}

@@ -45,12 +45,12 @@ TEST_CASE("Text sinks write no control characters of what is said, but tabs and 
   REQUIRE(close(mkstemp(file)) == 0);
   {
     BehaviorLog log(LogFile(file).sink());
-    constexpr std::string_view said("a\033[2Jb\r\0\177c\td\n\xc3\xa9", 15);
+    constexpr std::string_view said("a\033[2Jb\r\0\177c\td\n\xc3\xa9\xc2\x9b\x9b", 18);
     log.message(Line::no_time, BehaviorLog::Severity::info, "squat\a", said);
     log.transition({0, "squat", "a\b", "b", "\033c"});
   }
   std::ifstream read(file);
   CHECK(std::string(std::istreambuf_iterator<char>(read), {}) ==
-        "squat?: a?[2Jb???c\td\n\xc3\xa9\n     0.00 s  squat: a? -> b (?c)\n");
+        "squat?: a?[2Jb???c\td\n\xc3\xa9?\?\n     0.00 s  squat: a? -> b (?c)\n");
   std::remove(file);
 }

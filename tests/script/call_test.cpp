@@ -265,3 +265,35 @@ TEST_CASE("the result of a region that has ended is kept until the others end") 
   cast.tick(5);
   CHECK(cast.log.joined() == "1\n");
 }
+
+TEST_CASE("a parameter that calls hand on is charged by the way to its value") {
+  const auto spent = [](int calls, int given) {
+    Cast cast;
+    const auto params = [&](int count) {
+      std::string text = "local P = k.params { ";
+      for (int i = 0; i < count; ++i) text += "p" + std::to_string(i) + " = { 0, min = 0, max = 1 }, ";
+      return text + "}\n";
+    };
+    std::string follows;
+    for (int i = given; i > 0; --i) follows += "p" + std::to_string(i - 1) + " = P.p" + std::to_string(i - 1) + ", ";
+    cast.scripts.write("behaviors/lib/c0.lua",
+                       "local k = require 'kadans'\n" + params(given) +
+                           "return k.behavior 'c0' { k.state 'x' { during = function() local before = "
+                           "k.budget().instructions for i = 1, 200 do local _ = P.p" +
+                           std::to_string(given > 9 ? 9 : 0) +
+                           " end "
+                           "print(before - k.budget().instructions) end } }");
+    for (int i = 1; i < calls; ++i)
+      cast.scripts.write("behaviors/lib/c" + std::to_string(i) + ".lua",
+                         "local k = require 'kadans'\n" + params(given) + "return k.behavior 'c" + std::to_string(i) +
+                             "' { k.state 'x' { k.call 'c" + std::to_string(i - 1) + "' { " + follows + "} } }");
+    cast.write("main", params(given) + "return k.behavior 'main' { k.state 'x' { k.call 'c" +
+                           std::to_string(calls - 1) + "' { " + follows + "} } }");
+    cast.play({"main"});
+    cast.tick();
+    return std::stod(cast.log.joined());
+  };
+  const double near = spent(1, 1), far = spent(6, 60);
+  CHECK(far > near + 200 * 6 * 60 / 16);
+  CHECK(near < 4000);
+}

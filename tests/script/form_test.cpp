@@ -236,6 +236,30 @@ TEST_CASE("what a reload carries over: actions that came once, and events of nam
   CHECK(stage.said() == "!\nreloaded behaviors/test.lua\nx.late\n");
 }
 
+TEST_CASE("a reload that writes transitions in another order neither loses nor repeats an action that comes once") {
+  const auto chart = [](const std::string& transitions) {
+    return head + "local P = k.params { late_s = { 0.06, min = 0, max = 1 }, early_s = { 0.02, min = 0, max = 1 } }\n" +
+           "return k.behavior 'test' { k.state 'a' { endless = true,\n" + transitions + " } }";
+  };
+  const std::string early = "{ after = P.early_s, action = log 'early' },\n",
+                    late = "{ after = P.late_s, action = log 'late' },\n";
+  const auto said = [&](const std::string& after) {
+    Stage stage(chart(early + late));
+    stage.tick(5);
+    stage.scripts.write("behaviors/test.lua", chart(after));
+    REQUIRE(stage.behavior->reload(stage.snapshot, stage.sender) == Behavior::Reload::taken);
+    stage.tick(4);
+    return in_one_line(stage);
+  };
+  const std::string once = "early reloaded behaviors/test.lua late ";
+  CHECK(said(early + late + "-- the same\n") == once);
+  CHECK(said(late + early) == once);
+  CHECK(said("{ after = 0.03, action = log 'new' },\n" + early + late) ==
+        "early reloaded behaviors/test.lua new late ");
+  CHECK(said("{ after = 0.03, action = log 'early' },\n" + late) == once);  // its time alone is another
+  CHECK(said(late + "{ after = 0.03, action = log 'new' },\n") == "early reloaded behaviors/test.lua new late ");
+}
+
 TEST_CASE("states that follow each other in every tick for 5 s are told once, with both and the line") {
   const auto warnings = [](const std::string& states, bool event = false) {
     Stage stage(head + "return k.behavior 't' { initial = 'a',\n" + states + " }");

@@ -3,6 +3,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "script/fixture.h"
+#include "script/host/event_delivery.h"
 #include "signal/byte_order.h"
 
 using namespace kadans;
@@ -116,6 +117,39 @@ TEST_CASE("a flood of events is refused visibly: 32 wait for a tick, and the nex
   theatre.tick();
   CHECK(taken(theatre) == 33);
   CHECK_FALSE(theatre.host->finished());
+}
+
+TEST_CASE(
+    "the data of events in one tick is bounded: what is beyond it is refused and told, and nothing else is lost") {
+  const std::string many = [] {
+    std::string fields;
+    for (int i = 0; i < 16; ++i) fields += "t" + std::to_string(i) + " = { k.text, optional = true }, ";
+    return head + "k.events { long = { " + fields +
+           "} }\nreturn k.behavior 'one' { k.state 'a' { endless = true, { on = 'long', action = function(_, s) "
+           "print(#s.event.data.t0) end } } }";
+  }();
+  Theatre theatre({many});
+  struct Record final : LineSink {
+    void tell(const Line& /*line*/) override {}
+    void tell_emitted(const EmittedEvent& event) override { bytes += event.data.size(); }
+    std::size_t bytes = 0;
+  } record;
+  theatre.log.add(record);
+  theatre.tick();
+  std::vector<PlayArgument> data;
+  for (int i = 0; i < 16; ++i) data.push_back({"t" + std::to_string(i), std::string(i < 15 ? 250 : 100, '\1')});
+  for (int i = 0; i < 32; ++i)
+    CHECK(refusal(theatre, emit("long", data)).empty());  // "\\u0001": 22 kB each in the record
+  theatre.tick();
+  const std::uint32_t fit = taken(theatre);
+  CHECK(fit == EventDelivery::data_bytes_max / 23'400);
+  CHECK(refused(theatre) == 32 - fit);
+  CHECK(has(lines_of(theatre, "supervisor"), "'long' from uid 1 was refused: the events of this tick bring more than"));
+  CHECK(lines_of(theatre, "one").size() == 4 * std::min<std::size_t>(fit, 16));
+  CHECK(record.bytes <= EventDelivery::data_bytes_max);
+  CHECK(refusal(theatre, emit("long", data)).empty());
+  theatre.tick();
+  CHECK(taken(theatre) == fit + 1);
 }
 
 TEST_CASE("an event that comes in a pause is refused, and what behaviors have sent each other waits for its end") {

@@ -275,3 +275,66 @@ TEST_CASE("an error in the step that ends a behavior is taken, and the behavior 
   CHECK_FALSE(stage.behavior->failed());
   CHECK(stage.behavior->state() == "safe");
 }
+
+TEST_CASE("a motion whose cancel was taken back with its function goes on, and says so") {
+  Stage stage(head + R"(return k.behavior 't' { controls = 'posture', vars = {}, initial = 'a',
+    k.state 'a' { enter = function(m) m.vars.motion = m.posture:move('lean', { time_s = 1 }) end,
+      during = function(m) if m.time_s > 0.025 then m.vars.motion:cancel() error 'x' end end,
+      { on = 'error', to = 'b' } },
+    k.state 'b' { enter = function(m) print(m.vars.motion.outcome, m.vars.motion.done) end,
+      { after = 1.2, to = 'c' } },
+    k.state 'c' { enter = function(m) print(m.vars.motion.outcome, m.vars.motion.done) end } })");
+  stage.tick(140);
+  CHECK(stage.commands(CommandKind::cancel_motion) == 0);
+  CHECK(stage.said() == "error taken as an event: behaviors/test.lua:6: x\nmoving false\ndone true\n");
+}
+
+TEST_CASE("a motion whose cancel the control engine refused goes on, and says so") {
+  Cast cast;
+  cast.write("main", R"(return k.behavior 'main' { controls = 'posture', vars = {}, k.state 'a' { endless = true,
+    enter = function(m) m.vars.motion = m.posture:move('lean', { time_s = 1 }) end,
+    during = function(m)
+      if m.vars.cancelled then print(m.vars.motion.outcome) end
+      if m.time_s > 0.025 and not m.vars.cancelled then m.vars.cancelled = m.vars.motion:cancel() end
+    end } })");
+  cast.play({"main"});
+  cast.tick(3);
+  cast.refuse_tick(RefusalReason::robot_held);
+  cast.tick(2);
+  CHECK(cast.commands(CommandKind::cancel_motion) == 0);
+  CHECK(cast.log.joined() ==
+        "refused by the control engine, all commands of that tick: the robot is held\nmoving\nmoving\n");
+}
+
+TEST_CASE("nobody changes the data of an event for others: a function has a copy of its own") {
+  Stage stage(head + R"(local function spoil(d) d.n = d.n + 1 d.list[1] = 'spoilt' d.more = true return false end
+    return k.behavior 't' { vars = {}, initial = 'a', k.parallel 'a' {
+      k.region 'l' { initial = 'x', k.state 'x' { { on = 'go', when = function(s) return spoil(s.event.data) end, to = 'y' },
+        { on = 'go', action = function(m, s) spoil(s.event.data) m.vars.kept = s.event.data m.vars.kept.n = 9 end, to = 'y' } },
+        k.state 'y' { enter = function(m, s) print(s.event.data.n, #s.event.data.list, s.event.data.list[1], s.event.data.more) end } },
+      k.region 'r' { initial = 'x', k.state 'x' { { on = 'go', to = 'y', action = function(m, s)
+        local d = s.event.data
+        for i, v in ipairs(d.list) do print(i, v) end
+        print(d.n, d == s.event.data, m.vars.kept.n) end } }, k.state 'y' {} },
+      { after = 0.02, to = 'a', action = function(m) print(m.vars.kept.n, m.vars.kept.list[1]) end } },
+      enter = function(m) m:emit('go', { n = 1, list = { 'p', 'q' } }) end })");
+  stage.tick(4);
+  CHECK(stage.behavior->error().text() == "");
+  CHECK(stage.said() == "1 p\n2 q\n1 true 9\n1 2 p nil\n9 spoilt\n");
+}
+
+TEST_CASE("nobody changes the result of a behavior that has ended by what its event brings") {
+  Cast cast;
+  cast.scripts.write(
+      "behaviors/lib/called.lua",
+      "local k = require 'kadans'\nreturn k.behavior 'called' { k.final 'x' { outcome = 'done', result = "
+      "function() return { n = 1 } end } }");
+  cast.write("main",
+             "local function spoil(r) r.n = 7 return false end\n"
+             "return k.behavior 'main' { initial = 'a', k.state 'a' { k.call 'called',\n"
+             "{ on = 'done', when = function(s) return spoil(s.event.data.result) end, to = 'b' },\n"
+             "{ on = 'done', to = 'b', action = function(m, s) print(s.event.data.result.n) end } }, k.state 'b' {} }");
+  cast.play({"main"});
+  cast.tick(2);
+  CHECK(cast.log.joined() == "1\n");
+}

@@ -35,3 +35,15 @@ TEST_CASE("append_utf8 writes what utf8_length reads, of every length") {
   append_utf8(0x20ACU, text);
   CHECK(text == "\xe2\x82\xac");
 }
+
+TEST_CASE("shown_text lets no character through that a terminal obeys, whichever way it is written") {
+  const std::string good = "a\tb\n\xc3\xa9\xe2\x82\xac\xf0\x9f\xa4\x96\xc2\xa0";
+  CHECK(shown_text(good) == good);
+  CHECK(shown_text("\033[2J\r\x7f") == "?[2J??");
+  CHECK(shown_text("\xc2\x9b"
+                   "31m|\xc2\x80|\xc2\x85|\xc2\x9f") == "?31m|?|?|?");  // C1: the CSI of eight bits
+  CHECK(shown_text("\x9b"
+                   "31m\xff") == "?31m?");  // the same as bytes that are no UTF-8
+  CHECK(shown_text("\xe2\x80\xae|\xe2\x81\xa6|\xe2\x80\x8f|\xd8\x9c") == "?|?|?|?");  // they turn what is beside them
+  CHECK(shown_text("\xe2\x80\xa8|\xe2\x80\x94") == "?|\xe2\x80\x94");                 // a dash stays
+}

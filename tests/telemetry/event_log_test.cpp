@@ -27,3 +27,15 @@ TEST_CASE("a line, an event and the active states pass an event log as what they
   while (passed.pop(7, event)) event.say_to(to);
   CHECK(told.all == "line on my way; event ball_seen {\"x_m\":1} of ctl in tick 3 ordered; in act.arm; in act.leg; ");
 }
+
+TEST_CASE("events from outside leave half of an event log to all else, and what does not fit is counted") {
+  EventLog log;
+  const EmittedEvent large{.time_ns = 1, .tick = 1, .event = "large", .data = std::string(24'000, 'x'), .who = "ctl"};
+  for (int i = 0; i < 100; ++i) log.tell_emitted(large);
+  const std::uint32_t dropped = log.dropped();
+  CHECK(dropped >= 94);
+  CHECK(dropped < 98);
+  const std::string said(1000, 'y');
+  for (int i = 0; i < 100; ++i) log.tell({.time_ns = 1, .behavior = "squat", .text = said});
+  CHECK(log.dropped() == dropped);
+}

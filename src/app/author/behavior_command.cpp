@@ -109,8 +109,8 @@ class BehaviorTests {
                       .message = test.problem,
                       .text = test.problem});
     if (options_.json) return print_json(cases_.back());
-    std::printf("  %s  %s\n", passed ? "ok    " : "FAILED", test.name.c_str());
-    if (!passed) std::printf("          %s\n", test.problem.c_str());
+    print_text((passed ? "  ok      " : "  FAILED  ") + test.name + "\n");
+    if (!passed) print_text("          " + test.problem + "\n");
   }
 
   static void print_json(const JunitCase& one) {

@@ -143,8 +143,7 @@ class Repl {
   static void show(const std::string& text, bool error) {
     if (text.empty()) return;
     if (error) return print_error(text);
-    std::fputs(text.c_str(), stdout);
-    if (!text.ends_with('\n')) std::fputc('\n', stdout);
+    print_text(text.ends_with('\n') ? text : text + "\n");
     std::fflush(stdout);
   }
 

@@ -13,6 +13,7 @@
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
 #include "script/bindings/api.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -116,8 +117,8 @@ int run_params(const ParamsOptions& options) {
     return exit_passed;
   }
   for (const Row& row : rows) {
-    std::printf("%-40s %10g %-8s %g..%g  %s\n", row.name.c_str(), row.value, row.unit.c_str(), row.min, row.max,
-                row.doc.c_str());
+    print_text(printed("%-40s %10g %-8s %g..%g  ", row.name.c_str(), row.value, row.unit.c_str(), row.min, row.max) +
+               row.doc + "\n");
   }
   return exit_passed;
 }

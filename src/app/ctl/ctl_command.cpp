@@ -229,7 +229,7 @@ int from_pipe(CtlLink& link) {
     const Json answer = ask(link, "line", line);
     if (answer.value("ok", false)) {
       const std::string text = answer.at("text");
-      if (!text.empty()) std::puts(text.c_str());
+      if (!text.empty()) print_text(text + "\n");
     } else {
       code = exit_failed;
       print_error(answer.at("error"));
@@ -309,12 +309,12 @@ Json request_of(const OrderInfo& order, const CtlOptions& options) {
 
 int watch(CtlLink& link, const CtlOptions& options, const Json& answer) {
   catch_interrupts();
-  if (!options.json) std::fputs(watch_head(answer).c_str(), stdout);
+  if (!options.json) print_text(watch_head(answer));
   for (long seen = 0; !options.count || seen < *options.count; ++seen) {
     std::optional<std::string> line;
     while (!line && !interrupted()) line = link.receive(200);
     if (interrupted()) break;
-    std::puts(options.json ? line->c_str() : watch_line(parse_foreign_json(*line)).c_str());
+    print_text((options.json ? *line : watch_line(parse_foreign_json(*line))) + "\n");
     std::fflush(stdout);
   }
   return exit_passed;
@@ -334,16 +334,16 @@ int talk(const OrderInfo& order, const CtlOptions& options) {
   if (!line) throw InputError({.message = "the instance does not answer"});
   const Json answer = parse_foreign_json(*line);
   if (!answer.value("ok", false)) {
-    if (options.json) std::puts(line->c_str());
+    if (options.json) print_text(*line + "\n");
     print_error(answer.value("error", "refused"));
     return exit_failed;
   }
   if (std::string_view(order.verb) == "watch") return watch(link, options, answer);
   if (options.names && !options.json) {
-    for (const Json& item : answer.at("items")) std::puts(item.at("name").get<std::string>().c_str());
+    for (const Json& item : answer.at("items")) print_text(item.at("name").get<std::string>() + "\n");
     return exit_passed;
   }
-  std::fputs(options.json ? (*line + "\n").c_str() : answer_text(order.words, answer).c_str(), stdout);
+  print_text(options.json ? *line + "\n" : answer_text(order.words, answer));
   return exit_passed;
 }
 

@@ -8,6 +8,7 @@
 #include "campaign/work/durable_file.h"
 #include "log_verbs.h"
 #include "signal/number_text.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 
@@ -83,6 +84,7 @@ void UnfinishedFile::finish() {
 }
 
 LineOutput::LineOutput(const std::string& file) : stream_(stdout), name_(file.empty() ? "stdout" : file) {
+  on_terminal_ = file.empty() && isatty(STDOUT_FILENO) == 1;
   if (file.empty()) return;
   unfinished_ = std::make_unique<UnfinishedFile>(file);
   stream_ = std::fopen(unfinished_->path().c_str(), "wb");
@@ -102,6 +104,8 @@ bool LineOutput::failed() const {
 }
 
 bool LineOutput::put(std::string_view line) {
+  const std::string shown = on_terminal_ ? shown_text(line) : std::string();  // a record's texts may come from anywhere
+  if (on_terminal_) line = shown;
   const bool written = std::fwrite(line.data(), 1, line.size(), stream_) == line.size();
   return written && std::fputc('\n', stream_) != EOF ? true : failed();
 }

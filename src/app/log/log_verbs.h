@@ -63,6 +63,7 @@ class LineOutput {
  private:
   [[nodiscard]] bool failed() const;
 
+  bool on_terminal_ = false;
   std::unique_ptr<UnfinishedFile> unfinished_;
   std::FILE* stream_;
   std::string name_;

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "json_value.h"
+#include "signal/number_text.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 namespace {
@@ -31,6 +33,32 @@ std::size_t too_deep_at(std::string_view text) noexcept {
       {.message = what + " (line " + std::to_string(place.line) + ", column " + std::to_string(place.column) + ")"});
 }
 
+// "\u009b" of a character of one to three bytes.
+std::string escaped(std::string_view character) {
+  const auto bits = [&](std::size_t i, unsigned mask) { return static_cast<unsigned char>(character[i]) & mask; };
+  unsigned code = bits(0, 0x7FU);
+  if (character.size() == 2) code = (bits(0, 0x1FU) << 6U) | bits(1, 0x3FU);
+  if (character.size() == 3) code = (bits(0, 0x0FU) << 12U) | (bits(1, 0x3FU) << 6U) | bits(2, 0x3FU);
+  return printed("\\u%04x", code);
+}
+
+// Characters that a terminal would obey can stand in strings alone, so they can be written as "\u009b".
+std::string without_steering(std::string text) {
+  std::string safe;
+  std::size_t copied = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto letter = static_cast<unsigned char>(text[i]);
+    if (letter < 0x7FU) continue;
+    const std::size_t length = steering_length(text, i);
+    if (length == 0) continue;
+    safe += std::string_view(text).substr(copied, i - copied);
+    safe += escaped(std::string_view(text).substr(i, length));
+    copied = i + length;
+    i = copied - 1;
+  }
+  return copied == 0 ? std::move(text) : safe + text.substr(copied);
+}
+
 }  // namespace
 
 std::optional<Json> read_foreign_json(std::string_view text) {
@@ -53,7 +81,7 @@ Json parse_foreign_json(std::string_view text, const std::string& file) {
 }
 
 std::string json_text(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  return without_steering(json.dump(indent, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace kadans

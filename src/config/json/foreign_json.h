@@ -18,7 +18,8 @@ std::optional<nlohmann::ordered_json> read_foreign_json(std::string_view text);
 // The same, but throws InputError with the place. The message never quotes the text. `file` only names it.
 nlohmann::ordered_json parse_foreign_json(std::string_view text, const std::string& file = "");
 
-// Writes the tree on one line (indent -1) or indented by `indent` blanks. Bytes that are not UTF-8 become U+FFFD.
+// Writes the tree on one line (indent -1) or indented by `indent` blanks. Bytes that are not UTF-8 become U+FFFD, and
+// characters that a terminal would obey are escaped.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace kadans

@@ -31,16 +31,12 @@ std::string without_unit(std::string_view wrong, std::span<const std::string> kn
 }  // namespace
 
 std::string in_quotes(std::string_view name) {
-  const std::string_view shown = name.substr(0, name_length_max);
-  std::string text = "'";
-  for (const char c : shown) text += static_cast<unsigned char>(c) < 0x20U ? '?' : c;
-  // A cut in the middle of a character would leave half of it.
-  if (shown.size() < name.size()) {
-    while (inside_character(text.back())) text.pop_back();
-    if ((static_cast<unsigned char>(text.back()) & 0x80U) != 0) text.pop_back();
-    text += "...";
-  }
-  return text + "'";
+  std::size_t end = std::min(name.size(), name_length_max);
+  while (end < name.size() && end > 0 && inside_character(name[end])) --end;  // half a character shows nothing
+  std::string text = shown_text(name.substr(0, end));
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\t'; }, '?');
+  return "'" + text + (end < name.size() ? "...'" : "'");
 }
 
 std::string unknown_name(std::string_view what, std::string_view wrong, std::span<const std::string> known,

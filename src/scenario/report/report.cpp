@@ -7,6 +7,7 @@
 
 #include "config/json/foreign_json.h"
 #include "signal/number_text.h"
+#include "signal/utf8.h"
 #include "telemetry/plot.h"
 #include "telemetry/reading/record_rows.h"
 
@@ -40,19 +41,20 @@ class TextReport {
     const char* arrow = style_.unicode ? "→" : "->";
     std::vector<std::pair<std::int64_t, std::string>> said;
     for (const Transition& t : subject_.log.transitions()) {
-      said.emplace_back(t.time_ns, t.behavior + ": " + (t.from.empty() ? "" : t.from + " ") + arrow + " " + t.to +
-                                       (t.why.empty() ? "" : dim("  (" + t.why + ")")));
+      const std::string way = (t.from.empty() ? "" : t.from + " ") + arrow + " " + t.to;
+      said.emplace_back(
+          t.time_ns, shown_text(t.behavior + ": " + way) + (t.why.empty() ? "" : dim("  (" + shown_text(t.why) + ")")));
     }
     for (const LogLine& line : subject_.log.lines()) {
       if (line.severity == BehaviorLog::Severity::error || !style_.verbose) continue;
       const char* mark = line.severity == BehaviorLog::Severity::warning ? "warning: " : "";
-      said.emplace_back(line.time_ns, line.behavior + ": " + mark + line.text);
+      said.emplace_back(line.time_ns, shown_text(line.behavior + ": " + mark + line.text));
     }
     std::ranges::stable_sort(said, {}, &std::pair<std::int64_t, std::string>::first);
     for (const auto& [time_ns, text] : said)
       text_ += dim(printed("  %7.2f s  ", 1e-9 * static_cast<double>(time_ns))) + text + '\n';
     for (const auto& [behavior, active] : subject_.log.active().by_behavior())
-      text_ += dim("  at the end  ") + behavior + " in " + listed(active) + '\n';
+      text_ += dim("  at the end  ") + shown_text(behavior + " in " + listed(active)) + '\n';
     if (!text_.empty()) text_ += '\n';
   }
 
@@ -81,9 +83,10 @@ class TextReport {
   void troubles() {
     const RunResult& result = subject_.result;
     for (const LogLine& line : subject_.log.lines()) {
-      if (line.severity == BehaviorLog::Severity::error) text_ += "\n" + red("  error: ") + line.text + '\n';
+      if (line.severity == BehaviorLog::Severity::error)
+        text_ += "\n" + red("  error: ") + shown_text(line.text) + '\n';
     }
-    if (!result.error.empty()) text_ += "\n" + red("  the run ended early: ") + result.error + '\n';
+    if (!result.error.empty()) text_ += "\n" + red("  the run ended early: ") + shown_text(result.error) + '\n';
     constexpr std::size_t shown = 5;
     for (std::size_t i = 0; i < std::min(result.faults.size(), shown); ++i) {
       const RunFault& fault = result.faults[i];

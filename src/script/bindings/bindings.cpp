@@ -81,7 +81,7 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
   snapshot = &seen;
   now_ns = time_ns - held_ns;
   refused = false;
-  motion_count = 0;
+  motion_count = cancelled_count = 0;
   recording = false;
   armed_in_tick = 0;
   if (!std::exchange(begun, true)) switched = to.last_switch();  // of a behavior before
@@ -91,18 +91,26 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
 }
 
 Bindings::Mark Bindings::mark() const noexcept {
-  return {sender->mark(), refused, motion_count, armed_count, armed_in_tick, sent_events.size()};
+  return {sender->mark(), refused, motion_count, cancelled_count, armed_count, armed_in_tick, sent_events.size()};
 }
 
 void Bindings::take_back_to(const Mark& mark) noexcept {
   sender->take_back_to(mark.sent);
   refused = mark.refused;
   recording = false;
+  for (std::uint32_t i = mark.cancelled; i < cancelled_count; ++i) cancelled[i]->state = cancelled[i]->before;
+  cancelled_count = mark.cancelled;
   for (std::uint32_t i = mark.motions; i < motion_count; ++i) motions[i]->state = MotionState::cancelled;
   motion_count = mark.motions;
   armed_count = mark.armed;
   armed_in_tick = mark.armed_in_tick;
   sent_events.erase(sent_events.begin() + static_cast<std::ptrdiff_t>(mark.events), sent_events.end());
+}
+
+// Each has a command in the transaction, so there is room for all.
+void Bindings::note_cancelled(Motion& motion) noexcept {
+  motion.before = std::exchange(motion.state, MotionState::cancelled);
+  if (cancelled_count < cancelled.size()) cancelled[cancelled_count++] = &motion;
 }
 
 bool Bindings::commit() noexcept {
@@ -114,6 +122,11 @@ bool Bindings::commit() noexcept {
     if (sender->last_switch() == sequence) switched = sequence;
   }
   if (taken && !sender->committed().empty()) sent[sent_count++ % sent.size()] = sequence;
+  for (std::uint32_t i = 0; i < cancelled_count; ++i) {
+    if (!taken) cancelled[i]->state = cancelled[i]->before;
+    cancelled[i]->cancel_sequence = taken ? sequence : 0;
+  }
+  cancelled_count = 0;
   for (std::uint32_t i = 0; i < motion_count; ++i) {
     Motion& motion = *motions[i];
     motion.sequence = sequence;

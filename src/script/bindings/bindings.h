@@ -58,6 +58,8 @@ struct Bindings {
   bool refused = false;                            // a command of this tick found no place in the queue
   std::array<Motion*, max_transaction> motions{};  // motions asked for in this tick
   std::uint32_t motion_count = 0;
+  std::array<Motion*, max_transaction> cancelled{};  // motions cancelled in this tick
+  std::uint32_t cancelled_count = 0;
   // Sets of which no command has been sent yet that brings them in; which are active once all transactions sent are
   // applied; and once this tick's is, too.
   SetMask wanted = 0, sets_sent = 0, sets_now = 0;
@@ -106,12 +108,14 @@ struct Bindings {
   struct Mark {
     CommandSender::Mark sent;
     bool refused = false;
-    std::uint32_t motions = 0, armed = 0;
+    std::uint32_t motions = 0, cancelled = 0, armed = 0;
     std::uint16_t armed_in_tick = 0;
     std::size_t events = 0;  // for other behaviors
   };
   Mark mark() const noexcept;
-  void take_back_to(const Mark& mark) noexcept;  // motions that begin behind it are cancelled
+  // Motions that begin behind it are cancelled, those that are cancelled behind it go on.
+  void take_back_to(const Mark& mark) noexcept;
+  void note_cancelled(Motion& motion) noexcept;
   // False when the queue has no place; then the whole transaction will be refused.
   bool send(const Command& command) noexcept;
   void begin(CommandSender& to, const Snapshot& seen, std::int64_t time_ns) noexcept;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "script/bindings/bindings.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
@@ -25,6 +26,21 @@ int first_read(lua_State* state) {
   lua_rawget(state, lua_upvalueindex(2));
   if (!lua_isnil(state, -1)) return 1;
   return raise_unknown_field(state, lua_tostring(state, lua_upvalueindex(1)), lua_upvalueindex(2), 2);
+}
+
+// The same of s.event (content, key): only its data is made when it is read. Upvalue: the content.
+int first_read_of_event(lua_State* state) {
+  const bool whole = lua_gettop(state) < 2;
+  const bool data = whole || (lua_type(state, 2) == LUA_TSTRING && std::strcmp(lua_tostring(state, 2), "data") == 0);
+  const auto* bindings = static_cast<const Bindings*>(core_of(state).bindings);
+  if (!data || bindings == nullptr || bindings->runner == nullptr) return 0;
+  lua_settop(state, 0);
+  lua_pushliteral(state, "data");
+  bindings->runner->push_shown_data(state);
+  lua_pushvalue(state, 2);
+  lua_insert(state, 1);
+  lua_rawset(state, lua_upvalueindex(1));
+  return whole ? 0 : 1;
 }
 
 // In this order one behind the other.
@@ -143,6 +159,13 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, const std::ve
   lua_createtable(state, 0, 2);
   lua_pushvalue(state, -1);
   event_ = luaL_ref(state, LUA_REGISTRYINDEX);
+  lua_createtable(state, 0, 2);
+  lua_pushvalue(state, -2);
+  lua_pushcclosure(state, first_read_of_event, 1);
+  lua_pushvalue(state, -1);
+  lua_setfield(state, -3, "__index");
+  set_filler(state);
+  lua_setmetatable(state, -2);
   make_read_only(state, "s.event", false);
   lua_setfield(state, -2, "event");
   finish_part(state, 0, "s");

@@ -65,6 +65,7 @@ struct Chart {
     bool timed = false;
     double after_s = 0;
     std::int32_t after_parameter = no_parameter;
+    std::string after_name;        // of that parameter
     std::vector<StateIndex> also;  // further targets, in other regions
     std::vector<std::string> target_names;
     std::string why;

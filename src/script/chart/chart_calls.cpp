@@ -16,7 +16,8 @@
 namespace kadans {
 namespace {
 
-constexpr int given_max = 100;  // of one call
+constexpr int given_max = 100;                // of one call
+constexpr double given_instructions = 0.125;  // to look at one of them for a parameter
 
 // The parameter of this name that the file declares; none: no_parameter.
 std::int32_t declared_parameter(const LuaCore& core, const std::string& chunk, const char* name) {
@@ -179,13 +180,14 @@ void read_given(lua_State* state, Chart& chart, std::size_t machine, int given, 
   chart.machines[machine].given = luaL_ref(state, LUA_REGISTRYINDEX);
 }
 
-double parameter_value(lua_State* state, std::size_t number, std::uint16_t machine) noexcept {
+double parameter_value(lua_State* state, std::size_t number, std::uint16_t machine, std::size_t* looked) noexcept {
   const LuaCore& core = core_of(state);
   const auto* bindings = static_cast<const Bindings*>(core.bindings);
   const Chart& chart = bindings->runner->chart();
   for (;;) {
     const Chart::Machine& at = chart.machines[machine];
     const Chart::Given* given = given_to(at, number);
+    if (looked != nullptr) *looked += at.calls_with.size();
     if (given == nullptr) return core.parameters[number].value;
     if (given->follows == Chart::no_parameter)
       return given->function == Chart::no_function
@@ -196,10 +198,17 @@ double parameter_value(lua_State* state, std::size_t number, std::uint16_t machi
   }
 }
 
-double value_here(lua_State* state, std::size_t number) noexcept {
+double charged_value(lua_State* state, std::size_t number, std::uint16_t machine) {
+  std::size_t looked = 0;
+  const double value = parameter_value(state, number, machine, &looked);
+  if (looked > 0) core_of(state).budget.charge(state, given_instructions * static_cast<double>(looked));
+  return value;
+}
+
+double value_here(lua_State* state, std::size_t number) {
   const auto* bindings = static_cast<const Bindings*>(core_of(state).bindings);
   if (bindings == nullptr || bindings->runner == nullptr) return core_of(state).parameters[number].value;
-  return parameter_value(state, number, bindings->runner->acting().machine);
+  return charged_value(state, number, bindings->runner->acting().machine);
 }
 
 void make_room_for_calls(const LuaCore& core, const Chart& chart, Bindings& bindings) {
@@ -253,7 +262,7 @@ bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
       if (!push_given_by(state, caller, given.function)) return false;
     } else {
       lua_pushnumber(state,
-                     parameter_value(state, static_cast<std::size_t>(given.follows), chart_.states[caller].machine));
+                     charged_value(state, static_cast<std::size_t>(given.follows), chart_.states[caller].machine));
     }
     if (push_given_refusal(state, machine, given)) {
       lua_pushfstring(state, "%s:%d: %s", machine.call_chunk.c_str(), given.line, lua_tostring(state, -1));

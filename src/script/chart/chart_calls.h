@@ -23,9 +23,12 @@ struct LuaCore;
 void read_given(lua_State* state, Chart& chart, std::size_t machine, int given, const ScriptPlace& place);
 
 // The value that a parameter has in a machine.
-double parameter_value(lua_State* state, std::size_t number, std::uint16_t machine) noexcept;
+double parameter_value(lua_State* state, std::size_t number, std::uint16_t machine,
+                       std::size_t* looked = nullptr) noexcept;
+// The same, charged by what it looks at: a call may hand on what its own caller gave it. Raises.
+double charged_value(lua_State* state, std::size_t number, std::uint16_t machine);
 // The same, in the machine whose function runs.
-double value_here(lua_State* state, std::size_t number) noexcept;
+double value_here(lua_State* state, std::size_t number);
 
 // Before the first tick: the place of the values that functions give. Until then it holds the parameters' own.
 void make_room_for_calls(const LuaCore& core, const Chart& chart, Bindings& bindings);

@@ -8,6 +8,7 @@
 #include <lua.hpp>
 
 #include "chart_runner.h"
+#include "kadans/signal/state_hash.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -44,6 +45,44 @@ StateIndex take_state(const Chart& chart, ByteReader& bytes) {
   return find_state(chart, wanted);
 }
 
+struct OnceInState {
+  std::uint16_t place = 0;  // among the state's own transitions
+  std::uint8_t kind = 0;
+  std::uint64_t identity = 0;
+};
+
+std::uint64_t identity_of(const Chart& chart, const Chart::Transition& transition, std::uint8_t kind) noexcept {
+  StateHash hash;
+  const auto add = [&](std::string_view text) {
+    hash.add(text.size());
+    for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
+  };
+  hash.add(kind);
+  add(transition.on == no_event ? std::string_view{} : chart.events[static_cast<std::size_t>(transition.on)]);
+  add(transition.after_name);
+  hash.add(transition.after_s);
+  add(transition.why);
+  return hash.value();
+}
+
+// Of some that are the same each has an identity of its own, by their order.
+std::vector<OnceInState> once_in(const Chart& chart, const Chart::State& state) {
+  std::vector<OnceInState> all;
+  for (std::uint16_t place = 0; place < state.transition_count + state.always_count; ++place) {
+    const auto number = static_cast<std::size_t>(state.first_transition) + place;
+    const Chart::Transition& transition = chart.transitions[number];
+    if (!transition.once) continue;
+    const bool always = number >= state.first_always && number - state.first_always < state.always_count;
+    OnceInState one{.place = place,
+                    .kind = static_cast<std::uint8_t>((always ? 1 : 0) | (transition.timed ? 2 : 0) |
+                                                      (transition.on != no_event ? 4 : 0))};
+    one.identity = identity_of(chart, transition, one.kind);
+    while (std::ranges::find(all, one.identity, &OnceInState::identity) != all.end()) ++one.identity;
+    all.push_back(one);
+  }
+  return all;
+}
+
 }  // namespace
 
 void ChartRunner::keep(ByteWriter& bytes) const {
@@ -75,27 +114,42 @@ void ChartRunner::keep(ByteWriter& bytes) const {
   }
 }
 
-// Of a state's transitions those that come once and have come, by their place among all of its own.
+// A state's transitions that come once, each with whether it came. Another version may have written them in another
+// order: a transition is the same when what it waits for and its word for the log are. One that is in the old version
+// alone is taken for the one at its place, when that is in the new version alone and of the same kind: its time or its
+// word was changed.
 void ChartRunner::keep_acted(const Chart::State& state, ByteWriter& bytes) const {
-  const int count = state.transition_count + state.always_count;
-  const auto came = [&](int place) { return acted(static_cast<std::uint16_t>(state.first_transition + place)); };
-  std::uint16_t total = 0;
-  for (int i = 0; i < count; ++i) {
-    if (came(i)) ++total;
-  }
-  bytes.put(total);
-  for (int i = 0; i < count; ++i) {
-    if (came(i)) bytes.put(static_cast<std::uint16_t>(i));
+  const std::vector<OnceInState> all = once_in(chart_, state);
+  bytes.put(static_cast<std::uint16_t>(all.size()));
+  for (const OnceInState& one : all) {
+    bytes.put(one.place);
+    bytes.put(one.kind);
+    bytes.put(one.identity);
+    bytes.put<std::uint8_t>(acted(static_cast<std::uint16_t>(state.first_transition + one.place)));
   }
 }
 
 void ChartRunner::restore_acted(StateIndex index, ByteReader& bytes) {
+  std::vector<OnceInState> here;
+  if (index != no_state) here = once_in(chart_, chart_.states[index]);
+  const auto came = [&](const OnceInState& one) {
+    guards_[static_cast<std::size_t>(chart_.states[index].first_transition) + one.place].acted_ns =
+        run_[index].entered_ns;
+  };
+  std::vector<OnceInState> changed;  // and came
   for (auto left = bytes.take<std::uint16_t>(); left > 0 && bytes.ok(); --left) {
-    const auto place = bytes.take<std::uint16_t>();
-    if (index == no_state) continue;
-    const Chart::State& state = chart_.states[index];
-    if (place >= state.transition_count + state.always_count) continue;
-    guards_[static_cast<std::size_t>(state.first_transition) + place].acted_ns = run_[index].entered_ns;
+    OnceInState one{.place = bytes.take<std::uint16_t>(), .kind = bytes.take<std::uint8_t>()};
+    one.identity = bytes.take<std::uint64_t>();
+    const bool it_came = bytes.take<std::uint8_t>() != 0;
+    const auto same = std::ranges::find(here, one.identity, &OnceInState::identity);
+    if (same == here.end() && it_came) changed.push_back(one);
+    if (same == here.end()) continue;
+    if (it_came) came(*same);
+    here.erase(same);
+  }
+  for (const OnceInState& one : changed) {
+    const auto same = std::ranges::find(here, one.place, &OnceInState::place);
+    if (same != here.end() && same->kind == one.kind) came(*same);
   }
 }
 

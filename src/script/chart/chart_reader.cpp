@@ -478,6 +478,7 @@ struct Reader {
     made.timed = !lua_isnil(state, -1);
     if (is_parameter(state, -1, &number)) {
       made.after_parameter = static_cast<std::int32_t>(number);
+      made.after_name = core_of(state).parameters[number].name;
     } else if (made.timed) {
       made.after_s = lua_tonumber(state, -1);
     }

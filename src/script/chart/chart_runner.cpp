@@ -12,7 +12,8 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t state_steps = 2;  // to look at a state for one transition
+constexpr std::size_t state_steps = 2;              // to look at a state for one transition
+constexpr int shown_slot = EventQueue::places + 2;  // in RunnerTables::event_data
 
 }  // namespace
 
@@ -93,7 +94,6 @@ bool ChartRunner::select_event(lua_State* state, bool ends_only) {
   return false;
 }
 
-// s.event: name and data of the event whose transitions are looked at, or taken.
 bool ChartRunner::post_with_data(lua_State* state, EventId event) {
   const std::int8_t place = queue_.free_place();
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
@@ -108,13 +108,17 @@ bool ChartRunner::post_with_data(lua_State* state, EventId event) {
   return posted;
 }
 
+// s.event: name and data of the event whose transitions are looked at, or taken. Each function gets a copy of the data
+// when it reads it first, so that what it writes there is its own: no other function, region or record sees it.
 void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
+  forget_copy(state);
   shown_ = event;
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
   lua_pushliteral(state, "name");
   push_event_name(state, event.id);
   lua_rawset(state, -3);
-  lua_pushliteral(state, "data");
+  lua_pop(state, 1);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
   if (event.place >= 0) {
     lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
     lua_rawgeti(state, -1, event.place + 1);
@@ -128,6 +132,27 @@ void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
   } else {
     lua_pushnil(state);
   }
+  lua_rawseti(state, -2, shown_slot);
+  lua_pop(state, 1);
+}
+
+void ChartRunner::push_shown_data(lua_State* state) {
+  if (shown_.id == no_event) return lua_pushnil(state);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
+  lua_rawgeti(state, -1, shown_slot);
+  lua_remove(state, -2);
+  if (lua_isnil(state, -1)) return;
+  push_plain_copy(state, lua_gettop(state));
+  lua_remove(state, -2);
+  data_copied_ = true;
+}
+
+void ChartRunner::forget_copy(lua_State* state) {
+  if (!data_copied_) return;
+  data_copied_ = false;
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
+  lua_pushliteral(state, "data");
+  lua_pushnil(state);
   lua_rawset(state, -3);
   lua_pop(state, 1);
 }
@@ -146,14 +171,16 @@ void ChartRunner::push_event_name(lua_State* state, EventId event) {
 }
 
 void ChartRunner::hide_event(lua_State* state) {
+  forget_copy(state);
   shown_ = {};
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event);
-  for (const char* key : {"name", "data"}) {
-    lua_pushstring(state, key);
-    lua_pushnil(state);
-    lua_rawset(state, -3);
-  }
-  lua_pop(state, 1);
+  lua_pushliteral(state, "name");
+  lua_pushnil(state);
+  lua_rawset(state, -3);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
+  lua_pushnil(state);
+  lua_rawseti(state, -2, shown_slot);
+  lua_pop(state, 2);
 }
 
 // [-0 +1] { outcomes = { region = "done" }, results = { region = { ... } } }
@@ -484,6 +511,7 @@ void ChartRunner::set_time(lua_State* state, StateIndex index) {
 }
 
 void ChartRunner::push_call(lua_State* state, int function, StateIndex index) {
+  forget_copy(state);
   set_time(state, index);
   core_of(state).called = function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, function);

@@ -52,7 +52,7 @@ struct RunnerTables {
   int time_key = Chart::no_function;     // "time_s"
   int event = Chart::no_function;        // content of s.event
   int event_names = Chart::no_function;  // by EventId + 1
-  int event_data = Chart::no_function;   // by place + 1
+  int event_data = Chart::no_function;   // by place + 1; behind them that of an error, and what s.event shows
   int results = Chart::no_function;      // of final states, by StateIndex + 1
   int make_result = Chart::no_function;  // calls a function with m and s and copies what it returns
 };
@@ -130,6 +130,8 @@ class ChartRunner {
   const Chart::State& acting() const noexcept { return chart_.states[acting_]; }  // whose function ran last
   StateIndex acting_index() const noexcept { return acting_; }
   std::uint64_t events_unhandled() const noexcept { return unhandled_; }
+  // [-0 +1] A copy of the data of the event that s.event shows, for the function that runs; nil when it has none.
+  void push_shown_data(lua_State* state);
   // [-0 +1] The arguments of the behavior whose function runs.
   void push_arguments(lua_State* state) const;
   // [-1 +0] Gives a machine the value at the top, which is as declared, for one of those that its call gives.
@@ -172,7 +174,7 @@ class ChartRunner {
   bool has_transition_for(StateIndex index, EventId event) const noexcept;
   bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
   bool happened(std::uint16_t transition, const WaitingEvent* event) const noexcept;
-  bool due(lua_State* state, std::uint16_t transition) const noexcept;
+  bool due(lua_State* state, std::uint16_t transition) const;
   double after_s(lua_State* state, const Chart::Transition& transition) const noexcept;
   bool guard(lua_State* state, std::uint16_t transition);
   bool there_already(const Chart::Transition& transition) const noexcept;
@@ -188,6 +190,7 @@ class ChartRunner {
   void show_event(lua_State* state, const WaitingEvent& event);
   void push_event_name(lua_State* state, EventId event);
   void hide_event(lua_State* state);
+  void forget_copy(lua_State* state);
   void forget_data(lua_State* state, const WaitingEvent& event);
   void push_outcomes(lua_State* state, StateIndex parallel);
   StateIndex final_in(StateIndex index) const noexcept;
@@ -258,7 +261,8 @@ class ChartRunner {
   EventQueue queue_;
   std::vector<bool> told_;  // events that were told as dropped
   bool told_steps_ = false, told_restless_ = false;
-  WaitingEvent shown_;  // the event of the step, for s.event
+  WaitingEvent shown_;        // the event of the step, for s.event
+  bool data_copied_ = false;  // the function that runs has a copy of its data
   std::uint64_t unhandled_ = 0;
   std::int64_t now_ns_ = 0, before_ns_ = 0;  // of this tick and of the one before
   StateIndex acting_ = 0;

@@ -63,10 +63,14 @@ bool ChartRunner::acted(std::uint16_t number) const noexcept {
   return transition.once && guards_[number].acted_ns == run_[transition.source].entered_ns;
 }
 
-bool ChartRunner::due(lua_State* state, std::uint16_t number) const noexcept {
+bool ChartRunner::due(lua_State* state, std::uint16_t number) const {
   const Chart::Transition& transition = chart_.transitions[number];
-  if (!transition.timed) return true;
-  return state_time_s(transition.source) >= after_s(state, transition) && !acted(number);
+  if (!transition.timed || acted(number)) return !transition.timed;
+  const bool follows = transition.after_parameter != Chart::no_parameter;
+  return state_time_s(transition.source) >=
+         (follows ? charged_value(state, static_cast<std::size_t>(transition.after_parameter),
+                                  chart_.states[transition.source].machine)
+                  : transition.after_s);
 }
 
 double ChartRunner::after_s(lua_State* state, const Chart::Transition& transition) const noexcept {

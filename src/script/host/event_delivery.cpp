@@ -75,7 +75,12 @@ void EventDelivery::tell(const PlayedEvent& event, Severity severity, const std:
 
 void EventDelivery::deliver(const PlayedEvent& event, PlayList& list, const Snapshot& snapshot, bool paused) {
   if (const std::string why = refusal(event, list, paused); !why.empty()) return refuse(event, why, list, snapshot);
-  std::string takers, wrong;
+  std::string takers, wrong, data = data_json(event.data);
+  if (data_bytes_ + data.size() > data_bytes_max)
+    return refuse(event,
+                  "the events of this tick bring more than " + std::to_string(data_bytes_max >> 10U) + " kB of data",
+                  list, snapshot);
+  data_bytes_ += data.size();
   list.each_in_turn([&](const PlayList::Entry& entry) {
     if (find_event(entry.behavior->events(), event.name) == nullptr) return;
     const std::string why = entry.behavior->post(event);
@@ -88,7 +93,7 @@ void EventDelivery::deliver(const PlayedEvent& event, PlayList& list, const Snap
   log_.emitted({.time_ns = snapshot.time_ns,
                 .tick = snapshot.tick,
                 .event = event.name,
-                .data = data_json(event.data),
+                .data = std::move(data),
                 .who = event.who,
                 .ordered = event.ordered});
   tell(event, Severity::info, shortened(event_text(event)) + " from " + event.who + " to " + takers, snapshot);

@@ -28,8 +28,13 @@ class EventDelivery {
  public:
   static constexpr std::size_t ordered_max = EventQueue::sent_max;  // by orders, for one tick
 
+  // Of the data of events from outside in one tick, as JSON: the record has all of it, and its ring has room for more.
+  static constexpr std::size_t data_bytes_max = std::size_t{64} << 10U;
+
   EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs);
 
+  // To be called when a tick begins.
+  void begin_tick() noexcept { data_bytes_ = 0; }
   // Why nobody could take the event now; "": somebody can.
   static std::string refusal(const PlayedEvent& event, PlayList& list, bool paused);
   void deliver(const PlayedEvent& event, PlayList& list, const Snapshot& snapshot, bool paused);
@@ -58,6 +63,7 @@ class EventDelivery {
   std::vector<InputEvent> inputs_;
   std::vector<Level> levels_;  // of the inputs
   std::vector<SentEvent> sent_;
+  std::size_t data_bytes_ = 0;  // of this tick
   std::set<std::string> told_;  // what is told only once
   LogBound input_lines_;
 };

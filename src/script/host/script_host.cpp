@@ -13,7 +13,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::uint32_t kept_format = 2;
+constexpr std::uint32_t kept_format = 3;
 
 // Each state with the signal of the region that it is in; not those in regions that have no signal.
 void add_states(const Chart& chart, const std::string& name, const SignalTable& signals, std::vector<SignalState>& to) {
@@ -221,6 +221,7 @@ void ScriptHost::check_event(const PlayOrder& order) {
 }
 
 void ScriptHost::take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  delivery_.begin_tick();
   delivery_.deliver_sent(list_, snapshot);
   delivery_.look_at_inputs(list_, snapshot, pause_.paused());
   for (; events_done_ < events_.size() && events_[events_done_].at_ns <= snapshot.time_ns; ++events_done_) {

@@ -42,7 +42,7 @@ int cancel(lua_State* state) {
       return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
     }
   }
-  motion->state = MotionState::cancelled;
+  bindings.note_cancelled(*motion);
   return lua_pushboolean(state, 1), 1;
 }
 
@@ -65,9 +65,16 @@ int read_field(lua_State* state) {
 
 void observe(Motion& motion, const Snapshot& snapshot, std::int64_t now_ns) noexcept {
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
+  const auto find_refusal = [&](std::uint32_t sequence) {
+    return std::ranges::find(snapshot.refusals, sequence, &Refusal::sequence);
+  };
+  if (motion.state == MotionState::cancelled && motion.cancel_sequence != 0) {
+    const bool refused = find_refusal(motion.cancel_sequence) != snapshot.refusals.end();
+    if (refused) motion.state = motion.before == MotionState::pending ? MotionState::sent : motion.before;
+    if (refused || snapshot.transactions_applied >= motion.cancel_sequence) motion.cancel_sequence = 0;
+  }
   if (motion.state == MotionState::sent) {
-    const auto refused = std::find_if(snapshot.refusals.begin(), snapshot.refusals.end(),
-                                      [&](const Refusal& refusal) { return refusal.sequence == motion.sequence; });
+    const auto refused = find_refusal(motion.sequence);
     if (refused != snapshot.refusals.end()) {
       motion.state = MotionState::refused;
       motion.refusal = *refused;

@@ -3,7 +3,7 @@
 // It is pending until the tick's transaction is sent. It is sent until the control engine reports that the transaction
 // was applied. It is done when the object is at rest, or when the motion's time has passed since it was applied. It is
 // refused when the control engine reports that it refused the transaction, and expired when the engine never reports
-// anything.
+// anything. When it was cancelled, but the transaction with that is dropped or refused, it goes on.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,10 @@ struct Motion {
   std::uint32_t sequence = 0;
   std::int64_t asked_ns = 0, applied_ns = 0;
   double duration_s = 0;
-  Refusal refusal;          // set when it was refused
-  std::uint32_t count = 0;  // number of set-points, which are stored behind this struct
+  Refusal refusal;                            // set when it was refused
+  MotionState before = MotionState::pending;  // when it was cancelled
+  std::uint32_t cancel_sequence = 0;          // of the transaction with that, until the engine has applied it
+  std::uint32_t count = 0;                    // number of set-points, which are stored behind this struct
 
   SetpointId* setpoints() noexcept { return reinterpret_cast<SetpointId*>(this + 1); }
   bool over() const noexcept { return state >= MotionState::done; }

@@ -49,7 +49,8 @@ void EventLog::tell(const Line& line) {
 void EventLog::tell_emitted(const EmittedEvent& event) {
   begin(Event::Kind::emitted, event.time_ns, "");
   put_event(event, outgoing_);
-  push();
+  if (ring_->size() + outgoing_.size() <= emitted_bytes_max) return push();
+  dropped_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void EventLog::tell_active(const ActiveStates& active) {

@@ -67,6 +67,8 @@ class EventLog final : public LineSink {
   void push() noexcept;
 
   using Bytes = Ring<std::byte, std::size_t{1} << 18U>;
+  // Events from outside bring data of strangers: half of the ring is for all else.
+  static constexpr std::size_t emitted_bytes_max = Bytes::capacity() / 2;
   static constexpr std::size_t head_bytes = sizeof(std::uint32_t) + sizeof(std::int64_t);
 
   std::unique_ptr<Bytes> ring_;
