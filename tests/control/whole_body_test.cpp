@@ -79,10 +79,10 @@ class StandBench : public TestedObject {
     TestedObject::set_point(catalog.setpoints[id(name)].channel, value, time_s);
   }
   double setpoint(const std::string& name) const { return snapshot.setpoints[id(name)].value; }
-  Foresight::Miss foresee(const std::string& name, double value) {
+  Foresight::Miss foresee(const std::string& name, double value, double time_s = 3) {
     const Foresight::Goal goal{catalog.setpoints[id(name)].channel, value};
     snapshot.joints = joints;
-    return object->foresight()->miss({&goal, 1}, snapshot);
+    return object->foresight()->miss({{&goal, 1}, time_s}, snapshot);
   }
 
   RobotModel model;
@@ -246,7 +246,7 @@ TEST_CASE(
       bench.time_ns += 10'000'000;
       bench.update();
       const Foresight::Goal goal{com_z, 0.45};
-      (void)bench.object->foresight()->miss({&goal, 1}, bench.snapshot);
+      (void)bench.object->foresight()->miss({{&goal, 1}, 1}, bench.snapshot);
     }
     high_level = heap.count();
   }

@@ -13,6 +13,8 @@ namespace kadans {
 
 inline constexpr std::size_t body_tasks_max = 8, body_feet_max = 2;
 inline constexpr std::size_t body_channels_max = 32 + max_joints;
+inline constexpr double body_gravity_m_s2 = 9.81;
+inline constexpr std::size_t no_body_joint = max_joints;  // an index that no joint has
 
 // A task leads the centre of mass, a point of a link, the orientation of a link, or both; or where a link looks.
 struct BodyTask {
@@ -40,6 +42,7 @@ struct BodySettings {
   double toe_m = 0.1, heel_m = 0.1, side_m = 0.05;  // from the foot's frame to the sole's edges
   double sole_m = 0.05;                             // of the foot's frame over the sole
   double edge_m = 0.01;                             // how far the centre of pressure stays from the edges
+  double balance_m = 0.02;  // how far the centre of mass, and the point over which it comes to rest, stay from them
   double effort_share = 0.9;                        // of the joints' torque limits
   double velocity_share = 0.8;                      // of their velocity limits
   double posture_weight = 1e-4, posture_per_s = 2;
@@ -56,6 +59,11 @@ struct BodyLayout {
   std::vector<std::size_t> passive, locked;  // joints of the model: without a motor, or driven by somebody else
   std::vector<BodyTask> tasks;
   std::vector<std::size_t> feet;      // of tasks, left and right
+  struct Sole {                       // of a foot
+    std::size_t loose = no_body_joint;  // the joint without a motor that is nearest to it, on the way to the base
+    bool tilts_forward = false, tilts_sideways = false;  // about this joint, as the foot stands
+  };
+  std::array<Sole, body_feet_max> soles{};
   std::uint32_t contact_channel = 0;  // of the left foot's contact: 1: it stands, 0: it is free
   std::uint32_t joint_channel = 0;    // of the first joint's position
   std::vector<double> rotor_inertia_kg_m2;

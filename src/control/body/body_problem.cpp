@@ -16,19 +16,20 @@ using Eigen::Vector3d;
 constexpr double least_acceleration = 1e-5, least_force = 1e-6, least_moment = 1e-4;  // the regularisation
 constexpr double passive_weight = 0.05;
 constexpr double hold_per_s = 10;          // how fast a foot that stands goes back to its place
+constexpr double catch_per_s = 8;          // how fast the capture point may approach an edge, per distance
 constexpr double limit_per_s = 8;          // how fast a joint may approach its limit, per distance
 constexpr double limit_margin_rad = 0.03;  // of positions before a limit; the safety layer's soft stop begins there
 constexpr double react_s = 0.03;           // in which a joint that is too fast slows down
 constexpr double braking_rad_s2 = 300;     // the most that limits of speed and position ask for
 constexpr double twist_m = 0.04;           // moment about the vertical per load and friction
 constexpr double load_share = 1.5;         // the most that a foot bears, as a share of the weight
-constexpr double gravity_m_s2 = 9.81;
+constexpr double least_height_m = 0.05;
 constexpr int tick_iterations_max = 250;
 constexpr Index wrench_rows = 13;
 
 Index rows_max(const BodyLayout& layout) {
   const Index joints = static_cast<Index>(layout.joints.size()), feet = static_cast<Index>(layout.feet.size());
-  return 6 + static_cast<Index>(layout.locked.size()) + 2 * joints + feet * (6 + wrench_rows) +
+  return 6 + static_cast<Index>(layout.locked.size()) + 2 * joints + feet * (4 + 6 + wrench_rows) +
          6 * static_cast<Index>(layout.tasks.size());
 }
 
@@ -79,6 +80,7 @@ void BodyProblem::begin(const BodyModel& model, const BodyAim& aim,
     hold(model, i, feet[i]);
     bear(model, i, feet[i], aim.settings);
   }
+  balance(model, aim.settings, feet);
   limit(model, aim.settings);
   spring(model, aim.settings);
   posture(model, aim);
@@ -118,7 +120,7 @@ void BodyProblem::bear(const BodyModel& model, std::size_t foot, const BodyStand
     normal.segment<3>(wrench_[foot] + 3) = moment;
   };
   const Vector3d none = Vector3d::Zero();
-  add(0, stand.share * load_share * gravity_m_s2 * model.dynamics().mass_kg(), z, none);
+  add(0, stand.share * load_share * body_gravity_m_s2 * model.dynamics().mass_kg(), z, none);
   for (const double sign : {-1.0, 1.0}) {
     add(0, QuadraticProgram::unbounded, grip * z + sign * x, none);
     add(0, QuadraticProgram::unbounded, grip * z + sign * y, none);
@@ -127,6 +129,28 @@ void BodyProblem::bear(const BodyModel& model, std::size_t foot, const BodyStand
   }
   add(0, QuadraticProgram::unbounded, (s.toe_m - s.edge_m) * z + s.sole_m * x, y);
   add(0, QuadraticProgram::unbounded, (s.heel_m - s.edge_m) * z - s.sole_m * x, -y);
+}
+
+// The capture point c + v / w with w = sqrt(g / height) may approach an edge ever more slowly. Beyond it, it goes back
+// no faster than pressing at the soles' edge brings it back: it moves by w times its way from the centre of pressure.
+void BodyProblem::balance(const BodyModel& model, const BodySettings& s,
+                          const std::array<BodyStand, body_feet_max>& feet) noexcept {
+  std::array<const Pose*, body_feet_max> standing{};
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) standing[i] = feet[i].share >= 1 ? &feet[i].pose : nullptr;
+  const BodySupport support = support_of(*layout_, s, standing);
+  if (support.count == 0) return;
+  const Vec3 com = model.dynamics().com_m();
+  const double rate_per_s = std::sqrt(body_gravity_m_s2 / std::max(com[2], least_height_m));
+  model.dynamics().com_jacobian(jacobian_.topRows<3>());
+  const Vector3d velocity = jacobian_.topRows<3>() * model.velocity, bias = model.com_bias();
+  for (const BodyEdge& edge : support) {
+    const Vector3d out(edge.x, edge.y, 0);
+    const double speed = out.dot(velocity), caught_m = out.dot(eigen(com)) + speed / rate_per_s;
+    const double room_m = edge.distance_m - s.balance_m - caught_m;
+    const double most = std::max(catch_per_s * room_m, rate_per_s * (caught_m - edge.distance_m + s.edge_m));
+    program_.add_row(-QuadraticProgram::unbounded, rate_per_s * (most - speed) - out.dot(bias)).head(model.size()) =
+        jacobian_.topRows<3>().transpose() * out;
+  }
 }
 
 void BodyProblem::limit(const BodyModel& model, const BodySettings& s) noexcept {

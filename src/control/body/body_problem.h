@@ -6,7 +6,9 @@
 // Constraints  the base's equations of motion (M dv + h = J' w); feet that stand do not move; joints that somebody else
 //              drives do not accelerate; torques, speeds and positions of the joints stay within their limits; each
 //              wrench stays within its friction pyramid and its centre of pressure within the sole's edges (Caron, Pham
-//              and Nakamura 2015, ICRA, for the wrench as a whole).
+//              and Nakamura 2015, ICRA, for the wrench as a whole); the capture point, over which the body can come to
+//              rest, stays over the soles (Pratt et al. 2006, IEEE Humanoids; body_support.h), so that no task topples
+//              it: what is asked for too quickly comes later.
 // Minimised    the squares of what the tasks miss, by weight, in two levels: the second level gets what the first one
 //              leaves (Kanoun, Lamiraux and Wieber 2011, IEEE T-RO 27(4)); the posture; and 1e-5 of the squares of
 //              accelerations and 1e-6 of those of wrenches (1e-4 of moments), which make the problem strictly convex.
@@ -21,6 +23,7 @@
 
 #include "body_layout.h"
 #include "body_model.h"
+#include "body_support.h"
 #include "quadratic_program.h"
 
 namespace kadans {
@@ -64,6 +67,8 @@ class BodyProblem {
   void motion_row(const BodyModel& model, Eigen::Index row, double lower, double upper) noexcept;
   void hold(const BodyModel& model, std::size_t foot, const BodyStand& stand) noexcept;
   void bear(const BodyModel& model, std::size_t foot, const BodyStand& stand, const BodySettings& s) noexcept;
+  void balance(const BodyModel& model, const BodySettings& s,
+               const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void limit(const BodyModel& model, const BodySettings& s) noexcept;
   void spring(const BodyModel& model, const BodySettings& s) noexcept;
   void posture(const BodyModel& model, const BodyAim& aim) noexcept;

@@ -18,27 +18,45 @@ constexpr double step_max_rad = 0.4;  // of a joint, in one step
 constexpr double back_m = 0.03;       // how far the centre of mass comes back over the soles in one step
 constexpr double still = 5e-4;        // a step after which no other is made
 constexpr double reached_m = 0.005, reached_rad = 0.01;  // what counts as reached
-
-double cross2(const Vec3& o, const Vec3& a, const Vec3& b) noexcept {
-  return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
-}
+constexpr double at_once = 2.4;        // the time in which a task without a motion gets there, times its gain
+constexpr double told_share = 1.02;    // of the least time, so that what is told is enough when it is asked for again
 
 }  // namespace
 
 BodyReach::BodyReach(const BodyLayout& layout)
     : layout_(&layout),
-      model_(*layout.model, layout.floating ? Dynamics::Base::floating : Dynamics::Base::fixed, {}),
+      known_(BodySettings{}),
+      model_(*layout.model, layout.floating),
       kinematics_(*layout.model),
       program_(model_.size(), model_.size() + static_cast<Index>(6 * layout.feet.size() + 4 * body_feet_max)),
-      way_(model_.velocity) {
+      first_rad_(model_.position_rad) {
   jacobian_.setZero(6, model_.size());
+  way_.setZero(model_.size());
+  scratch_.fill(way_);
 }
 
-Foresight::Miss BodyReach::miss(std::span<const Goal> goals, const Snapshot& snapshot) noexcept {
-  if (!place(snapshot)) return {};
+Foresight::Miss BodyReach::miss(const Asked& asked, const Snapshot& snapshot) noexcept {
+  settings_ = known_.newest();
+  if (!place(snapshot) || !ask(asked.goals)) return {};
+  if (const Miss loose = bearing(); loose.why != Why::none) return loose;
+  std::array<const Pose*, body_feet_max> standing{};
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) standing[i] = stands(i) ? &held_[i] : nullptr;
+  support_ = support_of(*layout_, settings_, standing);
+  first_base_ = model_.base;
+  std::ranges::copy(model_.position_rad, first_rad_.begin());
+  for (int step = 0; step < steps_max && improve(); ++step) {
+  }
+  const Miss missed = worst();
+  return missed.why != Why::none ? missed : too_quick(asked.time_s);
+}
+
+// False: nothing is asked of the tasks or the contacts.
+bool BodyReach::ask(std::span<const Goal> goals) noexcept {
   asked_.fill(false);
+  bool any = false;
   for (const Goal& goal : goals) {
     setpoints_[goal.channel] = {.value = goal.value};
+    any = any || goal.channel < layout_->joint_channel;
     for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
       const BodyTask& task = layout_->tasks[i];
       if (goal.channel >= task.channel && goal.channel < task.channel + task.channels()) asked_[i] = true;
@@ -49,10 +67,24 @@ Foresight::Miss BodyReach::miss(std::span<const Goal> goals, const Snapshot& sna
       if (!stands(i) && layout_->tasks[task].kind == BodyTask::Kind::com) asked_[task] = true;
     }
   }
-  find_edges();
-  for (int step = 0; step < steps_max && improve(); ++step) {
+  return any;
+}
+
+// On one foot the body is an inverted pendulum over it. A joint without a motor on the way to it must have a spring that
+// is stiffer than gravity is strong.
+Foresight::Miss BodyReach::bearing() const noexcept {
+  std::size_t count = 0, last = 0;
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
+    if (!stands(i)) continue;
+    ++count;
+    last = i;
   }
-  return worst();
+  if (count != 1 || layout_->soles[last].loose == no_body_joint) return {};
+  const BodyLayout::Sole& sole = layout_->soles[last];
+  const double height_m = model_.com_m()[2] - model_.link(sole.loose + 1).position_m[2];
+  const double missing = body_gravity_m_s2 * model_.mass_kg() * height_m - settings_.passive_Nm_per_rad;
+  if (!(missing > 0) || !(sole.tilts_forward || sole.tilts_sideways)) return {};
+  return {.why = Why::bear, .by = missing, .joint = sole.loose};
 }
 
 // False: not all is measured.
@@ -67,6 +99,7 @@ bool BodyReach::place(const Snapshot& snapshot) noexcept {
   stand_as_told(snapshot);
   for (std::size_t i = 0; i < layout_->feet.size(); ++i)
     held_[i] = kinematics_.link(layout_->tasks[layout_->feet[i]].link);
+  model_.update();
   return true;
 }
 
@@ -96,42 +129,11 @@ void BodyReach::stand_as_told(const Snapshot& snapshot) noexcept {
   }
 }
 
-// The convex hull of the soles that stand, by Andrew's monotone chain (1979, Information Processing Letters 9(5)).
-void BodyReach::find_edges() noexcept {
-  std::array<Vec3, 4 * body_feet_max> corners{};
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
-    if (!stands(i)) continue;
-    for (const double x : {settings_.toe_m, -settings_.heel_m}) {
-      for (const double y : {settings_.side_m, -settings_.side_m})
-        corners[count++] = transform(held_[i], {x, y, -settings_.sole_m});
-    }
-  }
-  edge_count_ = 0;
-  if (count == 0) return;
-  const auto last = corners.begin() + static_cast<std::ptrdiff_t>(count);
-  std::partial_sort(corners.begin(), last, last);  // gcc believes that std::sort leaves so small an array
-  std::array<Vec3, 8 * body_feet_max + 1> hull{};
-  std::size_t size = 0;
-  const auto add = [&](const Vec3& corner, std::size_t kept) {
-    while (size >= kept + 2 && cross2(hull[size - 2], hull[size - 1], corner) <= 0) --size;
-    hull[size++] = corner;
-  };
-  for (std::size_t i = 0; i < count; ++i) add(corners[i], 0);
-  const std::size_t lower = size - 1;
-  for (std::size_t i = count - 1; i-- > 0;) add(corners[i], lower);
-  for (std::size_t i = 0; i + 1 < size; ++i) {
-    const double x = hull[i + 1][0] - hull[i][0], y = hull[i + 1][1] - hull[i][1], length = std::hypot(x, y);
-    const double nx = y / length, ny = -x / length;  // outward, for a hull that goes round to the left
-    edges_[edge_count_++] = {nx, ny, nx * hull[i][0] + ny * hull[i][1] - settings_.edge_m};
-  }
-}
-
 void BodyReach::hold_feet() noexcept {
   for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
     if (!stands(i)) continue;
     const std::size_t link = layout_->tasks[layout_->feet[i]].link;
-    model_.dynamics().link_jacobian(link, {}, jacobian_);
+    model_.link_jacobian(link, {}, jacobian_);
     Eigen::Vector<double, 6> way;
     way << eigen(held_[i].position_m) - eigen(model_.link(link).position_m),
         turn_between(model_.link(link).orientation, held_[i].orientation);
@@ -140,12 +142,11 @@ void BodyReach::hold_feet() noexcept {
 }
 
 void BodyReach::balance() noexcept {
-  if (edge_count_ == 0) return;
-  const Vec3 com = model_.dynamics().com_m();
-  model_.dynamics().com_jacobian(jacobian_.topRows<3>());
-  for (std::size_t i = 0; i < edge_count_; ++i) {
-    const Edge& edge = edges_[i];
-    const double room = edge.distance_m - edge.x * com[0] - edge.y * com[1];
+  if (support_.count == 0) return;
+  const Vec3 com = model_.com_m();
+  model_.com_jacobian(jacobian_);
+  for (const BodyEdge& edge : support_) {
+    const double room = edge.distance_m - settings_.balance_m - edge.x * com[0] - edge.y * com[1];
     program_.add_row(-QuadraticProgram::unbounded, std::max(room, -back_m)) =
         edge.x * jacobian_.row(0).transpose() + edge.y * jacobian_.row(1).transpose();
   }
@@ -168,9 +169,9 @@ Index BodyReach::missing(std::size_t index, Eigen::Vector<double, 6>& way) noexc
   const SetpointState* to = &setpoints_[task.channel];
   const Pose& link = model_.link(task.link);
   if (task.kind == BodyTask::Kind::com)
-    model_.dynamics().com_jacobian(jacobian_.topRows<3>());
+    model_.com_jacobian(jacobian_);
   else
-    model_.dynamics().link_jacobian(task.link, settings_.tasks[index].point_m, jacobian_);
+    model_.link_jacobian(task.link, settings_.tasks[index].point_m, jacobian_);
   const Vector3d wanted(to[0].value, to[1].value, to[2].value);
   if (task.kind == BodyTask::Kind::gaze) {
     const Vector3d axis = eigen(rotate(link.orientation, {1, 0, 0})), line = wanted - eigen(link.position_m);
@@ -187,7 +188,7 @@ Index BodyReach::missing(std::size_t index, Eigen::Vector<double, 6>& way) noexc
     return 3;
   }
   Vec3 at =
-      task.kind == BodyTask::Kind::com ? model_.dynamics().com_m() : transform(link, settings_.tasks[index].point_m);
+      task.kind == BodyTask::Kind::com ? model_.com_m() : transform(link, settings_.tasks[index].point_m);
   if (task.kind == BodyTask::Kind::foot) at[2] -= settings_.sole_m;
   way.head<3>() = wanted - eigen(at);
   if (!task.has_turn()) return 3;
@@ -228,15 +229,15 @@ bool BodyReach::improve() noexcept {
 
 double BodyReach::beyond_edges_m() const noexcept {
   double beyond_m = 0;
-  const Vec3 com = model_.dynamics().com_m();
-  for (std::size_t i = 0; i < edge_count_; ++i)
-    beyond_m = std::max(beyond_m, edges_[i].x * com[0] + edges_[i].y * com[1] - edges_[i].distance_m);
+  const Vec3& com = model_.com_m();
+  for (const BodyEdge& edge : support_)
+    beyond_m = std::max(beyond_m, edge.x * com[0] + edge.y * com[1] - edge.distance_m + settings_.balance_m);
   return beyond_m;
 }
 
 Foresight::Miss BodyReach::worst() noexcept {
   model_.update();
-  Miss worst{.by = beyond_edges_m(), .channel = 0};
+  Miss worst{.by = beyond_edges_m()};
   if (!(worst.by > reached_m)) worst.by = 0;
   Eigen::Vector<double, 6> way;
   for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
@@ -245,10 +246,37 @@ Foresight::Miss BodyReach::worst() noexcept {
     const Index rows = missing(i, way);
     const bool turns_only = task.kind == BodyTask::Kind::trunk || task.kind == BodyTask::Kind::gaze;
     const double first = way.head<3>().norm(), turn = rows == 6 ? way.tail<3>().norm() : 0;
-    if (first > (turns_only ? reached_rad : reached_m) && first > worst.by) worst = {first, task.channel};
-    if (turn > reached_rad && turn > worst.by) worst = {turn, task.channel + 3};
+    if (first > (turns_only ? reached_rad : reached_m) && first > worst.by)
+      worst = {.by = first, .channel = task.channel};
+    if (turn > reached_rad && turn > worst.by) worst = {.by = turn, .channel = task.channel + 3};
   }
+  worst.why = worst.by > 0 ? Why::reach : Why::none;
   return worst;
+}
+
+// What acts at once is as quick as the gain of the quickest of its tasks.
+Foresight::Miss BodyReach::too_quick(double time_s) noexcept {
+  double gain_per_s = 0;
+  for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
+    if (asked_[i]) gain_per_s = std::max(gain_per_s, settings_.tasks[i].gain_per_s);
+  }
+  if (!(gain_per_s > 0)) return {};
+  const double asked_s = time_s > 0 ? time_s : at_once / gain_per_s;
+  if (model_.base_size() > 0) {
+    for (std::size_t k = 0; k < 3; ++k)
+      way_[static_cast<Index>(k)] = model_.base.position_m[k] - first_base_.position_m[k];
+    way_.segment<3>(3) = turn_between(first_base_.orientation, model_.base.orientation);
+  }
+  for (std::size_t i = 0; i < first_rad_.size(); ++i)
+    way_[model_.base_size() + static_cast<Index>(i)] = model_.position_rad[i] - first_rad_[i];
+  model_.base = first_base_;
+  std::ranges::copy(first_rad_, model_.position_rad.begin());
+  const WayTime least = time_of_way(*layout_, settings_, support_, model_, way_, asked_s, scratch_);
+  if (least.least_s <= asked_s) return {};
+  return {.why = least.joint == no_body_joint ? Why::topple : Why::speed,
+          .by = told_share * least.least_s,
+          .after_s = least.fails_after_s,
+          .joint = least.joint};
 }
 
 }  // namespace kadans

@@ -91,7 +91,7 @@ class WholeBody final : public ControlObject {
   std::vector<Part> parts_;
   BodySettings settings_;
   BodyAim aimed_;
-  bool located_ = false, configured_ = false;
+  bool located_ = false;
   struct Shown {
     Vec3 com_m{};
     std::array<double, body_feet_max> load_N{};
@@ -201,6 +201,9 @@ void WholeBody::declare_ground(Declaration& d) {
   d.parameter({"side_m", "m", 0.02, 0.5, 0.05, "From a foot's frame sideways to the sole's edges."}, &s.side_m);
   d.parameter({"sole_m", "m", 0, 0.5, 0.05, "Height of a foot's frame over its sole."}, &s.sole_m);
   d.parameter({"edge_m", "m", 0, 0.015, 0.01, "How far the centre of pressure stays from the edges."}, &s.edge_m);
+  d.parameter({"balance_m", "m", 0, 0.05, 0.02,
+               "How far the centre of mass, and the point over which it comes to rest, stay from the edges."},
+              &s.balance_m);
   d.parameter({"passive_Nm_per_rad", "Nm/rad", 0, 1000, 0, "Springs in joints without a motor."},
               &s.passive_Nm_per_rad);
   d.parameter({"passive_Nms_per_rad", "Nm s/rad", 0, 100, 0, "Dampers in joints without a motor."},
@@ -225,10 +228,9 @@ void WholeBody::declare_joint(Declaration& declaration, std::size_t i) {
   tables.signal("saturated", "", "Whether the torque is limited.", &part.state.saturated);
 }
 
-// The first call is before the loop; later values reach the foresight with the high level.
 void WholeBody::parameters_changed() noexcept {
   aimed_.settings = settings_;
-  if (!std::exchange(configured_, true)) reach_.know(settings_);
+  reach_.know(settings_);
 }
 
 void WholeBody::start(const ControlInput& input) noexcept {
@@ -331,7 +333,6 @@ void WholeBody::update(const Snapshot& snapshot) {
   const auto newest = aim_.read();
   const BodyAim& aim = *newest;
   if (aim.activation == 0) return;
-  reach_.know(aim.settings);
   if (aim.activation != draft_.activation) leader_.begin(aim);
   const double since_s = seconds_between(last_update_ns_, snapshot.time_ns);
   last_update_ns_ = snapshot.time_ns;
