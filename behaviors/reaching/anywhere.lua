@@ -12,7 +12,9 @@ local P = k.params {
 
 local function between(low, high) return low + (high - low) * math.random() end
 
--- A target of the centre of mass, of the trunk, of a hand, or of all of them; and its weight.
+local kinds = { "centre of mass", "trunk", "right hand", "left hand", "all" }
+
+-- A target of the centre of mass, of the trunk, of a hand, or of all of them; its weight; and what it is of.
 local function draw(m)
   local kind = math.random(5)
   local over = {}
@@ -20,7 +22,7 @@ local function draw(m)
     over.com_m = { between(-0.09, 0.15), between(-0.14, 0.14), m.body:setpoint("com_z_m") - between(-0.02, 0.22) }
   end
   if kind == 2 or kind == 5 then
-    over.trunk = { roll_rad = between(-0.25, 0.25), pitch_rad = between(-0.4, 1.0), yaw_rad = between(-0.5, 0.5) }
+    over.trunk = { roll_rad = between(-0.25, 0.25), pitch_rad = between(-0.3, 0.55), yaw_rad = between(-0.5, 0.5) }
   end
   for name, of in pairs { hand_right = 3, hand_left = 4 } do
     if kind == of or kind == 5 then
@@ -28,7 +30,7 @@ local function draw(m)
       over[name .. "_m"] = { between(-0.3, 0.7), y_m, between(0.2, 1.3) }
     end
   end
-  return over, kind >= 3 and 30 or nil
+  return over, kind >= 3 and 30 or nil, kinds[kind]
 end
 
 -- Returns the motion's time; nil: it was refused.
@@ -60,10 +62,10 @@ return k.behavior "anywhere" {
       for _, axis in ipairs { "x", "y", "z" } do v["from_" .. axis .. "_m"] = m.body:setpoint("com_" .. axis .. "_m") end
       for _, turn in ipairs { "roll_rad", "pitch_rad", "yaw_rad" } do v[turn] = m.body:setpoint("trunk." .. turn) end
       for _ = 1, P.tries do
-        local over, weight = draw(m)
+        local over, weight, kind = draw(m)
         v.time_s = go(m, over, between(P.least_s, P.longest_s), weight) or 0
         if v.time_s > 0 then
-          k.log.info("goes there in %.2f s", v.time_s)
+          k.log.info("goes there in %.2f s: %s", v.time_s, kind)
           return
         end
         m:wait(0.02)

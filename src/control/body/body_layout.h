@@ -26,6 +26,7 @@ struct BodyTask {
 
   bool has_point() const noexcept { return kind != Kind::trunk; }
   bool has_turn() const noexcept { return kind == Kind::foot || kind == Kind::trunk; }
+  bool idles() const noexcept { return kind == Kind::hand || kind == Kind::gaze; }  // until it is moved
   std::uint32_t channels() const noexcept { return has_point() && has_turn() ? 6 : 3; }
 };
 
@@ -77,7 +78,7 @@ struct BodyAim {
   Quat base{1, 0, 0, 0};         // as measured at the start
   std::array<double, max_joints> start_rad{}, start_rad_s{};
   std::array<SetpointState, body_channels_max> setpoints{};
-  std::array<bool, body_tasks_max> engaged{};  // tasks that count: a hand and the gaze do from their first motion on
+  std::array<bool, body_tasks_max> engaged{};  // tasks that count: see whole_body.cpp
   BodySettings settings;
 };
 
@@ -97,6 +98,7 @@ struct BodyLead {
   double period_s = 0.01;
   std::array<Joint, max_joints> joints{};  // by the object's joints
   std::array<Foot, body_feet_max> feet{};
+  std::array<std::array<double, 6>, body_tasks_max> tasks{};  // where they are: their set-points would be these
   Vec3 com_m{};
   double iterations = 0, status = 0, failures = 0;  // of the solver
 };

@@ -44,6 +44,7 @@ class BodyModel {
   Eigen::Index size() const noexcept { return velocity.size(); }
   Eigen::Index base_size() const noexcept { return static_cast<Eigen::Index>(dynamics_.base_size()); }
   const Pose& link(std::size_t index) const noexcept { return dynamics_.link(index); }
+  Vec3 com_m() const noexcept { return dynamics_.com_m(); }
   // Of a point of a link: the acceleration (rows 0..2) and the link's angular one (3..5) that velocity alone gives.
   Eigen::Vector<double, 6> bias(std::size_t link, const Vec3& point_in_link_m) const noexcept;
   Eigen::Vector3d com_bias() const noexcept;

@@ -69,7 +69,10 @@ class BodyProblem {
   void bear(const BodyModel& model, std::size_t foot, const BodyStand& stand, const BodySettings& s) noexcept;
   void balance(const BodyModel& model, const BodySettings& s,
                const std::array<BodyStand, body_feet_max>& feet) noexcept;
-  void limit(const BodyModel& model, const BodySettings& s) noexcept;
+  void keep_within(Eigen::Index at, double position, double velocity, double lower, double upper,
+                   double fastest) noexcept;
+  void limit(const BodyModel& model, const BodySettings& s,
+             const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void spring(const BodyModel& model, const BodySettings& s) noexcept;
   void posture(const BodyModel& model, const BodyAim& aim) noexcept;
   void find_tasks(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,

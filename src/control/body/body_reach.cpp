@@ -12,9 +12,11 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr int steps_max = 20, reach_iterations_max = 200;
-constexpr double asked_weight = 1, other_weight = 1e-4, change_weight = 1e-5;
+constexpr int way_steps = 16, end_steps_max = 6, last_steps_max = 8, reach_iterations_max = 200;
+constexpr double asked_weight = 1, change_weight = 1e-5;
+constexpr double way_weight = 0.03, last_weight = 1e-4;  // of the other tasks: on the way, and to say how far it stays
 constexpr double step_max_rad = 0.4;  // of a joint, in one step
+constexpr double bent_share = 0.33;   // of the weight, that the foot which bears less still bears
 constexpr double back_m = 0.03;       // how far the centre of mass comes back over the soles in one step
 constexpr double still = 5e-4;        // a step after which no other is made
 constexpr double reached_m = 0.005, reached_rad = 0.01;  // what counts as reached
@@ -29,25 +31,55 @@ BodyReach::BodyReach(const BodyLayout& layout)
       model_(*layout.model, layout.floating),
       kinematics_(*layout.model),
       program_(model_.size(), model_.size() + static_cast<Index>(6 * layout.feet.size() + 4 * body_feet_max)),
-      first_rad_(model_.position_rad) {
+      gone_(layout) {
   jacobian_.setZero(6, model_.size());
   way_.setZero(model_.size());
-  scratch_.fill(way_);
 }
 
 Foresight::Miss BodyReach::miss(const Asked& asked, const Snapshot& snapshot) noexcept {
   settings_ = known_.newest();
-  if (!place(snapshot) || !ask(asked.goals)) return {};
+  if (!place(snapshot)) return {};
+  const Setpoints from = setpoints_;
+  if (!ask(asked.goals)) return {};
   if (const Miss loose = bearing(); loose.why != Why::none) return loose;
   std::array<const Pose*, body_feet_max> standing{};
   for (std::size_t i = 0; i < layout_->feet.size(); ++i) standing[i] = stands(i) ? &held_[i] : nullptr;
   support_ = support_of(*layout_, settings_, standing);
-  first_base_ = model_.base;
-  std::ranges::copy(model_.position_rad, first_rad_.begin());
-  for (int step = 0; step < steps_max && improve(); ++step) {
+  const double time_s = time_of(asked.time_s);
+  const Setpoints to = setpoints_;
+  go(from, to, time_s);
+  Miss missed = worst();
+  for (int step = 0; step < last_steps_max && missed.why != Why::none && improve(last_weight); ++step) missed = worst();
+  const BodyWay::Time& least = gone_.time();
+  if (missed.why != Why::none || least.least_s <= time_s) return missed;
+  return {.why = least.joint == no_body_joint ? Why::topple : Why::speed,
+          .by = told_share * least.least_s,
+          .after_s = least.fails_after_s,
+          .joint = least.joint};
+}
+
+// What acts at once is as quick as the gain of the quickest of its tasks.
+double BodyReach::time_of(double asked_s) const noexcept {
+  if (asked_s > 0) return asked_s;
+  double gain_per_s = 0;
+  for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
+    if (asked_[i]) gain_per_s = std::max(gain_per_s, settings_.tasks[i].gain_per_s);
   }
-  const Miss missed = worst();
-  return missed.why != Why::none ? missed : too_quick(asked.time_s);
+  return gain_per_s > 0 ? at_once / gain_per_s : 1;
+}
+
+// Along the motion, as the engine leads its set-points: a minimum-jerk curve.
+void BodyReach::go(const Setpoints& from, const Setpoints& to, double time_s) noexcept {
+  gone_.begin(settings_, support_, way_steps, time_s);
+  for (int number = 0; number <= way_steps + end_steps_max; ++number) {
+    const double u = std::min(1.0, static_cast<double>(number + 1) / way_steps);
+    const double share = u * u * u * (10 + u * (6 * u - 15));
+    for (std::uint32_t i = 0; i < layout_->contact_channel; ++i)
+      setpoints_[i].value = from[i].value + share * (to[i].value - from[i].value);
+    const bool moves = improve(way_weight);
+    if (number < way_steps) gone_.add(model_, way_);  // its links are still where they were before the step
+    if (number >= way_steps && !moves) return;
+  }
 }
 
 // False: nothing is asked of the tasks or the contacts.
@@ -155,9 +187,17 @@ void BodyReach::balance() noexcept {
 void BodyReach::limit() noexcept {
   for (std::size_t i = 0; i < model_.position_rad.size(); ++i) {
     const Joint& joint = layout_->model->joints[i];
+    double lower_rad = joint.lower_rad, upper_rad = joint.upper_rad;
+    for (std::size_t foot = 0; foot < layout_->feet.size(); ++foot) {
+      if (layout_->soles[foot].loose != i || !stands(foot)) continue;
+      const double load_N = bent_share * body_gravity_m_s2 * model_.mass_kg();
+      const double most_rad = bent_max_rad(*layout_, settings_, foot, load_N);
+      lower_rad = std::max(lower_rad, -most_rad);
+      upper_rad = std::min(upper_rad, most_rad);
+    }
     const bool locked = std::ranges::find(layout_->locked, i) != layout_->locked.end();
-    const double below = std::clamp(joint.lower_rad - model_.position_rad[i], -step_max_rad, step_max_rad);
-    const double above = std::clamp(joint.upper_rad - model_.position_rad[i], -step_max_rad, step_max_rad);
+    const double below = std::clamp(lower_rad - model_.position_rad[i], -step_max_rad, step_max_rad);
+    const double above = std::clamp(upper_rad - model_.position_rad[i], -step_max_rad, step_max_rad);
     program_.add_row(locked ? 0 : std::min(below, above),
                      locked ? 0 : std::max(below, above))[model_.base_size() + static_cast<Index>(i)] = 1;
   }
@@ -196,7 +236,7 @@ Index BodyReach::missing(std::size_t index, Eigen::Vector<double, 6>& way) noexc
   return 6;
 }
 
-void BodyReach::add_task(std::size_t index) noexcept {
+void BodyReach::add_task(std::size_t index, double other_weight) noexcept {
   Eigen::Vector<double, 6> way;
   const Index rows = missing(index, way);
   const double weight = asked_[index] ? asked_weight : other_weight;
@@ -206,7 +246,7 @@ void BodyReach::add_task(std::size_t index) noexcept {
 }
 
 // One step; false: it was the last one.
-bool BodyReach::improve() noexcept {
+bool BodyReach::improve(double other_weight) noexcept {
   model_.update();
   program_.begin(model_.size());
   program_.hessian().diagonal().setConstant(change_weight);
@@ -214,14 +254,14 @@ bool BodyReach::improve() noexcept {
   balance();
   limit();
   for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
-    const BodyTask::Kind kind = layout_->tasks[i].kind;
     const bool foot_stands = std::ranges::any_of(std::array<std::size_t, 2>{0, 1}, [&](std::size_t foot) {
       return foot < layout_->feet.size() && layout_->feet[foot] == i && stands(foot);
     });
-    const bool idle = kind == BodyTask::Kind::hand || kind == BodyTask::Kind::gaze;
-    if (asked_[i] || (!idle && !foot_stands)) add_task(i);
+    if (asked_[i] || (!layout_->tasks[i].idles() && !foot_stands)) add_task(i, other_weight);
   }
-  if (program_.solve(reach_iterations_max) != QuadraticProgram::Status::solved) return false;
+  const bool solved = program_.solve(reach_iterations_max) == QuadraticProgram::Status::solved;
+  way_.setZero();
+  if (!solved) return false;
   way_ = program_.solution();
   model_.move(way_);
   return way_.cwiseAbs().maxCoeff() > still;
@@ -252,31 +292,6 @@ Foresight::Miss BodyReach::worst() noexcept {
   }
   worst.why = worst.by > 0 ? Why::reach : Why::none;
   return worst;
-}
-
-// What acts at once is as quick as the gain of the quickest of its tasks.
-Foresight::Miss BodyReach::too_quick(double time_s) noexcept {
-  double gain_per_s = 0;
-  for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
-    if (asked_[i]) gain_per_s = std::max(gain_per_s, settings_.tasks[i].gain_per_s);
-  }
-  if (!(gain_per_s > 0)) return {};
-  const double asked_s = time_s > 0 ? time_s : at_once / gain_per_s;
-  if (model_.base_size() > 0) {
-    for (std::size_t k = 0; k < 3; ++k)
-      way_[static_cast<Index>(k)] = model_.base.position_m[k] - first_base_.position_m[k];
-    way_.segment<3>(3) = turn_between(first_base_.orientation, model_.base.orientation);
-  }
-  for (std::size_t i = 0; i < first_rad_.size(); ++i)
-    way_[model_.base_size() + static_cast<Index>(i)] = model_.position_rad[i] - first_rad_[i];
-  model_.base = first_base_;
-  std::ranges::copy(first_rad_, model_.position_rad.begin());
-  const WayTime least = time_of_way(*layout_, settings_, support_, model_, way_, asked_s, scratch_);
-  if (least.least_s <= asked_s) return {};
-  return {.why = least.joint == no_body_joint ? Why::topple : Why::speed,
-          .by = told_share * least.least_s,
-          .after_s = least.fails_after_s,
-          .joint = least.joint};
 }
 
 }  // namespace kadans

@@ -2,9 +2,10 @@
 // which the feet that stand stay where they are, the centre of mass is over their soles, and the tasks that were asked
 // for are fulfilled. And whether the time is long enough for the way there (body_way.h).
 //
-// From where the robot is, at most 20 steps of inverse kinematics, each a quadratic program in changes of position:
-// what the asked tasks miss counts most, all others hardly. What is still missed at the end is told. It is a descent:
-// where there are several ways for a limb, it may miss a pose that another way would reach.
+// From where the robot is, steps of inverse kinematics along the motion, each a quadratic program in changes of
+// position, lead to its end: what the asked tasks miss counts most, all others little. So the way is about that of the
+// body as the tasks lead it (body_leader.h). What is still missed after some more steps at the end is told. It is a
+// descent: where there are several ways for a limb, it may miss a pose that another way would reach.
 //
 // Behavior thread, of the runtime or of the process in which behaviors play; know() is called in the control thread.
 // Only the constructor allocates or throws.
@@ -31,15 +32,16 @@ class BodyReach final : public Foresight {
   void stand_as_told(const Snapshot& snapshot) noexcept;
   bool ask(std::span<const Goal> goals) noexcept;
   Miss bearing() const noexcept;
-  bool improve() noexcept;
+  bool improve(double other_weight) noexcept;
+  void go(const Setpoints& from, const Setpoints& to, double time_s) noexcept;
+  double time_of(double asked_s) const noexcept;
   void hold_feet() noexcept;
   void balance() noexcept;
   void limit() noexcept;
-  void add_task(std::size_t task) noexcept;
+  void add_task(std::size_t task, double other_weight) noexcept;
   Eigen::Index missing(std::size_t task, Eigen::Vector<double, 6>& way) noexcept;
   double beyond_edges_m() const noexcept;
   Miss worst() noexcept;
-  Miss too_quick(double time_s) noexcept;
   bool stands(std::size_t foot) const noexcept { return setpoints_[layout_->contact_channel + foot].value > 0.5; }
 
   const BodyLayout* layout_;
@@ -55,9 +57,7 @@ class BodyReach final : public Foresight {
   std::array<bool, body_tasks_max> asked_{};
   std::array<Pose, body_feet_max> held_{};
   BodySupport support_;
-  Pose first_base_;  // where the way begins
-  std::vector<double> first_rad_;
-  std::array<Eigen::VectorXd, 3> scratch_;
+  BodyWay gone_;
 };
 
 }  // namespace kadans

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kadans/model/kinematics.h"
 
@@ -12,7 +13,24 @@ double cross2(const Vec3& o, const Vec3& a, const Vec3& b) noexcept {
   return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
 }
 
+double half_sole_m(const BodyLayout::Sole& sole, const BodySettings& s) noexcept {
+  return std::max(1e-3, (sole.tilts_sideways ? s.side_m : std::min(s.toe_m, s.heel_m)) - s.edge_m);
+}
+
 }  // namespace
+
+double bent_max_rad(const BodyLayout& layout, const BodySettings& s, std::size_t foot, double load_N) noexcept {
+  const BodyLayout::Sole& sole = layout.soles[foot];
+  if (!(sole.tilts_forward || sole.tilts_sideways) || !(s.passive_Nm_per_rad > 0))
+    return std::numeric_limits<double>::infinity();
+  return half_sole_m(sole, s) * load_N / s.passive_Nm_per_rad;
+}
+
+double bent_load_N(const BodyLayout& layout, const BodySettings& s, std::size_t foot, double bent_rad) noexcept {
+  const BodyLayout::Sole& sole = layout.soles[foot];
+  if (!(sole.tilts_forward || sole.tilts_sideways)) return 0;
+  return s.passive_Nm_per_rad * std::abs(bent_rad) / half_sole_m(sole, s);
+}
 
 // The hull is Andrew's monotone chain (1979, Information Processing Letters 9(5)).
 BodySupport support_of(const BodyLayout& layout, const BodySettings& s,

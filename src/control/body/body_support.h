@@ -4,6 +4,9 @@
 // presses below this axis, and not at the sole's edges beside it: of two such feet, only the lines below their axes
 // bear.
 //
+// And its spring presses the sole's edge down when the joint is bent: it may be bent only as far as what the foot bears
+// keeps the sole flat.
+//
 // Any thread. Nothing allocates or throws.
 #pragma once
 
@@ -26,5 +29,10 @@ struct BodySupport {
 // `feet`: the poses of the feet's frames, nullptr for one that does not stand. No edge without a foot.
 BodySupport support_of(const BodyLayout& layout, const BodySettings& settings,
                        const std::array<const Pose*, body_feet_max>& feet) noexcept;
+
+// How far the joint without a motor of this foot may be bent when the foot bears this much: the sole stays flat.
+double bent_max_rad(const BodyLayout& layout, const BodySettings& settings, std::size_t foot, double load_N) noexcept;
+// What the foot must bear when the joint is bent by this much.
+double bent_load_N(const BodyLayout& layout, const BodySettings& settings, std::size_t foot, double bent_rad) noexcept;
 
 }  // namespace kadans

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace kadans {
 namespace {
@@ -10,16 +11,7 @@ namespace {
 using Eigen::Index;
 using Wrench = Eigen::Vector<double, 6>;
 
-constexpr int way_points = 12;
-constexpr double peak_per_mean = 1.875;  // of a minimum-jerk motion's speed
-constexpr double least_room_m = 0.003;   // to an edge at rest: below this no time is long enough
-
-struct Curve {
-  double way, speed, acceleration;
-};
-Curve minimum_jerk_at(double u) noexcept {
-  return {u * u * u * (10 + u * (-15 + 6 * u)), 30 * u * u * (1 + u * (-2 + u)), 60 * u * (1 + u * (-3 + 2 * u))};
-}
+constexpr double least_room_m = 0.003;  // to an edge at rest: below this no time is long enough
 
 // The square of the time in which `moved` becomes as large as what `rest` leaves.
 double least_time2(double moved, double rest) noexcept { return moved > 0 ? moved / rest : 0; }
@@ -39,39 +31,46 @@ double least_time2(const BodySettings& s, const BodySupport& support, const Wren
 
 }  // namespace
 
-WayTime time_of_way(const BodyLayout& layout, const BodySettings& settings, const BodySupport& support,
-                    BodyGeometry& from, const Eigen::VectorXd& way, double time_s,
-                    std::array<Eigen::VectorXd, 3>& scratch) noexcept {
-  WayTime result;
-  for (const JointAxis& axis : layout.joints) {
-    const double way_rad = std::abs(way[from.base_size() + static_cast<Index>(axis.joint)]);
-    const double least_s = peak_per_mean * way_rad / (settings.velocity_share * axis.velocity_max_rad_s);
-    if (least_s > result.least_s) result = {least_s, 0.5 * time_s, axis.joint};
+BodyWay::BodyWay(const BodyLayout& layout) : layout_(&layout) {
+  before_.setZero(static_cast<Index>(layout.model->joints.size() + (layout.floating ? 6 : 0)));
+  velocity_ = acceleration_ = before_;
+}
+
+void BodyWay::begin(const BodySettings& settings, const BodySupport& support, int steps, double time_s) noexcept {
+  settings_ = &settings;
+  support_ = &support;
+  steps_ = steps;
+  time_s_ = time_s;
+  number_ = 0;
+  fails_ = false;
+  before_.setZero();
+  result_ = {};
+}
+
+void BodyWay::need(double least_s, std::size_t joint) noexcept {
+  if (least_s > time_s_ && !std::exchange(fails_, true)) result_.fails_after_s = time_s_ * number_ / steps_;
+  if (!(least_s > result_.least_s)) return;
+  result_.least_s = least_s;
+  result_.joint = joint;
+}
+
+void BodyWay::add(BodyGeometry& posture, const Eigen::VectorXd& step) noexcept {
+  for (const JointAxis& axis : layout_->joints) {
+    const double step_rad = std::abs(step[posture.base_size() + static_cast<Index>(axis.joint)]);
+    need(step_rad * steps_ / (settings_->velocity_share * axis.velocity_max_rad_s), axis.joint);
   }
-  if (support.count == 0) return result;
-  auto& [step, velocity, acceleration] = scratch;
-  double gone = 0;
-  bool failed = false;
-  for (int i = 1; i <= way_points; ++i) {
-    const double u = static_cast<double>(i) / (way_points + 1);
-    const Curve at = minimum_jerk_at(u);
-    step = (at.way - gone) * way;
-    gone = at.way;
-    from.move(step);
-    from.update();
-    velocity = at.speed * way;
-    acceleration = at.acceleration * way;
+  if (support_->count > 0) {
+    velocity_ = 0.5 * steps_ * (before_ + step);
+    acceleration_ = steps_ * steps_ * (step - before_);
     Wrench rest = Wrench::Zero();
-    rest[2] = body_gravity_m_s2 * from.mass_kg();
-    rest[3] = from.com_m()[1] * rest[2];
-    rest[4] = -from.com_m()[0] * rest[2];
-    const double least_s =
-        std::sqrt(least_time2(settings, support, rest, from.ground_wrench(velocity, acceleration) - rest));
-    if (least_s > result.least_s) result = {least_s, result.fails_after_s, no_body_joint};
-    if (least_s > time_s && !failed) result.fails_after_s = u * time_s;
-    failed = failed || least_s > time_s;
+    rest[2] = body_gravity_m_s2 * posture.mass_kg();
+    rest[3] = posture.com_m()[1] * rest[2];
+    rest[4] = -posture.com_m()[0] * rest[2];
+    const Wrench moved = posture.ground_wrench(velocity_, acceleration_) - rest;
+    need(std::sqrt(least_time2(*settings_, *support_, rest, moved)), no_body_joint);
   }
-  return result;
+  before_ = step;
+  ++number_;
 }
 
 }  // namespace kadans

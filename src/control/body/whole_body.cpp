@@ -18,7 +18,8 @@
 // Parameters  BodySettings, and a JointConfig per joint.
 // Signals     the centre of mass as it is led; each foot's load as it is wanted; a State per joint; iterations, status
 //             (0 solved, 1 infeasible, 2 iterations exhausted, 3 refused) and the count of failures of the program.
-// Start       all tasks are where the robot is; hands and gaze count from their first motion on. Torque that the law
+// Start       all tasks are where the robot is; hands and gaze count from their first motion on, until they get the
+//             weight 0. Until they count, their set-points are where they are. Torque that the law
 //             does not explain fades within 0.2 s after the first solution.
 // Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops. The start
 //             waits until all joints and the base's orientation are measured; until then the torque from before stays.
@@ -230,6 +231,9 @@ void WholeBody::declare_joint(Declaration& declaration, std::size_t i) {
 
 void WholeBody::parameters_changed() noexcept {
   aimed_.settings = settings_;
+  for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
+    if (layout_.tasks[i].idles() && settings_.tasks[i].weight == 0) aimed_.engaged[i] = false;
+  }
   reach_.know(settings_);
 }
 
@@ -260,8 +264,7 @@ bool WholeBody::locate(const ControlInput& input) noexcept {
   for (std::size_t i = 0; i < parts_.size(); ++i)
     aimed_.setpoints[layout_.joint_channel + i] = {.value = aimed_.start_rad[parts_[i].axis.joint]};
   for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
-    const BodyTask::Kind kind = layout_.tasks[i].kind;
-    aimed_.engaged[i] = kind != BodyTask::Kind::hand && kind != BodyTask::Kind::gaze;
+    aimed_.engaged[i] = !layout_.tasks[i].idles();
   }
   return true;
 }
@@ -271,6 +274,11 @@ void WholeBody::show(const BodyLead& lead) noexcept {
   shown_.iterations = lead.iterations;
   shown_.status = lead.status;
   shown_.failures = lead.failures;
+  for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
+    const BodyTask& task = layout_.tasks[i];
+    for (std::uint32_t k = 0; !aimed_.engaged[i] && k < task.channels(); ++k)
+      aimed_.setpoints[task.channel + k] = {.value = lead.tasks[i][k]};
+  }
   for (std::size_t i = 0; i < layout_.feet.size(); ++i) {
     shown_.load_N[i] = lead.feet[i].load_N;
     for (std::uint32_t k = 0; lead.feet[i].stands && k < 6; ++k)
