@@ -85,6 +85,7 @@ class Foresight {
     reach,   // by: how far from there it stays; channel: of the set-point, or the first of its group, that is missed
     topple,  // by: the least time that it needs, s; after_s: when it topples or slips in the time that was asked for
     speed,   // by: the least time that it needs, s; joint: the one that would be too fast
+    clash,   // by: the share of the way after which two links, `link` and `other`, come too near to each other
     bear     // by: the stiffness that is missing in this joint without a motor to stand on one foot, Nm/rad
   };
   struct Miss {
@@ -92,7 +93,7 @@ class Foresight {
     double by = 0;
     std::uint32_t channel = 0;
     double after_s = 0;
-    std::size_t joint = 0;  // of the model
+    std::size_t joint = 0, link = 0, other = 0;  // of the model
   };
   Foresight() = default;
   virtual ~Foresight() = default;

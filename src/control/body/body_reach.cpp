@@ -12,8 +12,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr int way_steps = 16, end_steps_max = 6, last_steps_max = 8, reach_iterations_max = 200;
-constexpr double asked_weight = 1, change_weight = 1e-5;
+constexpr int settle_steps_max = 3, way_steps = 16, end_steps_max = 6, last_steps_max = 8, reach_iterations_max = 200;
+constexpr double asked_weight = 1, change_weight = 3e-4;
 constexpr double way_weight = 0.03, last_weight = 1e-4;  // of the other tasks: on the way, and to say how far it stays
 constexpr double step_max_rad = 0.4;  // of a joint, in one step
 constexpr double bent_share = 0.33;   // of the weight, that the foot which bears less still bears
@@ -31,7 +31,8 @@ BodyReach::BodyReach(const BodyLayout& layout)
       model_(*layout.model, layout.floating),
       kinematics_(*layout.model),
       program_(model_.size(), model_.size() + static_cast<Index>(6 * layout.feet.size() + 4 * body_feet_max)),
-      gone_(layout) {
+      gone_(layout),
+      clash_(*layout.model) {
   jacobian_.setZero(6, model_.size());
   way_.setZero(model_.size());
 }
@@ -51,7 +52,10 @@ Foresight::Miss BodyReach::miss(const Asked& asked, const Snapshot& snapshot) no
   Miss missed = worst();
   for (int step = 0; step < last_steps_max && missed.why != Why::none && improve(last_weight); ++step) missed = worst();
   const BodyWay::Time& least = gone_.time();
-  if (missed.why != Why::none || least.least_s <= time_s) return missed;
+  if (missed.why != Why::none) return missed;
+  if (clashing_.found())
+    return {.why = Why::clash, .by = clear_share_, .link = clashing_.link, .other = clashing_.other};
+  if (least.least_s <= time_s) return missed;
   return {.why = least.joint == no_body_joint ? Why::topple : Why::speed,
           .by = told_share * least.least_s,
           .after_s = least.fails_after_s,
@@ -70,14 +74,25 @@ double BodyReach::time_of(double asked_s) const noexcept {
 
 // Along the motion, as the engine leads its set-points: a minimum-jerk curve.
 void BodyReach::go(const Setpoints& from, const Setpoints& to, double time_s) noexcept {
+  std::ranges::copy_n(from.begin(), layout_->contact_channel, setpoints_.begin());
+  for (int step = 0; step < settle_steps_max && improve(way_weight); ++step) {  // what the joints miss is no motion
+  }
+  model_.update();
   gone_.begin(settings_, support_, way_steps, time_s);
+  clash_.begin(model_);
+  clashing_ = {};
   for (int number = 0; number <= way_steps + end_steps_max; ++number) {
     const double u = std::min(1.0, static_cast<double>(number + 1) / way_steps);
     const double share = u * u * u * (10 + u * (6 * u - 15));
     for (std::uint32_t i = 0; i < layout_->contact_channel; ++i)
       setpoints_[i].value = from[i].value + share * (to[i].value - from[i].value);
     const bool moves = improve(way_weight);
-    if (number < way_steps) gone_.add(model_, way_);  // its links are still where they were before the step
+    // The links are still where they were before the step.
+    if (number < way_steps) gone_.add(model_, way_);
+    if (!clashing_.found()) {
+      clashing_ = clash_.find(model_);
+      clear_share_ = std::min(1.0, static_cast<double>(number) / way_steps);
+    }
     if (number >= way_steps && !moves) return;
   }
 }

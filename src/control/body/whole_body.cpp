@@ -129,7 +129,7 @@ void WholeBody::declare(Declaration& declaration) {
                         &s.effort_share);
   declaration.parameter({"velocity_share", "", 0.05, 1, 0.8, "Share of the velocity limits that it plans with."},
                         &s.velocity_share);
-  declaration.parameter({"posture_weight", "", 1e-5, 100, 1e-4, "How much the posture counts beside the tasks."},
+  declaration.parameter({"posture_weight", "", 1e-5, 100, 0.05, "How much the posture counts beside the tasks."},
                         &s.posture_weight);
   declaration.parameter({"posture_per_s", "1/s", 0, 20, 2, "How fast joints go back to the posture."},
                         &s.posture_per_s);
@@ -202,7 +202,7 @@ void WholeBody::declare_ground(Declaration& d) {
   d.parameter({"side_m", "m", 0.02, 0.5, 0.05, "From a foot's frame sideways to the sole's edges."}, &s.side_m);
   d.parameter({"sole_m", "m", 0, 0.5, 0.05, "Height of a foot's frame over its sole."}, &s.sole_m);
   d.parameter({"edge_m", "m", 0, 0.015, 0.01, "How far the centre of pressure stays from the edges."}, &s.edge_m);
-  d.parameter({"balance_m", "m", 0, 0.05, 0.02,
+  d.parameter({"balance_m", "m", 0, 0.05, 0.03,
                "How far the centre of mass, and the point over which it comes to rest, stay from the edges."},
               &s.balance_m);
   d.parameter({"passive_Nm_per_rad", "Nm/rad", 0, 1000, 0, "Springs in joints without a motor."},

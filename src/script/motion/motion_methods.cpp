@@ -54,7 +54,7 @@ double duration_of(const MotionOptions& options, const MotionTargets& targets) {
 }
 
 // For people.
-double rounded(double value) noexcept { return 0.01 * std::ceil(100 * value - 1e-6); }
+double rounded(double value) noexcept { return value > 0 ? 0.01 * std::ceil(100 * value - 1e-6) : 0; }
 
 Command trapezoid(const MotionOptions& options, const MotionTarget& target, double duration_s) {
   Command command{.kind = CommandKind::trapezoid, .index = target.id, .value = target.value, .duration_s = duration_s};
@@ -95,19 +95,22 @@ void charge_pose(lua_State* state, const ObjectInfo& object) {
 int push_miss(lua_State* state, const ObjectInfo& object, const Foresight::Miss& miss) {
   using Why = Foresight::Why;
   const Catalog& catalog = *bindings_of(state).catalog;
-  const char* const word = miss.why == Why::reach ? "out_of_reach" : miss.why == Why::bear ? "cannot_stand" : "too_quick";
-  const char* const joint = catalog.model != nullptr && miss.joint < catalog.model->joints.size()
-                                ? catalog.model->joints[miss.joint].name.c_str()
-                                : "a joint";
+  const char* const word = miss.why == Why::reach   ? "out_of_reach"
+                           : miss.why == Why::bear  ? "cannot_stand"
+                           : miss.why == Why::clash ? "in_the_way"
+                                                    : "too_quick";
+  const auto joint = [&](std::size_t i) { return catalog.model != nullptr ? catalog.model->joints[i].name.c_str() : "a joint"; };
+  const auto link = [&](std::size_t i) { return catalog.model != nullptr ? catalog.model->links[i].name.c_str() : "a link"; };
   lua_pushnil(state);
   lua_pushstring(state, word);
   lua_pushnumber(state, miss.by);
   if (miss.why == Why::topple)
     lua_pushfstring(state, "it topples after %f s: give it at least %f s", rounded(miss.after_s), rounded(miss.by));
   if (miss.why == Why::speed)
-    lua_pushfstring(state, "%s would be too fast: give it at least %f s", joint, rounded(miss.by));
+    lua_pushfstring(state, "%s would be too fast: give it at least %f s", joint(miss.joint), rounded(miss.by));
+  if (miss.why == Why::clash) lua_pushfstring(state, "%s would hit %s", link(miss.link), link(miss.other));
   if (miss.why == Why::bear)
-    lua_pushfstring(state, "it cannot stand on one foot: %s has no motor, and its spring lacks %d Nm/rad", joint,
+    lua_pushfstring(state, "it cannot stand on one foot: %s has no motor, and its spring lacks %d Nm/rad", joint(miss.joint),
                     static_cast<int>(std::lround(miss.by)));
   if (miss.why != Why::reach) return 4;
   for (const SetpointId id : object.setpoints) {
@@ -120,6 +123,7 @@ int push_miss(lua_State* state, const ObjectInfo& object, const Foresight::Miss&
 // [-0 +0..4] 0: the object can reach the targets in their time, as far as it knows. Else nil and
 //   "out_of_reach", how far it is from there, and the set-point that it misses most;
 //   "too_quick", the least time in s, and a sentence;
+//   "in_the_way", the share of the way that is clear, and a sentence with the links that would hit each other;
 //   "cannot_stand", the stiffness in Nm/rad that is missing, and a sentence.
 int foresee(lua_State* state, const ObjectInfo& object, const MotionTargets& targets, const TaskOptions& tasks,
             double time_s) {
