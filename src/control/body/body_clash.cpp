@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double clash_margin_m = 0.015;
+constexpr double clash_margin_m = 0.003;
 
 // Half the lengths of its box, and the radius around it.
 std::pair<Vector3d, double> size_of(const Shape& shape) {

@@ -129,7 +129,7 @@ void WholeBody::declare(Declaration& declaration) {
                         &s.effort_share);
   declaration.parameter({"velocity_share", "", 0.05, 1, 0.8, "Share of the velocity limits that it plans with."},
                         &s.velocity_share);
-  declaration.parameter({"posture_weight", "", 1e-5, 100, 0.05, "How much the posture counts beside the tasks."},
+  declaration.parameter({"posture_weight", "", 1e-5, 100, 0.005, "How much the posture counts beside the tasks."},
                         &s.posture_weight);
   declaration.parameter({"posture_per_s", "1/s", 0, 20, 2, "How fast joints go back to the posture."},
                         &s.posture_per_s);
