@@ -85,6 +85,7 @@ class Foresight {
     reach,   // by: how far from there it stays; channel: of the set-point, or the first of its group, that is missed
     topple,  // by: the least time that it needs, s; after_s: when it topples or slips in the time that was asked for
     speed,   // by: the least time that it needs, s; joint: the one that would be too fast
+    jump,    // by: the share of the way after which there is no smooth way on: `joint` would jump
     clash,   // by: the share of the way after which two links, `link` and `other`, come too near to each other
     bear     // by: the stiffness that is missing in this joint without a motor to stand on one foot, Nm/rad
   };

@@ -55,6 +55,7 @@ Foresight::Miss BodyReach::miss(const Asked& asked, const Snapshot& snapshot) no
   if (missed.why != Why::none) return missed;
   if (clashing_.found())
     return {.why = Why::clash, .by = clear_share_, .link = clashing_.link, .other = clashing_.other};
+  if (least.jumps != no_body_joint) return {.why = Why::jump, .by = least.smooth_share, .joint = least.jumps};
   if (least.least_s <= time_s) return missed;
   return {.why = least.joint == no_body_joint ? Why::topple : Why::speed,
           .by = told_share * least.least_s,

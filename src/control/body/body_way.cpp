@@ -11,6 +11,8 @@ namespace {
 using Eigen::Index;
 using Wrench = Eigen::Vector<double, 6>;
 
+constexpr double jump_rad = 0.3;        // of a joint, in 1/16 of the time: in a smooth motion by 2.5 rad no step is as large
+constexpr double jump_steps = 16;
 constexpr double least_room_m = 0.003;  // to an edge at rest: below this no time is long enough
 
 // The square of the time in which `moved` becomes as large as what `rest` leaves.
@@ -57,6 +59,10 @@ void BodyWay::need(double least_s, std::size_t joint) noexcept {
 void BodyWay::add(BodyGeometry& posture, const Eigen::VectorXd& step) noexcept {
   for (const JointAxis& axis : layout_->joints) {
     const double step_rad = std::abs(step[posture.base_size() + static_cast<Index>(axis.joint)]);
+    if (step_rad * steps_ > jump_rad * jump_steps && result_.jumps == no_body_joint) {
+      result_.jumps = axis.joint;
+      result_.smooth_share = static_cast<double>(number_) / steps_;
+    }
     need(step_rad * steps_ / (settings_->velocity_share * axis.velocity_max_rad_s), axis.joint);
   }
   if (support_->count > 0) {

@@ -20,6 +20,8 @@ class BodyWay {
     double least_s = 0;                 // for the whole way; 0: any time will do
     double fails_after_s = 0;           // in the time that was asked for, it topples, slips or is too fast from here on
     std::size_t joint = no_body_joint;  // the one that would be too fast: it needs longest
+    std::size_t jumps = no_body_joint;  // the first one that jumps from one posture to the next, as near a stretched limb
+    double smooth_share = 1;            // of the way, until then
   };
   explicit BodyWay(const BodyLayout& layout);
 
