@@ -176,7 +176,7 @@ TEST_CASE(
     for (const double up_m : {0.0, 0.2, 3.0}) {
       aim.setpoints[0].value = com_x.value + way_m;
       aim.setpoints[2].value = com_z.value + up_m;
-      REQUIRE(problem.solve(body, aim, ranks, feet));
+      REQUIRE(problem.solve(body, aim, ranks, {1e-4, 2}, feet));
       for (std::size_t foot = 0; foot < 2; ++foot) {
         const Eigen::Vector<double, 6> w = problem.wrench(foot);
         const double grip_N = aim.settings.friction / std::sqrt(2.0) * w[2], slack = 1e-6 * (1 + w.norm());

@@ -55,7 +55,8 @@ BodyLayout::BodyLayout(const ObjectSetup& setup) : model(&setup.model), joints(j
   if (const auto link = link_of(setup, "right_hand")) add(hand, "hand_right", *link);
   if (const auto link = link_of(setup, "gaze")) add(gaze, "gaze", *link);
   contact_channel = joint_channel;
-  joint_channel += static_cast<std::uint32_t>(feet.size());
+  lead_channel = contact_channel + static_cast<std::uint32_t>(feet.size());
+  joint_channel = lead_channel + 1;
   for (std::size_t i = 0; i < setup.model.joints.size(); ++i) {
     if (std::ranges::find(joints, i, &JointAxis::joint) != joints.end()) continue;
     (setup.model.joints[i].passive() ? passive : locked).push_back(i);

@@ -12,7 +12,7 @@
 namespace kadans {
 
 inline constexpr std::size_t body_tasks_max = 8, body_feet_max = 2;
-inline constexpr std::size_t body_channels_max = 32 + max_joints;
+inline constexpr std::size_t body_channels_max = 33 + max_joints;
 inline constexpr double body_gravity_m_s2 = 9.81;
 inline constexpr std::size_t no_body_joint = max_joints;  // an index that no joint has
 
@@ -66,6 +66,7 @@ struct BodyLayout {
   };
   std::array<Sole, body_feet_max> soles{};
   std::uint32_t contact_channel = 0;  // of the left foot's contact: 1: it stands, 0: it is free
+  std::uint32_t lead_channel = 0;     // 1: the tasks lead; 0: the posture alone does
   std::uint32_t joint_channel = 0;    // of the first joint's position
   std::vector<double> rotor_inertia_kg_m2;
 
@@ -78,6 +79,7 @@ struct BodyAim {
   Quat base{1, 0, 0, 0};         // as measured at the start
   std::array<double, max_joints> start_rad{}, start_rad_s{};
   std::array<SetpointState, body_channels_max> setpoints{};
+  bool alone = false;                          // the posture leads, without tasks
   std::array<bool, body_tasks_max> engaged{};  // tasks that count: see whole_body.cpp
   BodySettings settings;
 };

@@ -10,6 +10,7 @@ constexpr double load_s = 0.3;                          // in which a foot takes
 constexpr double brake_per_s = 8;                       // how the body comes to rest when there is no solution
 constexpr double weigh_per_s = 15, least_weight = 0.2;  // the growth of a weight, per weight
 constexpr double strict_weight = 100;
+constexpr double alone_weight = 1, alone_per_s = 8, least_posture_weight = 0.005;  // of the posture without tasks
 
 }  // namespace
 
@@ -82,6 +83,11 @@ void BodyLeader::weigh(const BodyAim& aim, double dt_s) noexcept {
     const double change = weigh_per_s * dt_s * std::max(rank.weight, least_weight);
     rank.weight = fresh_ ? wanted : std::clamp(wanted, rank.weight - change, rank.weight + change);
   }
+  const BodySettings& s = aim.settings;
+  const double wanted = aim.alone ? std::max(s.posture_weight, alone_weight) : s.posture_weight;
+  const double change = weigh_per_s * dt_s * std::max(posture_.weight, least_posture_weight);
+  posture_.weight = fresh_ ? wanted : std::clamp(wanted, posture_.weight - change, posture_.weight + change);
+  posture_.gain_per_s = aim.alone ? std::max(s.posture_per_s, alone_per_s) : s.posture_per_s;
 }
 
 void BodyLeader::step(const BodyAim& aim, double dt_s, BodyLead& lead) noexcept {
@@ -93,7 +99,7 @@ void BodyLeader::step(const BodyAim& aim, double dt_s, BodyLead& lead) noexcept 
   model_.update();
   stand(aim, dt_s);
   weigh(aim, dt_s);
-  const bool solved = problem_.solve(model_, aim, ranks_, feet_);
+  const bool solved = problem_.solve(model_, aim, ranks_, posture_, feet_);
   if (solved)
     acceleration_ = problem_.acceleration();
   else
@@ -135,7 +141,8 @@ void BodyLeader::pass_state(StateBytes& bytes) noexcept {
   for (double& value : model_.position_rad) bytes.high_level(value);
   pass(model_.velocity);
   pass(acceleration_);
-  bytes.high_level(model_.base, feet_, ranks_, fresh_);
+  bytes.high_level(model_.base, feet_, ranks_, posture_, fresh_);
+  problem_.pass_state(bytes);
 }
 
 }  // namespace kadans

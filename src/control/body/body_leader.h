@@ -34,6 +34,7 @@ class BodyLeader {
   BodyProblem problem_;
   std::array<BodyStand, body_feet_max> feet_;
   BodyRanks ranks_;
+  BodyPosture posture_;
   Eigen::VectorXd acceleration_, way_;
   bool fresh_ = true;  // begun, not moved on yet
 };
@@ -67,6 +68,7 @@ void present_setpoints(const BodyLayout& layout, const BodySettings& settings, c
     for (std::size_t k = 0; k < task.channels(); ++k) setpoints[task.channel + k] = {.value = at[k]};
   }
   for (std::size_t i = 0; i < layout.feet.size(); ++i) setpoints[layout.contact_channel + i] = {.value = 1};
+  setpoints[layout.lead_channel] = {.value = 1};
 }
 
 }  // namespace kadans

@@ -59,7 +59,7 @@ BodyProblem::BodyProblem(const BodyLayout& layout)
   row_.setZero(n);
 }
 
-void BodyProblem::begin(const BodyModel& model, const BodyAim& aim,
+void BodyProblem::begin(const BodyModel& model, const BodyAim& aim, const BodyPosture& to,
                         const std::array<BodyStand, body_feet_max>& feet) noexcept {
   Index size = model.size();
   for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
@@ -85,7 +85,7 @@ void BodyProblem::begin(const BodyModel& model, const BodyAim& aim,
   balance(model, aim.settings, feet);
   limit(model, aim.settings, feet);
   spring(model, aim.settings);
-  posture(model, aim);
+  posture(model, aim, to);
 }
 
 // lower <= force of this degree of freedom <= upper, with M dv + h - J' w for the force.
@@ -207,8 +207,8 @@ void BodyProblem::spring(const BodyModel& model, const BodySettings& s) noexcept
   }
 }
 
-void BodyProblem::posture(const BodyModel& model, const BodyAim& aim) noexcept {
-  const double g = aim.settings.posture_per_s, weight = aim.settings.posture_weight;
+void BodyProblem::posture(const BodyModel& model, const BodyAim& aim, const BodyPosture& posture) noexcept {
+  const double g = posture.gain_per_s, weight = posture.weight;
   for (std::size_t i = 0; i < layout_->joints.size(); ++i) {
     const SetpointState& to = aim.setpoints[layout_->joint_channel + i];
     const std::size_t joint = layout_->joints[i].joint;
@@ -330,9 +330,16 @@ void BodyProblem::keep(const BodyModel& model) noexcept {
   }
 }
 
-bool BodyProblem::solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
+void BodyProblem::pass_state(StateBytes& bytes) noexcept {
+  for (double& effort : effort_Nm_) bytes.high_level(effort);
+  for (auto& wrench : kept_) {
+    for (double& part : wrench) bytes.high_level(part);
+  }
+}
+
+bool BodyProblem::solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks, const BodyPosture& posture,
                         const std::array<BodyStand, body_feet_max>& feet) noexcept {
-  begin(model, aim, feet);
+  begin(model, aim, posture, feet);
   find_tasks(model, aim, ranks, feet);
   add_level(1);
   status_ = program_.solve(tick_iterations_max);

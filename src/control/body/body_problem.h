@@ -38,6 +38,9 @@ struct BodyRank {     // of a task
   double weight = 0;  // 0: left out
   int level = 1;      // 2: gets what those of 1 leave
 };
+struct BodyPosture {  // how the joints go to their own set-points
+  double weight = 0, gain_per_s = 0;
+};
 using BodyRanks = std::array<BodyRank, body_tasks_max>;
 
 class BodyProblem {
@@ -45,13 +48,15 @@ class BodyProblem {
   explicit BodyProblem(const BodyLayout& layout);
 
   // True: acceleration(), effort_Nm and wrench are new.
-  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
+  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks, const BodyPosture& posture,
                            const std::array<BodyStand, body_feet_max>& feet) noexcept;
 
   const Eigen::VectorXd& acceleration() const noexcept { return acceleration_; }
   double effort_Nm(std::size_t joint) const noexcept { return effort_Nm_[static_cast<Eigen::Index>(joint)]; }
   // Of a foot: force and moment about its frame, in the axes of the task frame; 0 of one that is free.
   const Eigen::Vector<double, 6>& wrench(std::size_t foot) const noexcept { return kept_[foot]; }
+  // What stands when a later program has no solution.
+  void pass_state(StateBytes& bytes) noexcept;
   QuadraticProgram::Status status() const noexcept { return status_; }
   int iterations() const noexcept { return iterations_; }
 
@@ -63,7 +68,8 @@ class BodyProblem {
     double weight = 0;
     int level = 0;  // 0: left out
   };
-  void begin(const BodyModel& model, const BodyAim& aim, const std::array<BodyStand, body_feet_max>& feet) noexcept;
+  void begin(const BodyModel& model, const BodyAim& aim, const BodyPosture& posture,
+             const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void motion_row(const BodyModel& model, Eigen::Index row, double lower, double upper) noexcept;
   void hold(const BodyModel& model, std::size_t foot, const BodyStand& stand) noexcept;
   void bear(const BodyModel& model, std::size_t foot, const BodyStand& stand, const BodySettings& s) noexcept;
@@ -74,7 +80,7 @@ class BodyProblem {
   void limit(const BodyModel& model, const BodySettings& s,
              const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void spring(const BodyModel& model, const BodySettings& s) noexcept;
-  void posture(const BodyModel& model, const BodyAim& aim) noexcept;
+  void posture(const BodyModel& model, const BodyAim& aim, const BodyPosture& posture) noexcept;
   void find_tasks(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
                   const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void lead_point(const BodyModel& model, const BodyAim& aim, std::size_t task) noexcept;

@@ -104,7 +104,7 @@ bool BodyReach::ask(std::span<const Goal> goals) noexcept {
   bool any = false;
   for (const Goal& goal : goals) {
     setpoints_[goal.channel] = {.value = goal.value};
-    any = any || goal.channel < layout_->joint_channel;
+    any = any || goal.channel < layout_->lead_channel;
     for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
       const BodyTask& task = layout_->tasks[i];
       if (goal.channel >= task.channel && goal.channel < task.channel + task.channels()) asked_[i] = true;

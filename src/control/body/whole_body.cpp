@@ -15,6 +15,8 @@
 //             it stands, its set-points are where it stands.
 //             contact.left and contact.right say whether a foot stands: from 0.5 on. One that shall not stand any more
 //             gives its load to the other one within 0.3 s first.
+//             tasks: 1: the tasks lead; 0: the joints' set-points alone do, from where the joints are led, and balance is
+//             kept. The safe posture sets it. The next motion of a task sets it to 1, with all tasks where they are.
 // Parameters  BodySettings, and a JointConfig per joint.
 // Signals     the centre of mass as it is led; each foot's load as it is wanted; a State per joint; iterations, status
 //             (0 solved, 1 infeasible, 2 iterations exhausted, 3 refused) and the count of failures of the program.
@@ -79,6 +81,7 @@ class WholeBody final : public ControlObject {
   void declare_joint(Declaration& declaration, std::size_t i);
   bool locate(const ControlInput& input) noexcept;
   void show(const BodyLead& lead) noexcept;
+  void let_lead(bool tasks) noexcept;
   void lead_joint(Part& part, const BodyLead::Joint& to, double age_s, double share, bool known) noexcept;
 
   BodyLayout layout_;
@@ -124,6 +127,14 @@ void WholeBody::declare(Declaration& declaration) {
     declare_weight(declaration, i);
   }
   if (layout_.floating) declare_ground(declaration);
+  (void)declaration.setpoint({.name = "tasks",
+                              .unit = "",
+                              .min = 0,
+                              .max = 1,
+                              .doc = "1: the tasks lead; 0: the joints' own set-points alone do.",
+                              .channel = layout_.lead_channel,
+                              .joint = no_joint,
+                              .safe = 0});
   BodySettings& s = settings_;
   declaration.parameter({"effort_share", "", 0.1, 1, 0.9, "Share of the torque limits that it plans with."},
                         &s.effort_share);
@@ -266,6 +277,7 @@ bool WholeBody::locate(const ControlInput& input) noexcept {
   for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
     aimed_.engaged[i] = !layout_.tasks[i].idles();
   }
+  aimed_.alone = false;
   return true;
 }
 
@@ -330,11 +342,23 @@ bool WholeBody::setpoint_state(std::uint32_t channel, SetpointState& state) cons
 }
 
 void WholeBody::follow(std::uint32_t channel, const SetpointState& state) noexcept {
+  if (channel == layout_.lead_channel) return let_lead(state.value > 0.5);
+  if (channel < layout_.contact_channel) let_lead(true);
   aimed_.setpoints[channel] = state;
   for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
     const BodyTask& task = layout_.tasks[i];
     if (channel >= task.channel && channel < task.channel + task.channels()) aimed_.engaged[i] = true;
   }
+}
+
+// Nothing changes while it is as asked.
+void WholeBody::let_lead(bool tasks) noexcept {
+  if (tasks != aimed_.alone) return;
+  aimed_.alone = !tasks;
+  aimed_.setpoints[layout_.lead_channel] = {.value = tasks ? 1.0 : 0.0};
+  for (std::size_t i = 0; i < layout_.tasks.size(); ++i) aimed_.engaged[i] = tasks && !layout_.tasks[i].idles();
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    aimed_.setpoints[layout_.joint_channel + i] = {.value = parts_[i].state.reference_rad};
 }
 
 void WholeBody::update(const Snapshot& snapshot) {
@@ -351,7 +375,7 @@ void WholeBody::update(const Snapshot& snapshot) {
 
 void WholeBody::pass_state(StateBytes& bytes) noexcept {
   for (Part& part : parts_) bytes(part.state, part.takeover);
-  bytes(aimed_.activation, aimed_.base, aimed_.start_rad, aimed_.start_rad_s, aimed_.setpoints, aimed_.engaged);
+  bytes(aimed_.activation, aimed_.base, aimed_.start_rad, aimed_.start_rad_s, aimed_.setpoints, aimed_.alone, aimed_.engaged);
   bytes(located_, shown_);
   bytes.newest(lead_);
   leader_.pass_state(bytes);
