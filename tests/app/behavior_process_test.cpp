@@ -113,6 +113,39 @@ return k.behavior "reflex" {
   }
 }
 
+// What the ankles' springs lack to bear the body on one foot tells which stiffness was counted with.
+TEST_CASE("what the body can reach follows from the parameters as they are now, also in a behavior process") {
+  const auto project = project_copy("process_foresight");
+  write(project / "behaviors/reaching/judge.lua", R"(local k = require "kadans"
+return k.behavior "judge" {
+  controls = "body", initial = "ask",
+  k.state "ask" {
+    run = function(m)
+      local function ask()
+        local over = { com_m = { nil, 0, m.body:setpoint("com_z_m") - 0.03 } }
+        local motion, why, lacks = m.body:move(over, { time_s = 1, contacts = { "left" } })
+        k.log.info("judged: %s %s %.0f", tostring(motion), why, lacks)
+      end
+      m:wait(0.3)
+      ask()
+      m.body:set_parameter("passive_Nm_per_rad", 1)
+      m:wait(0.3)
+      ask()
+    end,
+    { on = "run.done", to = "over" },
+  },
+  k.final "over" { outcome = "done" },
+}
+)");
+  const std::string play =
+      "run config/reaching/robot.json --plant ideal --play behaviors/reaching/judge.lua --duration 1.5 -v ";
+  const Outcome threads = run(play + "--threads-on-virtual-time", project);
+  const Outcome process = run(play + on_virtual_time, project);
+  CHECK_MESSAGE(has(said(threads.err), "judged: nil cannot_stand 52"), threads.err);
+  CHECK_MESSAGE(has(said(threads.err), "judged: nil cannot_stand 76"), threads.err);
+  CHECK(said(process.err) == said(threads.err));
+}
+
 TEST_CASE("run refuses a wrong behavior before anything moves, wherever it would play") {
   const auto project = project_copy("process_wrong");
   REQUIRE(edit(project / "behaviors/tulip/squat.lua", "to = \"rest\"", "to = \"rset\""));

@@ -57,7 +57,7 @@ class BodyRig {
     const std::array goals{Foresight::Goal{led_[0].channel, led_[0].value - 0.06},
                            Foresight::Goal{led_[1].channel, led_[1].value + 0.04}};
     Foresight& foresight = *object_->foresight();
-    return 1e-3 * time_ns([&] { (void)foresight.miss(goals, snapshot_); }, 1, 100);
+    return 1e-3 * time_ns([&] { (void)foresight.miss({goals, 1.5}, snapshot_); }, 1, 100);
   }
   double signal(const std::string& name) {
     system_->catalog.signals.gather(row_);

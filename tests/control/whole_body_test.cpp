@@ -79,10 +79,10 @@ class StandBench : public TestedObject {
     TestedObject::set_point(catalog.setpoints[id(name)].channel, value, time_s);
   }
   double setpoint(const std::string& name) const { return snapshot.setpoints[id(name)].value; }
-  Foresight::Miss foresee(const std::string& name, double value) {
+  Foresight::Miss foresee(const std::string& name, double value, double time_s = 3) {
     const Foresight::Goal goal{catalog.setpoints[id(name)].channel, value};
     snapshot.joints = joints;
-    return object->foresight()->miss({&goal, 1}, snapshot);
+    return object->foresight()->miss({{&goal, 1}, time_s}, snapshot);
   }
 
   RobotModel model;
@@ -176,7 +176,7 @@ TEST_CASE(
     for (const double up_m : {0.0, 0.2, 3.0}) {
       aim.setpoints[0].value = com_x.value + way_m;
       aim.setpoints[2].value = com_z.value + up_m;
-      REQUIRE(problem.solve(body, aim, ranks, feet));
+      REQUIRE(problem.solve(body, aim, ranks, {1e-4, 2}, feet));
       for (std::size_t foot = 0; foot < 2; ++foot) {
         const Eigen::Vector<double, 6> w = problem.wrench(foot);
         const double grip_N = aim.settings.friction / std::sqrt(2.0) * w[2], slack = 1e-6 * (1 + w.norm());
@@ -246,7 +246,7 @@ TEST_CASE(
       bench.time_ns += 10'000'000;
       bench.update();
       const Foresight::Goal goal{com_z, 0.45};
-      (void)bench.object->foresight()->miss({&goal, 1}, bench.snapshot);
+      (void)bench.object->foresight()->miss({{&goal, 1}, 1}, bench.snapshot);
     }
     high_level = heap.count();
   }

@@ -15,16 +15,23 @@ using namespace kadans::script_test;
 
 namespace {
 
-// Reaches up to a centre of mass of 0.6 m.
+// Reaches up to a centre of mass of 0.6 m, needs 1.2 s for any way, and stands on no foot alone.
 class Reach final : public Foresight {
  public:
-  Miss miss(std::span<const Goal> goals, const Snapshot&) noexcept override {
-    asked.assign(goals.begin(), goals.end());
-    for (const Goal& goal : goals) {
-      if (goal.channel == com_z && goal.value > 0.6) return {goal.value - 0.6, com_z};
+  Miss miss(const Asked& motion, const Snapshot&) noexcept override {
+    asked.assign(motion.goals.begin(), motion.goals.end());
+    bool alone = false;
+    for (const Goal& goal : asked) {
+      if (goal.channel == com_z && goal.value > 0.6)
+        return {.why = Why::reach, .by = goal.value - 0.6, .channel = com_z};
+      alone = alone || (goal.channel == contact_left && goal.value == 0);
     }
+    if (alone) return {.why = Why::bear, .by = 44.4, .joint = 0};
+    if (motion.time_s < 0.5) return {.why = Why::topple, .by = 1.2, .after_s = 0.3};
+    if (motion.time_s < 1) return {.why = Why::speed, .by = 1, .joint = 0};
     return {};
   }
+  static constexpr std::uint32_t contact_left = 107;
   static constexpr std::uint32_t com_z = 102;
   std::vector<Goal> asked;
 };

@@ -68,23 +68,39 @@ struct ObjectSetup {
   std::vector<DriveLaw> drives{};  // one per joint of the model; empty: not known
 };
 
-// Says before set-points are sent whether an object can reach them. Behavior thread, or a process that plays behaviors:
-// there it belongs to an object that never runs. Bounded; it changes nothing of the object.
+// Says before set-points are sent whether an object can reach them, in the time that is given. Behavior thread, or a
+// process that plays behaviors: there it belongs to an object that never runs. Bounded; it changes nothing of the object.
 class Foresight {
  public:
   struct Goal {
     std::uint32_t channel = 0;
     double value = 0;
   };
+  struct Asked {  // a motion
+    std::span<const Goal> goals;
+    double time_s = 0;  // of the way there; 0: it acts at once
+  };
+  enum class Why : std::uint8_t {
+    none,    // they are reached, as far as it knows
+    reach,   // by: how far from there it stays; channel: of the set-point, or the first of its group, that is missed
+    topple,  // by: the least time that it needs, s; after_s: when it topples or slips in the time that was asked for
+    speed,   // by: the least time that it needs, s; joint: the one that would be too fast
+    jump,    // by: the share of the way after which there is no smooth way on: `joint` would jump
+    clash,   // by: the share of the way after which two links, `link` and `other`, come too near to each other
+    bear     // by: the stiffness that is missing in this joint without a motor to stand on one foot, Nm/rad
+  };
   struct Miss {
-    double by = 0;              // 0: they are reached, as far as it knows
-    std::uint32_t channel = 0;  // of the set-point, or the first of its group, that is missed by this much
+    Why why = Why::none;
+    double by = 0;
+    std::uint32_t channel = 0;
+    double after_s = 0;
+    std::size_t joint = 0, link = 0, other = 0;  // of the model
   };
   Foresight() = default;
   virtual ~Foresight() = default;
   Foresight(const Foresight&) = delete;
   Foresight& operator=(const Foresight&) = delete;
-  virtual Miss miss(std::span<const Goal> goals, const Snapshot& snapshot) noexcept = 0;
+  virtual Miss miss(const Asked& asked, const Snapshot& snapshot) noexcept = 0;
 };
 
 class ControlObject {

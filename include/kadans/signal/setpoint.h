@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,9 @@ struct Setpoint {
   std::uint32_t channel = 0;  // the object's own number for it
   std::uint32_t joint = 0;    // the joint it moves, or no_joint
   bool own_motion = false;    // its object plans the way to a plain set-point; else the engine does
+  // What it gets when the robot goes to the safe posture of its configuration; NaN: nothing, unless it is a joint's
+  // position.
+  double safe = std::numeric_limits<double>::quiet_NaN();
   bool follows = false;       // its object can be led along a motion that the engine plans
 };
 

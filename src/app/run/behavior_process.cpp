@@ -80,7 +80,7 @@ int run_behavior_process(const RunOptions& options) {
   scenario.on_wall_clock = link.setup.on_wall_clock != 0;
   const Robot robot = read_robot(scenario.robot, scenario.plugins);
   const std::unique_ptr<ControlSystem> system = make_control_system(robot);
-  const ControlSets sets(system->catalog, std::move(system->objects));  // declares parameters too
+  ControlSets sets(system->catalog, std::move(system->objects));  // declares parameters too
   // The names of what the control engine measures, for conditions (m:on); the values stay in its own process.
   const auto measured = std::make_unique<Snapshot>();
   declare_signals(system->catalog.signals, robot.config.model, robot.config.estimate, *measured);
@@ -89,7 +89,7 @@ int run_behavior_process(const RunOptions& options) {
   const std::unique_ptr<ScriptHost> host =
       make_script_host(scenario, robot.config, system->catalog, scenario.seed, log, bytes);
   settle(link.setup);
-  return BehaviorServer(link, bell, *host, log, lines, system->catalog).serve();
+  return BehaviorServer(link, bell, *host, log, lines, system->catalog, sets).serve();
 }
 
 }  // namespace kadans

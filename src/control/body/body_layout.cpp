@@ -1,8 +1,10 @@
 #include "body_layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include "kadans/model/kinematics.h"
 #include "signal/nearest_name.h"
 
 namespace kadans {
@@ -15,6 +17,18 @@ std::optional<std::size_t> link_of(const ObjectSetup& setup, const char* option)
   if (!link)
     throw OptionError(option, "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
   return link;
+}
+
+// With all joints at zero, as the model stands.
+BodyLayout::Sole sole_of(const RobotModel& model, std::size_t foot) {
+  Kinematics kinematics(model);
+  kinematics.update(std::vector<double>(model.joints.size(), 0.0));
+  for (std::size_t i = foot; i > 0; i = model.joints[i - 1].parent) {
+    if (!model.joints[i - 1].passive()) continue;
+    const Vec3 axis = rotate(kinematics.link(i).orientation, model.joints[i - 1].axis);
+    return {i - 1, std::abs(axis[1]) > 0.5, std::abs(axis[0]) > 0.5};
+  }
+  return {};
 }
 
 }  // namespace
@@ -34,13 +48,15 @@ BodyLayout::BodyLayout(const ObjectSetup& setup) : model(&setup.model), joints(j
     feet = {tasks.size(), tasks.size() + 1};
     add(foot, "foot_left", *left);
     add(foot, "foot_right", *right);
+    soles = {sole_of(*model, *left), sole_of(*model, *right)};
   }
   if (const auto link = link_of(setup, "trunk"); link || floating) add(trunk, "trunk", link.value_or(0));
   if (const auto link = link_of(setup, "left_hand")) add(hand, "hand_left", *link);
   if (const auto link = link_of(setup, "right_hand")) add(hand, "hand_right", *link);
   if (const auto link = link_of(setup, "gaze")) add(gaze, "gaze", *link);
   contact_channel = joint_channel;
-  joint_channel += static_cast<std::uint32_t>(feet.size());
+  lead_channel = contact_channel + static_cast<std::uint32_t>(feet.size());
+  joint_channel = lead_channel + 1;
   for (std::size_t i = 0; i < setup.model.joints.size(); ++i) {
     if (std::ranges::find(joints, i, &JointAxis::joint) != joints.end()) continue;
     (setup.model.joints[i].passive() ? passive : locked).push_back(i);

@@ -12,7 +12,9 @@
 namespace kadans {
 
 inline constexpr std::size_t body_tasks_max = 8, body_feet_max = 2;
-inline constexpr std::size_t body_channels_max = 32 + max_joints;
+inline constexpr std::size_t body_channels_max = 33 + max_joints;
+inline constexpr double body_gravity_m_s2 = 9.81;
+inline constexpr std::size_t no_body_joint = max_joints;  // an index that no joint has
 
 // A task leads the centre of mass, a point of a link, the orientation of a link, or both; or where a link looks.
 struct BodyTask {
@@ -24,6 +26,7 @@ struct BodyTask {
 
   bool has_point() const noexcept { return kind != Kind::trunk; }
   bool has_turn() const noexcept { return kind == Kind::foot || kind == Kind::trunk; }
+  bool idles() const noexcept { return kind == Kind::hand || kind == Kind::gaze; }  // until it is moved
   std::uint32_t channels() const noexcept { return has_point() && has_turn() ? 6 : 3; }
 };
 
@@ -40,9 +43,10 @@ struct BodySettings {
   double toe_m = 0.1, heel_m = 0.1, side_m = 0.05;  // from the foot's frame to the sole's edges
   double sole_m = 0.05;                             // of the foot's frame over the sole
   double edge_m = 0.01;                             // how far the centre of pressure stays from the edges
+  double balance_m = 0.03;  // how far the centre of mass, and the point over which it comes to rest, stay from them
   double effort_share = 0.9;                        // of the joints' torque limits
   double velocity_share = 0.8;                      // of their velocity limits
-  double posture_weight = 1e-4, posture_per_s = 2;
+  double posture_weight = 0.005, posture_per_s = 2;
   double passive_Nm_per_rad = 0, passive_Nms_per_rad = 0;  // springs and dampers in joints without motors
 };
 
@@ -56,7 +60,13 @@ struct BodyLayout {
   std::vector<std::size_t> passive, locked;  // joints of the model: without a motor, or driven by somebody else
   std::vector<BodyTask> tasks;
   std::vector<std::size_t> feet;      // of tasks, left and right
+  struct Sole {                       // of a foot
+    std::size_t loose = no_body_joint;  // the joint without a motor that is nearest to it, on the way to the base
+    bool tilts_forward = false, tilts_sideways = false;  // about this joint, as the foot stands
+  };
+  std::array<Sole, body_feet_max> soles{};
   std::uint32_t contact_channel = 0;  // of the left foot's contact: 1: it stands, 0: it is free
+  std::uint32_t lead_channel = 0;     // 1: the tasks lead; 0: the posture alone does
   std::uint32_t joint_channel = 0;    // of the first joint's position
   std::vector<double> rotor_inertia_kg_m2;
 
@@ -69,7 +79,8 @@ struct BodyAim {
   Quat base{1, 0, 0, 0};         // as measured at the start
   std::array<double, max_joints> start_rad{}, start_rad_s{};
   std::array<SetpointState, body_channels_max> setpoints{};
-  std::array<bool, body_tasks_max> engaged{};  // tasks that count: a hand and the gaze do from their first motion on
+  bool alone = false;                          // the posture leads, without tasks
+  std::array<bool, body_tasks_max> engaged{};  // tasks that count: see whole_body.cpp
   BodySettings settings;
 };
 
@@ -89,6 +100,7 @@ struct BodyLead {
   double period_s = 0.01;
   std::array<Joint, max_joints> joints{};  // by the object's joints
   std::array<Foot, body_feet_max> feet{};
+  std::array<std::array<double, 6>, body_tasks_max> tasks{};  // where they are: their set-points would be these
   Vec3 com_m{};
   double iterations = 0, status = 0, failures = 0;  // of the solver
 };

@@ -10,11 +10,7 @@ constexpr double load_s = 0.3;                          // in which a foot takes
 constexpr double brake_per_s = 8;                       // how the body comes to rest when there is no solution
 constexpr double weigh_per_s = 15, least_weight = 0.2;  // the growth of a weight, per weight
 constexpr double strict_weight = 100;
-constexpr double gaze_ahead_m = 1;  // of the first point
-
-void put(std::array<SetpointState, body_channels_max>& setpoints, std::uint32_t channel, const Vec3& values) noexcept {
-  for (std::size_t k = 0; k < 3; ++k) setpoints[channel + k] = {.value = values[k]};
-}
+constexpr double alone_weight = 1, alone_per_s = 8, least_posture_weight = 0.005;  // of the posture without tasks
 
 }  // namespace
 
@@ -30,21 +26,6 @@ Pose body_start(const BodyLayout& layout, const BodySettings& settings, Kinemati
   }
   kinematics.update(position_rad, start);
   return start;
-}
-
-void present_setpoints(const BodyLayout& layout, const BodySettings& settings, const Kinematics& kinematics,
-                       std::array<SetpointState, body_channels_max>& setpoints) noexcept {
-  for (std::size_t i = 0; i < layout.tasks.size(); ++i) {
-    const BodyTask& task = layout.tasks[i];
-    const Pose& link = kinematics.link(task.link);
-    Vec3 point = task.kind == BodyTask::Kind::com    ? kinematics.com_m()
-                 : task.kind == BodyTask::Kind::gaze ? transform(link, {gaze_ahead_m, 0, 0})
-                                                     : transform(link, settings.tasks[i].point_m);
-    if (task.kind == BodyTask::Kind::foot) point[2] -= settings.sole_m;
-    if (task.has_point()) put(setpoints, task.channel, point);
-    if (task.has_turn()) put(setpoints, task.channel + (task.has_point() ? 3 : 0), roll_pitch_yaw(link.orientation));
-  }
-  for (std::size_t i = 0; i < layout.feet.size(); ++i) setpoints[layout.contact_channel + i] = {.value = 1};
 }
 
 BodyLeader::BodyLeader(const BodyLayout& layout)
@@ -102,6 +83,11 @@ void BodyLeader::weigh(const BodyAim& aim, double dt_s) noexcept {
     const double change = weigh_per_s * dt_s * std::max(rank.weight, least_weight);
     rank.weight = fresh_ ? wanted : std::clamp(wanted, rank.weight - change, rank.weight + change);
   }
+  const BodySettings& s = aim.settings;
+  const double wanted = aim.alone ? std::max(s.posture_weight, alone_weight) : s.posture_weight;
+  const double change = weigh_per_s * dt_s * std::max(posture_.weight, least_posture_weight);
+  posture_.weight = fresh_ ? wanted : std::clamp(wanted, posture_.weight - change, posture_.weight + change);
+  posture_.gain_per_s = aim.alone ? std::max(s.posture_per_s, alone_per_s) : s.posture_per_s;
 }
 
 void BodyLeader::step(const BodyAim& aim, double dt_s, BodyLead& lead) noexcept {
@@ -113,7 +99,7 @@ void BodyLeader::step(const BodyAim& aim, double dt_s, BodyLead& lead) noexcept 
   model_.update();
   stand(aim, dt_s);
   weigh(aim, dt_s);
-  const bool solved = problem_.solve(model_, aim, ranks_, feet_);
+  const bool solved = problem_.solve(model_, aim, ranks_, posture_, feet_);
   if (solved)
     acceleration_ = problem_.acceleration();
   else
@@ -140,7 +126,9 @@ void BodyLeader::fill(const BodyAim& aim, BodyLead& lead) const noexcept {
                     feet_[i].stands() ? problem_.wrench(i).z() : 0,
                     {at[0], at[1], at[2] - aim.settings.sole_m, turn[0], turn[1], turn[2]}};
   }
-  lead.com_m = model_.dynamics().com_m();
+  for (std::size_t i = 0; i < layout_->tasks.size(); ++i)
+    lead.tasks[i] = present_task(layout_->tasks[i], aim.settings, aim.settings.tasks[i].point_m, model_);
+  lead.com_m = model_.com_m();
   lead.iterations = problem_.iterations();
   lead.status = static_cast<double>(problem_.status());
   lead.activation = aim.activation;
@@ -153,7 +141,8 @@ void BodyLeader::pass_state(StateBytes& bytes) noexcept {
   for (double& value : model_.position_rad) bytes.high_level(value);
   pass(model_.velocity);
   pass(acceleration_);
-  bytes.high_level(model_.base, feet_, ranks_, fresh_);
+  bytes.high_level(model_.base, feet_, ranks_, posture_, fresh_);
+  problem_.pass_state(bytes);
 }
 
 }  // namespace kadans

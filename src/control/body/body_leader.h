@@ -34,6 +34,7 @@ class BodyLeader {
   BodyProblem problem_;
   std::array<BodyStand, body_feet_max> feet_;
   BodyRanks ranks_;
+  BodyPosture posture_;
   Eigen::VectorXd acceleration_, way_;
   bool fresh_ = true;  // begun, not moved on yet
 };
@@ -41,7 +42,33 @@ class BodyLeader {
 // Where the robot of `aim` stands, and what its set-points are there: for the start, and for reach.
 Pose body_start(const BodyLayout& layout, const BodySettings& settings, Kinematics& kinematics,
                 std::span<const double> position_rad, const Quat& base) noexcept;
-void present_setpoints(const BodyLayout& layout, const BodySettings& settings, const Kinematics& kinematics,
-                       std::array<SetpointState, body_channels_max>& setpoints) noexcept;
+
+inline constexpr double gaze_ahead_m = 1;  // of the point at which an idle gaze looks
+
+// What the set-points of this task are where the robot is: a position, or roll, pitch and yaw, or one after the other.
+template <typename Robot>
+std::array<double, 6> present_task(const BodyTask& task, const BodySettings& settings, const Vec3& point_m,
+                                   const Robot& robot) noexcept {
+  const Pose& link = robot.link(task.link);
+  const Vec3 turn = roll_pitch_yaw(link.orientation);
+  Vec3 at = task.kind == BodyTask::Kind::com    ? robot.com_m()
+            : task.kind == BodyTask::Kind::gaze ? transform(link, {gaze_ahead_m, 0, 0})
+                                                : transform(link, point_m);
+  if (task.kind == BodyTask::Kind::foot) at[2] -= settings.sole_m;
+  if (!task.has_point()) return {turn[0], turn[1], turn[2]};
+  return {at[0], at[1], at[2], turn[0], turn[1], turn[2]};
+}
+
+template <typename Robot>
+void present_setpoints(const BodyLayout& layout, const BodySettings& settings, const Robot& robot,
+                       std::array<SetpointState, body_channels_max>& setpoints) noexcept {
+  for (std::size_t i = 0; i < layout.tasks.size(); ++i) {
+    const BodyTask& task = layout.tasks[i];
+    const std::array<double, 6> at = present_task(task, settings, settings.tasks[i].point_m, robot);
+    for (std::size_t k = 0; k < task.channels(); ++k) setpoints[task.channel + k] = {.value = at[k]};
+  }
+  for (std::size_t i = 0; i < layout.feet.size(); ++i) setpoints[layout.contact_channel + i] = {.value = 1};
+  setpoints[layout.lead_channel] = {.value = 1};
+}
 
 }  // namespace kadans

@@ -26,6 +26,15 @@ Quat turned(const Quat& q, const Vector3d& by) noexcept {
   return normalized(multiply(from_axis_angle(vec3(by / angle), angle), q));
 }
 
+void move_body(Pose& base, std::vector<double>& position_rad, Index base_size,
+               const Eigen::Ref<const Eigen::VectorXd>& way) noexcept {
+  if (base_size > 0) {
+    for (std::size_t k = 0; k < 3; ++k) base.position_m[k] += way[static_cast<Index>(k)];
+    base.orientation = turned(base.orientation, way.segment<3>(3));
+  }
+  for (std::size_t i = 0; i < position_rad.size(); ++i) position_rad[i] += way[base_size + static_cast<Index>(i)];
+}
+
 BodyModel::BodyModel(const RobotModel& model, Dynamics::Base base_kind, const std::vector<double>& rotor_inertia_kg_m2)
     : position_rad(model.joints.size(), 0.0),
       model_(&model),
@@ -46,14 +55,6 @@ void BodyModel::update() noexcept {
     joint_velocity_rad_s_[i] = velocity[base_size() + static_cast<Index>(i)];
   dynamics_.update(position_rad, joint_velocity_rad_s_, state);
   find_biases();
-}
-
-void BodyModel::move(const Eigen::Ref<const Eigen::VectorXd>& way) noexcept {
-  if (base_size() > 0) {
-    for (std::size_t k = 0; k < 3; ++k) base.position_m[k] += way[static_cast<Index>(k)];
-    base.orientation = turned(base.orientation, way.segment<3>(3));
-  }
-  for (std::size_t i = 0; i < position_rad.size(); ++i) position_rad[i] += way[base_size() + static_cast<Index>(i)];
 }
 
 // From the base outward, as in the first half of a Newton-Euler recursion.

@@ -24,6 +24,9 @@ Eigen::Matrix3d matrix_of(const Quat& q) noexcept;
 Eigen::Vector3d turn_between(const Quat& from, const Quat& to) noexcept;
 // `q`, turned by this rotation vector.
 Quat turned(const Quat& q, const Eigen::Vector3d& by) noexcept;
+// Moves a base of this size (6 or 0) and the joints on by a generalised velocity times a time.
+void move_body(Pose& base, std::vector<double>& position_rad, Eigen::Index base_size,
+               const Eigen::Ref<const Eigen::VectorXd>& way) noexcept;
 
 class BodyModel {
  public:
@@ -31,16 +34,17 @@ class BodyModel {
 
   BodyModel(const RobotModel& model, Dynamics::Base base, const std::vector<double>& rotor_inertia_kg_m2);
 
-  Pose base;                                                         // of links[0], in the task frame
-  std::vector<double> position_rad;                                  // of the joints
-  Eigen::VectorXd velocity;                                          // generalised, as in dynamics.h
-  void update() noexcept;                                            // computes what follows from these
-  void move(const Eigen::Ref<const Eigen::VectorXd>& way) noexcept;  // a generalised velocity times a time
+  Pose base;                         // of links[0], in the task frame
+  std::vector<double> position_rad;  // of the joints
+  Eigen::VectorXd velocity;          // generalised, as in dynamics.h
+  void update() noexcept;            // computes what follows from these
+  void move(const Eigen::Ref<const Eigen::VectorXd>& way) noexcept { move_body(base, position_rad, base_size(), way); }
 
   const Dynamics& dynamics() const noexcept { return dynamics_; }
   Eigen::Index size() const noexcept { return velocity.size(); }
   Eigen::Index base_size() const noexcept { return static_cast<Eigen::Index>(dynamics_.base_size()); }
   const Pose& link(std::size_t index) const noexcept { return dynamics_.link(index); }
+  Vec3 com_m() const noexcept { return dynamics_.com_m(); }
   // Of a point of a link: the acceleration (rows 0..2) and the link's angular one (3..5) that velocity alone gives.
   Eigen::Vector<double, 6> bias(std::size_t link, const Vec3& point_in_link_m) const noexcept;
   Eigen::Vector3d com_bias() const noexcept;

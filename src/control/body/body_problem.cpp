@@ -16,19 +16,22 @@ using Eigen::Vector3d;
 constexpr double least_acceleration = 1e-5, least_force = 1e-6, least_moment = 1e-4;  // the regularisation
 constexpr double passive_weight = 0.05;
 constexpr double hold_per_s = 10;          // how fast a foot that stands goes back to its place
+constexpr double catch_per_s = 8;          // how fast the capture point may approach an edge, per distance
 constexpr double limit_per_s = 8;          // how fast a joint may approach its limit, per distance
 constexpr double limit_margin_rad = 0.03;  // of positions before a limit; the safety layer's soft stop begins there
 constexpr double react_s = 0.03;           // in which a joint that is too fast slows down
 constexpr double braking_rad_s2 = 300;     // the most that limits of speed and position ask for
+constexpr double loose_rad_s = 5;          // the fastest that a joint without a motor under load turns
 constexpr double twist_m = 0.04;           // moment about the vertical per load and friction
+constexpr double least_load_share = 0.4;         // the most that a foot must bear because of a bent joint without a motor
 constexpr double load_share = 1.5;         // the most that a foot bears, as a share of the weight
-constexpr double gravity_m_s2 = 9.81;
+constexpr double least_height_m = 0.05;
 constexpr int tick_iterations_max = 250;
 constexpr Index wrench_rows = 13;
 
 Index rows_max(const BodyLayout& layout) {
   const Index joints = static_cast<Index>(layout.joints.size()), feet = static_cast<Index>(layout.feet.size());
-  return 6 + static_cast<Index>(layout.locked.size()) + 2 * joints + feet * (6 + wrench_rows) +
+  return 6 + static_cast<Index>(layout.locked.size()) + 2 * joints + feet * (5 + 6 + wrench_rows) +
          6 * static_cast<Index>(layout.tasks.size());
 }
 
@@ -56,7 +59,7 @@ BodyProblem::BodyProblem(const BodyLayout& layout)
   row_.setZero(n);
 }
 
-void BodyProblem::begin(const BodyModel& model, const BodyAim& aim,
+void BodyProblem::begin(const BodyModel& model, const BodyAim& aim, const BodyPosture& to,
                         const std::array<BodyStand, body_feet_max>& feet) noexcept {
   Index size = model.size();
   for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
@@ -79,9 +82,10 @@ void BodyProblem::begin(const BodyModel& model, const BodyAim& aim,
     hold(model, i, feet[i]);
     bear(model, i, feet[i], aim.settings);
   }
-  limit(model, aim.settings);
+  balance(model, aim.settings, feet);
+  limit(model, aim.settings, feet);
   spring(model, aim.settings);
-  posture(model, aim);
+  posture(model, aim, to);
 }
 
 // lower <= force of this degree of freedom <= upper, with M dv + h - J' w for the force.
@@ -118,7 +122,11 @@ void BodyProblem::bear(const BodyModel& model, std::size_t foot, const BodyStand
     normal.segment<3>(wrench_[foot] + 3) = moment;
   };
   const Vector3d none = Vector3d::Zero();
-  add(0, stand.share * load_share * gravity_m_s2 * model.dynamics().mass_kg(), z, none);
+  const double weight_N = body_gravity_m_s2 * model.dynamics().mass_kg();
+  const std::size_t loose = layout_->soles[foot].loose;
+  const double bent_rad = loose == no_body_joint || stand.share < 1 ? 0 : model.position_rad[loose];
+  add(std::min(bent_load_N(*layout_, s, foot, bent_rad), least_load_share * weight_N), stand.share * load_share * weight_N, z,
+      none);
   for (const double sign : {-1.0, 1.0}) {
     add(0, QuadraticProgram::unbounded, grip * z + sign * x, none);
     add(0, QuadraticProgram::unbounded, grip * z + sign * y, none);
@@ -129,17 +137,54 @@ void BodyProblem::bear(const BodyModel& model, std::size_t foot, const BodyStand
   add(0, QuadraticProgram::unbounded, (s.heel_m - s.edge_m) * z - s.sole_m * x, -y);
 }
 
-void BodyProblem::limit(const BodyModel& model, const BodySettings& s) noexcept {
+// The capture point c + v / w with w = sqrt(g / height) may approach an edge ever more slowly. Beyond it, it goes back
+// no faster than pressing at the soles' edge brings it back: it moves by w times its way from the centre of pressure.
+void BodyProblem::balance(const BodyModel& model, const BodySettings& s,
+                          const std::array<BodyStand, body_feet_max>& feet) noexcept {
+  std::array<const Pose*, body_feet_max> standing{};
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) standing[i] = feet[i].share >= 1 ? &feet[i].pose : nullptr;
+  const BodySupport support = support_of(*layout_, s, standing);
+  if (support.count == 0) return;
+  const Vec3 com = model.dynamics().com_m();
+  const double rate_per_s = std::sqrt(body_gravity_m_s2 / std::max(com[2], least_height_m));
+  model.dynamics().com_jacobian(jacobian_.topRows<3>());
+  const Vector3d velocity = jacobian_.topRows<3>() * model.velocity, bias = model.com_bias();
+  for (const BodyEdge& edge : support) {
+    const Vector3d out(edge.x, edge.y, 0);
+    const double speed = out.dot(velocity), caught_m = out.dot(eigen(com)) + speed / rate_per_s;
+    const double room_m = edge.distance_m - s.balance_m - caught_m;
+    const double most = std::max(catch_per_s * room_m, rate_per_s * (caught_m - edge.distance_m + s.edge_m));
+    program_.add_row(-QuadraticProgram::unbounded, rate_per_s * (most - speed) - out.dot(bias)).head(model.size()) =
+        jacobian_.topRows<3>().transpose() * out;
+  }
+}
+
+// The acceleration that keeps this degree of freedom within these bounds, which it approaches ever more slowly.
+void BodyProblem::keep_within(Index at, double position, double velocity, double lower, double upper,
+                              double fastest) noexcept {
+  const double above = std::min(fastest, limit_per_s * (upper - position));
+  const double below = std::max(-fastest, limit_per_s * (lower - position));
+  const double most = std::clamp((above - velocity) / react_s, -braking_rad_s2, braking_rad_s2);
+  const double least = std::clamp((below - velocity) / react_s, -braking_rad_s2, braking_rad_s2);
+  program_.add_row(std::min(least, most), std::max(least, most))[at] = 1;
+}
+
+void BodyProblem::limit(const BodyModel& model, const BodySettings& s,
+                        const std::array<BodyStand, body_feet_max>& feet) noexcept {
   for (const JointAxis& axis : layout_->joints) {
     const Index at = model.base_size() + static_cast<Index>(axis.joint);
-    const double position = model.position_rad[axis.joint], velocity = model.velocity[at];
-    const double fastest = s.velocity_share * axis.velocity_max_rad_s;
-    const double above = std::min(fastest, limit_per_s * (axis.upper_rad - limit_margin_rad - position));
-    const double below = std::max(-fastest, limit_per_s * (axis.lower_rad + limit_margin_rad - position));
-    const double most = std::clamp((above - velocity) / react_s, -braking_rad_s2, braking_rad_s2);
-    const double least = std::clamp((below - velocity) / react_s, -braking_rad_s2, braking_rad_s2);
-    program_.add_row(std::min(least, most), std::max(least, most))[at] = 1;
+    keep_within(at, model.position_rad[axis.joint], model.velocity[at], axis.lower_rad + limit_margin_rad,
+                axis.upper_rad - limit_margin_rad, s.velocity_share * axis.velocity_max_rad_s);
     motion_row(model, at, -s.effort_share * axis.effort_max_Nm, s.effort_share * axis.effort_max_Nm);
+  }
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
+    const std::size_t loose = layout_->soles[i].loose;
+    if (loose == no_body_joint || feet[i].share < 1) continue;
+    const double load_N = least_load_share * body_gravity_m_s2 * model.dynamics().mass_kg();
+    const double most_rad = bent_max_rad(*layout_, s, i, load_N);
+    const Index at = model.base_size() + static_cast<Index>(loose);
+    if (std::isfinite(most_rad))
+      keep_within(at, model.position_rad[loose], model.velocity[at], -most_rad, most_rad, loose_rad_s);
   }
 }
 
@@ -162,8 +207,8 @@ void BodyProblem::spring(const BodyModel& model, const BodySettings& s) noexcept
   }
 }
 
-void BodyProblem::posture(const BodyModel& model, const BodyAim& aim) noexcept {
-  const double g = aim.settings.posture_per_s, weight = aim.settings.posture_weight;
+void BodyProblem::posture(const BodyModel& model, const BodyAim& aim, const BodyPosture& posture) noexcept {
+  const double g = posture.gain_per_s, weight = posture.weight;
   for (std::size_t i = 0; i < layout_->joints.size(); ++i) {
     const SetpointState& to = aim.setpoints[layout_->joint_channel + i];
     const std::size_t joint = layout_->joints[i].joint;
@@ -285,9 +330,16 @@ void BodyProblem::keep(const BodyModel& model) noexcept {
   }
 }
 
-bool BodyProblem::solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
+void BodyProblem::pass_state(StateBytes& bytes) noexcept {
+  for (double& effort : effort_Nm_) bytes.high_level(effort);
+  for (auto& wrench : kept_) {
+    for (double& part : wrench) bytes.high_level(part);
+  }
+}
+
+bool BodyProblem::solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks, const BodyPosture& posture,
                         const std::array<BodyStand, body_feet_max>& feet) noexcept {
-  begin(model, aim, feet);
+  begin(model, aim, posture, feet);
   find_tasks(model, aim, ranks, feet);
   add_level(1);
   status_ = program_.solve(tick_iterations_max);

@@ -6,7 +6,9 @@
 // Constraints  the base's equations of motion (M dv + h = J' w); feet that stand do not move; joints that somebody else
 //              drives do not accelerate; torques, speeds and positions of the joints stay within their limits; each
 //              wrench stays within its friction pyramid and its centre of pressure within the sole's edges (Caron, Pham
-//              and Nakamura 2015, ICRA, for the wrench as a whole).
+//              and Nakamura 2015, ICRA, for the wrench as a whole); the capture point, over which the body can come to
+//              rest, stays over the soles (Pratt et al. 2006, IEEE Humanoids; body_support.h), so that no task topples
+//              it: what is asked for too quickly comes later.
 // Minimised    the squares of what the tasks miss, by weight, in two levels: the second level gets what the first one
 //              leaves (Kanoun, Lamiraux and Wieber 2011, IEEE T-RO 27(4)); the posture; and 1e-5 of the squares of
 //              accelerations and 1e-6 of those of wrenches (1e-4 of moments), which make the problem strictly convex.
@@ -21,6 +23,7 @@
 
 #include "body_layout.h"
 #include "body_model.h"
+#include "body_support.h"
 #include "quadratic_program.h"
 
 namespace kadans {
@@ -35,6 +38,9 @@ struct BodyRank {     // of a task
   double weight = 0;  // 0: left out
   int level = 1;      // 2: gets what those of 1 leave
 };
+struct BodyPosture {  // how the joints go to their own set-points
+  double weight = 0, gain_per_s = 0;
+};
 using BodyRanks = std::array<BodyRank, body_tasks_max>;
 
 class BodyProblem {
@@ -42,13 +48,15 @@ class BodyProblem {
   explicit BodyProblem(const BodyLayout& layout);
 
   // True: acceleration(), effort_Nm and wrench are new.
-  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
+  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks, const BodyPosture& posture,
                            const std::array<BodyStand, body_feet_max>& feet) noexcept;
 
   const Eigen::VectorXd& acceleration() const noexcept { return acceleration_; }
   double effort_Nm(std::size_t joint) const noexcept { return effort_Nm_[static_cast<Eigen::Index>(joint)]; }
   // Of a foot: force and moment about its frame, in the axes of the task frame; 0 of one that is free.
   const Eigen::Vector<double, 6>& wrench(std::size_t foot) const noexcept { return kept_[foot]; }
+  // What stands when a later program has no solution.
+  void pass_state(StateBytes& bytes) noexcept;
   QuadraticProgram::Status status() const noexcept { return status_; }
   int iterations() const noexcept { return iterations_; }
 
@@ -60,13 +68,19 @@ class BodyProblem {
     double weight = 0;
     int level = 0;  // 0: left out
   };
-  void begin(const BodyModel& model, const BodyAim& aim, const std::array<BodyStand, body_feet_max>& feet) noexcept;
+  void begin(const BodyModel& model, const BodyAim& aim, const BodyPosture& posture,
+             const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void motion_row(const BodyModel& model, Eigen::Index row, double lower, double upper) noexcept;
   void hold(const BodyModel& model, std::size_t foot, const BodyStand& stand) noexcept;
   void bear(const BodyModel& model, std::size_t foot, const BodyStand& stand, const BodySettings& s) noexcept;
-  void limit(const BodyModel& model, const BodySettings& s) noexcept;
+  void balance(const BodyModel& model, const BodySettings& s,
+               const std::array<BodyStand, body_feet_max>& feet) noexcept;
+  void keep_within(Eigen::Index at, double position, double velocity, double lower, double upper,
+                   double fastest) noexcept;
+  void limit(const BodyModel& model, const BodySettings& s,
+             const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void spring(const BodyModel& model, const BodySettings& s) noexcept;
-  void posture(const BodyModel& model, const BodyAim& aim) noexcept;
+  void posture(const BodyModel& model, const BodyAim& aim, const BodyPosture& posture) noexcept;
   void find_tasks(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
                   const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void lead_point(const BodyModel& model, const BodyAim& aim, std::size_t task) noexcept;

@@ -12,33 +12,99 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr int steps_max = 20, reach_iterations_max = 200;
-constexpr double asked_weight = 1, other_weight = 1e-4, change_weight = 1e-5;
+constexpr int settle_steps_max = 8, way_steps = 16, end_steps_max = 6, last_steps_max = 8, reach_iterations_max = 200;
+constexpr double asked_weight = 1, change_weight = 3e-4;
+constexpr double way_weight = 0.03, last_weight = 1e-4;  // of the other tasks: on the way, and to say how far it stays
 constexpr double step_max_rad = 0.4;  // of a joint, in one step
+constexpr double bent_share = 0.33;   // of the weight, that the foot which bears less still bears
 constexpr double back_m = 0.03;       // how far the centre of mass comes back over the soles in one step
 constexpr double still = 5e-4;        // a step after which no other is made
 constexpr double reached_m = 0.005, reached_rad = 0.01;  // what counts as reached
-
-double cross2(const Vec3& o, const Vec3& a, const Vec3& b) noexcept {
-  return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
-}
+constexpr double at_once = 2.4;        // the time in which a task without a motion gets there, times its gain
+constexpr double told_share = 1.02;    // of the least time, so that what is told is enough when it is asked for again
 
 }  // namespace
 
 BodyReach::BodyReach(const BodyLayout& layout)
     : layout_(&layout),
-      model_(*layout.model, layout.floating ? Dynamics::Base::floating : Dynamics::Base::fixed, {}),
+      known_(BodySettings{}),
+      model_(*layout.model, layout.floating),
       kinematics_(*layout.model),
       program_(model_.size(), model_.size() + static_cast<Index>(6 * layout.feet.size() + 4 * body_feet_max)),
-      way_(model_.velocity) {
+      gone_(layout),
+      clash_(*layout.model) {
   jacobian_.setZero(6, model_.size());
+  way_.setZero(model_.size());
 }
 
-Foresight::Miss BodyReach::miss(std::span<const Goal> goals, const Snapshot& snapshot) noexcept {
+Foresight::Miss BodyReach::miss(const Asked& asked, const Snapshot& snapshot) noexcept {
+  settings_ = known_.newest();
   if (!place(snapshot)) return {};
+  const Setpoints from = setpoints_;
+  if (!ask(asked.goals)) return {};
+  if (const Miss loose = bearing(); loose.why != Why::none) return loose;
+  std::array<const Pose*, body_feet_max> standing{};
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) standing[i] = stands(i) ? &held_[i] : nullptr;
+  support_ = support_of(*layout_, settings_, standing);
+  const double time_s = time_of(asked.time_s);
+  const Setpoints to = setpoints_;
+  go(from, to, time_s);
+  Miss missed = worst();
+  for (int step = 0; step < last_steps_max && missed.why != Why::none && improve(last_weight); ++step) missed = worst();
+  const BodyWay::Time& least = gone_.time();
+  if (missed.why != Why::none) return missed;
+  if (clashing_.found())
+    return {.why = Why::clash, .by = clear_share_, .link = clashing_.link, .other = clashing_.other};
+  if (least.jumps != no_body_joint) return {.why = Why::jump, .by = least.smooth_share, .joint = least.jumps};
+  if (least.least_s <= time_s) return missed;
+  return {.why = least.joint == no_body_joint ? Why::topple : Why::speed,
+          .by = told_share * least.least_s,
+          .after_s = least.fails_after_s,
+          .joint = least.joint};
+}
+
+// What acts at once is as quick as the gain of the quickest of its tasks.
+double BodyReach::time_of(double asked_s) const noexcept {
+  if (asked_s > 0) return asked_s;
+  double gain_per_s = 0;
+  for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
+    if (asked_[i]) gain_per_s = std::max(gain_per_s, settings_.tasks[i].gain_per_s);
+  }
+  return gain_per_s > 0 ? at_once / gain_per_s : 1;
+}
+
+// Along the motion, as the engine leads its set-points: a minimum-jerk curve.
+void BodyReach::go(const Setpoints& from, const Setpoints& to, double time_s) noexcept {
+  std::ranges::copy_n(from.begin(), layout_->contact_channel, setpoints_.begin());
+  for (int step = 0; step < settle_steps_max && improve(way_weight); ++step) {  // what the joints miss is no motion
+  }
+  model_.update();
+  gone_.begin(settings_, support_, way_steps, time_s);
+  clash_.begin(model_);
+  clashing_ = {};
+  for (int number = 0; number <= way_steps + end_steps_max; ++number) {
+    const double u = std::min(1.0, static_cast<double>(number + 1) / way_steps);
+    const double share = u * u * u * (10 + u * (6 * u - 15));
+    for (std::uint32_t i = 0; i < layout_->contact_channel; ++i)
+      setpoints_[i].value = from[i].value + share * (to[i].value - from[i].value);
+    const bool moves = improve(way_weight);
+    // The links are still where they were before the step.
+    if (number < way_steps) gone_.add(model_, way_);
+    if (!clashing_.found()) {
+      clashing_ = clash_.find(model_);
+      clear_share_ = std::min(1.0, static_cast<double>(number) / way_steps);
+    }
+    if (number >= way_steps && !moves) return;
+  }
+}
+
+// False: nothing is asked of the tasks or the contacts.
+bool BodyReach::ask(std::span<const Goal> goals) noexcept {
   asked_.fill(false);
+  bool any = false;
   for (const Goal& goal : goals) {
     setpoints_[goal.channel] = {.value = goal.value};
+    any = any || goal.channel < layout_->lead_channel;
     for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
       const BodyTask& task = layout_->tasks[i];
       if (goal.channel >= task.channel && goal.channel < task.channel + task.channels()) asked_[i] = true;
@@ -49,10 +115,24 @@ Foresight::Miss BodyReach::miss(std::span<const Goal> goals, const Snapshot& sna
       if (!stands(i) && layout_->tasks[task].kind == BodyTask::Kind::com) asked_[task] = true;
     }
   }
-  find_edges();
-  for (int step = 0; step < steps_max && improve(); ++step) {
+  return any;
+}
+
+// On one foot the body is an inverted pendulum over it. A joint without a motor on the way to it must have a spring that
+// is stiffer than gravity is strong.
+Foresight::Miss BodyReach::bearing() const noexcept {
+  std::size_t count = 0, last = 0;
+  for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
+    if (!stands(i)) continue;
+    ++count;
+    last = i;
   }
-  return worst();
+  if (count != 1 || layout_->soles[last].loose == no_body_joint) return {};
+  const BodyLayout::Sole& sole = layout_->soles[last];
+  const double height_m = model_.com_m()[2] - model_.link(sole.loose + 1).position_m[2];
+  const double missing = body_gravity_m_s2 * model_.mass_kg() * height_m - settings_.passive_Nm_per_rad;
+  if (!(missing > 0) || !(sole.tilts_forward || sole.tilts_sideways)) return {};
+  return {.why = Why::bear, .by = missing, .joint = sole.loose};
 }
 
 // False: not all is measured.
@@ -67,6 +147,7 @@ bool BodyReach::place(const Snapshot& snapshot) noexcept {
   stand_as_told(snapshot);
   for (std::size_t i = 0; i < layout_->feet.size(); ++i)
     held_[i] = kinematics_.link(layout_->tasks[layout_->feet[i]].link);
+  model_.update();
   return true;
 }
 
@@ -96,42 +177,11 @@ void BodyReach::stand_as_told(const Snapshot& snapshot) noexcept {
   }
 }
 
-// The convex hull of the soles that stand, by Andrew's monotone chain (1979, Information Processing Letters 9(5)).
-void BodyReach::find_edges() noexcept {
-  std::array<Vec3, 4 * body_feet_max> corners{};
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
-    if (!stands(i)) continue;
-    for (const double x : {settings_.toe_m, -settings_.heel_m}) {
-      for (const double y : {settings_.side_m, -settings_.side_m})
-        corners[count++] = transform(held_[i], {x, y, -settings_.sole_m});
-    }
-  }
-  edge_count_ = 0;
-  if (count == 0) return;
-  const auto last = corners.begin() + static_cast<std::ptrdiff_t>(count);
-  std::partial_sort(corners.begin(), last, last);  // gcc believes that std::sort leaves so small an array
-  std::array<Vec3, 8 * body_feet_max + 1> hull{};
-  std::size_t size = 0;
-  const auto add = [&](const Vec3& corner, std::size_t kept) {
-    while (size >= kept + 2 && cross2(hull[size - 2], hull[size - 1], corner) <= 0) --size;
-    hull[size++] = corner;
-  };
-  for (std::size_t i = 0; i < count; ++i) add(corners[i], 0);
-  const std::size_t lower = size - 1;
-  for (std::size_t i = count - 1; i-- > 0;) add(corners[i], lower);
-  for (std::size_t i = 0; i + 1 < size; ++i) {
-    const double x = hull[i + 1][0] - hull[i][0], y = hull[i + 1][1] - hull[i][1], length = std::hypot(x, y);
-    const double nx = y / length, ny = -x / length;  // outward, for a hull that goes round to the left
-    edges_[edge_count_++] = {nx, ny, nx * hull[i][0] + ny * hull[i][1] - settings_.edge_m};
-  }
-}
-
 void BodyReach::hold_feet() noexcept {
   for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
     if (!stands(i)) continue;
     const std::size_t link = layout_->tasks[layout_->feet[i]].link;
-    model_.dynamics().link_jacobian(link, {}, jacobian_);
+    model_.link_jacobian(link, {}, jacobian_);
     Eigen::Vector<double, 6> way;
     way << eigen(held_[i].position_m) - eigen(model_.link(link).position_m),
         turn_between(model_.link(link).orientation, held_[i].orientation);
@@ -140,12 +190,11 @@ void BodyReach::hold_feet() noexcept {
 }
 
 void BodyReach::balance() noexcept {
-  if (edge_count_ == 0) return;
-  const Vec3 com = model_.dynamics().com_m();
-  model_.dynamics().com_jacobian(jacobian_.topRows<3>());
-  for (std::size_t i = 0; i < edge_count_; ++i) {
-    const Edge& edge = edges_[i];
-    const double room = edge.distance_m - edge.x * com[0] - edge.y * com[1];
+  if (support_.count == 0) return;
+  const Vec3 com = model_.com_m();
+  model_.com_jacobian(jacobian_);
+  for (const BodyEdge& edge : support_) {
+    const double room = edge.distance_m - settings_.balance_m - edge.x * com[0] - edge.y * com[1];
     program_.add_row(-QuadraticProgram::unbounded, std::max(room, -back_m)) =
         edge.x * jacobian_.row(0).transpose() + edge.y * jacobian_.row(1).transpose();
   }
@@ -154,9 +203,17 @@ void BodyReach::balance() noexcept {
 void BodyReach::limit() noexcept {
   for (std::size_t i = 0; i < model_.position_rad.size(); ++i) {
     const Joint& joint = layout_->model->joints[i];
+    double lower_rad = joint.lower_rad, upper_rad = joint.upper_rad;
+    for (std::size_t foot = 0; foot < layout_->feet.size(); ++foot) {
+      if (layout_->soles[foot].loose != i || !stands(foot)) continue;
+      const double load_N = bent_share * body_gravity_m_s2 * model_.mass_kg();
+      const double most_rad = bent_max_rad(*layout_, settings_, foot, load_N);
+      lower_rad = std::max(lower_rad, -most_rad);
+      upper_rad = std::min(upper_rad, most_rad);
+    }
     const bool locked = std::ranges::find(layout_->locked, i) != layout_->locked.end();
-    const double below = std::clamp(joint.lower_rad - model_.position_rad[i], -step_max_rad, step_max_rad);
-    const double above = std::clamp(joint.upper_rad - model_.position_rad[i], -step_max_rad, step_max_rad);
+    const double below = std::clamp(lower_rad - model_.position_rad[i], -step_max_rad, step_max_rad);
+    const double above = std::clamp(upper_rad - model_.position_rad[i], -step_max_rad, step_max_rad);
     program_.add_row(locked ? 0 : std::min(below, above),
                      locked ? 0 : std::max(below, above))[model_.base_size() + static_cast<Index>(i)] = 1;
   }
@@ -168,9 +225,9 @@ Index BodyReach::missing(std::size_t index, Eigen::Vector<double, 6>& way) noexc
   const SetpointState* to = &setpoints_[task.channel];
   const Pose& link = model_.link(task.link);
   if (task.kind == BodyTask::Kind::com)
-    model_.dynamics().com_jacobian(jacobian_.topRows<3>());
+    model_.com_jacobian(jacobian_);
   else
-    model_.dynamics().link_jacobian(task.link, settings_.tasks[index].point_m, jacobian_);
+    model_.link_jacobian(task.link, settings_.tasks[index].point_m, jacobian_);
   const Vector3d wanted(to[0].value, to[1].value, to[2].value);
   if (task.kind == BodyTask::Kind::gaze) {
     const Vector3d axis = eigen(rotate(link.orientation, {1, 0, 0})), line = wanted - eigen(link.position_m);
@@ -187,7 +244,7 @@ Index BodyReach::missing(std::size_t index, Eigen::Vector<double, 6>& way) noexc
     return 3;
   }
   Vec3 at =
-      task.kind == BodyTask::Kind::com ? model_.dynamics().com_m() : transform(link, settings_.tasks[index].point_m);
+      task.kind == BodyTask::Kind::com ? model_.com_m() : transform(link, settings_.tasks[index].point_m);
   if (task.kind == BodyTask::Kind::foot) at[2] -= settings_.sole_m;
   way.head<3>() = wanted - eigen(at);
   if (!task.has_turn()) return 3;
@@ -195,7 +252,7 @@ Index BodyReach::missing(std::size_t index, Eigen::Vector<double, 6>& way) noexc
   return 6;
 }
 
-void BodyReach::add_task(std::size_t index) noexcept {
+void BodyReach::add_task(std::size_t index, double other_weight) noexcept {
   Eigen::Vector<double, 6> way;
   const Index rows = missing(index, way);
   const double weight = asked_[index] ? asked_weight : other_weight;
@@ -205,7 +262,7 @@ void BodyReach::add_task(std::size_t index) noexcept {
 }
 
 // One step; false: it was the last one.
-bool BodyReach::improve() noexcept {
+bool BodyReach::improve(double other_weight) noexcept {
   model_.update();
   program_.begin(model_.size());
   program_.hessian().diagonal().setConstant(change_weight);
@@ -213,14 +270,14 @@ bool BodyReach::improve() noexcept {
   balance();
   limit();
   for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
-    const BodyTask::Kind kind = layout_->tasks[i].kind;
     const bool foot_stands = std::ranges::any_of(std::array<std::size_t, 2>{0, 1}, [&](std::size_t foot) {
       return foot < layout_->feet.size() && layout_->feet[foot] == i && stands(foot);
     });
-    const bool idle = kind == BodyTask::Kind::hand || kind == BodyTask::Kind::gaze;
-    if (asked_[i] || (!idle && !foot_stands)) add_task(i);
+    if (asked_[i] || (!layout_->tasks[i].idles() && !foot_stands)) add_task(i, other_weight);
   }
-  if (program_.solve(reach_iterations_max) != QuadraticProgram::Status::solved) return false;
+  const bool solved = program_.solve(reach_iterations_max) == QuadraticProgram::Status::solved;
+  way_.setZero();
+  if (!solved) return false;
   way_ = program_.solution();
   model_.move(way_);
   return way_.cwiseAbs().maxCoeff() > still;
@@ -228,15 +285,15 @@ bool BodyReach::improve() noexcept {
 
 double BodyReach::beyond_edges_m() const noexcept {
   double beyond_m = 0;
-  const Vec3 com = model_.dynamics().com_m();
-  for (std::size_t i = 0; i < edge_count_; ++i)
-    beyond_m = std::max(beyond_m, edges_[i].x * com[0] + edges_[i].y * com[1] - edges_[i].distance_m);
+  const Vec3& com = model_.com_m();
+  for (const BodyEdge& edge : support_)
+    beyond_m = std::max(beyond_m, edge.x * com[0] + edge.y * com[1] - edge.distance_m + settings_.balance_m);
   return beyond_m;
 }
 
 Foresight::Miss BodyReach::worst() noexcept {
   model_.update();
-  Miss worst{.by = beyond_edges_m(), .channel = 0};
+  Miss worst{.by = beyond_edges_m()};
   if (!(worst.by > reached_m)) worst.by = 0;
   Eigen::Vector<double, 6> way;
   for (std::size_t i = 0; i < layout_->tasks.size(); ++i) {
@@ -245,9 +302,11 @@ Foresight::Miss BodyReach::worst() noexcept {
     const Index rows = missing(i, way);
     const bool turns_only = task.kind == BodyTask::Kind::trunk || task.kind == BodyTask::Kind::gaze;
     const double first = way.head<3>().norm(), turn = rows == 6 ? way.tail<3>().norm() : 0;
-    if (first > (turns_only ? reached_rad : reached_m) && first > worst.by) worst = {first, task.channel};
-    if (turn > reached_rad && turn > worst.by) worst = {turn, task.channel + 3};
+    if (first > (turns_only ? reached_rad : reached_m) && first > worst.by)
+      worst = {.by = first, .channel = task.channel};
+    if (turn > reached_rad && turn > worst.by) worst = {.by = turn, .channel = task.channel + 3};
   }
+  worst.why = worst.by > 0 ? Why::reach : Why::none;
   return worst;
 }
 

@@ -1,16 +1,20 @@
 // Tells before a motion whether its end can be reached: whether there are joint positions within their limits with
 // which the feet that stand stay where they are, the centre of mass is over their soles, and the tasks that were asked
-// for are fulfilled.
+// for are fulfilled. And whether the time is long enough for the way there (body_way.h).
 //
-// From where the robot is, at most 20 steps of inverse kinematics, each a quadratic program in changes of position:
-// what the asked tasks miss counts most, all others hardly. What is still missed at the end is told. It is a descent:
-// where there are several ways for a limb, it may miss a pose that another way would reach.
+// From where the robot is, steps of inverse kinematics along the motion, each a quadratic program in changes of
+// position, lead to its end: what the asked tasks miss counts most, all others little. So the way is about that of the
+// body as the tasks lead it (body_leader.h). Links that would hit each other on it are told (body_clash.h). What is still missed after some more steps at the end is told. It is a
+// descent: where there are several ways for a limb, it may miss a pose that another way would reach.
 //
-// Behavior thread, of the runtime or of the process in which behaviors play. Only the constructor allocates or throws.
+// Behavior thread, of the runtime or of the process in which behaviors play; know() is called in the control thread.
+// Only the constructor allocates or throws.
 #pragma once
 
-#include "body_layout.h"
-#include "body_model.h"
+#include "body_clash.h"
+#include "body_geometry.h"
+#include "body_way.h"
+#include "kadans/exchange/latest.h"
 #include "quadratic_program.h"
 
 namespace kadans {
@@ -19,23 +23,23 @@ class BodyReach final : public Foresight {
  public:
   explicit BodyReach(const BodyLayout& layout);
 
-  void know(const BodySettings& settings) noexcept { settings_ = settings; }
+  void know(const BodySettings& settings) noexcept { known_.publish(settings); }
   void set_first(SetpointId first) noexcept { first_ = first; }
-  Miss miss(std::span<const Goal> goals, const Snapshot& snapshot) noexcept override;
+  Miss miss(const Asked& asked, const Snapshot& snapshot) noexcept override;
 
  private:
-  struct Edge {  // of the ground under the soles: normal * point <= distance
-    double x = 0, y = 0, distance_m = 0;
-  };
   using Setpoints = std::array<SetpointState, body_channels_max>;
   bool place(const Snapshot& snapshot) noexcept;
   void stand_as_told(const Snapshot& snapshot) noexcept;
-  void find_edges() noexcept;
-  bool improve() noexcept;
+  bool ask(std::span<const Goal> goals) noexcept;
+  Miss bearing() const noexcept;
+  bool improve(double other_weight) noexcept;
+  void go(const Setpoints& from, const Setpoints& to, double time_s) noexcept;
+  double time_of(double asked_s) const noexcept;
   void hold_feet() noexcept;
   void balance() noexcept;
   void limit() noexcept;
-  void add_task(std::size_t task) noexcept;
+  void add_task(std::size_t task, double other_weight) noexcept;
   Eigen::Index missing(std::size_t task, Eigen::Vector<double, 6>& way) noexcept;
   double beyond_edges_m() const noexcept;
   Miss worst() noexcept;
@@ -44,7 +48,8 @@ class BodyReach final : public Foresight {
   const BodyLayout* layout_;
   BodySettings settings_;
   SetpointId first_ = 0;
-  BodyModel model_;
+  Latest<BodySettings> known_;
+  BodyGeometry model_;
   Kinematics kinematics_;
   QuadraticProgram program_;
   BodyModel::Jacobian jacobian_;
@@ -52,8 +57,11 @@ class BodyReach final : public Foresight {
   Setpoints setpoints_{};
   std::array<bool, body_tasks_max> asked_{};
   std::array<Pose, body_feet_max> held_{};
-  std::array<Edge, 4 * body_feet_max> edges_{};
-  std::size_t edge_count_ = 0;
+  BodySupport support_;
+  BodyWay gone_;
+  BodyClash clash_;
+  BodyClash::Pair clashing_;
+  double clear_share_ = 0;  // of the way, until they are too near
 };
 
 }  // namespace kadans

@@ -15,10 +15,13 @@
 //             it stands, its set-points are where it stands.
 //             contact.left and contact.right say whether a foot stands: from 0.5 on. One that shall not stand any more
 //             gives its load to the other one within 0.3 s first.
+//             tasks: 1: the tasks lead; 0: the joints' set-points alone do, from where the joints are led, and balance is
+//             kept. The safe posture sets it. The next motion of a task sets it to 1, with all tasks where they are.
 // Parameters  BodySettings, and a JointConfig per joint.
 // Signals     the centre of mass as it is led; each foot's load as it is wanted; a State per joint; iterations, status
 //             (0 solved, 1 infeasible, 2 iterations exhausted, 3 refused) and the count of failures of the program.
-// Start       all tasks are where the robot is; hands and gaze count from their first motion on. Torque that the law
+// Start       all tasks are where the robot is; hands and gaze count from their first motion on, until they get the
+//             weight 0. Until they count, their set-points are where they are. Torque that the law
 //             does not explain fades within 0.2 s after the first solution.
 // Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops. The start
 //             waits until all joints and the base's orientation are measured; until then the torque from before stays.
@@ -78,6 +81,7 @@ class WholeBody final : public ControlObject {
   void declare_joint(Declaration& declaration, std::size_t i);
   bool locate(const ControlInput& input) noexcept;
   void show(const BodyLead& lead) noexcept;
+  void let_lead(bool tasks) noexcept;
   void lead_joint(Part& part, const BodyLead::Joint& to, double age_s, double share, bool known) noexcept;
 
   BodyLayout layout_;
@@ -91,7 +95,7 @@ class WholeBody final : public ControlObject {
   std::vector<Part> parts_;
   BodySettings settings_;
   BodyAim aimed_;
-  bool located_ = false, configured_ = false;
+  bool located_ = false;
   struct Shown {
     Vec3 com_m{};
     std::array<double, body_feet_max> load_N{};
@@ -123,12 +127,20 @@ void WholeBody::declare(Declaration& declaration) {
     declare_weight(declaration, i);
   }
   if (layout_.floating) declare_ground(declaration);
+  (void)declaration.setpoint({.name = "tasks",
+                              .unit = "",
+                              .min = 0,
+                              .max = 1,
+                              .doc = "1: the tasks lead; 0: the joints' own set-points alone do.",
+                              .channel = layout_.lead_channel,
+                              .joint = no_joint,
+                              .safe = 0});
   BodySettings& s = settings_;
   declaration.parameter({"effort_share", "", 0.1, 1, 0.9, "Share of the torque limits that it plans with."},
                         &s.effort_share);
   declaration.parameter({"velocity_share", "", 0.05, 1, 0.8, "Share of the velocity limits that it plans with."},
                         &s.velocity_share);
-  declaration.parameter({"posture_weight", "", 1e-5, 100, 1e-4, "How much the posture counts beside the tasks."},
+  declaration.parameter({"posture_weight", "", 1e-5, 100, 0.005, "How much the posture counts beside the tasks."},
                         &s.posture_weight);
   declaration.parameter({"posture_per_s", "1/s", 0, 20, 2, "How fast joints go back to the posture."},
                         &s.posture_per_s);
@@ -201,6 +213,9 @@ void WholeBody::declare_ground(Declaration& d) {
   d.parameter({"side_m", "m", 0.02, 0.5, 0.05, "From a foot's frame sideways to the sole's edges."}, &s.side_m);
   d.parameter({"sole_m", "m", 0, 0.5, 0.05, "Height of a foot's frame over its sole."}, &s.sole_m);
   d.parameter({"edge_m", "m", 0, 0.015, 0.01, "How far the centre of pressure stays from the edges."}, &s.edge_m);
+  d.parameter({"balance_m", "m", 0, 0.05, 0.03,
+               "How far the centre of mass, and the point over which it comes to rest, stay from the edges."},
+              &s.balance_m);
   d.parameter({"passive_Nm_per_rad", "Nm/rad", 0, 1000, 0, "Springs in joints without a motor."},
               &s.passive_Nm_per_rad);
   d.parameter({"passive_Nms_per_rad", "Nm s/rad", 0, 100, 0, "Dampers in joints without a motor."},
@@ -225,10 +240,12 @@ void WholeBody::declare_joint(Declaration& declaration, std::size_t i) {
   tables.signal("saturated", "", "Whether the torque is limited.", &part.state.saturated);
 }
 
-// The first call is before the loop; later values reach the foresight with the high level.
 void WholeBody::parameters_changed() noexcept {
   aimed_.settings = settings_;
-  if (!std::exchange(configured_, true)) reach_.know(settings_);
+  for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
+    if (layout_.tasks[i].idles() && settings_.tasks[i].weight == 0) aimed_.engaged[i] = false;
+  }
+  reach_.know(settings_);
 }
 
 void WholeBody::start(const ControlInput& input) noexcept {
@@ -258,9 +275,9 @@ bool WholeBody::locate(const ControlInput& input) noexcept {
   for (std::size_t i = 0; i < parts_.size(); ++i)
     aimed_.setpoints[layout_.joint_channel + i] = {.value = aimed_.start_rad[parts_[i].axis.joint]};
   for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
-    const BodyTask::Kind kind = layout_.tasks[i].kind;
-    aimed_.engaged[i] = kind != BodyTask::Kind::hand && kind != BodyTask::Kind::gaze;
+    aimed_.engaged[i] = !layout_.tasks[i].idles();
   }
+  aimed_.alone = false;
   return true;
 }
 
@@ -269,6 +286,11 @@ void WholeBody::show(const BodyLead& lead) noexcept {
   shown_.iterations = lead.iterations;
   shown_.status = lead.status;
   shown_.failures = lead.failures;
+  for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
+    const BodyTask& task = layout_.tasks[i];
+    for (std::uint32_t k = 0; !aimed_.engaged[i] && k < task.channels(); ++k)
+      aimed_.setpoints[task.channel + k] = {.value = lead.tasks[i][k]};
+  }
   for (std::size_t i = 0; i < layout_.feet.size(); ++i) {
     shown_.load_N[i] = lead.feet[i].load_N;
     for (std::uint32_t k = 0; lead.feet[i].stands && k < 6; ++k)
@@ -320,6 +342,8 @@ bool WholeBody::setpoint_state(std::uint32_t channel, SetpointState& state) cons
 }
 
 void WholeBody::follow(std::uint32_t channel, const SetpointState& state) noexcept {
+  if (channel == layout_.lead_channel) return let_lead(state.value > 0.5);
+  if (channel < layout_.contact_channel) let_lead(true);
   aimed_.setpoints[channel] = state;
   for (std::size_t i = 0; i < layout_.tasks.size(); ++i) {
     const BodyTask& task = layout_.tasks[i];
@@ -327,11 +351,20 @@ void WholeBody::follow(std::uint32_t channel, const SetpointState& state) noexce
   }
 }
 
+// Nothing changes while it is as asked.
+void WholeBody::let_lead(bool tasks) noexcept {
+  if (tasks != aimed_.alone) return;
+  aimed_.alone = !tasks;
+  aimed_.setpoints[layout_.lead_channel] = {.value = tasks ? 1.0 : 0.0};
+  for (std::size_t i = 0; i < layout_.tasks.size(); ++i) aimed_.engaged[i] = tasks && !layout_.tasks[i].idles();
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    aimed_.setpoints[layout_.joint_channel + i] = {.value = parts_[i].state.reference_rad};
+}
+
 void WholeBody::update(const Snapshot& snapshot) {
   const auto newest = aim_.read();
   const BodyAim& aim = *newest;
   if (aim.activation == 0) return;
-  reach_.know(aim.settings);
   if (aim.activation != draft_.activation) leader_.begin(aim);
   const double since_s = seconds_between(last_update_ns_, snapshot.time_ns);
   last_update_ns_ = snapshot.time_ns;
@@ -342,7 +375,7 @@ void WholeBody::update(const Snapshot& snapshot) {
 
 void WholeBody::pass_state(StateBytes& bytes) noexcept {
   for (Part& part : parts_) bytes(part.state, part.takeover);
-  bytes(aimed_.activation, aimed_.base, aimed_.start_rad, aimed_.start_rad_s, aimed_.setpoints, aimed_.engaged);
+  bytes(aimed_.activation, aimed_.base, aimed_.start_rad, aimed_.start_rad_s, aimed_.setpoints, aimed_.alone, aimed_.engaged);
   bytes(located_, shown_);
   bytes.newest(lead_);
   leader_.pass_state(bytes);

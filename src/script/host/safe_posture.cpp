@@ -53,6 +53,8 @@ void SafePosture::move(const Snapshot& snapshot, CommandSender& commands, Object
 void SafePosture::add(std::uint32_t object, CommandSender& commands) noexcept {
   for (const SetpointId id : catalog_.objects[object].setpoints) {
     const Setpoint& setpoint = catalog_.setpoints[id];
+    if (std::isfinite(setpoint.safe))  // it acts before the motions of the joints, which begin where it leaves them
+      full_ = !commands.add({.kind = CommandKind::set_point, .index = id, .value = setpoint.safe}) || full_;
     if (!std::string_view(setpoint.name).ends_with(".position_rad")) continue;
     for (const auto& [joint, position_rad] : pose_->position_rad) {
       if (joint != setpoint.joint || !(position_rad >= setpoint.min && position_rad <= setpoint.max)) continue;

@@ -49,6 +49,13 @@ double trapezoid_duration_s(const MotionOptions& options, const MotionTargets& t
   return longest_s;
 }
 
+double duration_of(const MotionOptions& options, const MotionTargets& targets) {
+  return options.trapezoid ? trapezoid_duration_s(options, targets) : options.time_s;
+}
+
+// For people.
+double rounded(double value) noexcept { return value > 0 ? 0.01 * std::ceil(100 * value - 1e-6) : 0; }
+
 Command trapezoid(const MotionOptions& options, const MotionTarget& target, double duration_s) {
   Command command{.kind = CommandKind::trapezoid, .index = target.id, .value = target.value, .duration_s = duration_s};
   command.velocity = options.velocity_max;
@@ -66,7 +73,7 @@ Command minimum_jerk(const MotionOptions& options, const MotionTarget& target) {
 }
 
 int send_motion(lua_State* state, std::uint32_t object, const MotionOptions& options, const MotionTargets& targets) {
-  const double duration_s = options.trapezoid ? trapezoid_duration_s(options, targets) : options.time_s;
+  const double duration_s = duration_of(options, targets);
   Motion* motion = start_motion(state, object, targets.count, duration_s);
   for (std::uint32_t i = 0; i < targets.count; ++i) {
     const MotionTarget& target = targets.all[i];
@@ -84,12 +91,48 @@ void charge_pose(lua_State* state, const ObjectInfo& object) {
   core_of(state).budget.charge(state, pose_instructions + joint_instructions * looks);
 }
 
-// [-0 +1..4] Whether the object can reach the targets, as far as it knows; else nil, "out_of_reach", how far it is
-// from there, and the set-point that it misses most.
-bool within_reach(lua_State* state, const ObjectInfo& object, const MotionTargets& targets, const TaskOptions& tasks) {
+// [-0 +4] nil, a word, a number, and more words.
+int push_miss(lua_State* state, const ObjectInfo& object, const Foresight::Miss& miss) {
+  using Why = Foresight::Why;
+  const Catalog& catalog = *bindings_of(state).catalog;
+  const char* const word = miss.why == Why::reach   ? "out_of_reach"
+                           : miss.why == Why::bear  ? "cannot_stand"
+                           : miss.why == Why::clash ? "in_the_way"
+                           : miss.why == Why::jump  ? "no_smooth_way"
+                                                    : "too_quick";
+  const auto joint = [&](std::size_t i) { return catalog.model != nullptr ? catalog.model->joints[i].name.c_str() : "a joint"; };
+  const auto link = [&](std::size_t i) { return catalog.model != nullptr ? catalog.model->links[i].name.c_str() : "a link"; };
+  lua_pushnil(state);
+  lua_pushstring(state, word);
+  lua_pushnumber(state, miss.by);
+  if (miss.why == Why::topple)
+    lua_pushfstring(state, "it topples after %f s: give it at least %f s", rounded(miss.after_s), rounded(miss.by));
+  if (miss.why == Why::speed)
+    lua_pushfstring(state, "%s would be too fast: give it at least %f s", joint(miss.joint), rounded(miss.by));
+  if (miss.why == Why::jump) lua_pushfstring(state, "%s would jump on the way", joint(miss.joint));
+  if (miss.why == Why::clash) lua_pushfstring(state, "%s would hit %s", link(miss.link), link(miss.other));
+  if (miss.why == Why::bear)
+    lua_pushfstring(state, "it cannot stand on one foot: %s has no motor, and its spring lacks %d Nm/rad", joint(miss.joint),
+                    static_cast<int>(std::lround(miss.by)));
+  if (miss.why != Why::reach) return 4;
+  for (const SetpointId id : object.setpoints) {
+    const Setpoint& setpoint = catalog.setpoints[id];
+    if (setpoint.channel == miss.channel) return lua_pushstring(state, short_name(object, setpoint.name)), 4;
+  }
+  return lua_pushnil(state), 4;
+}
+
+// [-0 +0..4] 0: the object can reach the targets in their time, as far as it knows. Else nil and
+//   "out_of_reach", how far it is from there, and the set-point that it misses most;
+//   "too_quick", the least time in s, and a sentence;
+//   "in_the_way", the share of the way that is clear, and a sentence with the links that would hit each other;
+//   "no_smooth_way", the share of the way that is smooth, and a sentence with the joint that would jump;
+//   "cannot_stand", the stiffness in Nm/rad that is missing, and a sentence.
+int foresee(lua_State* state, const ObjectInfo& object, const MotionTargets& targets, const TaskOptions& tasks,
+            double time_s) {
   constexpr double foresight_instructions = 10000;
   Bindings& bindings = bindings_of(state);
-  if (object.foresight == nullptr || bindings.recording) return true;
+  if (object.foresight == nullptr || bindings.recording) return 0;
   core_of(state).budget.charge(state, foresight_instructions);
   std::array<Foresight::Goal, max_joints + TaskOptions::commands_max> goals{};
   std::size_t count = 0;
@@ -100,20 +143,12 @@ bool within_reach(lua_State* state, const ObjectInfo& object, const MotionTarget
   for (std::uint32_t i = 0; i < tasks.count; ++i) {
     if (tasks.commands[i].kind == CommandKind::set_point) add(tasks.commands[i].index, tasks.commands[i].value);
   }
-  const Foresight::Miss miss = object.foresight->miss({goals.data(), count}, *bindings.snapshot);
-  if (!(miss.by > 0)) return true;
-  lua_pushnil(state);
-  lua_pushliteral(state, "out_of_reach");
-  lua_pushnumber(state, miss.by);
-  for (const SetpointId id : object.setpoints) {
-    const Setpoint& setpoint = bindings.catalog->setpoints[id];
-    if (setpoint.channel == miss.channel) return lua_pushstring(state, short_name(object, setpoint.name)), false;
-  }
-  return lua_pushnil(state), false;
+  const Foresight::Miss miss = object.foresight->miss({{goals.data(), count}, time_s}, *bindings.snapshot);
+  return miss.why == Foresight::Why::none ? 0 : push_miss(state, object, miss);
 }
 
-// object:move(pose, { time_s = }) -> motion | nil, "queue_full" | nil, "out_of_reach", distance, set-point. The pose is
-// a name, a table joint = rad, or a table of tasks (task_targets.h).
+// object:move(pose, { time_s = }) -> motion | nil, "queue_full" | nil, why, number, words (foresee). The pose is a name, a
+// table joint = rad, or a table of tasks (task_targets.h).
 int move(lua_State* state) {
   std::uint32_t number = 0;
   const ObjectInfo& object = check_object(state, number);
@@ -127,14 +162,14 @@ int move(lua_State* state) {
   place_targets(state, options, options.trapezoid, targets);
   TaskOptions tasks;
   read_task_options(state, 3, object, targets, tasks);
-  if (!within_reach(state, object, targets, tasks)) return 4;
+  if (const int told = foresee(state, object, targets, tasks, duration_of(options, targets)); told > 0) return told;
   for (std::uint32_t i = 0; i < tasks.count; ++i) {
     if (!bindings_of(state).send(tasks.commands[i])) return queue_full(state);
   }
   return send_motion(state, number, options, targets);
 }
 
-// object:set(setpoint, value [, { time_s = }]) -> motion | nil, "queue_full".
+// object:set(setpoint, value [, { time_s = }]) -> motion | nil, "queue_full" | nil, why, number, words, as move.
 int set(lua_State* state) {
   constexpr double set_instructions = 40;
   std::uint32_t number = 0;
@@ -147,6 +182,7 @@ int set(lua_State* state) {
   MotionTargets targets;
   targets.all[targets.count++] = {.id = id, .value = value, .from = {}};
   place_targets(state, options, options.trapezoid, targets);
+  if (const int told = foresee(state, object, targets, {}, duration_of(options, targets)); told > 0) return told;
   return send_motion(state, number, options, targets);
 }
 

@@ -61,12 +61,21 @@ struct BehaviorLink {
     std::array<Name, behaviors_max> names{};  // names of the behaviors whose status it reports
     OfRegions<RegionPath> regions{};          // paths of their regions; "": no further one
   };
+  // A new value of one of the parameters with which objects foresee (control_object.h). What finds no place comes with
+  // the next request.
+  struct ParameterValue {
+    ParameterId id = 0;
+    alignas(8) double value = 0;
+  };
+  static constexpr std::size_t parameters_max = 256;
   struct Request {
     Turn<> number;                    // counts from 1
     std::uint32_t last_sequence = 0;  // the answer's transactions are numbered from the next number on
     std::uint32_t room = 0;           // for commands, headers included
     std::uint32_t order_size = 0;
     std::array<std::byte, order_bytes> order{};  // one, or several events, one after the other
+    std::uint32_t parameter_count = 0;
+    std::array<ParameterValue, parameters_max> parameters{};
     Snapshot snapshot;
   };
   struct Answer {

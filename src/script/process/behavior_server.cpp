@@ -59,8 +59,15 @@ void SpokenLines::tell_emitted(const EmittedEvent& event) {
 }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,
-                               SpokenLines& lines, const Catalog& catalog)
-    : link_(link), bell_(bell), host_(host), log_(log), lines_(lines), commands_(link.commands) {
+                               SpokenLines& lines, Catalog& catalog, ControlSets& sets)
+    : link_(link),
+      bell_(bell),
+      host_(host),
+      log_(log),
+      lines_(lines),
+      catalog_(catalog),
+      sets_(sets),
+      commands_(link.commands) {
   link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
     const std::string& name = host_.behavior(i).name();
@@ -85,6 +92,7 @@ bool BehaviorServer::answer() {
   snapshot_ = link_.request.snapshot;
   lines_.tell_dropped(snapshot_.time_ns);  // the lines of the tick before have been taken since
   commands_.follow(link_.request.last_sequence, link_.request.room);
+  take_parameters();
   take_orders();
   host_.tick(snapshot_, commands_);
   if (!host_.lost().empty()) {
@@ -94,6 +102,20 @@ bool BehaviorServer::answer() {
   tell_status();
   keep(snapshot_.time_ns);
   return true;
+}
+
+// The objects here never run; what they foresee is to be as those of the runtime foresee it.
+void BehaviorServer::take_parameters() noexcept {
+  ObjectMask changed = 0;
+  const std::size_t count = std::min<std::size_t>(link_.request.parameter_count, BehaviorLink::parameters_max);
+  for (std::size_t i = 0; i < count; ++i) {
+    const BehaviorLink::ParameterValue& given = link_.request.parameters[i];
+    if (catalog_.parameters.set(given.id, given.value))
+      changed |= ObjectMask{1} << catalog_.parameters.owner(given.id);
+  }
+  for (std::uint32_t i = 0; i < catalog_.objects.size(); ++i) {
+    if ((changed >> i & 1U) != 0) sets_.object(i).parameters_changed();
+  }
 }
 
 void BehaviorServer::take_orders() {

@@ -7,6 +7,7 @@
 
 #include "behavior_link.h"
 #include "engine/transaction.h"
+#include "kadans/control/control_sets.h"
 #include "realtime/machine/shared_memory.h"
 #include "script/host/script_host.h"
 #include "signal/byte_order.h"
@@ -36,9 +37,9 @@ class SpokenLines final : public LineSink {
 
 class BehaviorServer {
  public:
-  // `log` and `catalog` are those of the host; `lines` is a sink of the log.
+  // `log` and `catalog` are those of the host, `sets` those of the catalog; `lines` is a sink of the log.
   BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log, SpokenLines& lines,
-                 const Catalog& catalog);
+                 Catalog& catalog, ControlSets& sets);
 
   // Serves until the runtime closes the doorbell. Returns the exit code of the process: 0, or 1 when the host cannot
   // continue from the kept state.
@@ -46,6 +47,7 @@ class BehaviorServer {
 
  private:
   bool answer();
+  void take_parameters() noexcept;
   void take_orders();
   void tell_status();
   void keep(std::int64_t time_ns);
@@ -55,6 +57,8 @@ class BehaviorServer {
   ScriptHost& host_;
   BehaviorLog& log_;
   SpokenLines& lines_;
+  Catalog& catalog_;
+  ControlSets& sets_;
   CommandSender commands_;
   Snapshot snapshot_;
   ByteWriter kept_;

@@ -235,10 +235,17 @@ void ProcessHost::start() {
   child_ = std::make_unique<Incarnation>(settings_, *kept_);
   phase_ = Phase::starting;
   asked_ = false;
+  for (Foreseen& parameter : foreseen_) parameter.sent = std::numeric_limits<double>::quiet_NaN();
 }
 
 void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
   safe_.emplace(safe, catalog);
+  catalog_ = &catalog;
+  for (const ObjectInfo& object : catalog.objects) {
+    for (const ParameterId id : object.parameters) {
+      if (object.foresight != nullptr) foreseen_.push_back({id, std::numeric_limits<double>::quiet_NaN()});
+    }
+  }
   fingerprint_ = fingerprint_of(catalog);
   const auto refuse = [](const std::string& why) {
     throw InputError({.message = "the behaviors' process did not start: " + why});
@@ -326,11 +333,23 @@ void ProcessHost::put_orders(BehaviorLink::Request& request) noexcept {
   request.order_size = static_cast<std::uint32_t>(size);
 }
 
+// The process reads the robot's files; what was changed since it has to be told.
+void ProcessHost::put_parameters(BehaviorLink::Request& request) noexcept {
+  std::uint32_t count = 0;
+  for (Foreseen& parameter : foreseen_) {
+    const double value = catalog_->parameters.newest(parameter.id);
+    if (value == parameter.sent || count == BehaviorLink::parameters_max) continue;
+    request.parameters[count++] = {parameter.id, parameter.sent = value};
+  }
+  request.parameter_count = count;
+}
+
 void ProcessHost::ask(const Snapshot& snapshot, const CommandSender& commands) noexcept {
   BehaviorLink::Request& request = child_->link.request;
   request.last_sequence = asked_sequence_ = commands.last_sequence();
   request.room = static_cast<std::uint32_t>(std::min(commands.room(), CommandQueue::capacity()));
   put_orders(request);
+  put_parameters(request);
   request.snapshot = snapshot;
   asked_for_ns_ = snapshot.time_ns;
   asked_wall_ns_ = clock_.now_ns();

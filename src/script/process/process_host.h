@@ -154,6 +154,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   void start_when_due() noexcept;
   void look_if_ready() noexcept;
   void put_orders(BehaviorLink::Request& request) noexcept;
+  void put_parameters(BehaviorLink::Request& request) noexcept;
   void ask(const Snapshot& snapshot, const CommandSender& commands) noexcept;
   void wait_for_answer(CommandSender& commands) noexcept;
   bool take_answer(CommandSender& commands) noexcept;
@@ -175,6 +176,12 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   std::vector<std::string> names_;
   std::deque<BehaviorStatus> behaviors_;
   std::deque<std::vector<std::byte>> orders_;
+  const Catalog* catalog_ = nullptr;
+  struct Foreseen {  // a parameter of an object that foresees
+    ParameterId id = 0;
+    double sent = 0;  // NaN: this process has not got it
+  };
+  std::vector<Foreseen> foreseen_;
   std::size_t asked_orders_ = 0;  // the first of them are in the request
   bool stopping_ = false;         // the last order was to stop
   WallClock clock_;

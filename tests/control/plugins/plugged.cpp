@@ -31,5 +31,6 @@ PLUGGED(computed_torque)
 PLUGGED(gravity_compensation)
 PLUGGED(gaze)
 PLUGGED(task_impedance)
+PLUGGED(whole_body)
 
 }  // namespace kadans
