@@ -18,7 +18,7 @@ namespace {
 const fs::path& reference() {
   static const fs::path folder = [] {
     const fs::path made = fresh_folder("reference");
-    const Outcome outcome = run("reference " + made.string(), KADANS_SOURCE_DIR);
+    const Outcome outcome = run("reference " + made.string(), project_copy("reference_project"));
     REQUIRE_MESSAGE(outcome.exit_code == 0, outcome.err);
     return made;
   }();

@@ -3,8 +3,9 @@
 // checked against them. A change that alters behavior on purpose renews the file, and the diff of the file shows which
 // runs it touched. A hash for each second shows at what time a run begins to differ.
 //
-// The hashes hold for all processors of one architecture, and for one build of Bullet, which is named in the file. Another
-// architecture rounds differently and needs a file of its own; another build of Bullet may, and then that is said.
+// The hashes hold for all processors of one architecture, and for one build of Bullet, which is named in the file.
+// Another architecture rounds differently and needs a file of its own; another build of Bullet may, and then that is
+// said.
 #pragma once
 
 #include <cstdint>
