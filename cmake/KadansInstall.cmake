@@ -1,4 +1,5 @@
-# cmake --install installs the program, the headers, the models, behaviors and configurations, and find_package(kadans).
+# cmake --install installs the program with its man pages and completion, the headers, the models, behaviors and
+# configurations, and find_package(kadans).
 # That gives each layer as kadans::<layer>, and all of them but the testing kit as kadans::kadans. The installed tree has
 # no absolute paths, so it may be moved as a whole.
 include(CMakePackageConfigHelpers)
@@ -31,19 +32,20 @@ install(FILES LICENSE third_party_notes.md DESTINATION "${CMAKE_INSTALL_DOCDIR}"
 
 if(TARGET kadans)
   install(TARGETS kadans)
-  # The program itself writes what shells need to complete its command line.
-  foreach(place IN ITEMS "bash|bash-completion/completions/kadans" "zsh|zsh/site-functions/_kadans")
-    string(REPLACE "|" ";" place "${place}")
-    list(GET place 0 shell)
-    list(GET place 1 file)
-    install(CODE "
-      execute_process(COMMAND \"$<TARGET_FILE:kadans>\" completion ${shell} OUTPUT_VARIABLE script RESULT_VARIABLE failed)
-      if(failed)
-        message(WARNING \"no completion for ${shell}: \${failed}\")
-      else()
-        file(WRITE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/${file}\" \"\${script}\")
-      endif()")
-  endforeach()
+  # Man pages, completion, editor stubs and pages of reference: the program itself writes them from its tables. When it was
+  # compiled for another architecture, CMAKE_CROSSCOMPILING_EMULATOR runs it.
+  set(reference "${PROJECT_BINARY_DIR}/reference")
+  file(GLOB robots CONFIGURE_DEPENDS config/*/robot.json)
+  add_custom_command(OUTPUT "${reference}/completion/kadans" "${reference}/stubs/kadans.lua"
+                     COMMAND kadans reference "${reference}"
+                     COMMAND kadans lua-stubs --robot config/tulip/robot.json --output "${reference}/stubs"
+                     WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}" DEPENDS kadans ${robots} VERBATIM
+                     COMMENT "Writing man pages, completion and pages of reference")
+  add_custom_target(kadans_reference ALL DEPENDS "${reference}/completion/kadans" "${reference}/stubs/kadans.lua")
+  install(DIRECTORY "${reference}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" OPTIONAL)
+  install(DIRECTORY "${reference}/stubs" DESTINATION "${CMAKE_INSTALL_DATADIR}/kadans" OPTIONAL)
+  install(FILES "${reference}/completion/kadans" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" OPTIONAL)
+  install(FILES "${reference}/completion/_kadans" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions" OPTIONAL)
   if(TARGET kadans-tune)
     install(TARGETS kadans-tune)
   endif()

@@ -1,4 +1,4 @@
-# kadans_sdk_version(OUT HEADER): defines KADANS_SDK in the file OUT, "kadans 0.1.0, headers 3f2c...": the version, and a hash
+# kadans_sdk_version(OUT HEADER): defines KADANS_SDK in the file OUT, "kadans 0.2.0, headers 3f2c...": the version, and a hash
 # of the header HEADER of include/ with all of ours that it includes. A plug-in and a program of the same hash mean the same
 # by each type that crosses between them (kadans/control/plugin.h).
 function(kadans_sdk_version out header)

@@ -36,6 +36,14 @@ endforeach()
 # Eigen would split large products by the sizes of the caches; so it may not ask for these sizes.
 target_compile_definitions(kadans_flags INTERFACE EIGEN_NO_CPUID)
 target_compile_features(kadans_flags INTERFACE cxx_std_20)
+# On i386 doubles are computed by SSE2, in 64 bits as everywhere, not in the 80 of the x87; src/app/processor_check.cpp says
+# so at the start of the program. Debian's libraries there are compiled without SSE, so Eigen must align as it does in them.
+include(CheckCXXSymbolExists)
+check_cxx_symbol_exists(__i386__ cstddef KADANS_I386)
+if(KADANS_I386)
+  target_compile_options(kadans_flags INTERFACE -msse2 -mfpmath=sse)
+  target_compile_definitions(kadans_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=0)
+endif()
 
 # With a sanitizer's calls in the code, gcc gives false warnings; so there a warning is no error.
 if(KADANS_WERROR AND NOT KADANS_SANITIZE)

@@ -7,10 +7,6 @@ constexpr const char* about =
     "Kadans: a scriptable control runtime for robots.\n"
     "A 1 kHz core executes compiled control objects; behaviors in Lua tell them what to do.\n";
 
-std::vector<const CLI::App*> visible_below(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-}
-
 void add_commands(const CLI::App& app, const std::string& path, std::vector<CommandEntry>& all) {
   for (const CLI::App* command : visible_below(app)) {
     const std::string words = path + (path.empty() ? "" : " ") + command->get_name();
@@ -30,6 +26,10 @@ void add_commands(const CLI::App& app, const std::string& path, std::vector<Comm
 }
 
 }  // namespace
+
+std::vector<const CLI::App*> visible_below(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
 
 CommandLine::CommandLine() : app(about, "kadans") {
   app.require_subcommand(1);
@@ -55,6 +55,7 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_log(app, log);
   add_doctor(app, doctor);
   add_new(app, new_object);
+  add_reference(app, reference);
   add_examples(app);
 }
 

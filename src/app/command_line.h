@@ -39,6 +39,7 @@ struct CommandLine {
   LogOptions log;
   DoctorOptions doctor;
   NewControlObjectOptions new_object;
+  ReferenceOptions reference;
 };
 
 // A command that can be run, not a group of commands.
@@ -47,6 +48,8 @@ struct CommandEntry {
   const CLI::App* command = nullptr;
   std::vector<const CLI::Option*> options;  // without --help; for verbs of `ctl` also the options of `ctl`
 };
+// The commands directly below a group or the program, without hidden ones.
+std::vector<const CLI::App*> visible_below(const CLI::App& app);
 // All commands in the order of the help, without hidden ones.
 std::vector<CommandEntry> commands_of(const CommandLine& line);
 

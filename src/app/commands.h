@@ -21,6 +21,8 @@ class App;
 
 namespace kadans {
 
+struct CommandLine;
+
 struct SimOptions : RunChoices {
   bool json = false;
   bool verbose = false;
@@ -145,6 +147,14 @@ struct NewControlObjectOptions {
 };
 void add_new(CLI::App& app, NewControlObjectOptions& options);
 int run_new_control_object(const NewControlObjectOptions& options);
+
+// The hidden command by which a build writes what is made from the program's own tables: man pages, completion, editor
+// stubs and the pages of reference of the manual.
+struct ReferenceOptions {
+  std::string folder;
+};
+void add_reference(CLI::App& app, ReferenceOptions& options);
+int run_reference(const CommandLine& line, const ReferenceOptions& options);
 
 // `kadans replay`: runs a record again, with the files on the disk or with those inside the record, and compares every
 // recorded signal in every tick, bit for bit. It prints that everything is the same, or where the runs differ and which
@@ -276,6 +286,7 @@ struct CompletionOptions {
   std::string shell;  // "bash" or "zsh"
 };
 void add_completion(CLI::App& app, CompletionOptions& options);
+std::string completion_script(const CLI::App& app, const std::string& shell);
 // Prints the completion script.
 int run_completion(const CLI::App& app, const CompletionOptions& options);
 

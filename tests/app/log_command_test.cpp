@@ -45,7 +45,7 @@ TEST_CASE("log info says what run a record is of, what it holds, how to run it a
   const fs::path folder = records("log_info");
   const Outcome text = run("log info run.mcap", folder);
   CHECK(text.exit_code == 0);
-  for (const char* part : {"config/scenarios/squat_varied.json, seed 4", "tulip", "kadans 0.1.0", "dropped: 0 rows",
+  for (const char* part : {"config/scenarios/squat_varied.json, seed 4", "tulip", "kadans 0.2.0", "dropped: 0 rows",
                            "kadans sim config/scenarios/squat_varied.json --seed 4 --duration 0.5",
                            "0.000 s to 0.499 s", "ends well", "/joint", "kadans_msgs/msg/Joint", "rows         500"})
     CHECK_MESSAGE(has(text.out, part), part << "\n" << text.out);

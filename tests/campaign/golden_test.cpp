@@ -79,6 +79,17 @@ TEST_CASE("Renewing tells what is new, changed and gone, and leaves what failed 
   CHECK(golden.size() == 4);
 }
 
+TEST_CASE("Golden hashes say of which Bullet they are when another one leads elsewhere") {
+  const GoldenFile file;
+  GoldenHashes made(file.path(), "Bullet 3.24 of here");
+  (void)made.take({run("squat", 1, {a, b})}, true);
+  made.write();
+  CHECK(GoldenHashes(file.path(), "Bullet 3.25").difference(run("squat", 1, {a, b})).empty());
+  const std::string other = GoldenHashes(file.path(), "Bullet 3.25").difference(run("squat", 1, {a, c}));
+  CHECK(has(other, "between 1 s and 2 s: the golden hashes are those of Bullet 3.24 of here, this is Bullet 3.25"));
+  CHECK(has(GoldenHashes(file.path(), "Bullet 3.24 of here").difference(run("squat", 1, {a, c})), "--renew-golden"));
+}
+
 TEST_CASE("The golden hashes of another machine, and files that hold none, are refused") {
   const GoldenFile file;
   std::ofstream(file.path()) << R"({"machine": "pdp11", "runs": []})";

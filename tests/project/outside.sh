@@ -56,6 +56,12 @@ EOF
   "$work/moved/bin/kadans" check --plugins "$share/config/tulip/benched.json"
   driven "$work/moved/bin/kadans" run "$share/config/tulip/benched.json" --plant bench --soft --json --no-ctl --duration 1
   "$work/moved/bin/kadans" --version
+  # A robot's file outside of any project belongs to the installed one. Man pages and completion are installed, too.
+  echo '{ "based_on": "config/tulip/robot.json" }' >robot.json
+  "$work/moved/bin/kadans" check robot.json
+  for file in man/man1/kadans.1 man/man1/kadans-sim.1 bash-completion/completions/kadans kadans/stubs/kadans.lua; do
+    [ -s "$work/moved/share/$file" ] || { echo "not installed: $file"; exit 1; }
+  done
   "$work/moved/bin/kadans" check "$share/config/scenarios/squat.json"
   # Too short to squat: 1 says that not all checks passed, which is right.
   "$work/moved/bin/kadans" sim "$share/config/scenarios/squat.json" --duration 0.1 --json || [ $? -eq 1 ]

@@ -203,7 +203,7 @@ KADANS_PLUGIN(kadans::plugin_type<make_@type@>("@type@"))
 inline constexpr std::string_view cmake_template = R"(cmake_minimum_required(VERSION 3.25)
 project(@type@ LANGUAGES CXX)
 if(NOT TARGET kadans::kadans)
-  find_package(kadans 0.1 REQUIRED)
+  find_package(kadans 0.2 REQUIRED)
 endif()
 enable_testing()
 

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/commands.h"
+#include "app/command_line.h"
 #include "remote/order/order.h"
 
 namespace kadans {
@@ -14,8 +14,7 @@ namespace {
 
 std::string subcommands_of(const CLI::App& app) {
   std::string names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names += (names.empty() ? "" : " ") + command->get_name();
+  for (const CLI::App* command : visible_below(app)) names += (names.empty() ? "" : " ") + command->get_name();
   return names;
 }
 
@@ -32,7 +31,7 @@ void add_cases(const CLI::App& app, const std::string& path, bool options, std::
   std::string words = options ? options_of(app) : subcommands_of(app);
   if (options && path.starts_with("ctl ")) words += " --socket --json";  // as for ctl itself, before or after the verb
   if (!words.empty()) text += "    '" + path + "') echo '" + words + "';;\n";
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+  for (const CLI::App* command : visible_below(app))
     add_cases(*command, path + (path.empty() ? "" : " ") + command->get_name(), options, text);
 }
 
@@ -90,10 +89,10 @@ void add_completion(CLI::App& app, CompletionOptions& options) {
   completion->add_option("shell", options.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
 }
 
-int run_completion(const CLI::App& app, const CompletionOptions& options) {
-  const bool bash = options.shell == "bash";
+std::string completion_script(const CLI::App& app, const std::string& shell) {
+  const bool bash = shell == "bash";
   std::string text = bash ? "" : "#compdef kadans\n";
-  text += "# Completion for kadans, made by 'kadans completion " + options.shell + "'.\n";
+  text += "# Completion for kadans, made by 'kadans completion " + shell + "'.\n";
   text += "_kadans_commands() {\n  case $1 in\n";
   add_cases(app, "", false, text);
   text += "  esac\n}\n\n_kadans_options() {\n  case $1 in\n";
@@ -106,7 +105,11 @@ int run_completion(const CLI::App& app, const CompletionOptions& options) {
                  "  local -a typed=(\"${(@)words[2,CURRENT-1]}\")";
   text += walk;
   text += bash ? bash_tail : zsh_tail;
-  std::fputs(text.c_str(), stdout);
+  return text;
+}
+
+int run_completion(const CLI::App& app, const CompletionOptions& options) {
+  std::fputs(completion_script(app, options.shell).c_str(), stdout);
   return 0;
 }
 

@@ -230,6 +230,14 @@ std::vector<InputChange> changed_program(const RunInputs& recorded) {
   return changes;
 }
 
+std::string bullet_build() {
+  constexpr std::size_t digits = 8;
+  for (const auto& [part, id] : program_parts()) {
+    if (part.starts_with("libBulletDynamics")) return part + " " + id.substr(0, digits);
+  }
+  return "no Bullet";
+}
+
 std::string change_text(const std::vector<InputChange>& changes) {
   std::string text;
   for (const InputChange& change : changes) text += (text.empty() ? "" : ", ") + change.what + " " + change.how;

@@ -28,6 +28,8 @@ struct InputChange {
 std::vector<InputChange> changed_files(const RunInputs& recorded, const std::filesystem::path& scenario,
                                        const std::vector<InputFile>& added);
 std::vector<InputChange> changed_program(const RunInputs& recorded);
+// The build of Bullet that this program has loaded: "libBulletDynamics-float64.so.3.24 263ffefc".
+std::string bullet_build();
 // "behaviors/tulip/squat.lua changed, libm.so.6 changed"
 std::string change_text(const std::vector<InputChange>& changes);
 

@@ -327,7 +327,8 @@ int run_test(const TestOptions& options) {
   if (runs.empty() || options.list) return exit_passed;
   refuse_faulty_runs(runs);
   std::unique_ptr<GoldenHashes> golden;
-  if (options.golden || options.renew_golden) golden = std::make_unique<GoldenHashes>(golden_file(folder));
+  if (options.golden || options.renew_golden)
+    golden = std::make_unique<GoldenHashes>(golden_file(folder), bullet_build());
   catch_interrupts();
   if (options.report.wanted()) fs::create_directories(options.report.folder);
   return Suite(options, std::move(runs), golden.get()).run(failed_runs);

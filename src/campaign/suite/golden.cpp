@@ -58,12 +58,13 @@ fs::path golden_file(const fs::path& folder) {
   return whole.parent_path() / (whole.filename().string() + ".golden.json");
 }
 
-GoldenHashes::GoldenHashes(fs::path file) : file_(std::move(file)) {
+GoldenHashes::GoldenHashes(fs::path file, std::string bullet) : file_(std::move(file)), bullet_(std::move(bullet)) {
   if (!fs::exists(file_)) return;
   std::string of;
   try {
     const Json json = parse_foreign_json(read_input_file(file_), file_.string());
     of = json.at("machine");
+    bullet_of_file_ = json.value("bullet", bullet_);
     for (const Json& run : json.at("runs")) runs_.push_back(golden_from(run));
   } catch (const Json::exception& error) {
     throw InputError({.file = file_.string(), .message = std::string("is no list of golden hashes: ") + error.what()});
@@ -88,6 +89,9 @@ std::string GoldenHashes::difference(const RunOutcome& run) const {
   if (known == nullptr) return "no golden hash is known of this run: kadans test --renew-golden takes it";
   const std::string where = parting(*known, golden_of(run));
   if (where.empty()) return {};
+  if (bullet_of_file_ != bullet_)
+    return "its state parts from the golden run's " + where + ": the golden hashes are those of " + bullet_of_file_ +
+           ", this is " + bullet_;
   return "its state parts from the golden run's " + where + "; kadans test --renew-golden takes it when that is meant";
 }
 
@@ -121,7 +125,9 @@ std::vector<std::string> GoldenHashes::take(const std::vector<RunOutcome>& runs,
 }
 
 void GoldenHashes::write() const {
-  std::string text = "{\n  \"machine\": \"" + std::string(machine_name()) + "\",\n  \"runs\": [\n";
+  std::string text = "{\n  \"machine\": \"" + std::string(machine_name()) + "\",\n";
+  if (!bullet_.empty()) text += "  \"bullet\": \"" + bullet_ + "\",\n";
+  text += "  \"runs\": [\n";
   for (const GoldenRun& run : runs_) {
     std::string each_s;
     for (const std::string& hash : run.each_s) each_s += (each_s.empty() ? "" : " ") + hash;

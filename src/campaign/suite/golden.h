@@ -3,8 +3,9 @@
 // checked against them. A change that alters behavior on purpose renews the file, and the diff of the file shows which
 // runs it touched. A hash for each second shows at what time a run begins to differ.
 //
-// The hashes hold for all processors of one architecture. Another architecture rounds differently and needs a file of
-// its own.
+// The hashes hold for all processors of one architecture, and for one build of Bullet, which is named in the file.
+// Another architecture rounds differently and needs a file of its own; another build of Bullet may, and then that is
+// said.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +30,8 @@ std::filesystem::path golden_file(const std::filesystem::path& folder);
 class GoldenHashes {
  public:
   // Reads the file; a file that does not exist is an empty list. Throws InputError for a file that is no list of golden
-  // hashes, or that belongs to another architecture.
-  explicit GoldenHashes(std::filesystem::path file);
+  // hashes, or that belongs to another architecture. `bullet` names the build of Bullet that this program uses.
+  explicit GoldenHashes(std::filesystem::path file, std::string bullet = {});
 
   const std::filesystem::path& file() const noexcept { return file_; }
   // Says where this run differs from the golden run, for a person: "its state parts from the golden run's between 2 s
@@ -48,6 +49,7 @@ class GoldenHashes {
   const GoldenRun* find(const std::string& scenario, std::uint64_t seed) const noexcept;
 
   std::filesystem::path file_;
+  std::string bullet_, bullet_of_file_;
   std::vector<GoldenRun> runs_;  // by scenario and seed
 };
 

@@ -35,6 +35,14 @@ fs::path folder_of(const fs::path& file) {
   return error ? fs::path(".") : whole.lexically_normal().parent_path();
 }
 
+// PREFIX/share/kadans for a program in PREFIX/bin.
+std::optional<fs::path> installed_root() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path folder = program.parent_path().parent_path() / "share/kadans";
+  return !error && is_root(folder) ? std::optional(folder) : std::nullopt;
+}
+
 // The file that stands where `wanted` was looked for and has nearly its name.
 std::string nearest_file(const fs::path& wanted) {
   constexpr std::size_t files_max = 1000;
@@ -57,7 +65,7 @@ fs::path project_root(const fs::path& file) {
   if (!error) {
     if (const auto root = root_above(working)) return *root;
   }
-  return own;
+  return installed_root().value_or(own);
 }
 
 bool lies_in_project_here(const fs::path& file) {

@@ -11,8 +11,9 @@
 namespace kadans {
 
 // The root is the nearest folder above `file` that holds at least two of the folders `config`, `models` and
-// `behaviors`. A file outside any project belongs to the project around the working directory; without one, its own
-// folder is the root.
+// `behaviors`. A file outside any project belongs to the project around the working directory. Without one, it belongs
+// to the project that is installed with this program (PREFIX/share/kadans), such as /etc/kadans/ROBOT/robot.json. Else
+// its own folder is the root.
 std::filesystem::path project_root(const std::filesystem::path& file);
 
 // Whether `file` lies in the project around the working directory, links resolved. A file outside any project does not.

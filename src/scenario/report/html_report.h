@@ -24,7 +24,7 @@ struct ReportPicture {
 
 struct HtmlReport {
   const ReportSubject& subject;
-  std::string scenario, doc, robot, program;  // program: "kadans 0.1.0"
+  std::string scenario, doc, robot, program;  // program: "kadans 0.2.0"
   std::vector<QuantityValue> quantities;      // quantities that were set or drawn for this run
   std::vector<EvidenceTrace> evidence;        // of the checks that failed
   std::string plot;                           // an SVG; "" when there is none ...
