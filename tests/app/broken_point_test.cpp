@@ -32,7 +32,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 63> breakages = {{
+constexpr std::array<Breakage, 65> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -105,6 +105,9 @@ constexpr std::array<Breakage, 63> breakages = {{
     {"whole_body", "behaviors/reaching/reach.lua", "weight = 30", "weight = 0", "stretches the arm, rad"},
     {"whole_body", reaching, "\"*_ankle_pitch.stiffness_Nm_per_rad\": 300", "\"*_ankle_pitch.stiffness_Nm_per_rad\": 1",
      "stays up, lowest height in m"},
+    {"whole_body_anywhere", reaching, "\"*_ankle_pitch.stiffness_Nm_per_rad\": 300",
+     "\"*_ankle_pitch.stiffness_Nm_per_rad\": 1", "stands at the end"},
+    {"whole_body_gaze", "behaviors/looking/watch.lua", "{ 1, 0.6, -0.1 }", "{ 1, 0.3, -0.1 }", "looks left"},
     {"whole_body_switched", reaching, "\"*_ankle_pitch.stiffness_Nm_per_rad\": 300",
      "\"*_ankle_pitch.stiffness_Nm_per_rad\": 10", "no step in torque over 2 % of a limit"},
     {"whole_body_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "stays up, lowest height in m"},

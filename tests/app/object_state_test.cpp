@@ -68,7 +68,7 @@ struct Played {
   }
   // In the run, by somebody. With so little torque the programs of whole_body have no solution any more.
   void tune() {
-    if (const auto id = catalog.parameters.find("it.effort_share")) REQUIRE(catalog.parameters.set(*id, 0.1));
+    if (const auto id = catalog.parameters.find("it.effort_share")) REQUIRE(catalog.parameters.set(*id, 0.02));
     if (const auto id = catalog.parameters.find("it.gain")) REQUIRE(catalog.parameters.set(*id, 0.5));
     object->parameters_changed();
   }

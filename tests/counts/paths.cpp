@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 
+#include "../bench/body_rig.h"
 #include "../bench/chain_rig.h"
 #include "../bench/chart_rig.h"
 #include "../bench/plant/engines.h"
@@ -82,6 +83,20 @@ void newest_values(int calls) {
   for (int i = 0; i < calls; ++i) kadans_newest_write_read(*newest, element);
 }
 
+// The whole body sinks, shifts its weight and leans: of ten ticks of its low level one of its high level, or a
+// question.
+void body_updates(int calls) {
+  BodyRig rig;
+  for (int i = 0; i < calls; ++i) rig.tick();
+}
+
+void body_steps(int calls) { body_updates(calls / ticks_per_behavior_tick); }
+
+void body_questions(int calls) {
+  BodyRig rig;
+  for (int i = 0; i < calls; ++i) rig.foresee();
+}
+
 // Everything at once: the squat, its plant, control objects and behavior.
 void simulated_ms(int calls) {
   const ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json");
@@ -99,6 +114,11 @@ constexpr Path all[] = {
      "btDispatcher*)",
      1000, standing_steps},
     {"behavior_tick", "kadans::Behavior::tick(kadans::Snapshot const&, kadans::CommandSender&)", 500, behavior_ticks},
+    {"whole_body_update", "kadans::WholeBody::update(kadans::Snapshot const&)", 300, body_updates},
+    {"whole_body_step", "kadans::WholeBody::step(kadans::ControlInput const&, kadans::ActuationFrame&)", 1000,
+     body_steps},
+    {"whole_body_foresight", "kadans::BodyReach::miss(kadans::Foresight::Asked const&, kadans::Snapshot const&)", 50,
+     body_questions},
     {"record_tick", "kadans::Recorder::record(unsigned long, long, std::span<double const, 18446744073709551615ul>)",
      500, records},
     {"queue_push_pop", "kadans_queue_push_pop", 1000, queue_elements},

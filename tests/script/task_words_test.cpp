@@ -123,7 +123,7 @@ TEST_CASE("words of tasks become set-points, parameters and contacts, and what i
   Stage stage(in_enter(
       "m.posture:move({ com_m = { 0.1, nil, 0.5 }, foot_left = { position_m = { nil, 0.2 }, roll_rad = 0.3 }, "
       "l_knee = 0.4 }, { time_s = 1.5 })\n"
-      "m.posture:move({ com_m = { 0.1 } }, { time_s = 1, weight = 3, priority = 2, contacts = { 'right' } })"));
+      "m.posture:move({ com_m = { 0.1 } }, { time_s = 1, weight = 3, priority = 2, contacts = { 'left', 'right' } })"));
   const Body body(stage.robot);
   stage.tick();
   CHECK(stage.behavior->error().text() == "");
@@ -138,7 +138,7 @@ TEST_CASE("words of tasks become set-points, parameters and contacts, and what i
   CHECK(parameter_of(stage, "com.weight") == 3);
   CHECK(parameter_of(stage, "com.priority") == 2);
   CHECK(std::isnan(parameter_of(stage, "foot_left.weight")));
-  CHECK(value_of(stage, "contact.left") == 0);
+  CHECK(value_of(stage, "contact.left") == 1);
   CHECK(value_of(stage, "contact.right") == 1);
 }
 
@@ -156,6 +156,37 @@ TEST_CASE("what is out of reach is told with how far it is, and nothing is sent"
   REQUIRE(body.reach.asked.size() == 3);  // the target, and both contacts
   CHECK(body.reach.asked[1].value == 1);
   CHECK(body.reach.asked[2].value == 0);
+}
+
+TEST_CASE("a motion in too short a time is refused with the least time and a sentence, by move and by set") {
+  for (const std::string motion :
+       {"m.posture:move({ com_m = { 0.1 } }, { time_s = %t })", "m.posture:set('com_x_m', 0.1, { time_s = %t })"}) {
+    const auto said = [&](const std::string& time_s) {
+      std::string code = motion;
+      code.replace(code.find("%t"), 2, time_s);
+      Stage stage(in_enter("print(select(2, " + code + "))"));
+      const Body body(stage.robot);
+      stage.tick();
+      CHECK(std::isnan(value_of(stage, "com_x_m")) == (time_s != "1.5"));
+      return stage.said();
+    };
+    CHECK(said("0.4") == "too_quick 1.2 it topples after 0.3 s: give it at least 1.2 s\n");
+    CHECK(said("0.8") == "too_quick 1 l_hip_yaw would be too fast: give it at least 1 s\n");
+    CHECK(said("1.5") == "\n");
+  }
+}
+
+TEST_CASE("to stand on a foot that cannot bear the body is refused with the joint that lacks stiffness, also by set") {
+  for (const char* motion : {"m.posture:move({ com_m = { 0.1 } }, { time_s = 2, contacts = { 'right' } })",
+                             "m.posture:set('contact.left', 0)"}) {
+    Stage stage(in_enter("print(" + std::string(motion) + ")"));
+    const Body body(stage.robot);
+    stage.tick();
+    CHECK(
+        stage.said() ==
+        "nil cannot_stand 44.4 it cannot stand on one foot: l_hip_yaw has no motor, and its spring lacks 44 Nm/rad\n");
+    CHECK(std::isnan(value_of(stage, "contact.left")));
+  }
 }
 
 TEST_CASE("every mistake in the words of tasks is told at its line, and nothing is sent") {

@@ -69,7 +69,8 @@ struct ObjectSetup {
 };
 
 // Says before set-points are sent whether an object can reach them, in the time that is given. Behavior thread, or a
-// process that plays behaviors: there it belongs to an object that never runs. Bounded; it changes nothing of the object.
+// process that plays behaviors: there it belongs to an object that never runs. Bounded; it changes nothing of the
+// object.
 class Foresight {
  public:
   struct Goal {

@@ -29,7 +29,7 @@ struct Setpoint {
   // What it gets when the robot goes to the safe posture of its configuration; NaN: nothing, unless it is a joint's
   // position.
   double safe = std::numeric_limits<double>::quiet_NaN();
-  bool follows = false;       // its object can be led along a motion that the engine plans
+  bool follows = false;  // its object can be led along a motion that the engine plans
 };
 
 // Where a set-point is on its way and how it moves there: in its unit, per s and per s2.

@@ -31,8 +31,7 @@ class BodyGeometry {
   void com_jacobian(BodyModel::Jacobian& jacobian) const noexcept;  // in the rows 0..2
   // The force, and the moment about the task frame's origin, that the ground gives to a floating base that moves like
   // this: generalised velocity and acceleration, as in dynamics.h.
-  Eigen::Vector<double, 6> ground_wrench(const Eigen::VectorXd& velocity,
-                                         const Eigen::VectorXd& acceleration) noexcept;
+  Eigen::Vector<double, 6> ground_wrench(const Eigen::VectorXd& velocity, const Eigen::VectorXd& acceleration) noexcept;
 
  private:
   struct Moving {

@@ -43,10 +43,10 @@ struct BodySettings {
   double toe_m = 0.1, heel_m = 0.1, side_m = 0.05;  // from the foot's frame to the sole's edges
   double sole_m = 0.05;                             // of the foot's frame over the sole
   double edge_m = 0.01;                             // how far the centre of pressure stays from the edges
-  double balance_m = 0.03;  // how far the centre of mass, and the point over which it comes to rest, stay from them
-  double effort_share = 0.9;                        // of the joints' torque limits
-  double velocity_share = 0.8;                      // of their velocity limits
-  double posture_weight = 0.005, posture_per_s = 2;
+  double balance_m = 0.03;      // how far the centre of mass, and the point over which it comes to rest, stay from them
+  double effort_share = 0.9;    // of the joints' torque limits
+  double velocity_share = 0.8;  // of their velocity limits
+  double posture_weight = 1e-3, posture_per_s = 2;
   double passive_Nm_per_rad = 0, passive_Nms_per_rad = 0;  // springs and dampers in joints without motors
 };
 
@@ -59,8 +59,8 @@ struct BodyLayout {
   std::vector<JointAxis> joints;
   std::vector<std::size_t> passive, locked;  // joints of the model: without a motor, or driven by somebody else
   std::vector<BodyTask> tasks;
-  std::vector<std::size_t> feet;      // of tasks, left and right
-  struct Sole {                       // of a foot
+  std::vector<std::size_t> feet;        // of tasks, left and right
+  struct Sole {                         // of a foot
     std::size_t loose = no_body_joint;  // the joint without a motor that is nearest to it, on the way to the base
     bool tilts_forward = false, tilts_sideways = false;  // about this joint, as the foot stands
   };

@@ -14,6 +14,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr double least_acceleration = 1e-5, least_force = 1e-6, least_moment = 1e-4;  // the regularisation
+constexpr double calm_weight = 0.005, calm_per_s = 4;  // joints that no task needs come to rest
 constexpr double passive_weight = 0.05;
 constexpr double hold_per_s = 10;          // how fast a foot that stands goes back to its place
 constexpr double catch_per_s = 8;          // how fast the capture point may approach an edge, per distance
@@ -23,7 +24,7 @@ constexpr double react_s = 0.03;           // in which a joint that is too fast 
 constexpr double braking_rad_s2 = 300;     // the most that limits of speed and position ask for
 constexpr double loose_rad_s = 5;          // the fastest that a joint without a motor under load turns
 constexpr double twist_m = 0.04;           // moment about the vertical per load and friction
-constexpr double least_load_share = 0.4;         // the most that a foot must bear because of a bent joint without a motor
+constexpr double least_load_share = 0.4;   // the most that a foot must bear because of a bent joint without a motor
 constexpr double load_share = 1.5;         // the most that a foot bears, as a share of the weight
 constexpr double least_height_m = 0.05;
 constexpr int tick_iterations_max = 250;
@@ -125,8 +126,8 @@ void BodyProblem::bear(const BodyModel& model, std::size_t foot, const BodyStand
   const double weight_N = body_gravity_m_s2 * model.dynamics().mass_kg();
   const std::size_t loose = layout_->soles[foot].loose;
   const double bent_rad = loose == no_body_joint || stand.share < 1 ? 0 : model.position_rad[loose];
-  add(std::min(bent_load_N(*layout_, s, foot, bent_rad), least_load_share * weight_N), stand.share * load_share * weight_N, z,
-      none);
+  add(std::min(bent_load_N(*layout_, s, foot, bent_rad), least_load_share * weight_N),
+      stand.share * load_share * weight_N, z, none);
   for (const double sign : {-1.0, 1.0}) {
     add(0, QuadraticProgram::unbounded, grip * z + sign * x, none);
     add(0, QuadraticProgram::unbounded, grip * z + sign * y, none);
@@ -154,8 +155,8 @@ void BodyProblem::balance(const BodyModel& model, const BodySettings& s,
     const double speed = out.dot(velocity), caught_m = out.dot(eigen(com)) + speed / rate_per_s;
     const double room_m = edge.distance_m - s.balance_m - caught_m;
     const double most = std::max(catch_per_s * room_m, rate_per_s * (caught_m - edge.distance_m + s.edge_m));
-    program_.add_row(-QuadraticProgram::unbounded, rate_per_s * (most - speed) - out.dot(bias)).head(model.size()) =
-        jacobian_.topRows<3>().transpose() * out;
+    auto normal = program_.add_row(-QuadraticProgram::unbounded, rate_per_s * (most - speed) - out.dot(bias));
+    normal.head(model.size()).noalias() = jacobian_.topRows<3>().transpose() * out;
   }
 }
 
@@ -215,8 +216,8 @@ void BodyProblem::posture(const BodyModel& model, const BodyAim& aim, const Body
     const Index at = model.base_size() + static_cast<Index>(joint);
     const double wanted =
         to.acceleration + 2 * g * (to.velocity - model.velocity[at]) + g * g * (to.value - model.position_rad[joint]);
-    program_.hessian()(at, at) += weight;
-    program_.gradient()[at] -= weight * wanted;
+    program_.hessian()(at, at) += weight + calm_weight;
+    program_.gradient()[at] -= weight * wanted - calm_weight * calm_per_s * model.velocity[at];
   }
 }
 

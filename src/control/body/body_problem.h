@@ -10,8 +10,9 @@
 //              rest, stays over the soles (Pratt et al. 2006, IEEE Humanoids; body_support.h), so that no task topples
 //              it: what is asked for too quickly comes later.
 // Minimised    the squares of what the tasks miss, by weight, in two levels: the second level gets what the first one
-//              leaves (Kanoun, Lamiraux and Wieber 2011, IEEE T-RO 27(4)); the posture; and 1e-5 of the squares of
-//              accelerations and 1e-6 of those of wrenches (1e-4 of moments), which make the problem strictly convex.
+//              leaves (Kanoun, Lamiraux and Wieber 2011, IEEE T-RO 27(4)); the posture, and that joints come to rest;
+//              and 1e-5 of the squares of accelerations and 1e-6 of those of wrenches (1e-4 of moments), which make the
+//              problem strictly convex.
 // Passive      joints follow their springs: what they miss is minimised too, because the foot that bears little tilts
 //              before its spring gives way.
 //
@@ -48,8 +49,8 @@ class BodyProblem {
   explicit BodyProblem(const BodyLayout& layout);
 
   // True: acceleration(), effort_Nm and wrench are new.
-  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks, const BodyPosture& posture,
-                           const std::array<BodyStand, body_feet_max>& feet) noexcept;
+  [[nodiscard]] bool solve(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,
+                           const BodyPosture& posture, const std::array<BodyStand, body_feet_max>& feet) noexcept;
 
   const Eigen::VectorXd& acceleration() const noexcept { return acceleration_; }
   double effort_Nm(std::size_t joint) const noexcept { return effort_Nm_[static_cast<Eigen::Index>(joint)]; }
@@ -77,8 +78,7 @@ class BodyProblem {
                const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void keep_within(Eigen::Index at, double position, double velocity, double lower, double upper,
                    double fastest) noexcept;
-  void limit(const BodyModel& model, const BodySettings& s,
-             const std::array<BodyStand, body_feet_max>& feet) noexcept;
+  void limit(const BodyModel& model, const BodySettings& s, const std::array<BodyStand, body_feet_max>& feet) noexcept;
   void spring(const BodyModel& model, const BodySettings& s) noexcept;
   void posture(const BodyModel& model, const BodyAim& aim, const BodyPosture& posture) noexcept;
   void find_tasks(const BodyModel& model, const BodyAim& aim, const BodyRanks& ranks,

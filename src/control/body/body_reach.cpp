@@ -15,13 +15,13 @@ using Eigen::Vector3d;
 constexpr int settle_steps_max = 8, way_steps = 16, end_steps_max = 6, last_steps_max = 8, reach_iterations_max = 200;
 constexpr double asked_weight = 1, change_weight = 3e-4;
 constexpr double way_weight = 0.03, last_weight = 1e-4;  // of the other tasks: on the way, and to say how far it stays
-constexpr double step_max_rad = 0.4;  // of a joint, in one step
-constexpr double bent_share = 0.33;   // of the weight, that the foot which bears less still bears
-constexpr double back_m = 0.03;       // how far the centre of mass comes back over the soles in one step
-constexpr double still = 5e-4;        // a step after which no other is made
+constexpr double step_max_rad = 0.4;                     // of a joint, in one step
+constexpr double bent_share = 0.33;                      // of the weight, that the foot which bears less still bears
+constexpr double back_m = 0.03;  // how far the centre of mass comes back over the soles in one step
+constexpr double still = 5e-4;   // a step after which no other is made
 constexpr double reached_m = 0.005, reached_rad = 0.01;  // what counts as reached
-constexpr double at_once = 2.4;        // the time in which a task without a motion gets there, times its gain
-constexpr double told_share = 1.02;    // of the least time, so that what is told is enough when it is asked for again
+constexpr double at_once = 2.4;      // the time in which a task without a motion gets there, times its gain
+constexpr double told_share = 1.02;  // of the least time, so that what is told is enough when it is asked for again
 
 }  // namespace
 
@@ -51,7 +51,7 @@ Foresight::Miss BodyReach::miss(const Asked& asked, const Snapshot& snapshot) no
   go(from, to, time_s);
   Miss missed = worst();
   for (int step = 0; step < last_steps_max && missed.why != Why::none && improve(last_weight); ++step) missed = worst();
-  const BodyWay::Time& least = gone_.time();
+  const BodyWay::Time least = gone_.time();
   if (missed.why != Why::none) return missed;
   if (clashing_.found())
     return {.why = Why::clash, .by = clear_share_, .link = clashing_.link, .other = clashing_.other};
@@ -118,8 +118,8 @@ bool BodyReach::ask(std::span<const Goal> goals) noexcept {
   return any;
 }
 
-// On one foot the body is an inverted pendulum over it. A joint without a motor on the way to it must have a spring that
-// is stiffer than gravity is strong.
+// On one foot the body is an inverted pendulum over it. A joint without a motor on the way to it must have a spring
+// that is stiffer than gravity is strong.
 Foresight::Miss BodyReach::bearing() const noexcept {
   std::size_t count = 0, last = 0;
   for (std::size_t i = 0; i < layout_->feet.size(); ++i) {
@@ -140,7 +140,7 @@ bool BodyReach::place(const Snapshot& snapshot) noexcept {
   double sum = 0;
   for (std::size_t i = 0; i < model_.position_rad.size(); ++i)
     sum += model_.position_rad[i] = snapshot.joints.joints[i].position_rad;
-  for (const double part : snapshot.status.base.orientation) sum += part;
+  for (const double part : snapshot.status.base.orientation) sum += layout_->floating ? part : 0;
   if (!std::isfinite(sum)) return false;
   model_.base = body_start(*layout_, settings_, kinematics_, model_.position_rad, snapshot.status.base.orientation);
   present_setpoints(*layout_, settings_, kinematics_, setpoints_);
@@ -243,8 +243,7 @@ Index BodyReach::missing(std::size_t index, Eigen::Vector<double, 6>& way) noexc
     jacobian_.topRows<3>() = jacobian_.bottomRows<3>();
     return 3;
   }
-  Vec3 at =
-      task.kind == BodyTask::Kind::com ? model_.com_m() : transform(link, settings_.tasks[index].point_m);
+  Vec3 at = task.kind == BodyTask::Kind::com ? model_.com_m() : transform(link, settings_.tasks[index].point_m);
   if (task.kind == BodyTask::Kind::foot) at[2] -= settings_.sole_m;
   way.head<3>() = wanted - eigen(at);
   if (!task.has_turn()) return 3;

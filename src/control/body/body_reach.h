@@ -4,8 +4,9 @@
 //
 // From where the robot is, steps of inverse kinematics along the motion, each a quadratic program in changes of
 // position, lead to its end: what the asked tasks miss counts most, all others little. So the way is about that of the
-// body as the tasks lead it (body_leader.h). Links that would hit each other on it are told (body_clash.h). What is still missed after some more steps at the end is told. It is a
-// descent: where there are several ways for a limb, it may miss a pose that another way would reach.
+// body as the tasks lead it (body_leader.h). Links that would hit each other on it are told (body_clash.h). What is
+// still missed after some more steps at the end is told. It is a descent: where there are several ways for a limb, it
+// may miss a pose that another way would reach.
 //
 // Behavior thread, of the runtime or of the process in which behaviors play; know() is called in the control thread.
 // Only the constructor allocates or throws.

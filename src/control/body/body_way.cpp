@@ -11,8 +11,9 @@ namespace {
 using Eigen::Index;
 using Wrench = Eigen::Vector<double, 6>;
 
-constexpr double jump_rad = 0.3;        // of a joint, in 1/16 of the time: in a smooth motion by 2.5 rad no step is as large
-constexpr double jump_steps = 16;
+// A joint that turns by this much in 1/16 of the time, and that much faster than in the mean, jumps. The peak of a
+// minimum-jerk motion is 1.9 times its mean. A step of the longest length is cut off there (body_reach.cpp).
+constexpr double jump_rad = 0.3, jump_steps = 16, jump_per_mean = 2.8, longest_rad = 0.39;
 constexpr double least_room_m = 0.003;  // to an edge at rest: below this no time is long enough
 
 // The square of the time in which `moved` becomes as large as what `rest` leaves.
@@ -46,7 +47,22 @@ void BodyWay::begin(const BodySettings& settings, const BodySupport& support, in
   number_ = 0;
   fails_ = false;
   before_.setZero();
+  joints_ = {};
   result_ = {};
+}
+
+BodyWay::Time BodyWay::time() const noexcept {
+  Time time = result_;
+  for (const JointAxis& axis : layout_->joints) {
+    const Steps& steps = joints_[axis.joint];
+    const double peak_rad = steps.largest_rad * steps_, share = static_cast<double>(steps.at) / steps_;
+    const bool large = peak_rad > jump_rad * jump_steps, sudden = peak_rad > jump_per_mean * steps.sum_rad;
+    if (!(large && sudden) && peak_rad < longest_rad * jump_steps) continue;
+    if (time.jumps != no_body_joint && time.smooth_share <= share) continue;
+    time.jumps = axis.joint;
+    time.smooth_share = share;
+  }
+  return time;
 }
 
 void BodyWay::need(double least_s, std::size_t joint) noexcept {
@@ -59,10 +75,9 @@ void BodyWay::need(double least_s, std::size_t joint) noexcept {
 void BodyWay::add(BodyGeometry& posture, const Eigen::VectorXd& step) noexcept {
   for (const JointAxis& axis : layout_->joints) {
     const double step_rad = std::abs(step[posture.base_size() + static_cast<Index>(axis.joint)]);
-    if (step_rad * steps_ > jump_rad * jump_steps && result_.jumps == no_body_joint) {
-      result_.jumps = axis.joint;
-      result_.smooth_share = static_cast<double>(number_) / steps_;
-    }
+    Steps& steps = joints_[axis.joint];
+    steps.sum_rad += step_rad;
+    if (step_rad > steps.largest_rad) steps = {steps.sum_rad, step_rad, number_};
     need(step_rad * steps_ / (settings_->velocity_share * axis.velocity_max_rad_s), axis.joint);
   }
   if (support_->count > 0) {

@@ -20,7 +20,7 @@ class BodyWay {
     double least_s = 0;                 // for the whole way; 0: any time will do
     double fails_after_s = 0;           // in the time that was asked for, it topples, slips or is too fast from here on
     std::size_t joint = no_body_joint;  // the one that would be too fast: it needs longest
-    std::size_t jumps = no_body_joint;  // the first one that jumps from one posture to the next, as near a stretched limb
+    std::size_t jumps = no_body_joint;  // the one that jumps from one posture to the next, as near a stretched limb
     double smooth_share = 1;            // of the way, until then
   };
   explicit BodyWay(const BodyLayout& layout);
@@ -29,9 +29,13 @@ class BodyWay {
   void begin(const BodySettings& settings, const BodySupport& support, int steps, double time_s) noexcept;
   // The posture number 0, 1, ... and its step to the next one, a generalised velocity times a time.
   void add(BodyGeometry& posture, const Eigen::VectorXd& step) noexcept;
-  const Time& time() const noexcept { return result_; }
+  Time time() const noexcept;
 
  private:
+  struct Steps {  // of a joint, in all
+    double sum_rad = 0, largest_rad = 0;
+    int at = 0;  // the largest
+  };
   void need(double least_s, std::size_t joint) noexcept;
 
   const BodyLayout* layout_;
@@ -41,6 +45,7 @@ class BodyWay {
   int steps_ = 1, number_ = 0;
   double time_s_ = 0;
   bool fails_ = false;
+  std::array<Steps, max_joints> joints_{};
   Time result_;
 };
 

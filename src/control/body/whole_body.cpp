@@ -15,8 +15,8 @@
 //             it stands, its set-points are where it stands.
 //             contact.left and contact.right say whether a foot stands: from 0.5 on. One that shall not stand any more
 //             gives its load to the other one within 0.3 s first.
-//             tasks: 1: the tasks lead; 0: the joints' set-points alone do, from where the joints are led, and balance is
-//             kept. The safe posture sets it. The next motion of a task sets it to 1, with all tasks where they are.
+//             tasks: 1: the tasks lead; 0: the joints' set-points alone do, from where the joints are led, and balance
+//             is kept. The safe posture sets it. The next motion of a task sets it to 1, with all tasks where they are.
 // Parameters  BodySettings, and a JointConfig per joint.
 // Signals     the centre of mass as it is led; each foot's load as it is wanted; a State per joint; iterations, status
 //             (0 solved, 1 infeasible, 2 iterations exhausted, 3 refused) and the count of failures of the program.
@@ -140,7 +140,7 @@ void WholeBody::declare(Declaration& declaration) {
                         &s.effort_share);
   declaration.parameter({"velocity_share", "", 0.05, 1, 0.8, "Share of the velocity limits that it plans with."},
                         &s.velocity_share);
-  declaration.parameter({"posture_weight", "", 1e-5, 100, 0.005, "How much the posture counts beside the tasks."},
+  declaration.parameter({"posture_weight", "", 1e-5, 100, 1e-3, "How much the posture counts beside the tasks."},
                         &s.posture_weight);
   declaration.parameter({"posture_per_s", "1/s", 0, 20, 2, "How fast joints go back to the posture."},
                         &s.posture_per_s);
@@ -268,8 +268,8 @@ bool WholeBody::locate(const ControlInput& input) noexcept {
     aimed_.start_rad[i] = joint.position_rad;
     aimed_.start_rad_s[i] = joint.velocity_rad_s;
   }
-  if (!is_finite(input.status.base.orientation)) return false;
-  aimed_.base = input.status.base.orientation;
+  if (layout_.floating && !is_finite(input.status.base.orientation)) return false;
+  aimed_.base = layout_.floating ? input.status.base.orientation : Quat{1, 0, 0, 0};
   (void)body_start(layout_, aimed_.settings, start_, {aimed_.start_rad.data(), count}, aimed_.base);
   present_setpoints(layout_, aimed_.settings, start_, aimed_.setpoints);
   for (std::size_t i = 0; i < parts_.size(); ++i)
@@ -375,7 +375,8 @@ void WholeBody::update(const Snapshot& snapshot) {
 
 void WholeBody::pass_state(StateBytes& bytes) noexcept {
   for (Part& part : parts_) bytes(part.state, part.takeover);
-  bytes(aimed_.activation, aimed_.base, aimed_.start_rad, aimed_.start_rad_s, aimed_.setpoints, aimed_.alone, aimed_.engaged);
+  bytes(aimed_.activation, aimed_.base, aimed_.start_rad, aimed_.start_rad_s, aimed_.setpoints, aimed_.alone,
+        aimed_.engaged);
   bytes(located_, shown_);
   bytes.newest(lead_);
   leader_.pass_state(bytes);

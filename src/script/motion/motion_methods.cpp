@@ -100,8 +100,12 @@ int push_miss(lua_State* state, const ObjectInfo& object, const Foresight::Miss&
                            : miss.why == Why::clash ? "in_the_way"
                            : miss.why == Why::jump  ? "no_smooth_way"
                                                     : "too_quick";
-  const auto joint = [&](std::size_t i) { return catalog.model != nullptr ? catalog.model->joints[i].name.c_str() : "a joint"; };
-  const auto link = [&](std::size_t i) { return catalog.model != nullptr ? catalog.model->links[i].name.c_str() : "a link"; };
+  const auto joint = [&](std::size_t i) {
+    return catalog.model != nullptr ? catalog.model->joints[i].name.c_str() : "a joint";
+  };
+  const auto link = [&](std::size_t i) {
+    return catalog.model != nullptr ? catalog.model->links[i].name.c_str() : "a link";
+  };
   lua_pushnil(state);
   lua_pushstring(state, word);
   lua_pushnumber(state, miss.by);
@@ -112,8 +116,8 @@ int push_miss(lua_State* state, const ObjectInfo& object, const Foresight::Miss&
   if (miss.why == Why::jump) lua_pushfstring(state, "%s would jump on the way", joint(miss.joint));
   if (miss.why == Why::clash) lua_pushfstring(state, "%s would hit %s", link(miss.link), link(miss.other));
   if (miss.why == Why::bear)
-    lua_pushfstring(state, "it cannot stand on one foot: %s has no motor, and its spring lacks %d Nm/rad", joint(miss.joint),
-                    static_cast<int>(std::lround(miss.by)));
+    lua_pushfstring(state, "it cannot stand on one foot: %s has no motor, and its spring lacks %d Nm/rad",
+                    joint(miss.joint), static_cast<int>(std::lround(miss.by)));
   if (miss.why != Why::reach) return 4;
   for (const SetpointId id : object.setpoints) {
     const Setpoint& setpoint = catalog.setpoints[id];
@@ -147,8 +151,8 @@ int foresee(lua_State* state, const ObjectInfo& object, const MotionTargets& tar
   return miss.why == Foresight::Why::none ? 0 : push_miss(state, object, miss);
 }
 
-// object:move(pose, { time_s = }) -> motion | nil, "queue_full" | nil, why, number, words (foresee). The pose is a name, a
-// table joint = rad, or a table of tasks (task_targets.h).
+// object:move(pose, { time_s = }) -> motion | nil, "queue_full" | nil, why, number, words (foresee). The pose is a
+// name, a table joint = rad, or a table of tasks (task_targets.h).
 int move(lua_State* state) {
   std::uint32_t number = 0;
   const ObjectInfo& object = check_object(state, number);

@@ -110,8 +110,7 @@ void BehaviorServer::take_parameters() noexcept {
   const std::size_t count = std::min<std::size_t>(link_.request.parameter_count, BehaviorLink::parameters_max);
   for (std::size_t i = 0; i < count; ++i) {
     const BehaviorLink::ParameterValue& given = link_.request.parameters[i];
-    if (catalog_.parameters.set(given.id, given.value))
-      changed |= ObjectMask{1} << catalog_.parameters.owner(given.id);
+    if (catalog_.parameters.set(given.id, given.value)) changed |= ObjectMask{1} << catalog_.parameters.owner(given.id);
   }
   for (std::uint32_t i = 0; i < catalog_.objects.size(); ++i) {
     if ((changed >> i & 1U) != 0) sets_.object(i).parameters_changed();
