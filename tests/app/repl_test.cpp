@@ -65,7 +65,7 @@ TEST_CASE("repl plays lists, pauses and resumes, a wrong list changes nothing") 
 
 TEST_CASE("repl without a scenario takes the project's only robot") {
   const auto project = project_copy("repl_robot");
-  for (const char* other : {"head", "jiwiy", "hanging", "reaching"})
+  for (const char* other : {"head", "jiwiy", "hanging", "reaching", "looking"})
     std::filesystem::remove_all(project / "config" / other);
   write(project / "lines.txt", "s.joints.l_knee ~= nil\n:status\n");
   const Outcome outcome = run("repl <lines.txt", project);
