@@ -16,7 +16,7 @@ TEST_CASE("Percentiles are within a bucket of the exact ones") {
 }
 
 TEST_CASE("Durations that are alike have that duration as every percentile") {
-  for (const std::int64_t ns : {0L, 1L, 63L, 64L, 65L, 1234L, 1000000L, 123456789012L}) {
+  for (const std::int64_t ns : std::initializer_list<std::int64_t>{0, 1, 63, 64, 65, 1234, 1000000, 123456789012}) {
     TickStatistics statistics;
     for (int i = 0; i < 7; ++i) statistics.add(ns);
     CHECK(statistics.percentile_ns(0.01) == static_cast<double>(ns));
