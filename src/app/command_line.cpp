@@ -49,6 +49,8 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_plant(app, plant);
   add_jitter(app, jitter);
   add_ctl(app, ctl);
+  add_push(app, push);
+  add_receive(app, receive);
   add_completion(app, completion);
   add_view(app, view);
   add_render(app, render);

@@ -33,6 +33,8 @@ struct CommandLine {
   PlantOptions plant;
   JitterOptions jitter;
   CtlOptions ctl;
+  PushOptions push;
+  ReceiveOptions receive;
   CompletionOptions completion;
   ViewOptions view;
   RenderOptions render;

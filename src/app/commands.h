@@ -271,7 +271,9 @@ int run_params(const ParamsOptions& options);
 
 // `kadans ctl`: talks to a running instance.
 struct CtlOptions {
-  std::string socket;  // "": the usual places
+  std::string socket;              // "": the usual places
+  std::string host;                // "": this computer
+  std::vector<std::string> words;  // of the whole command line
   bool json = false;
   bool names = false;                                                               // list only the names
   std::optional<long> count;                                                        // of samples; nullopt: until Ctrl-C
@@ -281,6 +283,25 @@ struct CtlOptions {
 void add_ctl(CLI::App& app, CtlOptions& options);
 // After parsing. Returns the program's exit code.
 int run_ctl(const CLI::App& app, const CtlOptions& options);
+
+// `kadans push`: brings a robot's files to its computer.
+struct PushOptions {
+  std::string host;
+  std::string robot;           // its configuration; "": the only one of the project
+  std::string folder, socket;  // on the other computer; "": the usual ones
+  bool undo = false, tested = false, check = false;
+};
+void add_push(CLI::App& app, PushOptions& options);
+int run_push(const PushOptions& options);
+
+// `kadans receive`: what `push` starts there.
+struct ReceiveOptions {
+  std::string robot;  // its name
+  std::string folder, socket;
+  bool undo = false, check = false;
+};
+void add_receive(CLI::App& app, ReceiveOptions& options);
+int run_receive(const ReceiveOptions& options);
 
 struct CompletionOptions {
   std::string shell;  // "bash" or "zsh"

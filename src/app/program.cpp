@@ -48,8 +48,15 @@ void add_run(CLI::App& app, RunOptions& options) {
   run->add_option("--duration", options.duration_s, "Seconds to run (default: until SIGINT or SIGTERM)")
       ->type_name("S")
       ->check(number_within(0.001, 1e9));
-  run->add_option("--record", options.record, "Write a record to this file (default: none)")->type_name("FILE");
+  run->add_option("--record", options.record,
+                  "Write a record to this file, or to numbered files in this folder (default: none)")
+      ->type_name("FILE|FOLDER/");
   add_record_options(*run, options.recording);
+  run->add_option("--records-max", options.recording.folder_MB,
+                  "Room for numbered records and those of the flight recorder; the oldest go (default: the robot's "
+                  "record.folder_MB; 0: no bound)")
+      ->type_name("MB")
+      ->check(number_within(0.0, 1e7));
   run->add_option("--seed", options.seed, "Seed of a model's random numbers (default: 1)")
       ->type_name("N")
       ->check(any_seed());
@@ -121,7 +128,10 @@ std::string unknown_option(const CLI::App& command, int argc, char** argv) {
 // The hint for a wrong word such as "kadans smi" or "kadans ctl stauts".
 std::string hint(const CLI::App& app, int argc, char** argv, const std::string& before = {}) {
   int at = 1;
-  while (at < argc && argv[at][0] == '-') at += std::string_view(argv[at]) == "--socket" ? 2 : 1;
+  while (at < argc && argv[at][0] == '-') {
+    const std::string_view word = argv[at];
+    at += word == "--socket" || word == "--host" ? 2 : 1;
+  }
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (at < argc && command->get_name() == argv[at])
@@ -153,7 +163,12 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("behavior-process")) return run_behavior_process(line.behavior_process);
   if (app.got_subcommand("plant")) return run_plant(line.plant);
   if (app.got_subcommand("jitter")) return run_jitter(line.jitter);
-  if (app.got_subcommand("ctl")) return run_ctl(app, line.ctl);
+  if (app.got_subcommand("ctl")) {
+    line.ctl.words.assign(argv + 1, argv + argc);
+    return run_ctl(app, line.ctl);
+  }
+  if (app.got_subcommand("push")) return run_push(line.push);
+  if (app.got_subcommand("receive")) return run_receive(line.receive);
   if (app.got_subcommand("completion")) return run_completion(app, line.completion);
   if (app.got_subcommand("view")) return run_view(line.view);
   if (app.got_subcommand("render")) return run_render(line.render);

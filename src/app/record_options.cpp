@@ -32,6 +32,8 @@ RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, b
   plan.settings.parameters = &catalog.parameters;
   plan.flight = {.kept_s = options.flight_s.value_or(flies ? config.flight_s : 0),
                  .bytes = static_cast<std::size_t>(config.flight_MB * 1e6)};
+  plan.file_bytes = static_cast<std::uint64_t>(config.file_MB * 1e6);
+  plan.folder_bytes = static_cast<std::uint64_t>(options.folder_MB.value_or(config.folder_MB) * 1e6);
   return plan;
 }
 

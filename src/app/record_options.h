@@ -14,8 +14,9 @@ class App;
 namespace kadans {
 
 struct RecordOptions {
-  std::string signals;             // "joint.*, base.*@100"; "": those of the robot's configuration
-  std::optional<double> flight_s;  // time span that the flight recorder keeps
+  std::string signals;              // "joint.*, base.*@100"; "": those of the robot's configuration
+  std::optional<double> flight_s;   // time span that the flight recorder keeps
+  std::optional<double> folder_MB;  // room for the records that nobody named
 };
 void add_record_options(CLI::App& command, RecordOptions& options);
 

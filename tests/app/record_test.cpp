@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -144,4 +145,43 @@ TEST_CASE("A record does not take what is printed when the standard output is cl
       "cd '" + project.string() + "' && exec '" KADANS_BINARY_DIR "/kadans' " + squat + " --json <&- >&- 2>&-";
   CHECK(WEXITSTATUS(std::system(command.c_str())) == 2);
   CHECK(topics_of(project / "run.mcap")["/joint"] == 1200);
+}
+
+TEST_CASE("Records in a folder are numbered, go on in new files, and take no more room than they may") {
+  const fs::path project = project_copy("record_folder");
+  REQUIRE(edit(project / "config/tulip/robot.json", "\"urdf\"", "\"record\": {\"file_MB\": 0.5}, \"urdf\""));
+  const std::string live =
+      "run config/tulip/robot.json --threads-on-virtual-time --play squat --duration 5 --record kept/";
+  const auto bytes_of = [](const fs::path& folder) {
+    std::uintmax_t bytes = 0;
+    for (const auto& entry : fs::directory_iterator(folder)) bytes += entry.file_size();
+    return bytes;
+  };
+  const auto numbers_in = [](const fs::path& folder) {
+    std::set<int> numbers;
+    for (const auto& entry : fs::directory_iterator(folder))
+      numbers.insert(std::stoi(entry.path().filename().string().substr(6, 4)));
+    return numbers;
+  };
+  REQUIRE(run(live, project).exit_code == 0);
+  const auto first = numbers_in(project / "kept");
+  CHECK(first.size() >= 2);
+  CHECK(*first.begin() == 1);
+  for (const auto& entry : fs::directory_iterator(project / "kept")) {
+    auto topics = topics_of(entry.path());
+    CHECK(topics["/joint"] > 0);
+    CHECK(topics["/robot_description"] == 1);
+  }
+  const std::uintmax_t without_bound = bytes_of(project / "kept");
+  CHECK(without_bound > 1'200'000);
+  REQUIRE(run(live + " --records-max 1", project).exit_code == 0);
+  const auto second = numbers_in(project / "kept");
+  CHECK(*second.begin() > *first.begin());
+  CHECK(*second.rbegin() > *first.rbegin());
+  CHECK(bytes_of(project / "kept") < 1'000'000 + 250'000);
+  // A folder that is there is one without a slash, too; a name is a name.
+  REQUIRE(
+      run("run config/tulip/robot.json --threads-on-virtual-time --duration 0.5 --record kept", project).exit_code ==
+      0);
+  CHECK(*numbers_in(project / "kept").rbegin() > *second.rbegin());
 }

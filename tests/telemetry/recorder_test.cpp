@@ -330,3 +330,31 @@ TEST_CASE("Recorder tells all parameters at the start, then each change") {
   CHECK(told[1].time_ns == 50 * ms);
   CHECK(told[1].payload.find(R"("parameters":[{"name":"knee.kp","value":55.0}])") != std::string::npos);
 }
+
+TEST_CASE("A record goes on in another file without losing a row, and each file is whole") {
+  const SignalTable table = small_table();
+  const ScratchFile one, other;
+  const std::string first = one.path(), second = other.path();
+  Recorder recorder(table, {.standstill_ticks = 1, .subjects = {}});
+  REQUIRE(recorder.open(first));
+  std::array<double, 3> row{};
+  const auto record = [&](std::uint64_t from, std::uint64_t to) {
+    for (std::uint64_t tick = from; tick < to; ++tick) {
+      row.fill(static_cast<double>(tick));
+      recorder.record(tick, static_cast<std::int64_t>(tick) * ms, row);
+    }
+  };
+  record(0, 100);
+  REQUIRE(recorder.go_on_in(second));
+  record(100, 150);
+  REQUIRE(recorder.close());
+  std::vector<std::uint32_t> ticks;
+  for (const std::string& file : {first, second}) {
+    for (const Entry& entry : entries_of(file)) {
+      if (entry.topic == "/base") ticks.push_back(entry.sequence);
+    }
+  }
+  REQUIRE(ticks.size() == 150);
+  for (std::uint32_t i = 0; i < 150; ++i) CHECK(ticks[i] == i);
+  CHECK(count(entries_of(first), "/base") == 100);
+}

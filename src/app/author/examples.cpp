@@ -91,7 +91,12 @@ constexpr Examples all_examples[] = {
     {"ctl",
      "  kadans ctl status\n"
      "  kadans ctl watch joint.l_knee.position_rad safety.level\n"
-     "  kadans ctl set posture.l_knee.kp_Nm_per_rad 250\n"},
+     "  kadans ctl set posture.l_knee.kp_Nm_per_rad 250\n"
+     "  kadans ctl --host kadans@robot.local status\n"},
+    {"push",
+     "  kadans push kadans@robot.local config/tulip/robot.json\n"
+     "  kadans push kadans@robot.local --tested          in a project of one robot\n"
+     "  kadans push kadans@robot.local --undo\n"},
     {"ctl drive", "  kadans ctl drive enable\n"},
     {"ctl fault", "  kadans ctl fault list\n"},
     {"ctl record", "  kadans ctl record start walk.mcap\n"},

@@ -14,6 +14,7 @@
 #include "app/commands.h"
 #include "app/line_editor.h"
 #include "app/option_checks.h"
+#include "app/push/remote_host.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
@@ -409,6 +410,8 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
   ctl->add_option("--socket", options.socket,
                   "Folder of the instance's sockets, or one socket (default: see docs/ctl.md)")
       ->type_name("PATH");
+  ctl->add_option("--host", options.host, "Another computer, reached over ssh, as ssh takes it: kadans@robot.local")
+      ->type_name("HOST");
   ctl->add_flag("--json", options.json, "Print the answer as JSON; samples as one object a line");
   for (const OrderInfo& order : order_table::orders) {
     if (order.words[0] != '\0') add(*ctl, order, options);
@@ -423,7 +426,22 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
   ctl->footer("Exit codes: 0 done, 1 refused, 2 wrong usage or no instance. docs/ctl.md tells of roles and sockets.");
 }
 
+namespace {
+
+// The words of the command line without --host and its value.
+std::vector<std::string> without_host(std::vector<std::string> words) {
+  const auto found = std::ranges::find_if(
+      words, [](const std::string& word) { return word == "--host" || word.starts_with("--host="); });
+  if (found == words.end()) return words;
+  const bool two = *found == "--host" && std::next(found) != words.end();
+  words.erase(found, found + (two ? 2 : 1));
+  return words;
+}
+
+}  // namespace
+
 int run_ctl(const CLI::App& app, const CtlOptions& options) {
+  if (!options.host.empty()) return RemoteHost(options.host).run(without_host(options.words), STDIN_FILENO, true);
   const CLI::App* ctl = app.get_subcommand("ctl");
   if (ctl->got_subcommand(console)) return talk_to_console(options);
   for (const OrderInfo& order : order_table::orders) {

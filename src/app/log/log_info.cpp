@@ -136,7 +136,7 @@ void print_topics(const RecordOutline& record) {
   std::printf("  sizes of topics are those before compression\n");
 }
 
-void print_text(const RecordOutline& record) {
+void print_outline(const RecordOutline& record) {
   std::printf("%s\n", record.file.c_str());
   line("run", run_text(record));
   line("robot", record.robot());
@@ -162,7 +162,7 @@ void print_text(const RecordOutline& record) {
 
 int log_info(const LogOptions& options) {
   const RecordOutline record = outline_of(options.file);
-  options.json ? print_json(record) : print_text(record);
+  options.json ? print_json(record) : print_outline(record);
   return exit_passed;
 }
 

@@ -25,6 +25,7 @@
 #include "behavior_process.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/play_item.h"
+#include "disk_thread.h"
 #include "engine/behavior_engine.h"
 #include "engine/behavior_log.h"
 #include "engine/tick/control_engine.h"
@@ -126,9 +127,24 @@ constexpr std::size_t kept_lines = 1000;
 constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, service_ns = 5'000'000'000,
                        record_ns = 10'000'000'000, standing_ns = 2'000'000'000;
 
+// "FOLDER/", or a folder that is there: numbered records in it.
+bool names_a_folder(const std::string& record) {
+  std::error_code none;
+  return record.ends_with('/') || (!record.empty() && std::filesystem::is_directory(record, none));
+}
+
+// Throws InputError when it has to be made and cannot be.
+std::filesystem::path folder_of_records(const std::string& record) {
+  namespace fs = std::filesystem;
+  if (!names_a_folder(record)) return (fs::current_path() / record).parent_path();
+  std::error_code error;
+  fs::create_directories(record, error);
+  if (error) throw InputError({.file = record, .message = "cannot be made: " + error.message()});
+  return fs::canonical(record);
+}
+
 Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const Assembly& assembly) {
   namespace fs = std::filesystem;
-  const fs::path record(options.record);
   const RobotConfig& robot = assembly.robot();
   return {.name = robot.name,
           .mode = options.virtual_time ? "run on virtual time" : "run",
@@ -136,7 +152,7 @@ Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenar
           .configuration = fs::absolute(robot.file).lexically_normal(),
           .root = project_root(scenario.file),
           .folders = folders_of(scenario),
-          .records = fs::absolute(record.has_parent_path() ? record.parent_path() : fs::current_path()),
+          .records = folder_of_records(options.record),
           .control_period_s = robot.engine.control_period_s,
           .behavior_period_s = robot.engine.behavior_period_s,
           .subjects = viewer_subjects(assembly)};
@@ -225,7 +241,7 @@ class WallClockRun {
     plan.fault_state = &assembly_.control().fault_state();
     record_side_.record_as(std::move(plan));
     record_side_.begin();
-    if (!options_.record.empty()) record_side_.start(options_.record);
+    if (!options_.record.empty()) record_side_.start(names_a_folder(options_.record) ? "" : options_.record);
     const bool may_record = flies || !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() ||
                             options_.ros2.commands;
     const RunTiming timing = timing_of(options_, assembly_.robot().engine);
@@ -237,6 +253,7 @@ class WallClockRun {
                        {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()},
                        interrupted);
     if (!threads.start(print_error)) return end_before_start(threads, last_resort);
+    if (may_record && !timing.virtual_time) disk_.start();
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     live_.start({{"Control tick: late", &threads.control().statistics().lateness},
                  {"Control tick: takes", &control_.tick_cost()},
@@ -298,6 +315,7 @@ class WallClockRun {
       failed_ = true;
       print_error("the record is not complete: " + record_side_.error());
     }
+    disk_.stop();
     tell_flights(record_side_.status());
     return hanging;
   }
@@ -442,6 +460,7 @@ class WallClockRun {
   LiveService live_{options_.live, instance_, assembly_};
   Ros2Service ros2_{options_.ros2, instance_, assembly_, nullptr,
                     options_.virtual_time ? -1 : timing_of(options_, assembly_.robot().engine).cpu};
+  DiskThread disk_{record_side_};
   ControlTask control_{parts_.control, truth_.get()};
   BehaviorTask behaviors_{parts_.behaviors, &behavior_side_};
   double left_at_s_ = 0;

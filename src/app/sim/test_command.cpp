@@ -18,6 +18,7 @@
 #include "app/commands.h"
 #include "app/line_editor.h"
 #include "app/option_checks.h"
+#include "app/push/tested_contents.h"
 #include "app/sweep/sweep_run.h"
 #include "app/terminal.h"
 #include "campaign/suite/golden.h"
@@ -289,6 +290,21 @@ class Suite final : public JobWatcher {
 
 }  // namespace
 
+namespace {
+
+// The configurations of all robots in these scenarios.
+std::vector<fs::path> robots_of(const std::vector<FoundScenario>& scenarios) {
+  std::set<fs::path> robots;
+  for (const FoundScenario& found : scenarios) {
+    const ScenarioConfig scenario = read_scenario_config(found.file);
+    robots.insert(scenario.robot);
+    for (const ScenarioConfig& other : scenario.robots) robots.insert(other.robot);
+  }
+  return {robots.begin(), robots.end()};
+}
+
+}  // namespace
+
 void add_test(CLI::App& app, TestOptions& options) {
   CLI::App* test = app.add_subcommand("test", "Run scenarios in parallel, and report which failed and why");
   test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
@@ -331,7 +347,13 @@ int run_test(const TestOptions& options) {
     golden = std::make_unique<GoldenHashes>(golden_file(folder), bullet_build());
   catch_interrupts();
   if (options.report.wanted()) fs::create_directories(options.report.folder);
-  return Suite(options, std::move(runs), golden.get()).run(failed_runs);
+  const bool whole = options.selectors.empty() && !options.rerun_failed && options.folder.empty();
+  const std::vector<fs::path> robots = whole ? robots_of(scenarios) : std::vector<fs::path>();
+  const std::vector<std::string> contents = TestedContents::hashes_of(robots);
+  const int code = Suite(options, std::move(runs), golden.get()).run(failed_runs);
+  // Whoever changes a file meanwhile has tested neither the one nor the other.
+  if (code == exit_passed && TestedContents::hashes_of(robots) == contents) TestedContents(root).keep(contents);
+  return code;
 }
 
 }  // namespace kadans

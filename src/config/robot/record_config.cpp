@@ -66,6 +66,11 @@ void record_fields(Fields& f, RecordConfig& record) {
            "time that `kadans run` keeps in memory and writes when a fault latches; 0: none");
   f.number("flight_MB", record.flight_MB, {1, 1000, "MB"},
            "memory for it; if that does not suffice, a shorter time is kept");
+  f.number("file_MB", record.file_MB, {0, 100'000, "MB"},
+           "size at which a record that nobody named (--record FOLDER/) goes on in a new file; 0: never");
+  f.number("folder_MB", record.folder_MB, {0, 1e7, "MB"},
+           "room in a folder for the records of this robot that nobody named, those of the flight recorder among them; "
+           "the oldest go; 0: no bound");
 }
 
 SignalChoice parse_signal_choice(const std::string& text, const std::string& option) {

@@ -29,6 +29,8 @@ struct RecordConfig {
   bool single_precision = false;
   double flight_s = 30;  // time span that the flight recorder keeps; 0: no flight recorder
   double flight_MB = 8;  // memory for that span, compressed
+  double file_MB = 100;  // at which a record that nobody named goes on in a new file; 0: never
+  double folder_MB = 0;  // of all such records of the robot in a folder, the oldest go; 0: no bound
 };
 
 void record_fields(Fields& f, RecordConfig& record);

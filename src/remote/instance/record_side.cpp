@@ -1,7 +1,6 @@
 #include "record_side.h"
 
 #include <algorithm>
-#include <ctime>
 
 #include "kadans/signal/input_error.h"
 
@@ -12,17 +11,17 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t timing_period_ns = 1'000'000'000;
 
-// "tulip_20261121_181500.mcap", in universal time.
-std::string dated(const std::string& robot, const char* suffix) {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "_%Y%m%d_%H%M%S", &parts);
-  return robot + text + suffix + ".mcap";
-}
+constexpr std::int64_t bounds_period_ns = 1'000'000'000;
+constexpr std::int64_t between_files_ns = 10'000'000'000;  // a disk that fails gets no new file each second
 
 }  // namespace
+
+void RecordSide::record_as(RecordPlan plan) {
+  plan_ = std::move(plan);
+  constexpr std::uint64_t files_min = 4;  // so that what was just recorded does not go
+  if (plan_.folder_bytes > 0) plan_.file_bytes = std::min(plan_.file_bytes, plan_.folder_bytes / files_min);
+  folder_ = RecordFolder(instance_.facts().records, instance_.facts().name, plan_.folder_bytes);
+}
 
 void RecordSide::make_recorder() {
   if (recorder_) return;
@@ -45,9 +44,12 @@ void RecordSide::describe(RecordWriter& record, std::int64_t time_ns) const {
 
 void RecordSide::start(const std::string& file) {
   make_recorder();
-  if (!recorder_->open(file)) throw InputError({.message = recorder_->error()});
+  unnamed_ = file.empty();
+  if (unnamed_) (void)folder_.make_room(plan_.file_bytes, {});
+  const std::string whole = unnamed_ ? folder_.next("").string() : file;
+  if (!recorder_->open(whole)) throw InputError({.message = recorder_->error()});
   describe(recorder_->file(), time_ns_);
-  file_ = file;
+  file_ = whole;
   events_.store(&recorder_->events(), std::memory_order_release);
   control_.record_to(recorder_.get());
   publish();
@@ -65,9 +67,10 @@ bool RecordSide::stop() {
     control_.record_to(nullptr);
     events_.store(nullptr, std::memory_order_release);
   }
-  const bool whole = recorder_->close();
+  const bool whole = recorder_->close() && lost_.empty();
   publish();
   file_.clear();
+  unnamed_ = false;
   return whole;
 }
 
@@ -83,8 +86,33 @@ bool RecordSide::end() {
 
 std::string RecordSide::error() const {
   if (!recorder_) return "";
+  if (!lost_.empty()) return lost_;
   const bool of_flight = recorder_->error().empty() && recorder_->flight() != nullptr;
   return of_flight ? recorder_->flight()->error() : recorder_->error();
+}
+
+// Once a second: the open record does not become too large, nor all of them together.
+void RecordSide::keep_bounds() {
+  if (time_ns_ < bounds_kept_ns_ + bounds_period_ns) return;
+  bounds_kept_ns_ = time_ns_;
+  const bool open = !file_.empty() && !others_;
+  if (open && unnamed_) {
+    const bool failed = !recorder_->error().empty() && time_ns_ >= went_on_ns_ + between_files_ns;
+    const bool full = recorder_->error().empty() && plan_.file_bytes > 0 && recorder_->file_bytes() >= plan_.file_bytes;
+    if (failed || full) go_on_in_next();
+  }
+  const FlightRecorder* const flight = recorder_ ? recorder_->flight() : nullptr;
+  (void)folder_.make_room(0, {fs::path(file_), flight != nullptr ? fs::path(flight->file()) : fs::path()});
+}
+
+void RecordSide::go_on_in_next() {
+  went_on_ns_ = time_ns_;
+  (void)folder_.make_room(plan_.file_bytes, {fs::path(file_)});
+  if (lost_.empty()) lost_ = recorder_->error();
+  const std::string next = folder_.next("").string();
+  if (!recorder_->go_on_in(next)) return;  // told at the end, and tried again
+  describe(recorder_->file(), time_ns_);
+  file_ = next;
 }
 
 bool RecordSide::beat(const Beat& beat) {
@@ -94,6 +122,7 @@ bool RecordSide::beat(const Beat& beat) {
   if (recorder_ && (open || recorder_->flight() != nullptr)) (void)recorder_->drain();
   if (open) tell_timing();
   hand_over(false);
+  keep_bounds();
   for (const auto& port : instance_.ports()) {
     while (std::unique_ptr<OrderCase> order = port->records_.take()) {
       try {
@@ -120,8 +149,7 @@ void RecordSide::hand_over(bool at_once) {
   if (flight == nullptr) return;
   if (ending_.load(std::memory_order_relaxed)) flight->watch_no_more();
   if (!flight->due(at_once)) return;
-  const fs::path file = instance_.facts().records / dated(instance_.facts().name, "_flight");
-  fly(file);
+  fly(folder_.next("_flight"));
 }
 
 void RecordSide::fly(const fs::path& file) {
@@ -135,9 +163,8 @@ void RecordSide::carry_out(OrderCase& order) {
   Answer& answer = order.answer;
   if (order.order.kind == Order::Kind::record_start) {
     if (!file_.empty()) throw InputError({.message = "a record goes on already: " + file_});
-    const fs::path file = file_for(order.order.text, "");
-    start(file.string());
-    answer.text = file.string();
+    start(order.order.text.empty() ? "" : file_for(order.order.text, "").string());
+    answer.text = file_;
     answer.done = true;
     return;
   }
@@ -158,7 +185,8 @@ void RecordSide::carry_out(OrderCase& order) {
 }
 
 fs::path RecordSide::file_for(const std::string& name, const char* suffix) const {
-  const fs::path file = name.empty() ? dated(instance_.facts().name, suffix) : name;
+  if (name.empty()) return folder_.next(suffix);
+  const fs::path file = name;
   if (file.has_parent_path() || file.extension() != ".mcap" || file.stem().empty())
     throw InputError({.message = "a record's name ends with .mcap and names no folder; records lie in " +
                                  instance_.facts().records.string()});

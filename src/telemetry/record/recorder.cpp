@@ -24,12 +24,17 @@ Recorder::Recorder(const SignalTable& signals, const RecorderSettings& settings,
 bool Recorder::open(const std::string& path) {
   if (opened_) {
     (void)drain();
-    file_ = std::make_unique<RecordWriter>(signals_, settings_);
-    rows_ = lost_ = 0;
-    dropped_.store(0, std::memory_order_relaxed);
-    reported_drops_ = dropped_events();
+    return open_new(path);
   }
   opened_ = true;
+  return file_->open(path);
+}
+
+bool Recorder::open_new(const std::string& path) {
+  file_ = std::make_unique<RecordWriter>(signals_, settings_);
+  rows_ = lost_ = 0;
+  dropped_.store(0, std::memory_order_relaxed);
+  reported_drops_ = dropped_events();
   return file_->open(path);
 }
 
@@ -106,14 +111,24 @@ void Recorder::report_drops() {
   reported_drops_ = drops;
 }
 
-bool Recorder::close() {
+// With what the recorder knows of the file.
+void Recorder::complete() {
   (void)drain();
-  if (is_open() && error().empty()) {
-    (void)file_->describe("recorder", {{"rows", std::to_string(rows_)},
-                                       {"dropped_rows", std::to_string(dropped())},
-                                       {"dropped_events", std::to_string(dropped_events())}});
-  }
+  if (!is_open() || !error().empty()) return;
+  (void)file_->describe("recorder", {{"rows", std::to_string(rows_)},
+                                     {"dropped_rows", std::to_string(dropped())},
+                                     {"dropped_events", std::to_string(dropped_events())}});
+}
+
+bool Recorder::close() {
+  complete();
   return file_->close();
+}
+
+bool Recorder::go_on_in(const std::string& path) {
+  complete();
+  (void)file_->close();
+  return open_new(path);
 }
 
 }  // namespace kadans

@@ -36,6 +36,9 @@ class Recorder final : public RecordSink {
 
   // Replaces an existing file. False: error() says why. After close() another file may be opened.
   [[nodiscard]] bool open(const std::string& path);
+  // Completes the open file, whole or failed, and opens another in which the following rows go on: none is lost between
+  // the two. Other threads may record meanwhile. False: error() says why.
+  [[nodiscard]] bool go_on_in(const std::string& path);
   // The file, for its descriptions: after open().
   RecordWriter& file() noexcept { return *file_; }
   // Has an effect only while a file is open.
@@ -67,6 +70,8 @@ class Recorder final : public RecordSink {
   static constexpr std::size_t head_size = 2;  // tick and time, bit for bit
   static constexpr std::int64_t end_of_time_ns = std::numeric_limits<std::int64_t>::max();
 
+  void complete();
+  bool open_new(const std::string& path);
   void take_row();
   void take_events(std::int64_t until_ns);
   void take_faults();
