@@ -50,7 +50,7 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->check(number_within(0.001, 1e9));
   run->add_option("--record", options.record,
                   "Write a record to this file, or to numbered files in this folder (default: none)")
-      ->type_name("FILE|FOLDER/");
+      ->type_name("PATH");
   add_record_options(*run, options.recording);
   run->add_option("--records-max", options.recording.folder_MB,
                   "Room for numbered records and those of the flight recorder; the oldest go (default: the robot's "
