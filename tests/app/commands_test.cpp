@@ -49,11 +49,35 @@ const std::map<std::string, NumberType> number_types{{"N", {{"1"}, {"1.5", "1e3"
                                                      {"HZ", {{"50"}, {"-1"}}},
                                                      {"US", {{"50"}, {"-1"}}},
                                                      {"MB", {{"50"}, {"-1"}}}};
-const std::set<std::string> word_types{
-    "FILE",   "KIND",   "FOLDER",      "DIR",           "PATH",       "TEXT",       "LIST",
-    "PLAN",   "NAME",   "SIGNAL",      "TOPIC",         "OTHER",      "GROUP",      "IP",
-    "BRANCH", "S=FILE", "NAME=NUMBER", "SET",           "WxH",        "HOST:PORT",  "TAG",
-    "DATA",   "JOINTS", "TYPE",        "PATH|TAG|NAME", "PART/PARTS", "LINK=X,Y,Z", "PATTERN[@HZ],..."};
+const std::set<std::string> word_types{"FILE",
+                                       "KIND",
+                                       "FOLDER",
+                                       "DIR",
+                                       "PATH",
+                                       "TEXT",
+                                       "LIST",
+                                       "PLAN",
+                                       "NAME",
+                                       "SIGNAL",
+                                       "TOPIC",
+                                       "OTHER",
+                                       "GROUP",
+                                       "IP",
+                                       "BRANCH",
+                                       "S=FILE",
+                                       "NAME=NUMBER",
+                                       "SET",
+                                       "WxH",
+                                       "HOST",
+                                       "HOST:PORT",
+                                       "TAG",
+                                       "DATA",
+                                       "JOINTS",
+                                       "TYPE",
+                                       "PATH|TAG|NAME",
+                                       "PART/PARTS",
+                                       "LINK=X,Y,Z",
+                                       "PATTERN[@HZ],..."};
 
 std::string type_of(const CLI::Option& option) {
   std::string type = option.get_type_name();
