@@ -146,6 +146,7 @@ TEST_CASE("A wrong recording is refused with its line") {
 
 TEST_CASE("A recording whose times cannot be counted in nanoseconds is refused") {
   CHECK(refusal("E: 9500000000 0003 0000 1\n").find("it:1:1: must be") == 0);
+  if (sizeof(input_event::time.tv_sec) < sizeof(std::int64_t)) return;  // all that fit in can be counted
   CHECK(refusal(bytes_of({raw(EV_SYN, SYN_REPORT, 0), raw(EV_SYN, SYN_REPORT, 0, INT64_MAX)})) ==
         "it: event 2 has a time that none can have");
   CHECK(refusal(bytes_of({raw(EV_SYN, SYN_REPORT, 0, INT64_MIN)})) == "it: event 1 has a time that none can have");

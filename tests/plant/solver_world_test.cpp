@@ -49,5 +49,5 @@ TEST_CASE("A box slides against another and both come to rest the same with both
   const Apart apart = most_apart(pair, 500);
   CHECK(pair.tree.truth().objects[0].pose.position_m[0] < 0.595);
   CHECK(apart.robot_m < 1e-6);
-  CHECK(apart.objects_m < 1e-4);
+  CHECK(apart.objects_m < 2e-4);
 }

@@ -56,6 +56,6 @@ TEST_CASE("Where memory may not be locked none is, so that threads can be starte
   CHECK(locked_and_a_thread_started(rlim_t{4} << 20U) == 1);  // less than the program
   const int without_threads = locked_and_a_thread_started(rlim_t{64} << 20U);
   CHECK((without_threads == 1 || without_threads == 3));
-  const int with_threads = locked_and_a_thread_started(rlim_t{4} << 30U);
+  const int with_threads = locked_and_a_thread_started(rlim_t{3} << 30U);
   CHECK((with_threads == 0 || with_threads == 3));
 }

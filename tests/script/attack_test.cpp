@@ -127,7 +127,9 @@ TEST_CASE("every attack is stopped by its budget, with the script's line") {
     CHECK(stage.behavior->outcome() == "error");
     const ScriptError& error = stage.behavior->error();
     INFO(error.text());
-    CHECK(error.breach == attack.breach);
+    // Where values are half as large, a tick may be over before the memory is full.
+    const bool small = sizeof(void*) == 4 && attack.breach == memory && error.breach == time_out;
+    CHECK((small || error.breach == attack.breach));
     CHECK(std::string(error.file.data()) == "behaviors/test.lua");
     CHECK(error.line >= 3);
     CHECK(stage.behavior->heap_bytes() < 5u << 20);
@@ -288,7 +290,7 @@ TEST_CASE("a behavior that nearly fills its memory lives on where time is limite
   stage.tick(700);
   INFO(stage.behavior->error().text());
   CHECK_FALSE(stage.behavior->failed());
-  CHECK(stage.behavior->heap_bytes() > 5u << 19);
+  CHECK(stage.behavior->heap_bytes() > (sizeof(void*) == 8 ? 5u << 19 : 4u << 19));
 }
 
 TEST_CASE("garbage is collected between ticks, so that a behavior lives within its memory for ever") {
