@@ -76,4 +76,6 @@ TEST_CASE("The oldest records go until the rest fits, and nothing else goes") {
   CHECK(records.make_room(400, {open}) == 1);  // the open one stays, even when nothing fits
   CHECK(fs::exists(open));
   CHECK_FALSE(fs::exists(first));
+  CHECK(records.make_room(400, {}) == 0);  // the next number follows from it
+  CHECK(records.next("").filename().string().starts_with("tulip_0005_"));
 }

@@ -74,7 +74,7 @@ std::size_t RecordFolder::make_room(std::uint64_t more_bytes, std::initializer_l
   for (const Own& record : all) bytes += record.bytes;
   std::size_t removed = 0;
   for (const Own& record : all) {
-    if (bytes <= bytes_max_) break;
+    if (bytes <= bytes_max_ || &record == &all.back()) break;
     std::error_code error;
     if (std::ranges::find(kept, record.file) != kept.end() || !fs::remove(record.file, error) || error) continue;
     bytes -= record.bytes;

@@ -25,7 +25,8 @@ class RecordFolder {
   const std::filesystem::path& folder() const noexcept { return folder_; }
   // A file that is not there yet, with the number after the highest one. `suffix`: "" or "_flight".
   std::filesystem::path next(std::string_view suffix) const;
-  // Removes the oldest records until those that are left, and `more_bytes`, fit in. Files in `kept` stay, and count.
+  // Removes the oldest records until those that are left, and `more_bytes`, fit in. Files in `kept` stay, and count; so
+  // does the newest record, from whose number the next one follows.
   // Returns how many were removed.
   std::size_t make_room(std::uint64_t more_bytes, std::initializer_list<std::filesystem::path> kept) const;
 
