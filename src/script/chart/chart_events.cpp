@@ -11,6 +11,7 @@
 #include "chart_reports.h"
 #include "config/scenario/event_text.h"
 #include "script/bindings/bindings.h"
+#include "script/check/foreign_words.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/handle.h"
 #include "script/sandbox/sandbox.h"
@@ -39,6 +40,10 @@ const char* text_at(lua_State* state, int index, std::size_t most, const char* w
 bool read_type(lua_State* state, int index, Field& field, const ScriptPlace& place) {
   if (lua_type(state, index) == LUA_TSTRING) {
     field.unit = text_at(state, index, unit_max, field.name.c_str(), place);
+    const std::string_view type = foreign_type(field.unit);
+    if (!type.empty())
+      raise_at(state, place, field.name.c_str(), "field '%s': '%s' is no unit: write %s", field.name.c_str(),
+               field.unit.c_str(), type.data());
     return true;
   }
   const auto* type = static_cast<const Field::Type*>(to_handle(state, index, type_key));

@@ -378,7 +378,10 @@ void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, 
     const std::string told =
         end ? "nothing in '" + (source.name.empty() ? chart.name : source.name) + "' ends with '" + event + "'"
             : std::string(pattern ? "nobody emits an event like '" : "nobody emits the event '") + event + "' here";
-    problems.push_back({source.chunk, transition.line, 0, told + hint_text(event, {ends.begin(), ends.end()})});
+    problems.push_back({source.chunk, transition.line, 0,
+                        told + (event.find_first_of(", |") == std::string::npos
+                                    ? hint_text(event, {ends.begin(), ends.end()})
+                                    : std::string(": several are a list: on = { \"a\", \"b\" }"))});
   }
 }
 

@@ -268,8 +268,8 @@ class SourceCheck final : public SourceListener {
                          const KnownNames::Shape& at) const {
     const std::string& name = use.meaning.path[field];
     const bool object = shown == "s" && machine_.fields.contains(name) && arguments_.object(name) != nullptr;
-    const std::string_view swapped = object ? order_hint : swapped_hint(shown, name);
-    return swapped.empty() ? hint_text(name, at.names()) : std::string(swapped);
+    const std::string_view foreign = object ? order_hint : foreign_field_hint(shown, name);
+    return foreign.empty() ? hint_text(name, at.names()) : std::string(foreign);
   }
 
   // Each field on the way must be there; the ones before `written` were looked at where they were named.
@@ -295,7 +295,9 @@ class SourceCheck final : public SourceListener {
     if (machine_.open) return;
     if (path.empty()) {
       if (!use.method.empty() && !machine_.fields.contains(use.method)) {
-        problem(use.line, "m has no '" + use.method + "'" + hint_text(use.method, machine_.names()));
+        const std::string_view foreign = foreign_field_hint("m", use.method);
+        const std::string hint = foreign.empty() ? hint_text(use.method, machine_.names()) : std::string(foreign);
+        problem(use.line, "m has no '" + use.method + "'" + hint);
       }
       if (use.method == "emit") event(tokens, use.arguments);
       return;

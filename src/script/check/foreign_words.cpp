@@ -45,7 +45,11 @@ const ForeignName foreign_names[] = {
     {{"P", "params"}, ": write local P = k.params { ... } at the top"},
     {{"state", "behavior", "final", "parallel", "region", "history", "call", "pose"}, ": write it with k., as k.state"},
     {{"joints", "base", "feet", "safety", "joystick", "support"}, ": it is a field of s: s.base"},
-    {{"vars", "args", "time_s", "emit"}, ": it is a field of m: m.vars"},
+    {{"vars"}, ": it is a field of m: m.vars"},
+    {{"args", "arg"}, ": the arguments are a field of m: m.args"},
+    {{"time_s"}, ": it is a field of m: m.time_s"},
+    {{"emit", "send", "publish"}, ": write m:emit(\"name\")"},
+    {{"event"}, ": it is a field of s: s.event"},
 };
 
 struct ForeignKey {
@@ -69,6 +73,38 @@ const ForeignKey foreign_keys[] = {
     {{"result", "outcome_name", "status"}, "outcome"},
     {{"data", "variables", "locals", "datamodel"}, "vars"},
     {{"set", "controllers", "control_set"}, "controls"},
+    {{"values", "choices", "options", "enum", "allowed"}, "one_of"},
+    {{"arguments", "parameters", "params"}, "args"},
+};
+
+struct ForeignField {
+  std::string_view owner;
+  std::initializer_list<std::string_view> names;
+  std::string_view hint;
+};
+
+const ForeignField foreign_fields[] = {
+    {"m", {"event"}, ": it is a field of s: s.event"},
+    {"m", {"call", "play", "start"}, ": a state calls a behavior: k.call \"name\" { ... } in its table"},
+    {"m",
+     {"wait_for", "wait_event", "on_event"},
+     ": a transition waits for an event: { on = \"name\", to = \"state\" }"},
+    {"m", {"send", "publish", "raise", "fire", "trigger"}, ", did you mean 'emit'?"},
+    {"m", {"final", "finish", "done", "stop"}, ": a behavior ends in a state: { to = \"over\" } and k.final \"over\""},
+    {"kadans", {"emit", "send", "publish"}, ": write m:emit(\"name\")"},
+    {"s.event", {"result"}, ": it is a field of the event's data: s.event.data.result"},
+    {"s.event", {"outcome"}, ": the outcome is the event's name: { on = \"done\" }, s.event.name"},
+};
+
+struct ForeignType {
+  std::initializer_list<std::string_view> names;
+  std::string_view here;
+};
+
+const ForeignType foreign_types[] = {
+    {{"bool", "boolean", "flag"}, "k.flag"},
+    {{"string", "text", "str"}, "k.text"},
+    {{"number", "int", "integer", "float", "double"}, "its unit, \"\" for none"},
 };
 
 constexpr std::string_view list_keys[] = {"states", "transitions", "children", "substates", "regions",
@@ -117,10 +153,24 @@ std::string_view unquoted_value_key(std::string_view line, std::string_view name
   return {};
 }
 
-std::string_view swapped_hint(std::string_view owner, std::string_view field) noexcept {
+std::string_view foreign_transition(std::string_view key) noexcept {
+  const bool event = key == "on_done" || key == "on_error" || key == "on_refused" || key == "on_event" || key == "on";
+  return event ? std::string_view(": a transition is a table of its own: { on = \"event\", to = \"state\" }")
+               : std::string_view{};
+}
+
+std::string_view foreign_type(std::string_view unit) noexcept {
+  const auto found = entry_of(foreign_types, unit);
+  return found == std::end(foreign_types) ? std::string_view{} : found->here;
+}
+
+std::string_view foreign_field_hint(std::string_view owner, std::string_view field) noexcept {
   const bool swapped = (owner == "s" && std::ranges::find(of_machine, field) != std::end(of_machine)) ||
                        (owner == "m" && std::ranges::find(of_snapshot, field) != std::end(of_snapshot));
-  return swapped ? order_hint : std::string_view{};
+  if (swapped) return order_hint;
+  for (const ForeignField& one : foreign_fields)
+    if (one.owner == owner && std::ranges::find(one.names, field) != one.names.end()) return one.hint;
+  return {};
 }
 
 }  // namespace kadans

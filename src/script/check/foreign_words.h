@@ -18,8 +18,16 @@ bool names_a_list(std::string_view key) noexcept;
 // The key before a name that stands in the line without its quotes, "to" of `{ after = 1, to = stand }`; "" for none.
 std::string_view unquoted_value_key(std::string_view line, std::string_view name) noexcept;
 
-// Names of `m` that are read from `s`, or the other way round: the arguments stand in the wrong order. "" for none.
-std::string_view swapped_hint(std::string_view owner, std::string_view field) noexcept;
+// How the message about an unknown field of `m`, `s`, `s.event` or `kadans` goes on: names of `m` that are read from
+// `s`, or the other way round, stand in the wrong order; others are found elsewhere. "" for none.
+std::string_view foreign_field_hint(std::string_view owner, std::string_view field) noexcept;
+
+// How the message about a key that stands for a whole transition goes on: `on_done = ...`; "" for none.
+std::string_view foreign_transition(std::string_view key) noexcept;
+
+// What is written for a type of another language where a field of an event has its unit: "k.flag" for "bool"; "" for
+// none.
+std::string_view foreign_type(std::string_view unit) noexcept;
 inline constexpr std::string_view order_hint =
     "; the order is (m, s) in enter, exit, during, run and action, and (s, m) in when";
 

@@ -123,6 +123,11 @@ void check_keys(lua_State* state, int table, const ScriptPlace& place, const cha
   const std::string_view here = foreign_key(wrong);
   if (!here.empty() && is_among(here.data(), names))
     raise_at(state, place, wrong, "%s has no key '%s', did you mean '%s'?", what, wrong, here.data());
+  const std::string_view transition = foreign_transition(wrong);
+  if (!transition.empty() && (is_among("enter", names) || is_among("on", names)))
+    raise_at(state, place, wrong, "%s has no key '%s'%s", what, wrong, transition.data());
+  if (std::strcmp(wrong, "default") == 0 && is_among("min", names))
+    raise_at(state, place, wrong, "%s has no key 'default': it stands first: { 1, min = 0 }", what);
   const Hint hint = make_hint(state, wrong, [&](auto& known) {
     for (const char* const* name = names; *name != nullptr; ++name) known.emplace_back(*name);
   });

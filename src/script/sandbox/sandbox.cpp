@@ -154,7 +154,7 @@ int raise_unknown_field(lua_State* state, const char* name, int content, int key
   char shown[160];
   const char* text = lua_tostring(state, -1);
   std::snprintf(shown, sizeof shown, "%s", text != nullptr ? text : luaL_typename(state, key));
-  const std::string_view foreign = *name == '\0' ? foreign_name_hint(shown) : swapped_hint(name, shown);
+  const std::string_view foreign = *name == '\0' ? foreign_name_hint(shown) : foreign_field_hint(name, shown);
   if (*name == '\0') {
     const ScriptPlace place = calling_place(state);
     core_of(state).budget.charge(state, core_of(state).owner->search_instructions(place.chunk));
