@@ -200,15 +200,15 @@ fs::path robot_of_behavior(const fs::path& behavior) {
                     .message = "no robot goes with it: there is no " + own.string() + "; name one with --robot FILE"});
 }
 
-fs::path only_robot(const fs::path& folder) {
+fs::path only_robot(const fs::path& folder, const std::string& named) {
   const fs::path configs = project_root(folder / "x") / "config";
   const std::vector<fs::path> robots = robots_in(configs);
   if (robots.size() == 1) return robots.front();
   std::string names;
   for (const fs::path& robot : robots) names += (names.empty() ? ": " : ", ") + fs::proximate(robot).string();
   throw InputError({.file = configs.string(),
-                    .message = robots.empty() ? "there is no robot.json in its folders; name one with --robot FILE"
-                                              : "there are several robots, name one with --robot" + names});
+                    .message = robots.empty() ? "there is no robot.json in its folders; name one: " + named
+                                              : "there are several robots, name one: " + named + names});
 }
 
 std::unique_ptr<TestStage> IdealStages::make(const fs::path& behavior, const std::string& robot) {

@@ -12,7 +12,7 @@ namespace kadans {
 std::filesystem::path robot_of_behavior(const std::filesystem::path& behavior);
 // The only robot of the project around this folder. Throws InputError that lists the robots when there is not exactly
 // one.
-std::filesystem::path only_robot(const std::filesystem::path& folder);
+std::filesystem::path only_robot(const std::filesystem::path& folder, const std::string& named = "--robot FILE");
 
 class IdealStages final : public TestStages {
  public:

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "app/author/behavior_stage.h"
 #include "app/author/file_checks.h"
 #include "app/commands.h"
 #include "app/terminal.h"
@@ -37,24 +38,6 @@ constexpr const char* state_folder = "/var/lib/kadans";
 constexpr const char* delivered_folder = "robot";
 constexpr std::uint64_t incoming_max_bytes = std::uint64_t{128} << 20U;
 constexpr int answer_patience_ms = 15'000;
-
-// The configuration in the project around the working directory, when there is one alone.
-fs::path only_robot() {
-  const fs::path config = project_root(fs::current_path() / "kadans") / "config";
-  std::vector<fs::path> robots;
-  std::error_code none;
-  for (fs::directory_iterator i(config, none), end; !none && i != end; i.increment(none)) {
-    if (fs::exists(i->path() / "robot.json")) robots.push_back(i->path() / "robot.json");
-  }
-  if (robots.size() == 1) return robots.front();
-  std::string names;
-  std::ranges::sort(robots);
-  for (const fs::path& robot : robots) names += (names.empty() ? "" : ", ") + robot.parent_path().filename().string();
-  throw InputError({.file = config.string(),
-                    .message = robots.empty() ? "holds no robot; name its configuration: kadans push HOST FILE"
-                                              : "holds " + names + "; name one: kadans push HOST config/" +
-                                                    robots.front().parent_path().filename().string() + "/robot.json"});
-}
 
 std::vector<std::string> words_for_there(const PushOptions& options, const std::string& robot) {
   std::vector<std::string> words{"receive", robot};
@@ -117,7 +100,8 @@ void add_push(CLI::App& app, PushOptions& options) {
 
 int run_push(const PushOptions& options) {
   const RemoteHost host(options.host);
-  const fs::path robot = options.robot.empty() ? only_robot() : fs::path(options.robot);
+  const fs::path robot =
+      options.robot.empty() ? only_robot(fs::current_path(), "kadans push HOST FILE") : fs::path(options.robot);
   if (options.undo) {
     const MemoryFile nothing;
     return host.run(words_for_there(options, read_robot_config(robot, {}).name), nothing.descriptor(), false);
