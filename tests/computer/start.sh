@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# The image starts, waits for a robot, and drives the one that it is told about, also after the next power-on. Memory and
+# times are printed.
+source "$(dirname "$0")/machine.sh"
+
+used_MB() { guest free -m | awk '/^Mem:/ {print $3}'; }
+
+machine_new 600
+machine_start
+console_says "waits for a robot"
+say "it waits for a robot $(since) s after power-on"
+machine_answers
+console_has "has grown by" || fail "the data partition has not grown"
+failed=$(guest systemctl --failed --no-legend --plain)
+[ -z "$failed" ] || fail "units that failed: $failed"
+idle=$(used_MB)
+guest findmnt -n -o OPTIONS / | grep -q "upperdir" || fail "the root is not an overlay in memory"
+[ "$(guest uname -v | grep -c PREEMPT_RT)" = 1 ] || fail "the kernel is not PREEMPT_RT"
+guest "ssh -o BatchMode=yes -o StrictHostKeyChecking=no -o PreferredAuthentications=password root@localhost true" 2>/dev/null &&
+  fail "a password lets in"
+
+say "kadans doctor there:"
+guest kadans doctor || true
+
+robot_is tulip --plant ideal --sleep-only --live --live-address 0.0.0.0
+console_says "tulip is driven"
+driven=$(used_MB)
+say "$idle MB of memory are in use without a robot, $driven MB with the runtime idle"
+[ "$driven" -lt 90 ] || fail "the runtime takes more than 90 MB"
+
+guest sync
+machine_off
+machine_start
+console_says "tulip is driven"
+all=$(since)
+machine_answers
+within 60 eval '[ "$(state_of tulip)" = active ]' || fail "the robot is not driven"
+ticked=$(guest systemctl show -P ActiveEnterTimestampMonotonic kadans@tulip)
+say "the first tick comes $((ticked / 1000000)) s after the kernel's start, $all s after power-on"
+"$kadans" ctl --host robot status || fail "ctl --host does not work"
+[ "$(guest systemctl show -P NRestarts kadans@tulip)" = 0 ] || fail "the runtime was restarted"
+say "ok"
