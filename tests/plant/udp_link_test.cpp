@@ -162,6 +162,28 @@ TEST_CASE("Without actuation the plant damps its joints, follows again when ther
   CHECK_FALSE(ends.server.session().left);
 }
 
+TEST_CASE("In step with its peer the plant lets time pass with the peer's ticks, and waits for them") {
+  Ends ends;
+  CHECK(ends.server.step_with_peer());
+  ends.connect();
+  ends.tick(10);
+  for (int i = 0; i < 50; ++i) ends.tick(10);
+  CHECK(ends.sensors.time_ns == 50 * ms);
+  for (int i = 0; i < 3000; ++i) CHECK(ends.server.beat(ends.model, 1));  // a peer that stands still for 3 s
+  CHECK_FALSE(ends.server.released());
+  ends.wire.step();
+  ends.plant.read(ends.sensors);
+  const std::int64_t before_ns = ends.sensors.time_ns;
+  CHECK(before_ns <= 51 * ms);
+  ends.tick(10);
+  ends.tick(10);
+  CHECK(ends.sensors.time_ns - before_ns <= 2 * ms);
+  CHECK(ends.server.session().releases == 0);
+  int beats = 0;
+  while (beats < 100'000 && ends.server.beat(ends.model, 1)) ++beats;
+  CHECK(beats == 60'000 - 1);
+}
+
 TEST_CASE("A plant that is told goodbye ends the session and takes the next peer") {
   Ends ends;
   ends.connect();

@@ -72,7 +72,7 @@ int WebClient::upgrade(std::string_view target, std::string_view host, std::stri
 
 bool WebClient::say(std::string_view payload, bool binary) {
   std::string frame(1, static_cast<char>(binary ? 0x82 : 0x81));
-  const std::size_t size = payload.size();
+  const std::uint64_t size = payload.size();
   const int bytes = size < 126 ? 0 : size < 65536 ? 2 : 8;
   frame += static_cast<char>(0x80U | (bytes == 0 ? size : bytes == 2 ? 126U : 127U));
   for (int i = bytes - 1; i >= 0; --i) frame += static_cast<char>(size >> (8U * static_cast<unsigned>(i)));

@@ -47,7 +47,10 @@ class ServeTask final : public Task {
 
 class PlantService {
  public:
-  explicit PlantService(const PlantOptions& options) : options_(options), robot_(read_robot(options.robot)) {}
+  explicit PlantService(const PlantOptions& options) : options_(options), robot_(read_robot(options.robot)) {
+    if (options.in_step && !emulator_->step_with_peer())
+      throw InputError({.message = "--in-step: the protocol '" + options.as + "' does not count the peer's ticks"});
+  }
 
   int run() {
     lock_program(true);
@@ -161,6 +164,8 @@ void add_plant(CLI::App& app, PlantOptions& options) {
       ->type_name("N")
       ->check(any_seed());
   plant->add_flag("--once", options.once, "End with the first session");
+  plant->add_flag("--in-step", options.in_step,
+                  "Let time pass with the peer's ticks, not with the clock: for a peer that is emulated or debugged");
   plant->add_flag("--soft", options.soft, "Run even without the rights that real time needs");
   plant->add_option("--cpu", options.cpu, "CPU of the model's thread (default: an isolated one, else the last)")
       ->type_name("N")

@@ -20,7 +20,7 @@ void PlantServer::begin(std::uint64_t session, const PeerAddress& from) noexcept
   in_session_ = true;
   peer_ = from;
   session_number_ = session;
-  sent_ = newest_actuation_ = 0;
+  sent_ = newest_actuation_ = stepped_ = 0;
   silent_ns_ = 0;
   driven_ = released_ = false;
   actuation_ = {};
@@ -101,21 +101,31 @@ const ActuationFrame& PlantServer::damping(const PlantTruth& truth) noexcept {
   return damping_;
 }
 
+// How many of the periods pass for the world. In step, what the peer is ahead by more than that is lost.
+std::uint32_t PlantServer::due(std::uint32_t periods) noexcept {
+  if (!driven_) return 0;
+  if (!in_step_) return periods;
+  const std::uint64_t ahead = newest_actuation_ - std::exchange(stepped_, newest_actuation_);
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(ahead, std::max(periods, in_step_ahead_max)));
+}
+
 bool PlantServer::beat(World& world, std::uint32_t periods) {
   WorldRobot& robot = world.robot(0);
   answered_stranger_ = false;
   take_all();
   if (session_.left) return false;
-  const bool released =
-      driven_ && static_cast<double>(silent_ns_) > 1e9 * settings_.watchdog_s;  // and again one that is driven
+  const double patience_s = in_step_ ? in_step_timeout_s : settings_.watchdog_s;
+  const bool released = driven_ && static_cast<double>(silent_ns_) > 1e9 * patience_s;  // and again one that is driven
   if (released && !released_) ++session_.releases;
   released_ = released;
-  for (std::uint32_t i = 0; driven_ && i < periods; ++i) {
+  const std::uint32_t due = this->due(periods);
+  for (std::uint32_t i = 0; i < due; ++i) {
     robot.write(released ? damping(robot.truth()) : actuation_);
     world.step(period_ns_);
   }
   silent_ns_ += static_cast<std::int64_t>(periods) * period_ns_;
-  if (static_cast<double>(silent_ns_) > 1e9 * settings_.peer_timeout_s) return false;
+  if (static_cast<double>(silent_ns_) > 1e9 * (in_step_ ? in_step_timeout_s : settings_.peer_timeout_s)) return false;
+  if (in_step_ && driven_ && due == 0) return true;  // the peer has had this sample
   robot.read(sensors_);
   const WireHead head{
       .kind = WireKind::sensors, .session = session_number_, .sequence = ++sent_, .time_ns = sensors_.time_ns};
