@@ -8,15 +8,29 @@ served=$((30000 + RANDOM % 10000))
 plant=$!
 trap 'kill $plant 2>/dev/null; clean_up' EXIT
 
+# Late ticks and late answers are the emulation's: here they are counted, but nothing is made of them.
+project=$work/project
+mkdir "$project"
+cp -r config behaviors models "$project/"
+edit() { sed -i -E "$1" "$2" && ! cmp -s "$2" "${2#"$project/"}" || fail "$2 has changed: mend this trial"; }
+robot_json=$project/config/tulip/robot.json
+edit 's/"overruns_in_a_row_max": [0-9]+/"overruns_in_a_row_max": 100000/; s/"heartbeat_timeout_s": [0-9.]+/"heartbeat_timeout_s": 5/
+      s/"silent_ticks_max": [0-9]+/"silent_ticks_max": 1000/; s/^( *)"plant": \{/&\n\1  "udp": { "round_trip_max_s": 1, "connect_timeout_s": 60 },/' \
+  "$robot_json"
+
 machine_new 600
-machine_start -icount shift=1
+machine_start
 machine_answers
+guest "mkdir -p /run/systemd/system/kadans@.service.d && cat >/run/systemd/system/kadans@.service.d/slow.conf && systemctl daemon-reload" <<END
+[Service]
+WatchdogSec=60
+END
+guest "install -d -o kadans -g kadans /var/lib/kadans/tulip/records && chown -R kadans:kadans /var/lib/kadans/tulip"
+(cd "$project" && "$kadans" push robot config/tulip/robot.json) || fail "push does not work"
 robot_is tulip --plant udp --peer "10.0.2.2:$served" --play squat --sleep-only --live --live-address 0.0.0.0 \
   --record /var/lib/kadans/tulip/records/ --records-max 40
-guest "install -d -o kadans -g kadans /var/lib/kadans/tulip/records"
 console_says "tulip is driven"
 
-value() { "$kadans" ctl --host robot get "$1" | awk '{print $2}'; }
 of() { "$kadans" ctl --host robot "$@" 2>&1; }
 of status || fail "ctl does not answer"
 squats() { of status | grep -q 'squat/down\|squat.*down'; }
@@ -26,10 +40,7 @@ page=$(curl -s -m 30 -o /dev/null -w '%{http_code}' "http://127.0.0.1:$live/") |
 [ "$page" = 200 ] || fail "the page does not come: $page"
 
 # Another depth, pushed: what plays counts from then on.
-project=$work/project
-mkdir -p "$project"
-cp -r config behaviors models "$project/"
-sed -i 's/depth_m = [0-9.]*/depth_m = 0.05/' "$project"/behaviors/tulip/squat.lua
+edit 's/(depth_m +=.*)0\.10/\10.05/' "$project/behaviors/tulip/squat.lua"
 (cd "$project" && "$kadans" push robot config/tulip/robot.json) || fail "push does not work"
 of status
 guest systemctl show -P NRestarts kadans@tulip | grep -qx 0 || fail "the runtime was restarted"

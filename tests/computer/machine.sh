@@ -69,7 +69,7 @@ within() {
     sleep 0.5
   done
 }
-console_has() { grep -q -e "$1" "$console"; }
+console_has() { grep -a -q -e "$1" "$console"; }
 console_says() { within "${2:-400}" console_has "$1" || fail "the console does not say '$1'"; }
 
 # How ssh reaches the machine.
@@ -93,9 +93,11 @@ guest() { ssh robot "$@"; }
 answers() { guest true 2>/dev/null; }
 machine_answers() { within "${1:-300}" answers || fail "no answer over ssh"; }
 
-# One robot and how it is run there.
+# robot_is NAME OPTION...: names the robot and says how it is run; robot_environment has further variables of that run.
+robot_environment=""
 robot_is() {
-  guest "mkdir -p /data/etc/kadans/$1 && echo KADANS_OPTIONS=\"'${*:2}'\" >/data/etc/kadans/$1/run.conf && echo $1 >/data/robot.new &&
-    sync /data/robot.new && mv /data/robot.new /data/robot && sync /data"
+  printf '%s\n' "KADANS_OPTIONS='${*:2}'" $robot_environment |
+    guest "mkdir -p /data/etc/kadans/$1 && cat >/data/etc/kadans/$1/run.conf && sync && echo $1 >/data/robot.new &&
+      sync /data/robot.new && mv /data/robot.new /data/robot && sync /data"
 }
 state_of() { guest "systemctl show -P ActiveState kadans@$1"; }

@@ -105,9 +105,10 @@ void simulated_ms(int calls) {
   for (int i = 0; i < calls; ++i) robot.parts().lockstep.step();
 }
 
+// A * stands for arguments whose types have other names on i386.
 constexpr Path all[] = {
-    {"control_tick_14", "kadans::ControlEngine::tick(long, double, unsigned int)", 500, control_ticks},
-    {"plant_step_standing", "kadans::BulletWorld::step(long)", 1000, standing_steps},
+    {"control_tick_14", "kadans::ControlEngine::tick(*)", 500, control_ticks},
+    {"plant_step_standing", "kadans::BulletWorld::step(*)", 1000, standing_steps},
     {"contact_solver_standing",
      "kadans::bullet::TreeSolver::solveMultiBodyGroup(btCollisionObject**, int, btPersistentManifold**, int, "
      "btTypedConstraint**, int, btMultiBodyConstraint**, int, btContactSolverInfo const&, btIDebugDraw*, "
@@ -119,8 +120,7 @@ constexpr Path all[] = {
      body_steps},
     {"whole_body_foresight", "kadans::BodyReach::miss(kadans::Foresight::Asked const&, kadans::Snapshot const&)", 50,
      body_questions},
-    {"record_tick", "kadans::Recorder::record(unsigned long, long, std::span<double const, 18446744073709551615ul>)",
-     500, records},
+    {"record_tick", "kadans::Recorder::record(*)", 500, records},
     {"queue_push_pop", "kadans_queue_push_pop", 1000, queue_elements},
     {"newest_write_read", "kadans_newest_write_read", 1000, newest_values},
     {"simulated_ms_squat", "kadans::Lockstep::step()", 500, simulated_ms},
