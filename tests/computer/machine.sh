@@ -82,7 +82,7 @@ Host robot
   StrictHostKeyChecking no
   UserKnownHostsFile /dev/null
   LogLevel ERROR
-  ConnectTimeout 30
+  ConnectTimeout 120
   ServerAliveInterval 20
 END
 mkdir "$work/bin"
