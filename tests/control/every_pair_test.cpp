@@ -9,6 +9,8 @@
 #include "kadans/testing/doctest.h"
 #include "made_objects.h"
 
+namespace every_pair_test {
+
 using namespace kadans;
 using namespace kadans::testing;
 
@@ -175,3 +177,5 @@ TEST_CASE("Every two objects take turns under load at the period that excites mo
     }
   }
 }
+
+}  // namespace every_pair_test

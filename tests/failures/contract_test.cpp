@@ -8,6 +8,8 @@
 
 #include "light_robot.h"
 
+namespace contract_test {
+
 using namespace kadans;
 using namespace kadans::failures;
 using doctest::description;
@@ -360,3 +362,5 @@ TEST_CASE("true dt is handed on, missed ticks are counted, N late ones in a row 
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_test
