@@ -1,5 +1,5 @@
 // The failure contract, row by row: each test provokes what goes wrong (its description) and holds the runtime to its
-// promise (its name). docs/failures.md is made from both and from how the tests end: see contract_table.cpp.
+// promise (its name). docs/failures.md is made from both: see contract_table.cpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>
