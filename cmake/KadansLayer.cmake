@@ -40,14 +40,14 @@ function(kadans_layer name)
   set_property(GLOBAL APPEND PROPERTY KADANS_LAYERS ${target})
 endfunction()
 
-# kadans_test(LAYER SOURCES file... [ALONE file...] [LINKS target...])
-# Makes one program of doctest cases; each case is a ctest test. ALONE names sources that use the same name as another
-# source, and so cannot be compiled together with it.
+# kadans_test(LAYER SOURCES file... [LINKS target...] [LONG case...])
+# Makes one program of doctest cases; each case is a ctest test. Sources are compiled together: a test whose names another
+# source may have, too, stands in a namespace of its own. LONG names cases that take more than ten seconds: ctest begins with
+# them, so that no core waits for the last one.
 function(kadans_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;ALONE;LINKS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;LONG" ${ARGN})
   string(REPLACE "/" "_" target "${name}_test")
-  add_executable(${target} ${arg_SOURCES} ${arg_ALONE})
-  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  add_executable(${target} ${arg_SOURCES})
   target_link_libraries(${target} PRIVATE kadans_test_main ${arg_LINKS} kadans_warnings)
   target_precompile_headers(${target} REUSE_FROM kadans_test_main)
   target_compile_definitions(${target} PRIVATE KADANS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
@@ -56,4 +56,10 @@ function(kadans_test name)
                                              POSITION_INDEPENDENT_CODE OFF)  # as kadans_test_main, for its precompiled header
   include(doctest)
   doctest_discover_tests(${target} TEST_PREFIX "${name}: ")
+  set(costs "")
+  foreach(case IN LISTS arg_LONG)
+    string(APPEND costs "set_tests_properties([==[${name}:${case}]==] PROPERTIES COST 20)\n")
+  endforeach()
+  file(CONFIGURE OUTPUT "${target}_costs.cmake" CONTENT "${costs}" @ONLY)
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${CMAKE_CURRENT_BINARY_DIR}/${target}_costs.cmake")
 endfunction()

@@ -12,7 +12,7 @@
 namespace kadans {
 namespace {
 
-void print_text(const std::vector<MachineFinding>& findings) {
+void print_machine(const std::vector<MachineFinding>& findings) {
   const bool color = stdout_takes_color();
   for (const MachineFinding& f : findings) {
     const char* const paint = !color ? "" : f.good ? "\033[32m" : "\033[33;1m";
@@ -46,7 +46,7 @@ int run_doctor(const DoctorOptions& options) {
   if (options.json) {
     print_json(findings, good);
   } else {
-    print_text(findings);
+    print_machine(findings);
   }
   return good ? exit_passed : exit_failed;
 }

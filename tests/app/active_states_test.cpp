@@ -4,6 +4,8 @@
 
 #include "program.h"
 
+namespace active_states_test {
+
 using namespace kadans::program;
 using Json = nlohmann::json;
 
@@ -117,3 +119,5 @@ TEST_CASE("the console tells what the transitions of the active states wait for"
   CHECK(has(outcome.out, "{ \"act.arm.wave\", \"act.look.ahead\" }"));
   CHECK(has(outcome.err, "did you mean 'greet'?"));
 }
+
+}  // namespace active_states_test

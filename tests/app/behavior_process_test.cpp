@@ -7,6 +7,8 @@
 
 #include "program.h"
 
+namespace behavior_process_test {
+
 using namespace kadans::program;
 using Json = nlohmann::json;
 
@@ -164,3 +166,5 @@ TEST_CASE("a script that fails in a behavior process fails as in a thread: that 
   CHECK(has(outcome.err, "squat.lua:43: ouch"));
   CHECK(result_of(outcome.out)["behavior_process"]["deaths"] == 0);
 }
+
+}  // namespace behavior_process_test

@@ -8,6 +8,8 @@
 #include "app/assembly.h"
 #include "program.h"
 
+namespace behavior_reload_test {
+
 using namespace kadans;
 
 namespace {
@@ -102,3 +104,5 @@ TEST_CASE("A reload of a behavior that does not play is refused where the scenar
     CHECK(error.problems().front().message.find("did you mean 'squat'?") != std::string::npos);
   }
 }
+
+}  // namespace behavior_reload_test

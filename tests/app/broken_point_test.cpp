@@ -10,6 +10,8 @@
 
 #include "program.h"
 
+namespace broken_point_test {
+
 using namespace kadans::program;
 
 namespace {
@@ -151,3 +153,5 @@ TEST_CASE("No shipped scenario is without a proof that it can fail") {
     CHECK(has_row(entry.path().stem().string()));
   }
 }
+
+}  // namespace broken_point_test

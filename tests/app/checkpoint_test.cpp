@@ -7,6 +7,8 @@
 #include "program.h"
 #include "telemetry/mcap/mcap_reader.h"
 
+namespace checkpoint_test {
+
 using namespace kadans::program;
 
 namespace {
@@ -177,3 +179,5 @@ TEST_CASE("Wrong wishes for checkpoints and branches are refused before anything
     CHECK(has(outcome.err, wrong.says));
   }
 }
+
+}  // namespace checkpoint_test

@@ -13,6 +13,8 @@
 #include "app/command_line.h"
 #include "program.h"
 
+namespace commands_test {
+
 using namespace kadans;
 using namespace kadans::program;
 namespace fs = std::filesystem;
@@ -213,3 +215,5 @@ TEST_CASE("examples of --help work as they stand") {
   }
   CHECK(tried > 20);
 }
+
+}  // namespace commands_test

@@ -4,6 +4,8 @@
 #include "app/assembly.h"
 #include "program.h"
 
+namespace endless_test {
+
 using namespace kadans;
 
 namespace {
@@ -217,3 +219,5 @@ TEST_CASE("An endless loop in a test of a behavior fails that test, by its name 
     CHECK(program::has(outcome.out, "2 passed, 1 failed"));
   }
 }
+
+}  // namespace endless_test

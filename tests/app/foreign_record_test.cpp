@@ -13,6 +13,8 @@
 #include "program.h"
 #include "telemetry/record/run_inputs.h"
 
+namespace foreign_record_test {
+
 using namespace kadans;
 using namespace kadans::program;
 
@@ -335,3 +337,5 @@ TEST_CASE("check loads no plug-in that a file names, unless it is told to, and s
   CHECK(run("check --plugins config/scenarios/squat.json", sent.project).exit_code == 0);
   CHECK(fs::exists(sent.loaded));
 }
+
+}  // namespace foreign_record_test

@@ -7,6 +7,8 @@
 
 #include "program.h"
 
+namespace golden_command_test {
+
 using namespace kadans::program;
 
 namespace {
@@ -75,3 +77,5 @@ TEST_CASE("Golden hashes are renewed, hold, and break with the state, until they
   CHECK(has(renewed.out, "gone    varied (seed 3)"));
   CHECK(run("test --golden", folder).exit_code == 0);
 }
+
+}  // namespace golden_command_test

@@ -12,6 +12,8 @@
 #include "app/terminal.h"
 #include "program.h"
 
+namespace interruption_test {
+
 using namespace kadans;
 using namespace kadans::program;
 
@@ -146,3 +148,5 @@ TEST_CASE("repl ends when a signal comes while it loads a behavior, tells the li
   CHECK_MESSAGE(has(repl.heard(), "endless.lua" + std::string(told_to_end)), repl.heard());
   CHECK_FALSE(has(repl.heard(), "a further line"));
 }
+
+}  // namespace interruption_test

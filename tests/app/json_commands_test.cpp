@@ -15,6 +15,8 @@
 #include "program.h"
 #include "signal/utf8.h"
 
+namespace json_commands_test {
+
 using namespace kadans;
 using namespace kadans::program;
 namespace fs = std::filesystem;
@@ -331,3 +333,5 @@ TEST_CASE("a record that does not fit the disk, and what else is not left behind
   CHECK(has(read(folder / "table"), "knee_rad"));
   CHECK(fs::is_symlink(folder / "stdout"));
 }
+
+}  // namespace json_commands_test

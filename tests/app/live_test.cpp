@@ -12,6 +12,8 @@
 
 #include "program.h"
 
+namespace live_test {
+
 using namespace kadans::program;
 using Json = nlohmann::json;
 
@@ -216,3 +218,5 @@ TEST_CASE("jitter tells its figures in words, or as one object and nothing else,
   CHECK(result["overruns"].is_number());
   CHECK(has(read(folder / "jitter.svg"), "</svg>"));
 }
+
+}  // namespace live_test

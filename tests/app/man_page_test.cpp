@@ -8,6 +8,8 @@
 #include "command_line.h"
 #include "program.h"
 
+namespace man_page_test {
+
 namespace fs = std::filesystem;
 using namespace kadans;
 using namespace kadans::program;
@@ -75,3 +77,5 @@ TEST_CASE("hidden commands are in no completion") {
   CHECK(has(read(reference() / "completion/kadans"), "ctl"));
   CHECK_FALSE(has(read(reference() / "completion/kadans"), "behavior-process"));
 }
+
+}  // namespace man_page_test

@@ -15,6 +15,8 @@
 #include "control/leg_robot.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace object_state_test {
+
 using namespace kadans;
 
 namespace {
@@ -322,3 +324,5 @@ TEST_CASE("saving and restoring allocate nothing") {
     CHECK(restore.ok());
   }
 }
+
+}  // namespace object_state_test

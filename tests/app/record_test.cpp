@@ -13,6 +13,8 @@
 #include "program.h"
 #include "telemetry/mcap/mcap_reader.h"
 
+namespace record_test {
+
 using namespace kadans;
 using namespace kadans::program;
 
@@ -185,3 +187,5 @@ TEST_CASE("Records in a folder are numbered, go on in new files, and take no mor
       0);
   CHECK(*numbers_in(project / "kept").rbegin() > *second.rbegin());
 }
+
+}  // namespace record_test

@@ -9,6 +9,8 @@
 
 #include "program.h"
 
+namespace reflex_test {
+
 using namespace kadans::program;
 
 namespace {
@@ -135,3 +137,5 @@ return k.behavior "held_or_loose" {
   CHECK(found.apart_max <= 22);
   CHECK(found.step_max_Nm < 0.02 * limit_Nm);
 }
+
+}  // namespace reflex_test

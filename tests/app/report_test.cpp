@@ -6,6 +6,8 @@
 
 #include "program.h"
 
+namespace report_test {
+
 using namespace kadans::program;
 namespace fs = std::filesystem;
 
@@ -101,3 +103,5 @@ TEST_CASE("test --report leaves a page a run and an index of all, those that fai
     check_alone(read(folder / "out" / page));
   }
 }
+
+}  // namespace report_test

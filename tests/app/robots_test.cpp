@@ -10,6 +10,8 @@
 #include "app/services.h"
 #include "telemetry/record/viewer_messages.h"
 
+namespace robots_test {
+
 using namespace kadans;
 
 namespace {
@@ -191,3 +193,5 @@ TEST_CASE("Robots need a world that they can share, and one clock") {
   CHECK_THROWS_WITH_AS(Assembly(two, 1, log, &link), doctest::Contains("a run on the wall clock has one robot"),
                        InputError);
 }
+
+}  // namespace robots_test

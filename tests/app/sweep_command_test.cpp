@@ -10,6 +10,8 @@
 
 #include "program.h"
 
+namespace sweep_command_test {
+
 using namespace kadans::program;
 namespace fs = std::filesystem;
 
@@ -173,3 +175,5 @@ TEST_CASE("A task of a Slurm array takes its part by itself") {
   CHECK(results_in(folder / "shared/cases") == 4);
   CHECK(has(run("merge shared", folder).out, " of 4, "));
 }
+
+}  // namespace sweep_command_test

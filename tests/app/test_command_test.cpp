@@ -5,6 +5,8 @@
 
 #include "program.h"
 
+namespace test_command_test {
+
 using namespace kadans::program;
 
 namespace {
@@ -168,3 +170,5 @@ TEST_CASE("The shipped suite passes and ends with its golden hashes") {
   CHECK(outcome.exit_code == 0);
   CHECK(has(outcome.out, "all passed"));
 }
+
+}  // namespace test_command_test

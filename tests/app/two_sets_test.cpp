@@ -6,6 +6,8 @@
 #include "app/assembly.h"
 #include "program.h"
 
+namespace two_sets_test {
+
 using namespace kadans;
 
 namespace {
@@ -107,3 +109,5 @@ TEST_CASE("Behaviors that would play at once on joints of both are refused befor
                      "behaviors that play at the same time: control sets 'posture' and 'arms' both drive "
                      "joint 'l_shoulder_pitch'"));
 }
+
+}  // namespace two_sets_test

@@ -10,6 +10,8 @@
 #include "program.h"
 #include "version.h"
 
+namespace versions_test {
+
 namespace fs = std::filesystem;
 using namespace kadans;
 using namespace kadans::program;
@@ -73,3 +75,5 @@ TEST_CASE("what this version does not know in a robot's file is refused with its
   CHECK(has(outcome.out + outcome.err, "config/tulip/robot.json:"));
   CHECK(has(outcome.out + outcome.err, "control_period_s"));
 }
+
+}  // namespace versions_test

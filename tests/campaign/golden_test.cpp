@@ -7,6 +7,8 @@
 
 #include "kadans/signal/input_error.h"
 
+namespace golden_test {
+
 using namespace kadans;
 
 namespace {
@@ -99,3 +101,5 @@ TEST_CASE("The golden hashes of another machine, and files that hold none, are r
   std::ofstream(file.path()) << "nothing";
   CHECK_THROWS_AS(GoldenHashes(file.path()), InputError);
 }
+
+}  // namespace golden_test

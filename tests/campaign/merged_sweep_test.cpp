@@ -10,6 +10,8 @@
 
 #include "campaign/sweep/sweep_summary.h"
 
+namespace merged_sweep_test {
+
 using namespace kadans;
 namespace fs = std::filesystem;
 
@@ -179,3 +181,5 @@ TEST_CASE("A case's name changes with whatever its run depends on, and with noth
   plan.metrics[0].from_s = 1;
   CHECK(sweep_cases(plan, one.subjects, "1")[4].id != one.cases[4].id);
 }
+
+}  // namespace merged_sweep_test

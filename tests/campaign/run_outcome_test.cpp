@@ -6,6 +6,8 @@
 #include "campaign/suite/suite_report.h"
 #include "signal/utf8.h"
 
+namespace run_outcome_test {
+
 using namespace kadans;
 
 namespace {
@@ -89,3 +91,5 @@ TEST_CASE("JUnit XML and JSON lines hold no byte that their readers refuse") {
             "ee.json"));
   CHECK(find_invalid_utf8(run_json(run)) == std::string::npos);
 }
+
+}  // namespace run_outcome_test

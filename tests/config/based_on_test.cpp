@@ -9,7 +9,7 @@
 
 #include "config/robot/robot_config.h"
 
-namespace kadans {
+namespace kadans::based_on_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ TEST_CASE("TULip with its soft springs is TULip but for the springs and their lo
   CHECK(files_of(folder / "soft.json").size() == 2);
 }
 
-}  // namespace kadans
+}  // namespace kadans::based_on_test

@@ -8,6 +8,8 @@
 
 #include "kadans/signal/input_error.h"
 
+namespace event_text_test {
+
 using namespace kadans;
 
 namespace {
@@ -70,3 +72,5 @@ TEST_CASE("what is no event, or is more than an event may hold, is refused with 
   CHECK(has(refusal(large), "more than 4096 bytes"));
   CHECK(has(refusal("seen " + std::string(100'000, '{')), "wanted"));
 }
+
+}  // namespace event_text_test

@@ -7,7 +7,7 @@
 
 #include "broken.h"
 
-namespace kadans {
+namespace kadans::fields_test {
 namespace {
 
 enum class Colour : std::uint8_t { red, green };
@@ -121,4 +121,4 @@ TEST_CASE("The same list of fields describes itself") {
   CHECK(info.fields[4].fields[0].fields[0].required);
 }
 
-}  // namespace kadans
+}  // namespace kadans::fields_test

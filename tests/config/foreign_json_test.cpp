@@ -8,6 +8,8 @@
 
 #include "config/json/json_value.h"
 
+namespace foreign_json_test {
+
 using namespace kadans;
 
 namespace {
@@ -52,3 +54,5 @@ TEST_CASE("JSON is written with no character in it that a terminal obeys, and is
                 "\xc3\xa9 \\u001b\"}");
   CHECK(read_foreign_json(text) == said);
 }
+
+}  // namespace foreign_json_test

@@ -8,7 +8,7 @@
 #include "broken.h"
 #include "wrong_json.h"
 
-namespace kadans {
+namespace kadans::json_value_test {
 namespace {
 
 std::string refusal_of(const std::string& text) {
@@ -85,4 +85,4 @@ TEST_CASE("A file that is not there, or no file, is refused by name") {
   CHECK(refusal("/", "", [] { read_input_file("/"); }) == " this is a folder, not a file");
 }
 
-}  // namespace kadans
+}  // namespace kadans::json_value_test

@@ -9,7 +9,7 @@
 #include "kadans/signal/random.h"
 #include "right_texts.h"
 
-namespace kadans {
+namespace kadans::mutation_test {
 namespace {
 
 std::size_t below(RandomStream& random, std::size_t count) {
@@ -84,4 +84,4 @@ TEST_CASE("1000 mutated scenarios are read or refused, never more") {
   CHECK(refused > 500);
 }
 
-}  // namespace kadans
+}  // namespace kadans::mutation_test

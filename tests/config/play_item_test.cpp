@@ -5,7 +5,7 @@
 
 #include "kadans/signal/input_error.h"
 
-namespace kadans {
+namespace kadans::play_item_test {
 namespace {
 
 const PlayFolders folders{KADANS_SOURCE_DIR "/config/scenarios/squat.json", "tulip"};
@@ -87,4 +87,4 @@ TEST_CASE("Every behavior of a list that is missing is told") {
   }
 }
 
-}  // namespace kadans
+}  // namespace kadans::play_item_test

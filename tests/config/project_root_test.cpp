@@ -7,7 +7,7 @@
 
 #include "signal/nearest_name.h"
 
-namespace kadans {
+namespace kadans::project_root_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -93,4 +93,4 @@ TEST_CASE("A star in a pattern stands for any characters, none included") {
   CHECK(matching("head", names).empty());
 }
 
-}  // namespace kadans
+}  // namespace kadans::project_root_test

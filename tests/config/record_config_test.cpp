@@ -4,6 +4,8 @@
 
 #include "config/robot/robot_config.h"
 
+namespace record_config_test {
+
 using namespace kadans;
 
 namespace {
@@ -86,3 +88,5 @@ TEST_CASE("In a file the place of the pattern, or of its rate, is told") {
   CHECK(at(R"({"signals": {"joint.*": -1}})").find("robot.json:1:25") == 0);
   CHECK(at(R"({"singals": {}})").find("did you mean 'signals'?") != std::string::npos);
 }
+
+}  // namespace record_config_test

@@ -9,7 +9,7 @@
 #include "objects.h"
 #include "right_texts.h"
 
-namespace kadans {
+namespace kadans::robot_config_test {
 namespace {
 
 const std::vector<std::string> types{"joint_pid"};
@@ -236,4 +236,4 @@ TEST_CASE("What the URDF gets wrong is told beside what the configuration gets w
   CHECK(message.find("\nROOT/config/tulip/robot.json") != std::string::npos);
 }
 
-}  // namespace kadans
+}  // namespace kadans::robot_config_test

@@ -8,7 +8,7 @@
 #include "broken_scenarios.h"
 #include "right_texts.h"
 
-namespace kadans {
+namespace kadans::scenario_config_test {
 namespace {
 
 const std::string file = KADANS_SOURCE_DIR "/config/t.json";
@@ -75,4 +75,4 @@ TEST_CASE("The scenarios that come with Kadans can be read") {
   }
 }
 
-}  // namespace kadans
+}  // namespace kadans::scenario_config_test

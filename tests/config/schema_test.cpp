@@ -10,7 +10,7 @@
 #include "config/json/json_value.h"
 #include "right_texts.h"
 
-namespace kadans {
+namespace kadans::schema_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ TEST_CASE("A field's range, unit, default and meaning stand in the schema") {
   CHECK(drive.value("additionalProperties", true) == false);
 }
 
-}  // namespace kadans
+}  // namespace kadans::schema_test

@@ -9,7 +9,7 @@
 #include "kadans/model/kinematics.h"
 #include "objects.h"
 
-namespace kadans {
+namespace kadans::tulip_config_test {
 namespace {
 
 const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance", "dcm_step"};
@@ -95,4 +95,4 @@ TEST_CASE("TULip's gains and presets fit the parameters that joint_pid declares"
   CHECK(presets[5].values.size() == 24);
 }
 
-}  // namespace kadans
+}  // namespace kadans::tulip_config_test

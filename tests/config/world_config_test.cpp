@@ -9,7 +9,7 @@
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/input_error.h"
 
-namespace kadans {
+namespace kadans::world_config_test {
 namespace {
 
 WorldConfig read(const std::string& entries) {
@@ -168,4 +168,4 @@ TEST_CASE("A scenario on the ideal plant has no world") {
                        InputError);
 }
 
-}  // namespace kadans
+}  // namespace kadans::world_config_test

@@ -6,6 +6,8 @@
 #include "control/body/body_clash.h"
 #include "stand_bench.h"
 
+namespace body_foresight_test {
+
 using namespace kadans;
 using kadans::test::HandBench;
 using kadans::test::leg_robot;
@@ -206,3 +208,5 @@ TEST_CASE("without tasks the posture leads alone, from where the joints are, unt
   CHECK(bench.signal("com_z_m") == doctest::Approx(z_m - 0.05).epsilon(0.005));
   CHECK(bench.signal("failures") == 0);
 }
+
+}  // namespace body_foresight_test

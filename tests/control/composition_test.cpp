@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace composition_test {
+
 using namespace kadans;
 
 namespace {
@@ -50,3 +52,5 @@ TEST_CASE("priority replaces while the object claims the joint") {
   CHECK(compose(Composition::priority, 1, effort(-2), joint));
   CHECK(joint.effort_Nm == -2);
 }
+
+}  // namespace composition_test

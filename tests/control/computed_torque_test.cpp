@@ -7,6 +7,8 @@
 #include "kadans/testing/allocation_count.h"
 #include "made_objects.h"
 
+namespace computed_torque_test {
+
 using namespace kadans;
 using kadans::test::ArmBench;
 
@@ -157,3 +159,5 @@ TEST_CASE("ComputedTorque allocates nothing in its low level, nor in its high le
   const auto allocations = heap.count();
   CHECK(allocations == 0);
 }
+
+}  // namespace computed_torque_test

@@ -5,6 +5,8 @@
 #include "made_objects.h"
 #include "two_joint_robot.h"
 
+namespace control_sets_test {
+
 using namespace kadans;
 
 namespace {
@@ -216,3 +218,5 @@ TEST_CASE("Sets that cannot work are refused before the loop, by name") {
   catalog.sets = {{"one", {0}}};
   CHECK(refusal(catalog, objects()) == "accepted");
 }
+
+}  // namespace control_sets_test

@@ -8,6 +8,8 @@
 #include "biped.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace dcm_balance_test {
+
 using namespace kadans;
 using kadans::test::biped;
 using kadans::test::biped_feet;
@@ -113,3 +115,5 @@ TEST_CASE("DcmBalance needs feet, and joints that have a part in balance") {
   other.joints[0].name = "l_wing";
   CHECK_THROWS_AS(DcmBalance({.model = other, .joints = {0}, .options = biped_feet}), std::invalid_argument);
 }
+
+}  // namespace dcm_balance_test

@@ -9,6 +9,8 @@
 #include "leg_robot.h"
 #include "tested_object.h"
 
+namespace dcm_step_test {
+
 using namespace kadans;
 using kadans::test::leg_robot;
 
@@ -140,3 +142,5 @@ TEST_CASE("DcmStep needs feet and both legs") {
                        OptionError);
   CHECK_THROWS_AS(DcmStep({.model = model, .joints = {0, 1, 2, 3, 4}, .options = feet}), std::invalid_argument);
 }
+
+}  // namespace dcm_step_test

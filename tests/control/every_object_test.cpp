@@ -11,6 +11,8 @@
 #include "made_objects.h"
 #include "object_bench.h"
 
+namespace every_object_test {
+
 using namespace kadans;
 using kadans::test::ObjectBench;
 
@@ -201,3 +203,5 @@ TEST_CASE("No object allocates, locks or waits in the tick") {
     CHECK(allocations == 0);
   }
 }
+
+}  // namespace every_object_test

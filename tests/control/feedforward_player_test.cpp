@@ -7,6 +7,8 @@
 #include "made_objects.h"
 #include "object_bench.h"
 
+namespace feedforward_player_test {
+
 using namespace kadans;
 using kadans::test::ObjectBench;
 
@@ -106,3 +108,5 @@ TEST_CASE("FeedforwardPlayer cancelled fades out to its posture") {
   CHECK(bench.signal("hip.amplitude") == 0);
   CHECK(bench.signal("hip.reference_rad") == doctest::Approx(0.0));
 }
+
+}  // namespace feedforward_player_test

@@ -9,6 +9,8 @@
 #include "gaze_bench.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace gaze_test {
+
 using namespace kadans;
 using kadans::test::GazeBench;
 
@@ -261,3 +263,5 @@ TEST_CASE("Gaze refuses links that it does not know, and joints that move no eye
   model.links.push_back(jaw);
   CHECK(refusal(model, {0, 7}, kadans::test::eyes()) == "joint jaw moves neither eye");
 }
+
+}  // namespace gaze_test

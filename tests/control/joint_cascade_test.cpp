@@ -5,6 +5,8 @@
 #include "made_objects.h"
 #include "object_bench.h"
 
+namespace joint_cascade_test {
+
 using namespace kadans;
 using kadans::test::ObjectBench;
 
@@ -85,3 +87,5 @@ TEST_CASE("JointCascade limits the torque, says so, and a blocked joint winds no
   CHECK(farthest < 1.1);
   CHECK(bench.hip().position_rad == doctest::Approx(1.0).epsilon(0.01));
 }
+
+}  // namespace joint_cascade_test

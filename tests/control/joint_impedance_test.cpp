@@ -6,6 +6,8 @@
 #include "made_objects.h"
 #include "object_bench.h"
 
+namespace joint_impedance_test {
+
 using namespace kadans;
 using kadans::test::ObjectBench;
 
@@ -87,3 +89,5 @@ TEST_CASE("JointImpedance cancels position and torque each by itself") {
   CHECK(bench.signal("hip.reference_rad") < 0.7);
   CHECK(bench.signal("hip.reference_effort_Nm") < 1.5);
 }
+
+}  // namespace joint_impedance_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace minimum_jerk_test {
+
 using kadans::MinimumJerk;
 using kadans::SetpointState;
 
@@ -75,3 +77,5 @@ TEST_CASE("MinimumJerk stops on the way, forward of where it was told to") {
   motion.stop(0.1);
   CHECK(motion.remaining_s() == 0.0);  // at rest there is nothing to stop
 }
+
+}  // namespace minimum_jerk_test

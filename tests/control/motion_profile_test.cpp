@@ -8,6 +8,8 @@
 #include "kadans/signal/random.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace motion_profile_test {
+
 using kadans::MotionProfile;
 using kadans::RandomStream;
 using kadans::SetpointState;
@@ -209,3 +211,5 @@ TEST_CASE("MotionProfile plans without allocating") {
   const long allocations = heap.count();
   CHECK(allocations == 0);
 }
+
+}  // namespace motion_profile_test

@@ -7,6 +7,8 @@
 
 #include "kadans/testing/allocation_count.h"
 
+namespace pid_test {
+
 using kadans::Pid;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_CASE("Pid steps without allocating") {
   const auto allocations = heap.count();
   CHECK(allocations == 0);
 }
+
+}  // namespace pid_test

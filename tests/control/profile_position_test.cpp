@@ -5,6 +5,8 @@
 #include "made_objects.h"
 #include "object_bench.h"
 
+namespace profile_position_test {
+
 using namespace kadans;
 using kadans::test::ObjectBench;
 
@@ -83,3 +85,5 @@ TEST_CASE("ProfilePosition cancelled stops soon, a joint too fast to stop before
   CHECK(farthest <= 2.0);
   CHECK(bench.computed.joints[0].position_rad == 2.0);
 }
+
+}  // namespace profile_position_test

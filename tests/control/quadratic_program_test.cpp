@@ -11,6 +11,8 @@
 #include "kadans/signal/random.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace quadratic_program_test {
+
 using namespace kadans;
 using Eigen::Index;
 using Status = QuadraticProgram::Status;
@@ -218,3 +220,5 @@ TEST_CASE("solving allocates nothing") {
     CHECK(status == Status::solved);
   }
 }
+
+}  // namespace quadratic_program_test

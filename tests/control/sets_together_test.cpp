@@ -6,6 +6,8 @@
 #include "made_objects.h"
 #include "two_joint_robot.h"
 
+namespace sets_together_test {
+
 using namespace kadans;
 
 namespace {
@@ -171,3 +173,5 @@ TEST_CASE("Switching among several sets takes no memory") {
   const long allocations = heap.count();
   CHECK(allocations == 0);
 }
+
+}  // namespace sets_together_test

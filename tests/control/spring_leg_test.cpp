@@ -10,6 +10,8 @@
 #include "control/drive/spring_torque.h"
 #include "kadans/estimate/velocity_filter.h"
 
+namespace spring_leg_test {
+
 using namespace kadans;
 
 namespace {
@@ -149,3 +151,5 @@ TEST_CASE("A knee held a half stiffer is more than the leg bears") {
   gains[knee].kp *= 1.5;
   CHECK(worst_rad_s(gains) > 2);
 }
+
+}  // namespace spring_leg_test

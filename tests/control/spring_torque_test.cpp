@@ -13,6 +13,8 @@
 
 #include "kadans/testing/allocation_count.h"
 
+namespace spring_torque_test {
+
 using namespace kadans;
 using kadans::testing::AllocationCount;
 
@@ -250,3 +252,5 @@ TEST_CASE("SpringTorque refuses joints without a spring, leaves other modes alon
   const double gain = turn * 22 * turn * 22 * rotor / spring - 1;
   CHECK(asked.joints[0].effort_Nm == doctest::Approx(10 + gain * (10 - 4)));
 }
+
+}  // namespace spring_torque_test

@@ -8,6 +8,8 @@
 #include "biped.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace stance_test {
+
 using namespace kadans;
 using kadans::test::biped;
 using kadans::test::biped_feet;
@@ -187,3 +189,5 @@ TEST_CASE("Stance needs feet, and joints of legs or arms") {
   other.joints.push_back(kadans::test::biped_joint("l_wing", 0, {}));
   CHECK_THROWS_AS(Stance({.model = other, .joints = {4}, .options = biped_feet}), std::invalid_argument);
 }
+
+}  // namespace stance_test

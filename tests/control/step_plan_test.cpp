@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace step_plan_test {
+
 using namespace kadans;
 
 namespace {
@@ -137,3 +139,5 @@ TEST_CASE("StepPlan shares the load by xi between the feet as they landed, and s
   CHECK(bench.state().stance == 1);
   CHECK(bench.state().steps == 2);
 }
+
+}  // namespace step_plan_test

@@ -8,6 +8,8 @@
 
 #include "kadans/testing/allocation_count.h"
 
+namespace switchover_test {
+
 using namespace kadans;
 
 namespace {
@@ -133,3 +135,5 @@ TEST_CASE("A switch allocates nothing") {
   const auto allocations = heap.count();
   CHECK(allocations == 0);
 }
+
+}  // namespace switchover_test

@@ -8,6 +8,8 @@
 
 #include "object_bench.h"
 
+namespace trajectory_list_test {
+
 using namespace kadans;
 using kadans::test::ObjectBench;
 
@@ -167,3 +169,5 @@ TEST_CASE("TrajectoryList refuses what it cannot follow and counts what does not
   bench.run(150);
   CHECK(bench.motion_remaining_s() == 0);
 }
+
+}  // namespace trajectory_list_test

@@ -12,6 +12,8 @@
 #include "kadans/testing/real_time_guard.h"
 #include "stand_bench.h"
 
+namespace whole_body_test {
+
 using namespace kadans;
 using kadans::test::HandBench;
 using kadans::test::leg_robot;
@@ -177,3 +179,5 @@ TEST_CASE("a joint that is not measured gets a torque that is not finite, and is
   bench.object->step(bench.input(), bench.computed);
   CHECK(is_finite(bench.computed.joints[0]));
 }
+
+}  // namespace whole_body_test

@@ -8,6 +8,8 @@
 #include "engine/transaction.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace switch_dwell_test {
+
 using namespace kadans;
 
 namespace {
@@ -194,3 +196,5 @@ TEST_CASE("A robot that demands no dwell has no signal of it, and a demand out o
   CHECK_THROWS_WITH_AS(ControlSets(catalog, std::move(objects)),
                        "control set spare: switch_dwell_s is -1.000000, must be 0..60 s", std::invalid_argument);
 }
+
+}  // namespace switch_dwell_test

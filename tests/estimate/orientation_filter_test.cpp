@@ -9,6 +9,8 @@
 
 #include "kadans/model/kinematics.h"
 
+namespace orientation_filter_test {
+
 using kadans::from_axis_angle;
 using kadans::from_roll_pitch_yaw;
 using kadans::OrientationFilter;
@@ -136,3 +138,5 @@ TEST_CASE("Gains that are negative or not finite are refused by name") {
   CHECK_THROWS_AS(OrientationFilter(Config{.gravity_tolerance = 0}), std::invalid_argument);
   CHECK_THROWS_AS(OrientationFilter(Config{.gyro_bias_max_rad_s = -0.1}), std::invalid_argument);
 }
+
+}  // namespace orientation_filter_test

@@ -12,6 +12,8 @@
 #include "estimate/orientation_filter.h"
 #include "kadans/model/kinematics.h"
 
+namespace recorded_motion_test {
+
 using kadans::OrientationFilter;
 using kadans::Quat;
 using kadans::Vec3;
@@ -103,3 +105,5 @@ TEST_CASE("During a fall the accelerometer points along the body, and fading kee
   CHECK(error_of_fall_rad(0.2) < 0.02);
   CHECK(error_of_fall_rad(100) > 0.06);
 }
+
+}  // namespace recorded_motion_test

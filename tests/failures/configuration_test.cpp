@@ -9,6 +9,8 @@
 #include "config/robot/robot_config.h"
 #include "kadans/signal/fault.h"
 
+namespace configuration_test {
+
 using namespace kadans;
 
 namespace {
@@ -92,3 +94,5 @@ TEST_CASE("The configuration says nothing of the emergency stop") {
       program::edit(file, "\"position_limit\": {", "\"emergency_stop\": { \"latch\": false }, \"position_limit\": {"));
   CHECK_THROWS_WITH_AS(read_robot_config(file, types), doctest::Contains("emergency_stop"), InputError);
 }
+
+}  // namespace configuration_test

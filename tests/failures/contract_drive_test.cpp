@@ -7,6 +7,8 @@
 
 #include "light_robot.h"
 
+namespace contract_drive_test {
+
 using namespace kadans;
 using namespace kadans::failures;
 using doctest::description;
@@ -223,3 +225,5 @@ TEST_CASE("A drive that is asked for nothing need not be enabled") {
   robot.run(2 * ticks(robot.limits().drives.enable_s));
   CHECK(robot.first(FaultCode::drive_not_enabled) < 0);
 }
+
+}  // namespace contract_drive_test

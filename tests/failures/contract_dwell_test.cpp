@@ -4,6 +4,8 @@
 #include "engine/bench.h"
 #include "engine/transaction.h"
 
+namespace contract_dwell_test {
+
 using namespace kadans;
 using doctest::description;
 
@@ -60,3 +62,5 @@ TEST_CASE("refused whole with the time that is left, nothing is delayed, and the
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_dwell_test

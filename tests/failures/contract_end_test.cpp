@@ -14,6 +14,8 @@
 #include "realtime/machine/machine.h"
 #include "telemetry/mcap/mcap_reader.h"
 
+namespace contract_end_test {
+
 using namespace kadans;
 using namespace kadans::failures;
 using doctest::description;
@@ -120,3 +122,5 @@ TEST_CASE("it is below the thread that kills it, so that it keeps no CPU from it
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_end_test

@@ -7,6 +7,8 @@
 #include "plant/udp/plant_server.h"
 #include "plant/udp/udp_plant.h"
 
+namespace contract_network_test {
+
 using namespace kadans;
 using doctest::description;
 using kadans::test::LossyWire;
@@ -154,3 +156,5 @@ TEST_CASE("the next sample that is fresh counts, no sensor jumps or is silent" *
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_network_test

@@ -16,6 +16,8 @@
 #include "script/process/behavior_link.h"
 #include "script/process/process_host.h"
 
+namespace contract_process_test {
+
 using namespace kadans;
 using namespace kadans::failures;
 using doctest::description;
@@ -222,3 +224,5 @@ TEST_CASE("TULip stands through a thousand kills of the behaviors' process") {
     kill_while_squatting("process_soak", 100, seed, {SIGKILL}, "--behaviors-deaths 1000");
   }
 }
+
+}  // namespace contract_process_test

@@ -7,6 +7,8 @@
 #include "app/assembly.h"
 #include "app/program.h"
 
+namespace contract_script_test {
+
 using namespace kadans;
 using namespace kadans::program;
 using doctest::description;
@@ -157,3 +159,5 @@ TEST_CASE("refused before anything moves: file:line:column, what is wrong, what 
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_script_test

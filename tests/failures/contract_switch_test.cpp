@@ -4,6 +4,8 @@
 
 #include "bench/switch_pairs.h"
 
+namespace contract_switch_test {
+
 using namespace kadans::bench;
 using doctest::description;
 
@@ -29,3 +31,5 @@ TEST_CASE("the step of a drive's torque stays below 2 % of its limit, whatever t
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_switch_test

@@ -1,5 +1,5 @@
 // The failure contract, row by row: each test provokes what goes wrong (its description) and holds the runtime to its
-// promise (its name). docs/failures.md is made from both and from how the tests end: see contract_table.cpp.
+// promise (its name). docs/failures.md is made from both: see contract_table.cpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +7,8 @@
 #include <doctest/doctest.h>
 
 #include "light_robot.h"
+
+namespace contract_test {
 
 using namespace kadans;
 using namespace kadans::failures;
@@ -360,3 +362,5 @@ TEST_CASE("true dt is handed on, missed ticks are counted, N late ones in a row 
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_test

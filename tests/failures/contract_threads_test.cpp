@@ -13,6 +13,8 @@
 #include "realtime/live_robot.h"
 #include "telemetry/record/recorder.h"
 
+namespace contract_threads_test {
+
 using namespace kadans;
 using doctest::description;
 
@@ -224,3 +226,5 @@ TEST_CASE("the task gives up after 100 wake-ups without time passing, the run en
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_threads_test

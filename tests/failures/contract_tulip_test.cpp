@@ -7,6 +7,8 @@
 
 #include "tulip_robot.h"
 
+namespace contract_tulip_test {
+
 using namespace kadans;
 using namespace kadans::failures;
 using doctest::description;
@@ -209,3 +211,5 @@ TEST_CASE("the robot damps, latched, and after clearing it stays as it lies" *
 }
 
 TEST_SUITE_END();
+
+}  // namespace contract_tulip_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace injection_test {
+
 using namespace kadans::failures;
 
 namespace {
@@ -38,3 +40,5 @@ TEST_CASE("Random late ticks, jitter and silence of the behavior engine end on t
   inject_all(Category::timing);
 }
 TEST_CASE("Random mistakes in a script stop its behavior and nothing else") { inject_all(Category::script); }
+
+}  // namespace injection_test

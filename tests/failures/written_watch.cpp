@@ -63,12 +63,12 @@ const char* WrittenWatch::wrong_with(const Seen& seen) {
   return a.mode == ActuationMode::velocity || within ? nullptr : "a position asked beyond its limits";
 }
 
-void WrittenWatch::look(std::uint64_t tick, double dt_s, const ActuationFrame& written, const JointStates& joints,
+void WrittenWatch::look(std::uint64_t tick, double dt_s, const ActuationFrame& written, const JointStates& measured,
                         const Safety& safety) {
   const SafetySettings& settings = safety.settings();
   for (std::size_t i = 0; i < last_Nm_.size(); ++i) {
     const Seen seen{written.joints[i],
-                    joints.joints[i],
+                    measured.joints[i],
                     settings.joints[i],
                     safety.joint_level(i),
                     last_Nm_[i],

@@ -24,7 +24,7 @@ class WrittenWatch {
 
   explicit WrittenWatch(const RobotModel& model) : model_(model), last_Nm_(model.joints.size()) {}
 
-  void look(std::uint64_t tick, double dt_s, const ActuationFrame& written, const JointStates& joints,
+  void look(std::uint64_t tick, double dt_s, const ActuationFrame& written, const JointStates& measured,
             const Safety& safety);
   // The first thing that was broken; "" when nothing was.
   const std::string& broken() const noexcept { return broken_; }

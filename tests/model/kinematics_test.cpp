@@ -10,6 +10,8 @@
 #include "kadans/signal/random.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace kinematics_test {
+
 using namespace kadans;
 
 namespace {
@@ -165,3 +167,5 @@ TEST_CASE("Updating and reading forward kinematics does not allocate") {
   CHECK(allocations == 0);
   CHECK(com_m[2] != 0);
 }
+
+}  // namespace kinematics_test

@@ -8,6 +8,8 @@
 #include "kadans/model/kinematics.h"
 #include "kadans/model/urdf.h"
 
+namespace tulip_test {
+
 using namespace kadans;
 
 namespace {
@@ -138,3 +140,5 @@ TEST_CASE("TULip's links that touch the ground when it falls all have shapes, an
     for (const Geometry& visual : link.visuals) CHECK_MESSAGE(visual.color != unpainted, visual.name);
   }
 }
+
+}  // namespace tulip_test

@@ -8,6 +8,8 @@
 #include "kadans/model/kinematics.h"
 #include "kadans/model/urdf.h"
 
+namespace urdf_merge_test {
+
 using namespace kadans;
 
 namespace {
@@ -151,3 +153,5 @@ TEST_CASE("Elements of others, comments and odd spacing change nothing") {
   CHECK(odd.joints[0].origin.position_m == plain.joints[0].origin.position_m);
   CHECK(odd.link_names() == plain.link_names());
 }
+
+}  // namespace urdf_merge_test

@@ -7,6 +7,8 @@
 #include "kadans/model/kinematics.h"
 #include "small_robots.h"
 
+namespace bullet_world_test {
+
 using namespace kadans;
 using namespace kadans::test;
 
@@ -290,3 +292,5 @@ TEST_CASE("A world repeats bit for bit") {
   };
   CHECK(end() == end());
 }
+
+}  // namespace bullet_world_test

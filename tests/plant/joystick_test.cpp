@@ -17,6 +17,8 @@
 #include "kadans/signal/input_error.h"
 #include "plant/joystick/joystick_device.h"
 
+namespace joystick_test {
+
 using namespace kadans;
 namespace fs = std::filesystem;
 
@@ -255,3 +257,5 @@ TEST_CASE("A joystick of the kernel is read, and may be pulled out") {
   virtual_stick.unplug();
   CHECK_FALSE(device->at(0).connected);
 }
+
+}  // namespace joystick_test

@@ -3,6 +3,8 @@
 
 #include "solver_pair.h"
 
+namespace solver_world_test {
+
 using namespace kadans;
 using namespace kadans::test;
 
@@ -51,3 +53,5 @@ TEST_CASE("A box slides against another and both come to rest the same with both
   CHECK(apart.robot_m < 1e-6);
   CHECK(apart.objects_m < 2e-4);
 }
+
+}  // namespace solver_world_test

@@ -14,6 +14,8 @@
 #include "plant/udp/udp_plant.h"
 #include "two_joints.h"
 
+namespace udp_link_test {
+
 using namespace kadans;
 using kadans::test::LossyWire;
 using kadans::test::two_joints;
@@ -360,3 +362,5 @@ TEST_CASE("A tick over the network does not allocate, on either side") {
   const long allocations = heap.count();
   CHECK(allocations == 0);
 }
+
+}  // namespace udp_link_test

@@ -3,6 +3,8 @@
 #include "fake_wait.h"
 #include "realtime/task_thread.h"
 
+namespace periodic_test {
+
 using namespace kadans;
 
 namespace {
@@ -113,3 +115,5 @@ TEST_CASE("While the clock stands still there is nothing to do, and what was mis
   CHECK(beat.number == 2);
   CHECK(task.periodic.statistics().lateness.count() == 2);
 }
+
+}  // namespace periodic_test

@@ -4,6 +4,8 @@
 #include "remote/instance/parameter_history.h"
 #include "remote/live_instance.h"
 
+namespace configuration_text_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 
@@ -34,3 +36,5 @@ TEST_CASE("nothing is written when one of the parameters has no place in the fil
   ConfigurationText none({});
   CHECK(why_not(none, {}, live.robot.catalog) == "this instance was not made from a configuration file");
 }
+
+}  // namespace configuration_text_test

@@ -3,6 +3,8 @@
 
 #include "remote/live_instance.h"
 
+namespace console_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 
@@ -56,3 +58,5 @@ TEST_CASE("names are completed in the running robot, and there are so many conso
   for (int i = 0; i < 1000 && answer != "1"; ++i) answer = five.says("1");
   CHECK(answer == "1");
 }
+
+}  // namespace console_test

@@ -15,6 +15,8 @@
 #include "kadans/signal/input_error.h"
 #include "remote/live_instance.h"
 
+namespace ctl_folder_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 namespace fs = std::filesystem;
@@ -143,3 +145,5 @@ TEST_CASE("a client takes the lowest role that suffices, and the lock keeps out 
   REQUIRE(waitpid(child, &status, 0) == child);
   if (WEXITSTATUS(status) != 9) CHECK(WEXITSTATUS(status) == 0);  // 9: this root may not become somebody else
 }
+
+}  // namespace ctl_folder_test

@@ -9,6 +9,8 @@
 
 #include "remote/live_instance.h"
 
+namespace ctl_hostile_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 
@@ -161,3 +163,5 @@ TEST_CASE("a client that ends its side after the question still gets the answer"
   CHECK(Json::parse(client.line().value())["ok"] == true);
   CHECK_FALSE(client.line());
 }
+
+}  // namespace ctl_hostile_test

@@ -6,6 +6,8 @@
 #include "remote/live_instance.h"
 #include "telemetry/mcap/mcap_reader.h"
 
+namespace ctl_server_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 
@@ -373,3 +375,5 @@ TEST_CASE("a line of more than 64 kB is refused, also when its end came with it"
   REQUIRE(client.send("{\"verb\":\"status\",\"x\":\"" + std::string(CtlSession::line_bytes_max, 'x') + "\"}\n"));
   CHECK(client.line().value_or("").find("a line has at most 64 kB") != std::string::npos);
 }
+
+}  // namespace ctl_server_test

@@ -8,6 +8,8 @@
 #include "remote/live_instance.h"
 #include "telemetry/mcap/mcap_reader.h"
 
+namespace ctl_tuning_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 
@@ -189,3 +191,5 @@ TEST_CASE("every change stands in the record with who made it, the old value and
   CHECK(has(log, "\"words\":\"" + who));
   CHECK(has(log, who + " undid " + kp + ": 55 -> 40"));
 }
+
+}  // namespace ctl_tuning_test

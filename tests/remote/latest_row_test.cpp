@@ -7,6 +7,8 @@
 
 #include "kadans/testing/allocation_count.h"
 
+namespace latest_row_test {
+
 using kadans::LatestRow;
 
 namespace {
@@ -71,3 +73,5 @@ TEST_CASE("a reader beside the writer sees whole rows, newer each time") {
   CHECK(whole);
   CHECK(ordered);
 }
+
+}  // namespace latest_row_test

@@ -11,6 +11,8 @@
 
 #include "remote/live_instance.h"
 
+namespace live_client_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 
@@ -273,3 +275,5 @@ TEST_CASE("the live server hands out the robot's URDF and no file that it does n
        {"", "/etc/passwd", "file:///etc/passwd", "package://bench/../../etc/passwd", "../robot.json"})
     CHECK(viewer.hub.assets().read(wrong) == nullptr);
 }
+
+}  // namespace live_client_test

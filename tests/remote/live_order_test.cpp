@@ -9,6 +9,8 @@
 #include "remote/page/live_client.h"
 #include "remote/page/live_hub.h"
 
+namespace live_order_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 
@@ -80,3 +82,5 @@ TEST_CASE("a behavior that is played later is described to who looks") {
   CHECK(comes([&] { return has(text(), "\"nod\""); }));
   CHECK(has(text(), "\"robot\""));
 }
+
+}  // namespace live_order_test

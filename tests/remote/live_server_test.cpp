@@ -14,6 +14,8 @@
 #include "remote/live_instance.h"
 #include "remote/web_client.h"
 
+namespace live_server_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
 
@@ -196,3 +198,5 @@ TEST_CASE("an exception while one connection is served ends that connection and 
   }
   CHECK(WebClient(server.port()).get("/nothing", "localhost") >= 400);
 }
+
+}  // namespace live_server_test

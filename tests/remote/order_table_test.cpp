@@ -9,6 +9,8 @@
 #include "kadans/signal/input_error.h"
 #include "remote/order/order_json.h"
 
+namespace order_table_test {
+
 using namespace kadans;
 
 namespace {
@@ -122,3 +124,5 @@ TEST_CASE("What the table says of an order and its arguments is held") {
   CHECK(brief_refusal({{"verb", "pause"}, {"text", ""}, {"value", 3}}) == "pause takes no \"value\"");
   CHECK(brief_refusal(Json::array({1})) == "a request needs \"verb\", a string");
 }
+
+}  // namespace order_table_test

@@ -7,8 +7,11 @@
 
 #include "remote/live_instance.h"
 
+namespace text_orders_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
+using kadans::remote_test::Json;
 
 namespace {
 
@@ -118,3 +121,5 @@ TEST_CASE("where orders are not allowed even the emergency stop is refused, with
   desk.now(R"({"verb": "hold"})");
   CHECK_FALSE(desk.pace.held);
 }
+
+}  // namespace text_orders_test

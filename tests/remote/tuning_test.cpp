@@ -2,6 +2,8 @@
 
 #include "remote/instance/parameter_history.h"
 
+namespace tuning_test {
+
 using namespace kadans;
 
 TEST_CASE("what is unsaved is the way from the configuration to now, whatever the steps") {
@@ -57,3 +59,5 @@ TEST_CASE("the way back has an end") {
   for (; history.newest() != nullptr; ++steps) history.drop();
   CHECK(steps == ParameterHistory::steps_max);
 }
+
+}  // namespace tuning_test

@@ -4,8 +4,11 @@
 #include "remote/instance/run_description.h"
 #include "remote/live_instance.h"
 
+namespace why_test {
+
 using namespace kadans;
 using namespace kadans::remote_test;
+using kadans::remote_test::Json;
 
 TEST_CASE("why tells what the transitions of a behavior wait for, and an unknown behavior is refused") {
   const auto has = [](const Json& answer, const char* text) { return answer.dump().find(text) != std::string::npos; };
@@ -62,3 +65,5 @@ TEST_CASE("a chart is described with actions alone, internal transitions and an 
   CHECK(target(2) == "p.l.y");
   CHECK(target(3) == "p.r.y");
 }
+
+}  // namespace why_test

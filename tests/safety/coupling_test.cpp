@@ -4,6 +4,8 @@
 #include "bench.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace coupling_test {
+
 using namespace kadans;
 using namespace kadans::safety_bench;
 
@@ -160,3 +162,5 @@ TEST_CASE(
   CHECK(bench.codes() == "modes_differ");
   CHECK(bench.written.joints[0].mode == ActuationMode::effort);
 }
+
+}  // namespace coupling_test

@@ -9,6 +9,8 @@
 
 #include "bench.h"
 
+namespace emergency_stop_test {
+
 using namespace kadans;
 using namespace kadans::safety_bench;
 
@@ -129,3 +131,5 @@ TEST_CASE("Who asks for the emergency stop in the tick of a lift is heard, the l
   CHECK(bench.status.stopped);
   CHECK(bench.status.lifts == 0);
 }
+
+}  // namespace emergency_stop_test

@@ -4,6 +4,8 @@
 #include "bench.h"
 #include "safety/detection.h"
 
+namespace fall_test {
+
 using namespace kadans;
 using namespace kadans::safety_bench;
 using Phase = FallWatch::Phase;
@@ -149,3 +151,5 @@ TEST_CASE("A fallen robot that is thrown falls again, and clearing faults does n
   bench.check();
   CHECK(bench.safety->fall_phase() == Phase::falling);
 }
+
+}  // namespace fall_test

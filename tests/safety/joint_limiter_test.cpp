@@ -3,6 +3,8 @@
 
 #include "bench.h"
 
+namespace joint_limiter_test {
+
 using namespace kadans;
 using namespace kadans::safety_bench;
 
@@ -268,3 +270,5 @@ TEST_CASE("In velocity mode the speed asked fades to none into a soft stop, away
     CHECK(bench.codes() == (row.asked_rad_s == row.written_rad_s ? "" : "soft_stop"));
   }
 }
+
+}  // namespace joint_limiter_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace ladder_test {
+
 using namespace kadans;
 
 namespace {
@@ -79,3 +81,5 @@ TEST_CASE("Every fault has a name and, but for none and the emergency stops, a k
   CHECK(names.size() == fault_codes);
   CHECK(std::string(name(static_cast<FaultCode>(500))) == "unknown");
 }
+
+}  // namespace ladder_test

@@ -10,6 +10,8 @@
 #include "bench.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace safety_test {
+
 using namespace kadans;
 using namespace kadans::safety_bench;
 
@@ -300,3 +302,5 @@ TEST_CASE("The table at the head of detection.h promises something of each fault
     CHECK_MESSAGE(promised.contains(fault), fault);
   }
 }
+
+}  // namespace safety_test

@@ -4,6 +4,8 @@
 #include "bench.h"
 #include "safety/detection.h"
 
+namespace sensor_test {
+
 using namespace kadans;
 using namespace kadans::safety_bench;
 
@@ -238,3 +240,5 @@ TEST_CASE("A foot in the air, and a foot that the plant does not have, are no fa
   none.check_for(0.1);
   CHECK(none.codes() == "");
 }
+
+}  // namespace sensor_test

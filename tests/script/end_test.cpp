@@ -3,6 +3,8 @@
 
 #include "script/fixture.h"
 
+namespace end_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -150,3 +152,5 @@ TEST_CASE("the end of a parallel tells how each region ended") {
       action = function(_, s) print(s.event.name, s.event.data.outcomes.r) end, to = 'x' } },
     k.state 'x' {} })") == "lost lost\n");
 }
+
+}  // namespace end_test

@@ -4,6 +4,8 @@
 
 #include "script/fixture.h"
 
+namespace event_step_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -204,3 +206,5 @@ TEST_CASE("a transition may have several events") {
         std::string::npos);
   CHECK(refused("{}").find("'on' lists 1 to 32 events: on = { \"a\", \"b\" }") != std::string::npos);
 }
+
+}  // namespace event_step_test

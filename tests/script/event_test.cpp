@@ -3,6 +3,8 @@
 
 #include "script/fixture.h"
 
+namespace event_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -184,3 +186,5 @@ TEST_CASE("calls that cannot work are refused at their line") {
   CHECK(refused_call("return k.behavior 'caller' {\nk.state 'a' { k.call 'called' } }", "local x = = 1")
             .find("behaviors/lib/called.lua:3:") == 0);
 }
+
+}  // namespace event_test

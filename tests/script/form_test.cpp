@@ -4,6 +4,8 @@
 
 #include "script/fixture.h"
 
+namespace form_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -285,3 +287,5 @@ TEST_CASE("states that follow each other in every tick for 5 s are told once, wi
             "k.state 'a' { { when = function(s) return math.floor(s.time_s * 100 + 0.5) % 401 > 0 end, to = 'b' } }, " +
             back) == 0);
 }
+
+}  // namespace form_test

@@ -4,6 +4,8 @@
 #include "script/cast.h"
 #include "script/check/check_behavior.h"
 
+namespace machine_sets_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -210,3 +212,5 @@ TEST_CASE("a switch that found no place in the queue is asked for again") {
   cast.tick(3);
   CHECK(cast.switches().size() == 1);
 }
+
+}  // namespace machine_sets_test

@@ -4,6 +4,8 @@
 
 #include "script/fixture.h"
 
+namespace meaning_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -284,3 +286,5 @@ TEST_CASE("a chart that would take memory outside the script's is refused at its
   CHECK(load_error("local k = require 'kadans'\nfor i = 1, 2000 do k.params { x = 1 } end")
             .find("behaviors/test.lua:2: more than 1000 parameters") == 0);
 }
+
+}  // namespace meaning_test

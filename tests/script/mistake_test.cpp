@@ -4,6 +4,8 @@
 #include "script/check/check_behavior.h"
 #include "script/fixture.h"
 
+namespace mistake_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -243,3 +245,5 @@ TEST_CASE("check_behavior tells what is wrong without running anything, and noth
   REQUIRE(endless.size() == 1);
   CHECK(endless[0].text().find("a.lua:1: this loop never ends") == 0);
 }
+
+}  // namespace mistake_test

@@ -6,6 +6,8 @@
 #include "script/host/event_delivery.h"
 #include "signal/byte_order.h"
 
+namespace outside_event_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -367,3 +369,5 @@ TEST_CASE("a host that goes on after another one gets what was sent and has not 
   CHECK(has(lines_of(theatre, "two"), "ball_seen 4 "));
   CHECK(taken(theatre) == before + 1);
 }
+
+}  // namespace outside_event_test

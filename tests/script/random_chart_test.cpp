@@ -6,6 +6,8 @@
 
 #include "script/fixture.h"
 
+namespace random_chart_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -61,3 +63,5 @@ TEST_CASE("charts at random enter, leave and act as SCXML's algorithm does, in i
   }
   CHECK(entries > 20 * charts);  // the charts do something
 }
+
+}  // namespace random_chart_test

@@ -6,6 +6,8 @@
 #include "script/behavior/behavior.h"
 #include "script/fixture.h"
 
+namespace reload_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -273,3 +275,5 @@ TEST_CASE("a parameter that was set back to its default stays so, though its beh
   stage.tick();
   CHECK(stage.said().find("\n1\n") != std::string::npos);
 }
+
+}  // namespace reload_test

@@ -3,6 +3,8 @@
 
 #include "script/cast.h"
 
+namespace set_dwell_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -55,3 +57,5 @@ TEST_CASE("a switch that waits for the dwell is forgotten with its state, and wh
   cast.tick(5);
   CHECK(cast.switches().empty());
 }
+
+}  // namespace set_dwell_test

@@ -6,6 +6,8 @@
 #include "script/cast.h"
 #include "script/check/check_behavior.h"
 
+namespace state_sets_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -357,3 +359,5 @@ TEST_CASE("a transition leaves the sets of other regions as a reflex or a person
   CHECK(cast.log.transitions.size() == 2);
   CHECK(cast.switches() == Switches{gesture, legs, legs});
 }
+
+}  // namespace state_sets_test

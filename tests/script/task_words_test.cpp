@@ -10,6 +10,8 @@
 #include "kadans/control/control_object.h"
 #include "script/fixture.h"
 
+namespace task_words_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -201,3 +203,5 @@ TEST_CASE("every mistake in the words of tasks is told at its line, and nothing 
     CHECK(stage.applied.empty());
   }
 }
+
+}  // namespace task_words_test

@@ -12,6 +12,8 @@
 #include "telemetry/record/recorder.h"
 #include "telemetry/record/signal_topics.h"
 
+namespace flight_recorder_test {
+
 using namespace kadans;
 
 namespace {
@@ -244,3 +246,5 @@ TEST_CASE("A dump tells how many rows did not fit into the memory, and holds tho
   CHECK(told.at("rows") == "230");
   CHECK(told.at("dropped_rows") == "200");
 }
+
+}  // namespace flight_recorder_test

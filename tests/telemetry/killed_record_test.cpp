@@ -16,6 +16,8 @@
 #include "telemetry/record/recorder.h"
 #include "telemetry/record/signal_topics.h"
 
+namespace killed_record_test {
+
 using namespace kadans;
 
 namespace {
@@ -91,3 +93,5 @@ TEST_CASE("A record whose process is killed at any moment opens, and lacks no ro
   }
   munmap(shared, sizeof ticks);
 }
+
+}  // namespace killed_record_test

@@ -9,6 +9,8 @@
 #include "scratch_file.h"
 #include "telemetry/record/recorder.h"
 
+namespace record_comparison_test {
+
 using namespace kadans;
 
 namespace {
@@ -168,3 +170,5 @@ TEST_CASE("A topic that stands still is written seldom and compared in every tic
     CHECK(comparison.ticks() == std::min(other, ticks));
   }
 }
+
+}  // namespace record_comparison_test

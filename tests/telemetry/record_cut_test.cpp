@@ -6,6 +6,8 @@
 #include "telemetry/reading/record_export.h"
 #include "written_record.h"
 
+namespace record_cut_test {
+
 using namespace kadans;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_CASE("a cut of nothing is refused") {
   CHECK_THROWS_WITH_AS((void)cut_record(record.outline(), {.span = {200 * ms, 300 * ms}, .signals = {}}, file.path()),
                        doctest::Contains("holds nothing between these times"), InputError);
 }
+
+}  // namespace record_cut_test

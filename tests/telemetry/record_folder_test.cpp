@@ -10,6 +10,8 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+namespace record_folder_test {
+
 using namespace kadans;
 namespace fs = std::filesystem;
 
@@ -79,3 +81,5 @@ TEST_CASE("The oldest records go until the rest fits, and nothing else goes") {
   CHECK(records.make_room(400, {}) == 0);  // the next number follows from it
   CHECK(records.next("").filename().string().starts_with("tulip_0005_"));
 }
+
+}  // namespace record_folder_test

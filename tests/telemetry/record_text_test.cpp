@@ -8,6 +8,8 @@
 #include "telemetry/reading/record_export.h"
 #include "written_record.h"
 
+namespace record_text_test {
+
 using namespace kadans;
 
 namespace {
@@ -160,3 +162,5 @@ TEST_CASE("the outline counts messages, rates and events, and says where a recor
   CHECK(part.rows < 100);
   CHECK(part.rows > 0);
 }
+
+}  // namespace record_text_test

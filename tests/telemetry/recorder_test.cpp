@@ -11,6 +11,8 @@
 #include "scratch_file.h"
 #include "telemetry/mcap/mcap_reader.h"
 
+namespace recorder_test {
+
 using namespace kadans;
 
 namespace {
@@ -358,3 +360,5 @@ TEST_CASE("A record goes on in another file without losing a row, and each file 
   for (std::uint32_t i = 0; i < 150; ++i) CHECK(ticks[i] == i);
   CHECK(count(entries_of(first), "/base") == 100);
 }
+
+}  // namespace recorder_test

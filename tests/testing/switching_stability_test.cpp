@@ -7,6 +7,8 @@
 #include "control/made_objects.h"
 #include "kadans/testing/doctest.h"
 
+namespace switching_stability_test {
+
 using namespace kadans;
 using namespace kadans::testing;
 
@@ -73,3 +75,5 @@ TEST_CASE("What is found says the worst switching in words, and what is not fini
   broken.error_ratio = broken.most_error.rms_error_rad = std::nan("");
   CHECK(!(broken <= StabilityLimits{}));
 }
+
+}  // namespace switching_stability_test

@@ -7,6 +7,8 @@
 #include "control/made_objects.h"
 #include "kadans/testing/doctest.h"
 
+namespace tracking_test {
+
 using namespace kadans;
 using namespace kadans::testing;
 
@@ -44,3 +46,5 @@ TEST_CASE("A lag of first order tracks a slow sine with the error that its time 
   CHECK(tracking <= TrackingLimits{.peak_error = 1.1 * peak});
   CHECK_FALSE(tracking <= TrackingLimits{.rms_error = 0.6 * peak});
 }
+
+}  // namespace tracking_test

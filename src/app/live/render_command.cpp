@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write(const fs::path& file, const std::string& bytes) {
+void write_picture(const fs::path& file, const std::string& bytes) {
   write_durably(file, bytes);
   std::printf("%s\n", file.string().c_str());
 }
@@ -72,10 +72,10 @@ int run_render(const RenderOptions& options) {
     if (options.film) {
       film.push_back(std::move(bytes));
     } else {
-      write(options.every_s ? out / fs::path(name).filename() : out, bytes);
+      write_picture(options.every_s ? out / fs::path(name).filename() : out, bytes);
     }
   });
-  if (options.film) write(out, animated_png(film, options.frames_per_s));
+  if (options.film) write_picture(out, animated_png(film, options.frames_per_s));
   return exit_passed;
 }
 

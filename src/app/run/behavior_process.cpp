@@ -13,7 +13,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t heap_reserve_bytes = std::size_t{2} << 20U;
+constexpr std::size_t behavior_heap_bytes = std::size_t{2} << 20U;
 constexpr std::int64_t patience_on_virtual_time_ns = 10'000'000'000;
 
 BehaviorLink::Setup setup_of(const RunOptions& options) {
@@ -29,7 +29,7 @@ BehaviorLink::Setup setup_of(const RunOptions& options) {
 
 // Sets locked memory, memory limit and priority as for an engine's thread, once everything is loaded.
 void settle(const BehaviorLink::Setup& setup) noexcept {
-  if (setup.locks_memory != 0) (void)lock_memory(heap_reserve_bytes);
+  if (setup.locks_memory != 0) (void)lock_memory(behavior_heap_bytes);
   if (setup.memory_bytes > 0) (void)limit_memory(setup.memory_bytes);  // it counts what the lock looks for
   touch_stack();
   if (setup.priority > 0) (void)take_priority(setup.priority);

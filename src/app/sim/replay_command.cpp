@@ -182,7 +182,7 @@ void print_differences(const RecordComparison& comparison) {
   if (all.size() > shown_differences) std::printf("  ... and %zu more\n", all.size() - shown_differences);
 }
 
-void print_text(const Findings& findings) {
+void print_comparison(const Findings& findings) {
   const Replay& replay = findings.replay;
   const RecordComparison& comparison = replay.comparison();
   const std::string compared = plural(comparison.ticks(), "tick") + ", " + plural(comparison.signals(), "signal");
@@ -248,7 +248,7 @@ int run_replay(const ReplayOptions& options) {
     if (interrupted()) return exit_interrupted;
     const Findings findings{options, replay, changed_files(inputs, choices.scenario, replay.files()), program,
                             notes_of(replay, inputs)};
-    options.json ? print_json(findings) : print_text(findings);
+    options.json ? print_json(findings) : print_comparison(findings);
     return replay.same() ? exit_passed : exit_failed;
   } catch (const InputError&) {
     const std::string changed = change_text(changed_files(inputs, choices.scenario, {}));

@@ -11,6 +11,8 @@
 
 #include "../program.h"
 
+namespace push_test {
+
 using namespace kadans::program;
 namespace fs = std::filesystem;
 
@@ -220,3 +222,5 @@ TEST_CASE("ctl --host reaches a run on another computer with the words as they w
   }
   CHECK_FALSE(has(read(project / "ssh.log"), "Proxy"));
 }
+
+}  // namespace push_test
