@@ -70,8 +70,8 @@ Inertia combined(const Inertia& a, const Inertia& b) noexcept {
   return sum;
 }
 
-std::optional<std::string> inertia_defect(const Inertia& inertia) {
-  constexpr double singular = 1e-9, rounding = 1e-4;  // relative to the largest principal moment
+std::optional<std::string> inertia_defect(const Inertia& inertia, double rounding) {
+  constexpr double singular = 1e-9;  // relative to the largest principal moment
   Eigen::Matrix3d m;
   m << inertia.xx, inertia.xy, inertia.xz, inertia.xy, inertia.yy, inertia.yz, inertia.xz, inertia.yz, inertia.zz;
   const Eigen::Vector3d principal =
