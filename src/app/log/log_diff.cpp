@@ -95,7 +95,7 @@ void print_list(const char* what, const std::string& where, const std::vector<st
   if (list.size() > shown) std::printf("  ... and %zu more\n", list.size() - shown);
 }
 
-void print_text(const Findings& found) {
+void print_differences(const Findings& found) {
   const RecordDiff& diff = found.diff;
   std::printf("%s, %s: %s; %s, %s compared\n", found.a.file.c_str(), found.b.file.c_str(),
               diff.same() ? "the same" : "not the same", plural(diff.rows, "row").c_str(),
@@ -123,7 +123,7 @@ void print_text(const Findings& found) {
 int log_diff(const LogOptions& options) {
   const RecordOutline a = outline_of(options.file), b = outline_of(options.other);
   const Findings found{a, b, diff_records(a, b, options.tolerance), differing_facts(a, b)};
-  options.json ? print_json(found) : print_text(found);
+  options.json ? print_json(found) : print_differences(found);
   tell_problem(a);
   tell_problem(b);
   return found.diff.same() ? exit_passed : exit_failed;

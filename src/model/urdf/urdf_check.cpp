@@ -74,7 +74,7 @@ class TreeCheck {
     if (&other == &joint) return;
     refuse(joint.child.at, "link " + shown_quoted(child) + " hangs on two joints, " + shown_quoted(other.name) + " (" +
                                document_.in_line(other.at) + ") and " + shown_quoted(joint.name) +
-                               ": a URDF is a tree");
+                               ": a URDF is a tree, so leave out the joint that closes the loop");
   }
 
   void check_roots() {
@@ -142,9 +142,9 @@ class TreeCheck {
     }
   }
 
-  // What other links of its body make good can be simulated, and so can what rounding has done.
+  // What other links of its body make good can be simulated, and so can what rounding to two digits has done.
   void check_inertia(const UrdfLink& link, const Inertia& body) {
-    constexpr double rounded = 1e-2;
+    constexpr double rounded = 0.05;
     const std::string what = "the inertia of link " + shown_quoted(link.name) + " ";
     const auto defect = inertia_defect(*link.inertia);
     if (!defect) return;

@@ -105,7 +105,8 @@ class UrdfReader {
   }
 
   void check_count(Element e, std::size_t count, std::size_t most, const char* what) {
-    if (count > most) document_.stop(e.at(), "more than " + std::to_string(most) + " " + what);
+    if (count > most)
+      document_.stop(e.at(), "more than " + std::to_string(most) + " " + what + ": make 'fixed' what need not move");
   }
 
   static Read leaf(const std::vector<UrdfAttribute>& attributes) {
