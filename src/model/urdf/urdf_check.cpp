@@ -146,9 +146,11 @@ class TreeCheck {
   void check_inertia(const UrdfLink& link, const Inertia& body) {
     constexpr double rounded = 0.05;
     const std::string what = "the inertia of link " + shown_quoted(link.name) + " ";
-    const auto defect = inertia_defect(*link.inertia);
-    if (!defect) return;
-    if (!inertia_defect(*link.inertia, rounded))
+    const Inertia& own = *link.inertia;
+    const bool point = own.xx == 0 && own.yy == 0 && own.zz == 0 && own.xy == 0 && own.xz == 0 && own.yz == 0;
+    const auto defect = inertia_defect(own);
+    if (!defect || (point && !inertia_defect(body, rounded))) return;
+    if (!inertia_defect(own, rounded))
       document_.warn(link.inertia_at, what + *defect + "; by so little that it is rounding", "inertia rounded");
     else if (!inertia_defect(body, rounded))
       document_.warn(link.inertia_at, what + *defect + "; with what is fixed to it, it makes a possible body",

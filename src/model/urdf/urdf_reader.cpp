@@ -132,11 +132,11 @@ class UrdfReader {
     to.inertia_at = e.at();
     e.attributes({});
     e.children({{"origin", at_most_one, origin(pose)},
-                {"mass", one, leaf({{"value", not_negative, &body.mass_kg, required}})},
+                {"mass", at_most_one, leaf({{"value", not_negative, &body.mass_kg, required}})},
                 {"inertia", at_most_one, [&](Element c) { tensor = true, inertia(c, body, to); }}});
     const std::string what = "link " + shown_quoted(to.name);
     if (!(body.mass_kg > 0))
-      return document_.warn(e.at(), what + " has the mass 0, and counts as one without <inertial>", "mass 0");
+      return document_.warn(e.at(), what + " has an <inertial> without mass, and counts as one without it", "mass 0");
     if (!tensor) document_.warn(e.at(), what + " has a mass but no <inertia>: it is a point", "no <inertia>");
     to.inertia = moved(body, pose);
   }
@@ -149,8 +149,8 @@ class UrdfReader {
             {"ixy", number, &body.xy},
             {"ixz", number, &body.xz},
             {"iyz", number, &body.yz}});
-    for (const char* off : {"ixy", "ixz", "iyz"})
-      if (!e.has(off)) document_.warn(e.at(), std::string("<inertia> has no '") + off + "': it is taken as 0");
+    if (!e.has("ixy") || !e.has("ixz") || !e.has("iyz"))
+      document_.warn(e.at(), "<inertia> has not all of ixy, ixz and iyz: what is missing is taken as 0");
   }
 
   Read origin(Pose& to) {
