@@ -79,8 +79,8 @@ struct Joint {
   // Within them what the URDF's <safety_controller> asks the controller to keep; infinite: nothing.
   double soft_lower_rad = -std::numeric_limits<double>::infinity();
   double soft_upper_rad = std::numeric_limits<double>::infinity();
-  double effort_max_Nm = 0;  // 0: passive, no motor
-  double velocity_max_rad_s = 0;
+  double effort_max_Nm = 0;                         // 0: passive, no motor
+  double velocity_max_rad_s = 0;                    // 1e6 stands for no limit
   double damping_Nms_per_rad = 0, friction_Nm = 0;  // <dynamics>
   double rotor_inertia_kg_m2 = 0;                   // of the motor, reflected to the joint by its gear
   std::optional<Mimic> mimic;

@@ -49,7 +49,7 @@ void find_xacro(UrdfDocument& document, const tinyxml2::XMLElement& element) {
   }
 }
 
-// A limit of this size says that nobody knew it.
+// A limit of this size says that nobody knew it. As a speed it stays finite, so that it can be multiplied.
 constexpr double no_limit = 1e6;
 
 class UrdfReader {
@@ -304,7 +304,7 @@ class UrdfReader {
     std::string type;
     e.attributes({{"name", name, &to.name, required}, {"type", name, &type, required}});
     to.joint.name = to.name;
-    to.joint.lower_rad = -infinite, to.joint.upper_rad = to.joint.velocity_max_rad_s = infinite;
+    to.joint.lower_rad = -infinite, to.joint.upper_rad = infinite, to.joint.velocity_max_rad_s = no_limit;
     set_type(e, to, type);
     const bool bounded = type == "revolute" || type == "prismatic";
     bool limited = false;
@@ -422,7 +422,7 @@ class UrdfReader {
 
   void limit(Element e, UrdfJoint& to, bool bounded) {
     constexpr double unread = std::numeric_limits<double>::quiet_NaN();  // stays where the text is no number
-    double lower = e.has("lower") ? unread : 0, upper = e.has("upper") ? unread : 0, effort = 0, velocity = infinite;
+    double lower = e.has("lower") ? unread : 0, upper = e.has("upper") ? unread : 0, effort = 0, velocity = no_limit;
     e.leaf({{"lower", UrdfValue::unbounded, &lower},
             {"upper", UrdfValue::unbounded, &upper},
             {"effort", UrdfValue::unbounded, &effort},
@@ -446,6 +446,8 @@ class UrdfReader {
       document_.warn(e.at(), what + " has a limit of 1e6 or more: it is taken as no end stop", "no end stop");
     to.joint.lower_rad = lower <= -no_limit ? -infinite : lower;
     to.joint.upper_rad = upper >= no_limit ? infinite : upper;
+    if (to.joint.type == JointType::revolute && std::isinf(to.joint.lower_rad) && std::isinf(to.joint.upper_rad))
+      to.joint.type = JointType::continuous;
   }
 
   void set_effort(Element e, UrdfJoint& to, double effort) {
@@ -470,7 +472,7 @@ class UrdfReader {
     if (velocity <= 0)
       document_.warn(e.at_value("velocity"), what + " has a 'velocity' that is not above 0: its speed has no limit",
                      "zero velocity");
-    to.joint.velocity_max_rad_s = velocity <= 0 || velocity >= no_limit ? infinite : velocity;
+    to.joint.velocity_max_rad_s = velocity <= 0 ? no_limit : std::min(velocity, no_limit);
   }
 
   void soft_limits(Element e, UrdfJoint& to) {
