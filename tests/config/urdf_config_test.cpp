@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 #include <stdlib.h>
 
+#include "broken.h"
 #include "config/robot/robot_config.h"
 #include "kadans/signal/input_error.h"
 #include "right_texts.h"

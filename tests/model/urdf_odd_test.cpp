@@ -56,8 +56,8 @@ warning: duo.urdf:25:73: attribute 'K' of <dynamics> is not known to URDF, and n
       {"calibration", limit, limit + R"(<calibration rising="0"/>)",
        "warning: duo.urdf:25:57: <calibration> is not used"},
       {"gains of a safety controller", limit, limit + R"(<safety_controller k_velocity="10"/>)",
-       "warning: duo.urdf:25:76: 'k_velocity' of <safety_controller> is not used: the safety layer slows a joint down "
-       "before its limit"},
+       "warning: duo.urdf:25:57: 'k_position' and 'k_velocity' of <safety_controller> are not used: the safety layer "
+       "slows a joint down before its limit"},
       {"a limit, an axis and a mimic of a fixed joint", end,
        fixed("", R"(<axis xyz="0 0 0"/><limit effort="-1"/><mimic joint="elbow"/>)"),
        "warning: duo.urdf:27:135: joint 'tip' is fixed: its <mimic> is not used"},
@@ -102,11 +102,13 @@ TEST_CASE("Limits that are none are told and taken as none") {
   const std::vector<BrokenUrdf> table{
       {"1e9 everywhere", limit, R"(<limit lower="-1e9" upper="1e9" effort="1e9" velocity="1e9"/>)",
        R"(warning: duo.urdf:25:5: joint 'elbow' has a limit of 1e6 or more: it is taken as no end stop
-warning: duo.urdf:25:45: joint 'elbow' has an 'effort' of 1e6 or more, which no motor has: torque_max_Nm in the robot's plant.drives gives the true one)"},
+warning: duo.urdf:25:45: joint 'elbow' has an 'effort' of 1e6 or more, which no motor has: torque_max_Nm in the robot's plant.drives gives the true one
+warning: duo.urdf:25:60: joint 'elbow' has a 'velocity' of 1e6 or more: its speed has no limit)"},
       {"1e16", limit, R"(<limit lower="-1e+16" upper="1e+16" effort="5" velocity="3"/>)",
        "warning: duo.urdf:25:5: joint 'elbow' has a limit of 1e6 or more: it is taken as no end stop"},
       {"inf", limit, R"(<limit lower="-inf" upper="inf" effort="5" velocity="inf"/>)",
-       "warning: duo.urdf:25:5: joint 'elbow' has a limit of 1e6 or more: it is taken as no end stop"},
+       R"(warning: duo.urdf:25:5: joint 'elbow' has a limit of 1e6 or more: it is taken as no end stop
+warning: duo.urdf:25:58: joint 'elbow' has a 'velocity' of 1e6 or more: its speed has no limit)"},
       {"-1", limit, R"(<limit lower="0" upper="2" effort="-1" velocity="-1"/>)",
        R"(warning: duo.urdf:25:40: joint 'elbow' has a negative 'effort': it has no motor
 warning: duo.urdf:25:54: joint 'elbow' has a 'velocity' that is not above 0: its speed has no limit)"},

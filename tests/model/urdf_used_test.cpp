@@ -170,5 +170,6 @@ TEST_CASE("A package is where it is said to be, where ROS says, or where a packa
   place.write("robot/package.xml", "<package>\n  <name> shell </name>\n</package>");
   CHECK(find_urdf_file(name, urdf) == own);
   CHECK(find_urdf_file("model://shell/meshes/a.stl", urdf) == own);
+  CHECK(find_urdf_file("package:///shell/meshes/a.stl", urdf) == own);
   CHECK_FALSE(find_urdf_file("package://other/meshes/a.stl", urdf));
 }

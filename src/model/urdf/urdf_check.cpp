@@ -1,4 +1,5 @@
 // How the parts of a URDF fit together: the tree, the mimics, the meshes.
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -236,9 +237,9 @@ class MeshFiles {
 
   static std::string package(const std::string& name) {
     const std::string from = scheme(name);
-    return from == "package://" || from == "model://"
-               ? name.substr(from.size(), name.find('/', from.size()) - from.size())
-               : "";
+    if (from != "package://" && from != "model://") return "";
+    const std::size_t start = std::min(name.find_first_not_of('/', from.size()), name.size());
+    return name.substr(start, name.find('/', start) - start);
   }
 
   static std::string where(const std::string& name) {

@@ -288,7 +288,8 @@ void UrdfElement::unknown_attribute(const char* name, const std::vector<std::str
   const std::string nearest = of_others(name) ? "" : nearest_name(name, known);
   const std::string what = "attribute '" + shown(name) + "' of " + shown_name();
   if (nearest.empty() || has(nearest.c_str()))
-    return document_.warn(at_name(name), what + " is not known to URDF, and not used");
+    return document_.warn(at_name(name), what + " is not known to URDF, and not used",
+                          std::string_view(name).starts_with("xmlns") ? "name space" : "");
   meant.insert(nearest);
   document_.refuse(at_name(name), "unknown " + what + ", did you mean '" + nearest + "'?");
 }

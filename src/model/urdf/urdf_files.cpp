@@ -67,8 +67,10 @@ std::vector<fs::path> package_folders() {
   return folders;
 }
 
-std::optional<std::string> in_package(const fs::path& rest, const fs::path& start, const UrdfPackages& packages) {
-  if (rest.empty() || rest.is_absolute()) return std::nullopt;
+std::optional<std::string> in_package(std::string_view name, const fs::path& start, const UrdfPackages& packages) {
+  name.remove_prefix(std::min(name.find_first_not_of('/'), name.size()));  // package:///NAME is written, too
+  const fs::path rest = name;
+  if (rest.empty()) return std::nullopt;
   const fs::path package = *rest.begin(), inside = rest.lexically_relative(package);
   if (const auto given = packages.find(package.string()); given != packages.end())
     return if_file(fs::path(given->second) / inside);
@@ -90,7 +92,7 @@ std::optional<std::string> find_urdf_file(const std::string& name, const std::st
   std::error_code error;
   const fs::path folder = fs::absolute(fs::path(urdf_file), error).parent_path();
   for (const std::string_view package : {"package://", "model://"}) {
-    if (name.starts_with(package)) return in_package(name.substr(package.size()), folder, packages);
+    if (name.starts_with(package)) return in_package(std::string_view(name).substr(package.size()), folder, packages);
   }
   return if_file(folder / name);
 }

@@ -469,9 +469,11 @@ class UrdfReader {
     const std::string what = "joint " + shown_quoted(to.name);
     if (!e.has("velocity"))
       document_.warn(e.at(), what + " has a <limit> without 'velocity': its speed has no limit", "no velocity");
-    if (velocity <= 0)
-      document_.warn(e.at_value("velocity"), what + " has a 'velocity' that is not above 0: its speed has no limit",
-                     "zero velocity");
+    if (e.has("velocity") && (velocity <= 0 || velocity >= no_limit))
+      document_.warn(e.at_value("velocity"),
+                     what + " has a 'velocity' " + (velocity <= 0 ? "that is not above 0" : "of 1e6 or more") +
+                         ": its speed has no limit",
+                     velocity <= 0 ? "zero velocity" : "large velocity");
     to.joint.velocity_max_rad_s = velocity <= 0 ? no_limit : std::min(velocity, no_limit);
   }
 
@@ -481,11 +483,11 @@ class UrdfReader {
             {"soft_upper_limit", UrdfValue::unbounded, &upper},
             {"k_position", UrdfValue::unbounded},
             {"k_velocity", UrdfValue::unbounded}});
-    for (const char* gain : {"k_position", "k_velocity"})
-      if (e.has(gain))
-        document_.warn(e.at_name(gain), std::string("'") + gain +
-                                            "' of <safety_controller> is not used: the safety layer "
-                                            "slows a joint down before its limit");
+    if (e.has("k_position") || e.has("k_velocity"))
+      document_.warn(
+          e.at(),
+          "'k_position' and 'k_velocity' of <safety_controller> are not used: the safety layer slows a joint "
+          "down before its limit");
     if (to.joint.type == JointType::continuous || lower == upper) return;  // by URDF's rules: none
     if (e.has("soft_lower_limit")) to.joint.soft_lower_rad = lower;
     if (e.has("soft_upper_limit")) to.joint.soft_upper_rad = upper;
