@@ -67,8 +67,10 @@ int run_test(const TestOptions& options);
 
 struct CheckOptions {
   std::vector<std::string> files;
-  std::string robot;     // configuration against which behaviors are checked; "": the one for their folder
-  bool plugins = false;  // load plug-ins
+  std::string robot;                  // configuration against which behaviors are checked; "": the one for their folder
+  bool plugins = false;               // load plug-ins
+  bool strict = false;                // warnings are mistakes
+  std::vector<std::string> packages;  // "NAME=FOLDER", where a URDF's meshes are
 };
 void add_check(CLI::App& app, CheckOptions& options);
 int run_check(const CheckOptions& options);

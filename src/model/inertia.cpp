@@ -38,11 +38,13 @@ void add_point(Inertia& i, double mass_kg, const Vec3& d) noexcept {
   i.yz -= mass_kg * d[1] * d[2];
 }
 
-std::string moments(const Eigen::Vector3d& m) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "%.4g, %.4g, %.4g", m[0], m[1], m[2]);
+std::string moment(double kg_m2) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", kg_m2);
   return text.data();
 }
+
+std::string moments(const Eigen::Vector3d& m) { return moment(m[0]) + ", " + moment(m[1]) + ", " + moment(m[2]); }
 
 }  // namespace
 
@@ -70,8 +72,8 @@ Inertia combined(const Inertia& a, const Inertia& b) noexcept {
   return sum;
 }
 
-std::optional<std::string> inertia_defect(const Inertia& inertia) {
-  constexpr double singular = 1e-9, rounding = 1e-4;  // relative to the largest principal moment
+std::optional<std::string> inertia_defect(const Inertia& inertia, double rounding) {
+  constexpr double singular = 1e-9;  // relative to the largest principal moment
   Eigen::Matrix3d m;
   m << inertia.xx, inertia.xy, inertia.xz, inertia.xy, inertia.yy, inertia.yz, inertia.xz, inertia.yz, inertia.zz;
   const Eigen::Vector3d principal =
@@ -81,7 +83,7 @@ std::optional<std::string> inertia_defect(const Inertia& inertia) {
   }
   if (!(principal[0] + principal[1] >= principal[2] * (1 - rounding))) {
     return "breaks the triangle inequality: of its principal moments " + moments(principal) +
-           " kg m2 no one may exceed the sum of the other two";
+           " kg m2 no one may exceed the sum of the other two, here " + moment(principal[0] + principal[1]);
   }
   return std::nullopt;
 }

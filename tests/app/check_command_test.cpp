@@ -1,4 +1,7 @@
+#include <cstdlib>
+
 #include <doctest/doctest.h>
+#include <stdlib.h>
 
 #include "program.h"
 
@@ -147,4 +150,87 @@ TEST_CASE("the behaviors of a scenario's events are checked, too, and a record r
   CHECK(run("check config/scenarios/later.json", project).exit_code == 2);
   CHECK(run("replay later.mcap --from-record", project).exit_code == 0);
   CHECK(run("replay later.mcap", project).exit_code == 0);  // it runs, with the file as it is
+}
+
+TEST_CASE("check --strict makes warnings of a URDF errors, for the URDF and for a robot that has it") {
+  const auto project = project_copy("check_strict");
+  REQUIRE(edit(project / "models/jiwiy/jiwiy.urdf", "</robot>", "<gazebo/><gazebo/></robot>"));
+  const std::string what = "<gazebo> in <robot> is not known to URDF, and not used (2 such in this line)";
+  const Outcome told = run("check config/jiwiy/robot.json", project);
+  CHECK(told.exit_code == 0);
+  CHECK(has(told.out, "\nwarning: "));
+  CHECK(has(told.out, what));
+  for (const char* file : {"models/jiwiy/jiwiy.urdf", "config/jiwiy/robot.json"}) {
+    const Outcome strict = run(std::string("check --strict ") + file, project);
+    CHECK(strict.exit_code == 2);
+    CHECK(has(strict.err, what));
+  }
+}
+
+TEST_CASE("check reads a URDF whose name ends in capitals, and finds meshes of a package that it is told of") {
+  const auto project = project_copy("check_package");
+  REQUIRE(
+      edit(project / "models/jiwiy/jiwiy.urdf", "</robot>",
+           "<link name=\"cap\"><visual><geometry><mesh filename=\"package://caps/cap.stl\"/></geometry></visual></link>"
+           "<joint name=\"cap\" type=\"fixed\"><parent link=\"base\"/><child link=\"cap\"/></joint></robot>"));
+  std::filesystem::rename(project / "models/jiwiy/jiwiy.urdf", project / "JIWIY.URDF");
+  std::filesystem::create_directories(project / "there");
+  write(project / "there/cap.stl", "solid");
+  const Outcome without = run("check JIWIY.URDF", project);
+  CHECK(without.exit_code == 0);
+  CHECK(has(without.out, "ends in .URDF"));
+  CHECK(has(without.out, "--package caps=FOLDER"));
+  const Outcome with = run("check --package caps=there JIWIY.URDF", project);
+  CHECK(with.exit_code == 0);
+  CHECK_FALSE(has(with.out, "caps"));
+  CHECK(has(run("check --package caps=nowhere JIWIY.URDF", project).err, "must be NAME=FOLDER"));
+}
+
+namespace {
+
+// A program `xacro` that is first in PATH.
+class FakeXacro {
+ public:
+  FakeXacro(const std::filesystem::path& folder, const std::string& script) {
+    write(folder / "bin/xacro", "#!/bin/sh\n" + script + "\n");
+    std::filesystem::permissions(folder / "bin/xacro", std::filesystem::perms::owner_all);
+    setenv("PATH", (folder / "bin").string().append(":").append(path_).c_str(), 1);  // NOLINT: no thread
+  }
+  ~FakeXacro() { setenv("PATH", path_.c_str(), 1); }  // NOLINT: no thread
+  FakeXacro(const FakeXacro&) = delete;
+  FakeXacro& operator=(const FakeXacro&) = delete;
+
+ private:
+  std::string path_ = std::getenv("PATH");  // NOLINT: no thread
+};
+
+}  // namespace
+
+TEST_CASE("check expands xacro with the program xacro, shows its errors, and says what to do without it") {
+  const auto project = project_copy("check_xacro");
+  std::filesystem::create_directories(project / "bin");
+  const std::string file = "models/it's $(touch made).urdf.xacro";  // no shell reads it
+  std::filesystem::rename(project / "models/jiwiy/jiwiy.urdf", project / file);
+  const std::string check = "check \"models/it's \\$(touch made).urdf.xacro\"";
+  {
+    const FakeXacro xacro(project, "exec cat \"$1\"");
+    const Outcome outcome = run(check, project);
+    CHECK_MESSAGE(outcome.exit_code == 0, outcome.err);
+    CHECK(has(outcome.out, "3 links, 2 joints"));
+    CHECK_FALSE(std::filesystem::exists(project / "made"));
+  }
+  {
+    const FakeXacro xacro(project, "echo 'no such macro: leg' >&2; exit 2");
+    const Outcome outcome = run(check, project);
+    CHECK(outcome.exit_code == 2);
+    CHECK(has(outcome.err, "xacro could not expand it, and says:\nno such macro: leg"));
+  }
+  std::filesystem::remove(project / "bin/xacro");
+  setenv("KADANS_TEST_PATH", std::getenv("PATH"), 1);  // NOLINT: no thread
+  setenv("PATH", (project / "bin").c_str(), 1);        // NOLINT: no thread
+  const Outcome outcome = run(check, project);
+  setenv("PATH", std::getenv("KADANS_TEST_PATH"), 1);  // NOLINT: no thread
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "that is not installed here"));
+  CHECK(has(outcome.err, ".urdf'"));
 }

@@ -28,7 +28,8 @@ void require_right(const RobotModel& model) {
     require(joint.parent <= i, "parents come first");
     require_finite(joint.origin);
     require(joint.lower_rad <= joint.upper_rad, "a joint has a range");
-    require_finite({joint.effort_max_Nm, joint.velocity_max_rad_s, joint.damping_Nms_per_rad, joint.friction_Nm});
+    require_finite({joint.effort_max_Nm, joint.velocity_max_rad_s, joint.damping_Nms_per_rad, joint.friction_Nm,
+                    joint.rotor_inertia_kg_m2});
     require(joint.effort_max_Nm >= 0 && joint.velocity_max_rad_s >= 0, "limits are not negative");
     double length = 0;
     for (const double value : joint.axis) length += value * value;

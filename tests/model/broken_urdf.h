@@ -8,13 +8,16 @@ namespace kadans {
 struct BrokenUrdf {
   const char* what;  // is wrong
   std::string from, to;
-  std::string message;  // the whole error, "duo.urdf:line:column: ..."; several lines for several mistakes
+  std::string message;  // all that is told, "duo.urdf:line:column: ..."; of what is accepted "warning: duo.urdf:..."
 };
 
 extern const std::string duo_urdf;
 
 std::string read_error(const std::string& text);                       // "no error" when the text is accepted
 std::string duo_with(const std::string& from, const std::string& to);  // throws when `from` is not in it
-void check_refused(const BrokenUrdf& broken);
+// The error, or the warnings, each with "warning: " before it; several lines for several. Collision meshes may be
+// hulls.
+std::string read_told(const std::string& text);
+void check_told(const BrokenUrdf& broken);
 
 }  // namespace kadans

@@ -81,7 +81,7 @@ TEST_CASE("Columns count characters, not bytes, and a byte order mark does not d
 }
 
 TEST_CASE("All mistakes of a file come in one error, by line, with places for machines") {
-  std::string text = duo_with("\"0 1 0\"", "\"0 2 0\"");
+  std::string text = duo_with("\"0 1 0\"", "\"0 x 0\"");
   text.replace(text.find("\"2.5\""), 5, "\"2,5\"");
   text.replace(text.find("link=\"fore_arm\""), 15, "link=\"forearm\"");
   try {
@@ -115,8 +115,14 @@ TEST_CASE("What is odd is told beside the model, by place, and bounded") {
   std::string visuals;
   for (int i = 0; i < 30; ++i) visuals += visual;
   (void)read_urdf_text(duo_with("<collision>", visuals + "<collision>"), "duo.urdf", {}, &warnings);
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings.back().text() ==
+        "duo.urdf:9:54: material 'orange' had another color before, which counts (30 such in this line)");
+  std::string kinds;
+  for (int i = 0; i < 30; ++i) kinds += "<x" + std::to_string(i) + "/>";
+  (void)read_urdf_text(duo_with("</robot>", kinds + "</robot>"), "duo.urdf", {}, &warnings);
   REQUIRE(warnings.size() == 26);
-  CHECK(warnings.back().text() == "duo.urdf: and 5 more");
+  CHECK(warnings.back().text() == "duo.urdf: and 5 more of other kinds");
   (void)read_urdf_text(duo_urdf, "duo.urdf", {}, &warnings);
   CHECK(warnings.empty());
 }

@@ -5,12 +5,13 @@
 
 using namespace kadans;
 
-TEST_CASE("A link that is wrong is refused with its place, what is wrong and what was meant") {
+TEST_CASE("A link that is wrong or odd is told with its place, what is wrong and what was meant") {
   const std::vector<BrokenUrdf> table{
       {"mass with a comma", R"("2.5")", R"("2,5")",
        "duo.urdf:5:20: <mass> value '2,5' is not a number, did you mean '2.5'?"},
-      {"negative mass", R"("2.5")", R"("-2.5")", "duo.urdf:5:20: <mass> value '-2.5' must be > 0"},
-      {"mass zero", R"("2.5")", R"("0")", "duo.urdf:5:20: <mass> value '0' must be > 0"},
+      {"negative mass", R"("2.5")", R"("-2.5")", "duo.urdf:5:20: <mass> value '-2.5' must be >= 0"},
+      {"mass zero", R"("2.5")", R"("0")",
+       "warning: duo.urdf:4:5: link 'base' has an <inertial> without mass, and counts as one without it"},
       {"mass with its unit", R"("2.5")", R"("2.5 kg")", "duo.urdf:5:20: <mass> value '2.5 kg' is not a number"},
       {"mass not a number", R"("2.5")", R"("nan")", "duo.urdf:5:20: <mass> value 'nan' is not finite"},
       {"mass infinite", R"("2.5")", R"("inf")", "duo.urdf:5:20: <mass> value 'inf' is not finite"},
@@ -27,12 +28,13 @@ TEST_CASE("A link that is wrong is refused with its place, what is wrong and wha
 )",
        R"(
 )",
-       "duo.urdf:4:5: <inertial> has no <mass>"},
+       "warning: duo.urdf:4:5: link 'base' has an <inertial> without mass, and counts as one without it"},
       {"inertial without inertia", R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)", "",
-       "duo.urdf:4:5: <inertial> has no <inertia>"},
+       "duo.urdf:4:5: the inertia of link 'base' is not positive definite: its principal moments are 0, 0, 0 kg m2, "
+       "all must be > 0"},
       {"inertia without ixz", R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)",
        R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" iyz="0"/>)",
-       "duo.urdf:6:7: <inertia> has no attribute 'ixz'"},
+       "warning: duo.urdf:6:7: <inertia> has not all of ixy, ixz and iyz: what is missing is taken as 0"},
       {"inertia not positive definite", R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)",
        R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0.03" ixz="0" iyz="0"/>)",
        "duo.urdf:6:7: the inertia of link 'base' is not positive definite: its principal moments are -0.01, 0.02, 0.05 "
@@ -45,51 +47,52 @@ TEST_CASE("A link that is wrong is refused with its place, what is wrong and wha
        R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)",
        R"(<inertia ixx="0.02" iyy="0.02" izz="0.05" ixy="0" ixz="0" iyz="0"/>)",
        "duo.urdf:6:7: the inertia of link 'base' breaks the triangle inequality: of its principal moments 0.02, 0.02, "
-       "0.05 kg m2 no one may exceed the sum of the other two"},
+       "0.05 kg m2 no one may exceed the sum of the other two, here 0.04"},
       {"mass twice", R"(<mass value="2.5"/>)", R"(<mass value="2.5"/><mass value="3"/>)",
-       "duo.urdf:5:26: a second <mass> in <inertial>"},
-      {"unknown geometry", R"(<sphere radius="0.1"/>)", R"(<capsule radius="0.1" length="1"/>)",
-       "duo.urdf:8:23: unknown geometry <capsule>; known are: box, sphere, cylinder, mesh"},
+       "warning: duo.urdf:5:26: a second <mass> in <inertial>: the first counts"},
+      {"unknown geometry", R"(<sphere radius="0.1"/>)", R"(<capsule radius="0.1" length="1"/>)", "nothing"},
       {"geometry mistyped", R"(<sphere radius="0.1"/>)", R"(<spere radius="0.1"/>)",
-       "duo.urdf:8:23: unknown geometry <spere>, did you mean 'sphere'?"},
+       "warning: duo.urdf:8:23: unknown element <spere> in <geometry>, did you mean 'sphere'?; this <visual> is left "
+       "out"},
       {"geometry empty", R"(<sphere radius="0.1"/>)", "",
-       "duo.urdf:8:13: <geometry> is empty: <box>, <sphere>, <cylinder> or <mesh> was expected"},
+       "warning: duo.urdf:8:5: <visual> has no shape that could be used, and is left out"},
       {"geometry with nothing but an element of others", R"(<sphere radius="0.1"/>)", R"(<drake:capsule/>)",
-       "duo.urdf:8:13: <geometry> is empty: <box>, <sphere>, <cylinder> or <mesh> was expected"},
+       R"(warning: duo.urdf:8:5: <visual> has no shape that could be used, and is left out
+warning: duo.urdf:8:23: <drake:capsule> in <geometry> is not known to URDF, and not used)"},
       {"two shapes in a geometry", R"(<sphere radius="0.1"/>)", R"(<sphere radius="0.1"/><sphere radius="0.2"/>)",
-       "duo.urdf:8:45: a second shape in one <geometry>"},
+       "warning: duo.urdf:8:45: a second shape in one <geometry>: the first counts"},
       {"no geometry", R"(<visual><geometry><sphere radius="0.1"/></geometry>)", "<visual>",
-       "duo.urdf:8:5: <visual> has no <geometry>"},
+       "warning: duo.urdf:8:5: <visual> has no shape that could be used, and is left out"},
       {"sphere without radius", R"(<sphere radius="0.1"/>)", "<sphere/>",
-       "duo.urdf:8:23: <sphere> has no attribute 'radius'"},
+       "warning: duo.urdf:8:23: <sphere> has no attribute 'radius'; this <visual> is left out"},
       {"sphere of radius zero", R"(<sphere radius="0.1"/>)", R"(<sphere radius="0"/>)",
-       "duo.urdf:8:39: <sphere> radius '0' must be > 0"},
+       "warning: duo.urdf:8:5: <visual> has no shape that could be used, and is left out"},
       {"cylinder without length", R"(<sphere radius="0.1"/>)", R"(<cylinder radius="0.1"/>)",
-       "duo.urdf:8:23: <cylinder> has no attribute 'length'"},
+       "warning: duo.urdf:8:23: <cylinder> has no attribute 'length'; this <visual> is left out"},
       {"box with two sizes", R"("0.1 0.2 0.3")", R"("0.1 0.2")",
        "duo.urdf:9:37: <box> size '0.1 0.2' has 2 numbers, 3 were expected"},
       {"box with a negative size", R"("0.1 0.2 0.3")", R"("0.1 -0.2 0.3")",
-       "duo.urdf:9:37: <box> size '0.1 -0.2 0.3' must be > 0 in every direction"},
+       "duo.urdf:9:37: <box> size '0.1 -0.2 0.3' must be >= 0 in every direction"},
       {"box with commas", R"("0.1 0.2 0.3")", R"("0.1, 0.2, 0.3")",
        "duo.urdf:9:37: <box> size '0.1, 0.2, 0.3' is not separated by spaces, did you mean '0.1 0.2 0.3'?"},
       {"box with a word", R"("0.1 0.2 0.3")", R"("0.1 O.2 0.3")",
        "duo.urdf:9:37: <box> size '0.1 O.2 0.3' has a part 'O.2' that is not a number"},
-      {"collision mesh without hulls", R"(<box size="0.1 0.2 0.3"/>)", R"(<mesh filename="hull.stl"/>)",
-       R"(duo.urdf:9:26: the collision of link 'base' is a mesh, which collides only as its convex hull and only when mesh hulls are asked for: ask, or use <box>, <sphere> or <cylinder>
-duo.urdf:9:42: mesh file 'hull.stl' is not there: its path starts from the URDF's folder)"},
+      {"collision mesh that is not there", R"(<box size="0.1 0.2 0.3"/>)", R"(<mesh filename="hull.stl"/>)",
+       "warning: duo.urdf:9:42: mesh file 'hull.stl' is not there: link 'base' collides without it; its path starts "
+       "from the URDF's folder"},
       {"visual mesh that is not there", R"(<sphere radius="0.1"/>)",
        R"(<mesh filename="package://duo/meshes/shell.stl"/>)",
-       "duo.urdf:8:39: mesh file 'package://duo/meshes/shell.stl' is not there: no folder of this package holds it, "
-       "from the URDF's folder up"},
+       "warning: duo.urdf:8:39: mesh file 'package://duo/meshes/shell.stl' is not there: link 'base' is drawn with a "
+       "marker in its place; --package duo=FOLDER or ROS_PACKAGE_PATH says where the package is"},
       {"mesh scaled to nothing", R"(<sphere radius="0.1"/>)", R"(<mesh filename="shell.stl" scale="1 1 0"/>)",
-       R"(duo.urdf:8:39: mesh file 'shell.stl' is not there: its path starts from the URDF's folder
-duo.urdf:8:57: <mesh> scale '1 1 0' must not be 0 in any direction)"},
+       "warning: duo.urdf:8:5: <visual> has no shape that could be used, and is left out"},
       {"material mistyped", R"(<material name="orange"/>)", R"(<material name="ornage"/>)",
-       "duo.urdf:8:72: material 'ornage' is not defined, did you mean 'orange'?"},
+       "warning: duo.urdf:8:72: material 'ornage' is not defined, and is grey, did you mean 'orange'?"},
       {"colour out of range", R"("1 0.5 0 1")", R"("255 128 0 1")",
-       "duo.urdf:2:40: <color> rgba '255 128 0 1' must be red, green, blue and opacity in 0..1"},
+       R"(warning: duo.urdf:2:3: material 'orange' has neither <color> nor <texture>, and is grey
+warning: duo.urdf:2:40: <color> rgba '255 128 0 1' must be red, green, blue and opacity in 0..1; this colour is not used)"},
       {"material without colour", R"(<color rgba="1 0.5 0 1"/>)", "",
-       "duo.urdf:2:3: material 'orange' has neither <color> nor <texture>"},
+       "warning: duo.urdf:2:3: material 'orange' has neither <color> nor <texture>, and is grey"},
       {"unknown element in a link", "<collision>", "<colision>x</colision><collision>",
        "duo.urdf:9:5: unknown element <colision> in <link>, did you mean 'collision'?"},
       {"element mistyped that is needed", R"(<mass value="2.5"/>)", R"(<mas value="2.5"/>)",
@@ -98,8 +101,10 @@ duo.urdf:8:57: <mesh> scale '1 1 0' must not be 0 in any direction)"},
        "duo.urdf:9:37: <box> size '0.1,0.2,0.3' is not separated by spaces, did you mean '0.1 0.2 0.3'?"},
       {"visual mesh with an absolute path that is not there", R"(<sphere radius="0.1"/>)",
        R"(<mesh filename="file:///no/such/shell.stl"/>)",
-       "duo.urdf:8:39: mesh file 'file:///no/such/shell.stl' is not there"},
-      {"text in a link", "<collision>", "todo: collision <collision>", "duo.urdf:9:5: text in <link>, which has none"},
+       "warning: duo.urdf:8:39: mesh file 'file:///no/such/shell.stl' is not there: link 'base' is drawn with a marker "
+       "in its place"},
+      {"text in a link", "<collision>", "todo: collision <collision>",
+       "warning: duo.urdf:9:5: text in <link>, which has none, is not used"},
   };
-  for (const BrokenUrdf& broken : table) check_refused(broken);
+  for (const BrokenUrdf& broken : table) check_told(broken);
 }

@@ -15,8 +15,8 @@ Inertia moved(const Inertia& inertia, const Pose& pose) noexcept;
 Inertia combined(const Inertia& a, const Inertia& b) noexcept;
 
 // Why no real body can have this inertia, as a sentence: the tensor is not positive definite, or one principal moment
-// is larger than the other two together (by more than rounding, 1e-4 of it). Nothing when it is possible. Looks at the
+// is larger than the other two together (by more than `rounding` of it). Nothing when it is possible. Looks at the
 // tensor only.
-std::optional<std::string> inertia_defect(const Inertia& inertia);
+std::optional<std::string> inertia_defect(const Inertia& inertia, double rounding = 1e-4);
 
 }  // namespace kadans

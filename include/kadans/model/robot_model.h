@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -74,10 +75,14 @@ struct Joint {
   std::size_t parent = 0;               // index of the parent link; the child is link (this joint's index + 1)
   Pose origin;                          // joint frame in the parent link's frame
   Vec3 axis{1, 0, 0};                   // unit vector in the joint frame
-  double lower_rad = 0, upper_rad = 0;  // infinite for continuous joints
-  double effort_max_Nm = 0;             // 0: passive, no motor
-  double velocity_max_rad_s = 0;
+  double lower_rad = 0, upper_rad = 0;  // end stops; infinite: none, as of continuous joints
+  // Within them what the URDF's <safety_controller> asks the controller to keep; infinite: nothing.
+  double soft_lower_rad = -std::numeric_limits<double>::infinity();
+  double soft_upper_rad = std::numeric_limits<double>::infinity();
+  double effort_max_Nm = 0;                         // 0: passive, no motor
+  double velocity_max_rad_s = 0;                    // 1e6 stands for no limit
   double damping_Nms_per_rad = 0, friction_Nm = 0;  // <dynamics>
+  double rotor_inertia_kg_m2 = 0;                   // of the motor, reflected to the joint by its gear
   std::optional<Mimic> mimic;
 
   bool passive() const noexcept { return effort_max_Nm == 0; }
@@ -88,7 +93,7 @@ struct RobotModel {
   std::string file;                         // the file that it was read from
   std::vector<Link> links;                  // links[0] is the floating base; parents come before children
   std::vector<Joint> joints;                // size() == links.size() - 1, at most max_joints
-  std::vector<Transmission> transmissions;  // not in the URDF; joints in none have a drive in their own coordinate
+  std::vector<Transmission> transmissions;  // joints in none have a drive in their own coordinate
 
   std::optional<std::size_t> find_joint(std::string_view name) const;
   std::optional<std::size_t> find_link(std::string_view name) const;  // merged names too

@@ -1,6 +1,9 @@
-// Reads URDF strictly. Mistakes that other readers repair, drop or only log are refused here, with their places.
+// Reads URDF as the world writes it. What cannot be simulated as it was meant is refused, with its place and what to
+// do: no root, a loop, a parent that does not exist, a moving link without mass or inertia, a negative mass, crossed
+// limits. Everything else is a warning that says what was made of it. docs/urdf.md.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,17 +14,27 @@
 
 namespace kadans {
 
+using UrdfPackages = std::map<std::string, std::string>;  // folders by the name of a package
+
 struct UrdfOptions {
   bool mesh_hulls = false;  // meshes collide as their convex hulls; else a collision mesh is refused
+  bool strict = false;      // warnings are mistakes
+  UrdfPackages packages{};  // where packages are; else see find_urdf_file
 };
 
-// Throws InputError (signal/input_error.h) on any mistake: one message with all mistakes that were found, one per line.
-// `warnings`, when given, gets oddities that do not change the model, sorted by place.
+// Throws InputError (signal/input_error.h) on any mistake: one message with all mistakes that were found, one per line;
+// mistakes of one kind are one line. `warnings`, when given, gets oddities and what was made of them, sorted by place.
 RobotModel read_urdf(const std::string& file, const UrdfOptions& options = {},
                      std::vector<InputProblem>* warnings = nullptr);
 // `file` only names the text in messages, and is where the paths of meshes start from.
 RobotModel read_urdf_text(const std::string& text, const std::string& file, const UrdfOptions& options = {},
                           std::vector<InputProblem>* warnings = nullptr);
+
+// A file as a URDF names it. A relative name starts from the URDF's folder. In package://NAME/..., NAME is one of
+// `packages`, or a package below a folder of ROS_PACKAGE_PATH or AMENT_PREFIX_PATH, or one that has this name, or a
+// package.xml that says it, from the URDF's folder up. Nothing when the file is not there.
+std::optional<std::string> find_urdf_file(const std::string& name, const std::string& urdf_file,
+                                          const UrdfPackages& packages = {});
 
 // The frames of a robot as its URDF names them, for viewers that draw the URDF. Frames on fixed joints, which a
 // RobotModel merges away, are among them.

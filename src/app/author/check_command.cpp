@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 
 #include <CLI/CLI.hpp>
 
@@ -11,8 +12,9 @@ namespace kadans {
 void add_check(CLI::App& app, CheckOptions& options) {
   CLI::App* check = app.add_subcommand("check", "Report mistakes in files, without running them");
   check
-      ->add_option("files", options.files,
-                   "URDF, robot, scenario or plan (JSON), behaviors, modules and tests (Lua); folders, patterns")
+      ->add_option(
+          "files", options.files,
+          "URDF or xacro, robot, scenario or plan (JSON), behaviors, modules and tests (Lua); folders, patterns")
       ->required()
       ->type_name("PATH...");
   check
@@ -20,12 +22,26 @@ void add_check(CLI::App& app, CheckOptions& options) {
       ->type_name("FILE");
   check->add_flag("--plugins", options.plugins,
                   "Load the plug-ins that robots name, and check what uses them; this runs code of the plug-ins");
+  check->add_flag("--strict", options.strict, "Warnings of a URDF are mistakes");
+  check
+      ->add_option("--package", options.packages,
+                   "Folder of a package that a URDF names in package://NAME/... (default: ROS_PACKAGE_PATH, and the "
+                   "URDF's folder upwards)")
+      ->type_name("NAME=FOLDER")
+      ->allow_extra_args(false);
 }
 
 int run_check(const CheckOptions& options) {
   int code = exit_passed;
   bool any = false;
-  FileChecks checks(options.robot, options.plugins);
+  UrdfOptions urdf{.mesh_hulls = true, .strict = options.strict};
+  for (const std::string& package : options.packages) {
+    const std::size_t end = package.find('=');
+    if (end == 0 || end == std::string::npos || !std::filesystem::is_directory(package.substr(end + 1)))
+      throw InputError({.file = "--package " + package, .message = "must be NAME=FOLDER, with a folder that is there"});
+    urdf.packages[package.substr(0, end)] = package.substr(end + 1);
+  }
+  FileChecks checks(options.robot, options.plugins, urdf);
   for (const CheckedFile& checked : files_to_check(options.files, false)) {
     try {
       const std::string what = checks.check(checked);

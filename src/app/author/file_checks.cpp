@@ -14,11 +14,11 @@
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
 #include "estimate/estimator.h"
-#include "kadans/model/urdf.h"
 #include "kadans/signal/input_error.h"
 #include "scenario/judge/checks.h"
 #include "script/check/check_behavior.h"
 #include "signal/shell_word.h"
+#include "xacro.h"
 
 namespace kadans {
 
@@ -31,13 +31,15 @@ bool hidden(const fs::path& path) {
   return name.starts_with('.') || name == "node_modules";
 }
 
+bool is_urdf(const fs::path& file) { return file.extension() == ".urdf" || file.extension() == ".URDF"; }
+
 bool counts(const fs::path& file, bool scripts_only) {
   const std::string extension = file.extension().string();
   if (extension == ".lua") return true;
   if (scripts_only) return false;
   const std::string name = file.filename().string();
   if (name.ends_with(".schema.json") || name.ends_with(".golden.json")) return false;
-  return extension == ".urdf" || extension == ".json";
+  return is_urdf(file) || extension == ".json";
 }
 
 void add_below(const fs::path& folder, bool scripts_only, std::vector<fs::path>& files) {
@@ -102,15 +104,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string check_urdf(const std::string& file) {
-  std::vector<InputProblem> warnings;
-  const RobotModel model = read_urdf(file, {.mesh_hulls = true}, &warnings);
-  std::size_t motors = 0;
-  for (const Joint& joint : model.joints) motors += joint.passive() ? 0 : 1;
-  char text[128];
-  std::snprintf(text, sizeof text, "robot description: %zu links, %zu joints, %zu motors, %.3f kg", model.links.size(),
-                model.joints.size(), motors, model.mass_kg());
-  std::string what = text;
+std::string with_warnings(std::string what, const std::vector<InputProblem>& warnings) {
   for (const InputProblem& warning : warnings) what += "\nwarning: " + warning.text();
   return what;
 }
@@ -148,22 +142,49 @@ std::optional<JsonKind> kind_in(const std::filesystem::path& file) {
 
 }  // namespace
 
-FileChecks::FileChecks(std::string robot, bool plugins)
+FileChecks::FileChecks(std::string robot, bool plugins, UrdfOptions urdf)
     : robot_(std::move(robot)),
-      gate_{.closed = !plugins, .let_in = {}, .remedy = "to load it is to run its code, which --plugins does"} {}
+      gate_{.closed = !plugins, .let_in = {}, .remedy = "to load it is to run its code, which --plugins does"},
+      urdf_(std::move(urdf)) {}
+
+std::string FileChecks::check_urdf(const fs::path& file) {
+  std::vector<InputProblem> warnings;
+  const RobotModel model = file.extension() == ".xacro"
+                               ? read_urdf_text(expanded_xacro(file), file.string(), urdf_, &warnings)
+                               : read_urdf(file.string(), urdf_, &warnings);
+  std::size_t motors = 0, mimics = 0;
+  for (const Joint& joint : model.joints) {
+    motors += joint.passive() ? 0 : 1;
+    mimics += joint.mimic ? 1 : 0;
+  }
+  char text[128];
+  std::snprintf(text, sizeof text, "robot description: %zu links, %zu joints, %zu motors, %.3f kg", model.links.size(),
+                model.joints.size(), motors, model.mass_kg());
+  std::string what = text;
+  if (mimics > 0)
+    what += "; " + std::to_string(mimics) + " joints mimic others, which can be read and shown but not simulated";
+  return with_warnings(what, warnings);
+}
 
 std::string FileChecks::check_robot(const fs::path& file) {
   if (gate_.closed && !read_plugin_files(file).empty()) {
     const RobotConfig config = read_robot_config(file, {});
-    return "robot: " + std::to_string(config.objects.size()) +
-           " control objects; its plug-ins were not loaded, so types and parameters are not checked: --plugins does";
+    return told_robot(config, std::to_string(config.objects.size()) +
+                                  " control objects; its plug-ins were not loaded, so types and parameters are not "
+                                  "checked: --plugins does");
   }
   const Robot robot = read_robot(file);
   const auto system = make_control_system(robot);
   const ControlSets sets(system->catalog, std::move(system->objects));
   check_behavior_values(robot.config, system->catalog);
-  return "robot: " + std::to_string(sets.size()) + " control objects, " + std::to_string(system->catalog.sets.size()) +
-         " control sets, " + std::to_string(system->catalog.parameters.size()) + " parameters";
+  return told_robot(robot.config, std::to_string(sets.size()) + " control objects, " +
+                                      std::to_string(system->catalog.sets.size()) + " control sets, " +
+                                      std::to_string(system->catalog.parameters.size()) + " parameters");
+}
+
+std::string FileChecks::told_robot(const RobotConfig& robot, const std::string& what) const {
+  if (urdf_.strict && !robot.urdf_warnings.empty()) throw InputError(robot.urdf_warnings);
+  return with_warnings("robot: " + what, robot.urdf_warnings);
 }
 
 std::string FileChecks::check_scenario(const fs::path& file) {
@@ -242,13 +263,14 @@ std::string FileChecks::check_script_file(const CheckedFile& checked_file) {
 std::string FileChecks::check(const CheckedFile& checked) {
   const fs::path& file = checked.file;
   const std::string extension = file.extension().string();
-  if (extension == ".urdf") return check_urdf(file);
+  if (is_urdf(file) || extension == ".xacro") return check_urdf(file);
   if (extension == ".lua") {
     const std::string what = check_script_file(checked);
     return what == "a module" || what == "tests" ? what : "behavior: " + what;
   }
   if (extension != ".json")
-    throw InputError({.file = file.string(), .message = "not a file that can be checked: .urdf, .json or .lua"});
+    throw InputError(
+        {.file = file.string(), .message = "not a file that can be checked: .urdf, .xacro, .json or .lua"});
   const std::string what = check_json(file);
   if (what.empty() && !checked.found)
     throw InputError({.file = file.string(), .message = "is no robot, scenario, sweep or tuning of ours"});

@@ -10,6 +10,7 @@
 
 #include "app/assembly.h"
 #include "config/json/json_value.h"
+#include "kadans/model/urdf.h"
 
 namespace kadans {
 
@@ -19,16 +20,16 @@ struct CheckedFile {
 };
 
 // The named files, all files below a named folder, and all files that a pattern chooses ("config/*/robot.json"), each
-// once. In a folder .urdf, .json and .lua files count, but not names that begin with a dot. In a whole project only
-// config, models and behaviors are searched. `scripts_only`: only .lua files. Throws InputError for a file that does
-// not exist and for a folder without files to check.
+// once. In a folder .urdf (.URDF), .json and .lua files count, but not names that begin with a dot. In a whole project
+// only config, models and behaviors are searched. `scripts_only`: only .lua files. Throws InputError for a file that
+// does not exist and for a folder without files to check.
 std::vector<CheckedFile> files_to_check(const std::vector<std::string>& named, bool scripts_only);
 
 class FileChecks {
  public:
   // `robot` is the configuration against which behaviors are checked; "": the one for their folder. Loading a plug-in
   // executes its code, which anybody may have written. So plug-ins are loaded only when `plugins` is true.
-  FileChecks(std::string robot, bool plugins);
+  FileChecks(std::string robot, bool plugins, UrdfOptions urdf = {.mesh_hulls = true});
 
   // Says what the file is, for people; "" for a JSON file found in a folder that is not ours. Throws InputError with
   // all mistakes.
@@ -46,11 +47,14 @@ class FileChecks {
   const Known* robot_of(const std::filesystem::path& script, std::string& missing);
   std::string check_json(const std::filesystem::path& file);
 
+  std::string check_urdf(const std::filesystem::path& file);
   std::string check_robot(const std::filesystem::path& file);
+  std::string told_robot(const RobotConfig& robot, const std::string& what) const;
   std::string check_scenario(const std::filesystem::path& file);
 
   std::string robot_;
   PluginGate gate_;
+  UrdfOptions urdf_;
   std::map<std::filesystem::path, std::unique_ptr<Known>> robots_;  // the robots that were read
 };
 

@@ -9,6 +9,7 @@
 #include "project_root.h"
 #include "robot_reader.h"
 #include "signal/nearest_name.h"
+#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {
@@ -92,14 +93,18 @@ void RobotReader::load_model(Fields& f) {
   if (!f.string("urdf", urdf, "the robot's URDF, from the project root", Need::required)) return;
   const std::filesystem::path file = resolve_file(urdf, f.place("urdf"), "urdf", problems_);
   if (file.empty()) return;
+  if (file.extension() == ".xacro")
+    return problems_.add(f.place("urdf"), "urdf is xacro: expand it once, so that what runs is one file: 'xacro " +
+                                              shell_word(urdf) + " > FILE.urdf'");
   try {
-    config_.model = read_urdf(file.string());
+    config_.model = read_urdf(file.string(), {}, &config_.urdf_warnings);
   } catch (const InputError& error) {
     problems_.add(error);
     return;
   }
   have_model_ = true;
-  joint_names_ = drive_names_ = config_.model.joint_names();
+  joint_names_ = config_.model.joint_names();
+  drive_names_ = config_.model.drive_names();
   const std::size_t count = config_.model.joints.size();
   config_.plant.drives.resize(count);
   config_.plant.encoders.resize(count);
@@ -111,8 +116,13 @@ void RobotReader::load_model(Fields& f) {
     const Joint& joint = config_.model.joints[i];
     config_.plant.drives[i].torque_max_Nm = joint.effort_max_Nm;
     config_.plant.drives[i].velocity_max_rad_s = joint.velocity_max_rad_s;
-    config_.safety.joints.push_back({joint.lower_rad, joint.upper_rad, joint.velocity_max_rad_s, joint.effort_max_Nm});
+    config_.plant.drives[i].rotor_inertia_kg_m2 = joint.rotor_inertia_kg_m2;
+    config_.safety.joints.push_back({std::max(joint.lower_rad, joint.soft_lower_rad),
+                                     std::min(joint.upper_rad, joint.soft_upper_rad), joint.velocity_max_rad_s,
+                                     joint.effort_max_Nm});
   }
+  for (const Transmission& transmission : config_.model.transmissions) default_drives(transmission);
+  of_urdf_ = config_.model.transmissions.size();
 }
 
 std::vector<std::size_t> RobotReader::chosen(std::string_view pattern, TextPlace place, const char* what,

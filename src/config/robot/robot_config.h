@@ -21,6 +21,7 @@
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/plant_type.h"
 #include "kadans/plant/settings.h"
+#include "kadans/signal/input_error.h"
 #include "plant/joystick/settings.h"
 #include "record_config.h"
 #include "safety/settings.h"
@@ -57,6 +58,7 @@ struct RobotConfig {
   std::string name;
   std::vector<PlacedName> plugins;  // shared libraries with types of control objects and of plants, as written
   RobotModel model;
+  std::vector<InputProblem> urdf_warnings;
   EngineSettings engine;
   PlantSettings plant;
   PlantTypes plant_types = kadans::plant_types();  // with this robot's settings

@@ -85,12 +85,19 @@ void RobotReader::transmission(Fields& f) {
     if (model.joints[*found].passive())
       return problems_.add(joint.place,
                            "joint '" + joint.name + "' is passive (effort 0 in the URDF): no drive moves it");
-    for (const Transmission& other : model.transmissions) {
-      if (std::ranges::find(other.joints(), *found) != other.joints().end())
-        return problems_.add(joint.place, "joint '" + joint.name + "' is in two transmissions");
+    const auto has_it = [&](const Transmission& other) {
+      return std::ranges::find(other.joints(), *found) != other.joints().end();
+    };
+    const auto own = model.transmissions.begin() + static_cast<std::ptrdiff_t>(of_urdf_);
+    if (std::any_of(own, model.transmissions.end(), has_it))
+      return problems_.add(joint.place, "joint '" + joint.name + "' is in two transmissions");
+    if (const auto urdf = std::find_if(model.transmissions.begin(), own, has_it); urdf != own) {
+      leave_to_joints(*urdf);
+      model.transmissions.erase(urdf), --of_urdf_;  // what is said here goes before the URDF's
     }
     settings.joints.push_back(*found);
   }
+  drive_names_ = model.drive_names();
   for (const PlacedName& drive : drives) {
     if (std::ranges::find(drive_names_, drive.name) != drive_names_.end() || !is_word(drive.name) || drive.name.empty())
       return problems_.add(drive.place, "'" + drive.name +
@@ -122,6 +129,14 @@ void RobotReader::default_drives(const Transmission& transmission) {
       drive.torque_max_Nm += std::abs(transmission.joint_per_drive(j, i)) * joint.effort_max_Nm;
       drive.velocity_max_rad_s += std::abs(transmission.drive_per_joint(i, j)) * joint.velocity_max_rad_s;
     }
+  }
+}
+
+// Drives in the joints' own coordinates again.
+void RobotReader::leave_to_joints(const Transmission& transmission) {
+  for (const std::size_t i : transmission.joints()) {
+    config_.plant.drives[i].torque_max_Nm = config_.model.joints[i].effort_max_Nm;
+    config_.plant.drives[i].velocity_max_rad_s = config_.model.joints[i].velocity_max_rad_s;
   }
 }
 

@@ -27,6 +27,7 @@ class RobotReader {
   void transmission(Fields& f);
   void drive(Fields& entry);
   void default_drives(const Transmission& transmission);
+  void leave_to_joints(const Transmission& transmission);
   void check_coupled_drives(const Fields& f);
   void surface(Fields& entry);
   void imu(Fields& f);
@@ -80,6 +81,7 @@ class RobotReader {
   Problems& problems_;
   std::span<const std::string> object_types_;
   bool have_model_ = false;
+  std::size_t of_urdf_ = 0;  // the model's first transmissions, which the URDF brought
   std::vector<std::string> joint_names_, drive_names_;
 };
 

@@ -1,45 +1,18 @@
 // How the parts of a URDF fit together: the tree, the mimics, the meshes.
-#include <filesystem>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "kadans/model/inertia.h"
+#include "kadans/model/kinematics.h"
 #include "signal/nearest_name.h"
 #include "urdf_description.h"
 
 namespace kadans {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::optional<std::string> if_file(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return std::nullopt;
-  return path.lexically_normal().string();
-}
-
-std::optional<std::string> in_package(const std::string& rest, const fs::path& start) {
-  const std::size_t slash = rest.find('/');
-  if (slash == 0 || slash == std::string::npos) return std::nullopt;
-  const fs::path package = rest.substr(0, slash), inside = rest.substr(slash + 1);
-  for (fs::path folder = start;; folder = folder.parent_path()) {
-    if (folder.filename() == package) {
-      if (auto found = if_file(folder / inside)) return found;
-    }
-    if (auto found = if_file(folder / package / inside)) return found;
-    if (folder == folder.parent_path()) return std::nullopt;
-  }
-}
-
-std::optional<std::string> find_mesh(const std::string& name_in_urdf, const std::string& urdf_file) {
-  const std::string package = "package://", file = "file://";
-  if (name_in_urdf.starts_with(file)) return if_file(name_in_urdf.substr(file.size()));
-  std::error_code error;
-  const fs::path folder = fs::absolute(fs::path(urdf_file), error).parent_path();
-  if (name_in_urdf.starts_with(package)) return in_package(name_in_urdf.substr(package.size()), folder);
-  return if_file(folder / name_in_urdf);
-}
 
 template <typename Item>
 std::map<std::string, const Item*> first_by_name(const std::vector<Item>& items) {
@@ -102,7 +75,7 @@ class TreeCheck {
     if (&other == &joint) return;
     refuse(joint.child.at, "link " + shown_quoted(child) + " hangs on two joints, " + shown_quoted(other.name) + " (" +
                                document_.in_line(other.at) + ") and " + shown_quoted(joint.name) +
-                               ": a URDF is a tree");
+                               ": a URDF is a tree, so leave out the joint that closes the loop");
   }
 
   void check_roots() {
@@ -146,20 +119,45 @@ class TreeCheck {
 
   // A body is a link with all that is fixed to it. The root may be without mass: a base that is bolted to the world.
   void check_masses() {
-    std::set<std::string> heavy;  // links at the top of a body that has mass
+    std::map<std::string, Inertia> bodies;  // by the link at the top
     for (const UrdfLink& link : robot_.links) {
       if (!link.inertia) continue;
       std::string at = link.name;
-      for (auto up = above_.find(at); up != above_.end() && !up->second->moves; up = above_.find(at))
+      Pose pose;
+      for (auto up = above_.find(at); up != above_.end() && !up->second->moves; up = above_.find(at)) {
+        pose = compose(up->second->joint.origin, pose);
         at = up->second->parent.link;
-      heavy.insert(at);
+      }
+      Inertia& body = bodies[at];
+      body = combined(body, moved(*link.inertia, pose));
+      tops_.emplace(link.name, at);
     }
     for (const UrdfJoint& joint : robot_.joints) {
-      if (!joint.moves || heavy.contains(joint.child.link)) continue;
-      refuse(links_.at(joint.child.link)->at, "link " + shown_quoted(joint.child.link) + " moves on joint " +
-                                                  shown_quoted(joint.name) +
-                                                  " but has no mass: it, or a link fixed to it, needs an <inertial>");
+      const std::string& child = joint.child.link;
+      if (!joint.moves || bodies.contains(child)) continue;
+      refuse(links_.at(child)->at, "link " + shown_quoted(child) + " moves on joint " + shown_quoted(joint.name) +
+                                       " but has no mass: it, or a link fixed to it, needs an <inertial>");
     }
+    for (const UrdfLink& link : robot_.links) {
+      if (link.inertia) check_inertia(link, bodies.at(tops_.at(link.name)));
+    }
+  }
+
+  // What other links of its body make good can be simulated, and so can what rounding to two digits has done.
+  void check_inertia(const UrdfLink& link, const Inertia& body) {
+    constexpr double rounded = 0.05;
+    const std::string what = "the inertia of link " + shown_quoted(link.name) + " ";
+    const Inertia& own = *link.inertia;
+    const bool point = own.xx == 0 && own.yy == 0 && own.zz == 0 && own.xy == 0 && own.xz == 0 && own.yz == 0;
+    const auto defect = inertia_defect(own);
+    if (!defect || (point && !inertia_defect(body, rounded))) return;
+    if (!inertia_defect(own, rounded))
+      document_.warn(link.inertia_at, what + *defect + "; by so little that it is rounding", "inertia rounded");
+    else if (!inertia_defect(body, rounded))
+      document_.warn(link.inertia_at, what + *defect + "; with what is fixed to it, it makes a possible body",
+                     "inertia of a part");
+    else
+      refuse(link.inertia_at, what + *defect);
   }
 
   void check_mimics() {
@@ -172,10 +170,6 @@ class TreeCheck {
       if (leader == nullptr) {
         document_.refuse(mimic.joint_at,
                          what + ", which does not exist" + did_you_mean(mimic.joint, names_of(robot_.joints)));
-      } else if (!joint.moves) {
-        document_.refuse(mimic.at, "joint " + shown_quoted(joint.name) + " is fixed and cannot mimic another");
-      } else if (!leader->moves) {
-        document_.refuse(mimic.joint_at, what + ", which is fixed");
       } else if (!in_rings.contains(joint.name)) {
         refuse_ring(joint, in_rings);
       }
@@ -204,34 +198,77 @@ class TreeCheck {
   std::map<std::string, const UrdfLink*> links_;
   std::map<std::string, const UrdfJoint*> joints_;
   std::map<std::string, const UrdfJoint*> above_;  // child link -> its joint
+  std::map<std::string, std::string> tops_;        // link with mass -> top link of its body
   bool sound_ = true;
 };
 
-void find_file(UrdfDocument& document, UrdfGeometry& given) {
-  auto* const mesh = std::get_if<Mesh>(&given.geometry.shape);
-  if (mesh == nullptr || mesh->file.empty()) return;
-  if (const auto found = find_mesh(mesh->file, document.file())) {
-    mesh->file = *found;
-    return;
+// Meshes that are not there are left out, and told: of a robot from anybody they are often elsewhere.
+class MeshFiles {
+ public:
+  MeshFiles(UrdfDocument& document, const UrdfOptions& options) : document_(document), options_(options) {}
+
+  void find(std::vector<UrdfGeometry>& all, const char* holder, const std::string& link, const char* consequence) {
+    std::erase_if(all, [&](UrdfGeometry& given) {
+      auto* const mesh = std::get_if<Mesh>(&given.geometry.shape);
+      if (mesh == nullptr) return false;
+      if (const std::string& file = found(mesh->file); !file.empty()) {
+        mesh->file = file;
+        return false;
+      }
+      document_.warn(given.file_at,
+                     "mesh file " + shown_quoted(mesh->file) + " is not there: link " + shown_quoted(link) + " " +
+                         consequence + where(mesh->file),
+                     std::string(holder) + scheme(mesh->file) + package(mesh->file));
+      return true;
+    });
   }
-  std::string where;
-  if (mesh->file.starts_with("package://")) where = ": no folder of this package holds it, from the URDF's folder up";
-  if (mesh->file.find("://") == std::string::npos) where = ": its path starts from the URDF's folder";
-  document.refuse(given.file_at, "mesh file " + shown_quoted(mesh->file) + " is not there" + where);
-}
+
+ private:
+  const std::string& found(const std::string& name) {
+    const auto [at, added] = found_.emplace(name, "");
+    if (added) at->second = find_urdf_file(name, document_.file(), options_.packages).value_or("");
+    return at->second;
+  }
+
+  static std::string scheme(const std::string& name) {
+    const std::size_t end = name.find("://");
+    return end == std::string::npos ? "" : name.substr(0, end + 3);
+  }
+
+  static std::string package(const std::string& name) {
+    const std::string from = scheme(name);
+    if (from != "package://" && from != "model://") return "";
+    const std::size_t start = std::min(name.find_first_not_of('/', from.size()), name.size());
+    return name.substr(start, name.find('/', start) - start);
+  }
+
+  static std::string where(const std::string& name) {
+    const std::string of = shown(package(name));
+    if (!of.empty()) return "; --package " + of + "=FOLDER or ROS_PACKAGE_PATH says where the package is";
+    return scheme(name).empty() ? "; its path starts from the URDF's folder" : "";
+  }
+
+  UrdfDocument& document_;
+  const UrdfOptions& options_;
+  std::map<std::string, std::string> found_;
+};
 
 }  // namespace
 
 void check_description(UrdfDocument& document, UrdfDescription& robot, const UrdfOptions& options) {
+  MeshFiles files(document, options);
   for (UrdfLink& link : robot.links) {
-    for (UrdfGeometry& given : link.collisions) {
+    for (const UrdfGeometry& given : link.collisions) {
       if (std::holds_alternative<Mesh>(given.geometry.shape) && !options.mesh_hulls)
-        document.refuse(given.mesh_at, "the collision of link " + shown_quoted(link.name) +
-                                           " is a mesh, which collides only as its convex hull and only when mesh "
-                                           "hulls are asked for: ask, or use <box>, <sphere> or <cylinder>");
-      find_file(document, given);
+        document.refuse(
+            given.mesh_at,
+            "the collision of link " + shown_quoted(link.name) +
+                " is a mesh, which collides only as its convex hull and only when mesh hulls are asked for: "
+                "ask, or use <box>, <sphere> or <cylinder>",
+            "collision mesh");
     }
-    for (UrdfGeometry& given : link.visuals) find_file(document, given);
+    if (options.mesh_hulls) files.find(link.collisions, "collision ", link.name, "collides without it");
+    files.find(link.visuals, "visual ", link.name, "is drawn with a marker in its place");
   }
   TreeCheck(document, robot).run();
 }

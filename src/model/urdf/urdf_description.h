@@ -28,9 +28,9 @@ struct UrdfGeometry {
 
 struct UrdfLink {
   std::string name;
-  std::optional<Inertia> inertia;  // in the link's frame
+  std::optional<Inertia> inertia;  // in the link's frame; none: no mass
   std::vector<UrdfGeometry> collisions, visuals;
-  std::size_t at = 0, name_at = 0;
+  std::size_t at = 0, name_at = 0, inertia_at = 0;
 };
 
 struct UrdfEnd {  // of a joint
@@ -46,26 +46,42 @@ struct UrdfMimic {
 
 struct UrdfJoint {
   std::string name;
-  bool moves = true;
+  bool moves = true, floats = false;
   Joint joint;  // without its parent; its origin is in the parent link's frame
   UrdfEnd parent, child;
   std::optional<UrdfMimic> mimic;
   std::size_t at = 0, name_at = 0;
 };
 
+struct UrdfTransmission {
+  Transmission::Settings settings;  // without its joints, in the order of their roles
+  std::vector<std::string> joints;
+  std::size_t at = 0;
+};
+
 struct UrdfDescription {
   std::string name;
   std::vector<UrdfLink> links;
   std::vector<UrdfJoint> joints;
+  std::vector<UrdfTransmission> transmissions;  // those that are not one drive in the joint's own coordinate
 };
 
 // At most 1000 links, 1000 joints and max_joints of these that move. Notes in the document what is wrong; throws when
-// it makes no sense to read on.
+// it makes no sense to read on. What a robot does not need is left out of the description and told: joints that mimic a
+// fixed one are fixed, a root that is there to carry a floating joint is gone.
 UrdfDescription read_description(UrdfDocument& document);
 
+// How far the joint moves its child from its origin.
+Pose motion_of(const Joint& joint, double position) noexcept;
+
+// One <transmission>, in ROS's old and new form and in Drake's. Its gear and its motor's inertia go to the description.
+// Called when all joints are read.
+void read_transmission(UrdfDocument& document, const tinyxml2::XMLElement& element, UrdfDescription& robot);
+
 // Notes what does not fit together: names given twice or never defined, two parents, two roots, loops, bodies that move
-// but have no mass, mimics of joints that are missing, fixed, or mimic each other in a ring; meshes that may not
-// collide or are not there. The files of those that are there stand in the description afterwards.
+// but have no mass or an inertia that no body can have, mimics of joints that are missing or mimic each other in a
+// ring; meshes that may not collide or are not there. The files of those that are there stand in the description
+// afterwards; the others are gone.
 void check_description(UrdfDocument& document, UrdfDescription& robot, const UrdfOptions& options);
 
 }  // namespace kadans

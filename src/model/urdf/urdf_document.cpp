@@ -5,9 +5,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <span>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "model/xml_scan.h"
@@ -59,6 +60,16 @@ Defect read_number(std::string_view text, double& value) {
   return std::nullopt;
 }
 
+// Writers mean "none" by a very large limit, and some write it as inf.
+Defect read_limit(std::string_view text, double* value) {
+  double read = 0;
+  if (parse(text, read) != std::errc() || std::isnan(read)) {
+    if (Defect defect = read_number(text, read)) return defect;
+  }
+  if (value != nullptr) *value = read;
+  return std::nullopt;
+}
+
 Defect read_numbers(std::string_view text, std::span<double> values);
 
 // ", did you mean '0 1 0'?" when commas or semicolons between the numbers were all that is wrong.
@@ -105,19 +116,15 @@ struct NumberRule {
 };
 
 constexpr bool is_any(double) { return true; }
-constexpr bool is_positive(double v) { return v > 0; }
 constexpr bool is_not_negative(double v) { return v >= 0; }
-constexpr bool is_not_zero(double v) { return v != 0; }
 constexpr bool is_fraction(double v) { return v >= 0 && v <= 1; }
 
 constexpr NumberRule rules[] = {
     // in the order of UrdfValue, from `number`
     {1, is_any, ""},
-    {1, is_positive, "must be > 0"},
     {1, is_not_negative, "must be >= 0"},
     {3, is_any, ""},
-    {3, is_positive, "must be > 0 in every direction"},
-    {3, is_not_zero, "must not be 0 in any direction"},
+    {3, is_not_negative, "must be >= 0 in every direction"},
     {4, is_fraction, "must be red, green, blue and opacity in 0..1"},
 };
 
@@ -126,6 +133,7 @@ constexpr NumberRule rules[] = {
 std::optional<std::string> read_value(UrdfValue kind, std::string_view text, double* numbers) {
   if (kind == UrdfValue::text) return std::nullopt;
   if (kind == UrdfValue::name) return name_defect(text);
+  if (kind == UrdfValue::unbounded) return read_limit(trimmed(text), numbers);
   const NumberRule& rule = rules[static_cast<std::size_t>(kind) - static_cast<std::size_t>(UrdfValue::number)];
   std::array<double, 4> room{};
   const std::span<double> values(room.data(), rule.count);
@@ -140,17 +148,11 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr std::size_t most_told = 25;  // more than anybody reads at once; bounds the work on hostile files
-
-void sort_by_place(std::vector<InputProblem>& problems) {
-  std::stable_sort(problems.begin(), problems.end(), [](const InputProblem& a, const InputProblem& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
-  });
-}
-
 }  // namespace
 
-UrdfDocument::UrdfDocument(std::string_view text, std::string file) : file_(std::move(file)), source_(text) {
+UrdfDocument::UrdfDocument(std::string_view whole, std::string file)
+    : file_(std::move(file)), source_(whole.substr(0, whole.find_last_not_of('\0') + 1)) {
+  const std::string_view text = source_.text();
   const auto fail = [&](const TextProblem& found) { throw InputError(problem(found.at, found.message)); };
   if (const auto found = find_non_text(text)) fail(*found);
   scan_ = scan_xml(source_);
@@ -160,6 +162,7 @@ UrdfDocument::UrdfDocument(std::string_view text, std::string file) : file_(std:
         InputProblem{file_, xml_.ErrorLineNum(), 0, std::string("not well-formed XML: ") + xml_.ErrorName()});
   }
   link_tags();
+  if (text.size() < whole.size()) warn(text.size(), "NUL bytes at the end of the file are not used");
 }
 
 // Gives every element of the DOM, in the order of the document, the scan's tag.
@@ -187,38 +190,46 @@ InputProblem UrdfDocument::problem(std::size_t at, std::string message) const {
   return {file_, place.line, place.column, std::move(message)};
 }
 
-void UrdfDocument::refuse(std::size_t at, std::string message) {
-  refused_.push_back(problem(at, std::move(message)));
-  if (refused_.size() >= most_told) throw_refused();
+void UrdfDocument::refuse(std::size_t at, std::string message, std::string_view kind) {
+  if (!consequence_.empty()) {
+    ++softened_;
+    return warn(at, message.append("; ").append(consequence_), kind);
+  }
+  refused_.add(at, std::move(message), kind);
+  if (refused_.full()) throw_refused();
 }
 
 void UrdfDocument::stop(std::size_t at, std::string message) {
-  refused_.push_back(problem(at, std::move(message)));
+  refused_.add(at, std::move(message), {});
   throw_refused();
 }
 
-void UrdfDocument::warn(std::size_t at, std::string message) {
-  if (warnings_.size() < most_told)
-    warnings_.push_back(problem(at, std::move(message)));
-  else
-    ++warnings_left_out_;
+void UrdfDocument::warn(std::size_t at, std::string message, std::string_view kind) {
+  warnings_.add(at, std::move(message), kind);
 }
 
-void UrdfDocument::throw_if_refused() {
-  if (!refused_.empty()) throw_refused();
+UrdfDocument::Lenient::Lenient(UrdfDocument& document, std::string consequence)
+    : document_(document),
+      consequence_before_(std::exchange(document.consequence_, std::move(consequence))),
+      softened_before_(std::exchange(document.softened_, 0)) {}
+
+UrdfDocument::Lenient::~Lenient() {
+  document_.consequence_ = std::move(consequence_before_);
+  document_.softened_ = softened_before_;
 }
 
-void UrdfDocument::throw_refused() {
-  sort_by_place(refused_);
-  if (refused_.size() >= most_told) refused_.push_back({file_, 0, 0, "there may be more: reading stopped here"});
-  throw InputError(refused_);
+void UrdfDocument::throw_if_refused(bool strict) {
+  if (!refused_.empty() || (strict && !warnings_.empty())) throw_refused(strict);
 }
 
-std::vector<InputProblem> UrdfDocument::warnings() const {
-  std::vector<InputProblem> told = warnings_;
-  sort_by_place(told);
-  if (warnings_left_out_ > 0) told.push_back({file_, 0, 0, "and " + std::to_string(warnings_left_out_) + " more"});
-  return told;
+void UrdfDocument::throw_refused(bool strict) {
+  std::vector<InputProblem> problems = refused_.told(file_, source_);
+  if (strict) {
+    std::ranges::move(warnings(), std::back_inserter(problems));
+    sort_by_place(problems);
+  }
+  if (refused_.full()) problems.push_back({file_, 0, 0, "there may be more: reading stopped here"});
+  throw InputError(problems);
 }
 
 namespace {
@@ -227,14 +238,6 @@ template <typename Known>
 const Known* find_known(const std::vector<Known>& all, std::string_view name) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const Known& known) { return known.name == name; });
   return found == all.end() ? nullptr : &*found;
-}
-
-// ", did you mean 'mass'?" or, with nothing near, what there is to choose from.
-std::string choice(const std::string& nearest, const std::vector<std::string>& known) {
-  if (!nearest.empty()) return ", did you mean '" + nearest + "'?";
-  std::string list;
-  for (const std::string& name : known) list += (list.empty() ? "; known are: " : ", ") + name;
-  return list.empty() ? "; it has none" : list;
 }
 
 bool of_others(std::string_view name) { return name == "xmlns" || name.find(':') != std::string_view::npos; }
@@ -260,13 +263,8 @@ bool UrdfElement::attributes(const std::vector<UrdfAttribute>& known) const {
   std::set<std::string, std::less<>> meant;  // by misspelt ones: these are not told to be missing, too
   for (const auto* a = element_.FirstAttribute(); a != nullptr; a = a->Next()) {
     const UrdfAttribute* wanted = find_known(known, a->Name());
-    if (wanted == nullptr && of_others(a->Name())) continue;
     if (wanted == nullptr) {
-      const std::vector<std::string> names = names_of(known);
-      const std::string nearest = nearest_name(a->Name(), names);
-      meant.insert(nearest);
-      document_.refuse(at_name(a->Name()),
-                       "unknown attribute '" + shown(a->Name()) + "' of " + shown_name() + choice(nearest, names));
+      unknown_attribute(a->Name(), names_of(known), meant);
       continue;
     }
     if (auto* const* const to = std::get_if<std::string*>(&wanted->to)) **to = a->Value();
@@ -285,36 +283,48 @@ bool UrdfElement::attributes(const std::vector<UrdfAttribute>& known) const {
   return right;
 }
 
-std::size_t UrdfElement::children(const std::vector<UrdfChild>& known) const {
-  const std::string_view own = element_.Name();
+void UrdfElement::unknown_attribute(const char* name, const std::vector<std::string>& known,
+                                    std::set<std::string, std::less<>>& meant) const {
+  const std::string nearest = of_others(name) ? "" : nearest_name(name, known);
+  const std::string what = "attribute '" + shown(name) + "' of " + shown_name();
+  if (nearest.empty() || has(nearest.c_str()))
+    return document_.warn(at_name(name), what + " is not known to URDF, and not used",
+                          std::string_view(name).starts_with("xmlns") ? "name space" : "");
+  meant.insert(nearest);
+  document_.refuse(at_name(name), "unknown " + what + ", did you mean '" + nearest + "'?");
+}
+
+void UrdfElement::children(const std::vector<UrdfChild>& known) const {
   if (const std::size_t text_at = UrdfDocument::tag(element_).text_at; text_at != std::string_view::npos)
-    document_.refuse(text_at, "text in " + shown_name() + ", which has none");
-  const std::vector<std::string> names = names_of(known);
-  std::size_t all = 0, count = 0;
+    document_.warn(text_at, "text in " + shown_name() + ", which has none, is not used");
   std::set<std::string, std::less<>> seen, meant;
   for (const auto* e = element_.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     const UrdfElement child(document_, *e);
     const UrdfChild* wanted = find_known(known, e->Name());
-    const std::string nearest = wanted == nullptr ? nearest_name(e->Name(), names) : e->Name();
-    const bool others = wanted == nullptr && (of_others(e->Name()) || (own == "robot" && nearest.empty()));
-    if (!others) ++count;
-    if (wanted == nullptr && !others) {
-      meant.insert(nearest);
-      const std::string what = own == "geometry" ? "unknown geometry " + child.shown_name()
-                                                 : "unknown element " + child.shown_name() + " in " + shown_name();
-      document_.refuse(child.at(), what + choice(nearest, names));
-    } else if (wanted != nullptr && (seen.insert(nearest).second || wanted->count == UrdfCount::any)) {
+    if (wanted == nullptr) {
+      unknown_child(child, known, meant);
+    } else if (seen.insert(e->Name()).second || wanted->count == UrdfCount::any) {
       wanted->read(child);
-    } else if (wanted != nullptr) {
-      document_.refuse(child.at(), "a second " + child.shown_name() + " in " + shown_name());
+    } else {
+      document_.warn(child.at(), "a second " + child.shown_name() + " in " + shown_name() + ": the first counts");
     }
-    if (++all == 2 && own == "geometry") document_.refuse(child.at(), "a second shape in one <geometry>");
   }
   for (const UrdfChild& wanted : known) {
     if (wanted.count == UrdfCount::one && !seen.contains(wanted.name) && !meant.contains(wanted.name))
       document_.refuse(at(), shown_name() + " has no <" + wanted.name + ">");
   }
-  return count;
+}
+
+void UrdfElement::unknown_child(const UrdfElement& child, const std::vector<UrdfChild>& known,
+                                std::set<std::string, std::less<>>& meant) const {
+  const char* const name = child.element_.Name();
+  const std::string nearest = of_others(name) ? "" : nearest_name(name, names_of(known));
+  const UrdfChild* wanted = find_known(known, nearest);
+  const std::string what = child.shown_name() + " in " + shown_name();
+  if (wanted == nullptr || (wanted->count != UrdfCount::any && element_.FirstChildElement(nearest.c_str()) != nullptr))
+    return document_.warn(child.at(), what + " is not known to URDF, and not used");
+  meant.insert(nearest);
+  document_.refuse(child.at(), "unknown element " + what + ", did you mean '" + nearest + "'?");
 }
 
 bool UrdfElement::leaf(const std::vector<UrdfAttribute>& known) const {

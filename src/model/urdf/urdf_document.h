@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -13,21 +14,21 @@
 
 #include "kadans/signal/input_error.h"
 #include "model/xml_scan.h"
+#include "urdf_notes.h"
 
 namespace kadans {
 
 // The values that URDF's attributes can have, read strictly: a number takes up the whole text, is finite, and has a
 // decimal point, not a comma.
 enum class UrdfValue : std::uint8_t {
-  text,             // anything
-  name,             // not empty, at most 128 characters, no blanks around it
-  number,           // finite, magnitude at most 1e9
-  positive,         // > 0
-  not_negative,     // >= 0
-  vector,           // three numbers
-  positive_vector,  // three numbers > 0
-  scale,            // three numbers, none 0
-  color,            // four numbers in 0..1
+  text,                 // anything
+  name,                 // not empty, at most 128 characters, no blanks around it
+  unbounded,            // a number of any size, infinite too
+  number,               // finite, magnitude at most 1e9
+  not_negative,         // >= 0
+  vector,               // three numbers
+  not_negative_vector,  // three numbers >= 0
+  color,                // four numbers in 0..1
 };
 
 // What is wrong with the text as such a value ("is not a number, did you mean '2.5'?"). Nothing when it is right; then
@@ -45,34 +46,53 @@ class UrdfDocument {
   static const XmlTag& tag(const tinyxml2::XMLElement& element);
   std::string in_line(std::size_t at) const { return "line " + std::to_string(source_.place(at).line); }
 
-  // Notes a mistake at a byte of the text. The mistake that fills the list throws.
-  void refuse(std::size_t at, std::string message);
+  // Notes a mistake at a byte of the text: what cannot be simulated as it was meant. The mistake that fills the list
+  // throws. Of `kind`: UrdfNotes.
+  void refuse(std::size_t at, std::string message, std::string_view kind = {});
   // Notes a mistake after which reading cannot go on, and throws.
   [[noreturn]] void stop(std::size_t at, std::string message);
-  // Notes an oddity that does not change the model.
-  void warn(std::size_t at, std::string message);
+  // Notes an oddity, and what was made of it.
+  void warn(std::size_t at, std::string message, std::string_view kind = {});
 
-  void throw_if_refused();                     // InputError with all that is refused, sorted by place
-  std::vector<InputProblem> warnings() const;  // sorted by place
+  // While it lives, a mistake is only an oddity, because the part that it is in can be left out.
+  class Lenient {
+   public:
+    Lenient(UrdfDocument& document, std::string consequence);  // "this visual is left out"
+    ~Lenient();
+    Lenient(const Lenient&) = delete;
+    Lenient& operator=(const Lenient&) = delete;
+    bool clean() const noexcept { return document_.softened_ == 0; }  // there was no mistake
+
+   private:
+    UrdfDocument& document_;
+    std::string consequence_before_;
+    std::size_t softened_before_;
+  };
+
+  // InputError with all that is refused, sorted by place. When `strict`, warnings are mistakes.
+  void throw_if_refused(bool strict = false);
+  std::vector<InputProblem> warnings() const { return warnings_.told(file_, source_); }
 
  private:
   void link_tags();
-  [[noreturn]] void throw_refused();
+  [[noreturn]] void throw_refused(bool strict = false);
   InputProblem problem(std::size_t at, std::string message) const;
 
   std::string file_;
   SourceText source_;
   XmlScan scan_;
   tinyxml2::XMLDocument xml_;
-  std::vector<InputProblem> refused_, warnings_;
-  std::size_t warnings_left_out_ = 0;
+  UrdfNotes refused_, warnings_;
+  std::string consequence_;   // of a mistake; "": it is refused
+  std::size_t softened_ = 0;  // mistakes noted as oddities
 };
 
 // One element of a URDF while it is read. The reader asks once for its attributes and once for its children, each with
-// a list of those that may be there. Everything else, and whatever is missing or wrong, is refused.
+// a list of those that may be there. What is needed and missing, and what is wrong, is refused.
 //
-// In <robot>, foreign elements (gazebo, transmission, ...) are ignored, unless their name is almost one of URDF's.
-// Elements and attributes with a name space (drake:..., xml:...) are ignored everywhere.
+// Elements and attributes that are not URDF's (gazebo, contact, drake:..., dont_collapse) are told and not used. When
+// their name is almost one of URDF's, and that one is missing, they are refused: a mistyped <axes> would be another
+// robot.
 class UrdfElement;
 
 struct UrdfAttribute {
@@ -87,7 +107,7 @@ enum class UrdfCount : std::uint8_t { at_most_one, one, any };
 struct UrdfChild {
   const char* name;
   UrdfCount count;
-  std::function<void(const UrdfElement&)> read;  // a second one where one may be is refused, not read
+  std::function<void(const UrdfElement&)> read;  // of a second one where one may be, the first counts
 };
 
 class UrdfElement {
@@ -100,15 +120,20 @@ class UrdfElement {
   std::size_t at_value(std::string_view attribute) const;  // the same
   bool has(const char* attribute) const { return element_.Attribute(attribute) != nullptr; }
   std::string text(const char* attribute, const char* otherwise) const;  // for messages
+  const tinyxml2::XMLElement& xml() const noexcept { return element_; }
 
   // True when all of these are right, and the required ones there.
   bool attributes(const std::vector<UrdfAttribute>& known) const;
-  // How many there are, without those of others.
-  std::size_t children(const std::vector<UrdfChild>& known) const;
+  void children(const std::vector<UrdfChild>& known) const;
   // An element without children.
   bool leaf(const std::vector<UrdfAttribute>& known) const;
 
  private:
+  void unknown_attribute(const char* name, const std::vector<std::string>& known,
+                         std::set<std::string, std::less<>>& meant) const;
+  void unknown_child(const UrdfElement& child, const std::vector<UrdfChild>& known,
+                     std::set<std::string, std::less<>>& meant) const;
+
   UrdfDocument& document_;
   const tinyxml2::XMLElement& element_;
 };

@@ -16,7 +16,7 @@ constexpr std::size_t max_size = std::size_t{2} << 20U;
 // The description has been checked: a tree, mimics without rings.
 class Merger {
  public:
-  explicit Merger(const UrdfDescription& robot) : robot_(robot) {
+  Merger(const UrdfDescription& robot, UrdfDocument& document) : robot_(robot), document_(document) {
     for (const UrdfLink& link : robot.links) links_.emplace(link.name, &link);
     for (const UrdfJoint& joint : robot.joints) {
       joints_.emplace(joint.name, &joint);
@@ -31,6 +31,7 @@ class Merger {
     }
     while (const UrdfJoint* joint = next_joint()) add_joint(*joint);
     for (const UrdfJoint& joint : robot_.joints) set_mimic(joint);
+    for (const UrdfTransmission& given : robot_.transmissions) add_transmission(given);
     return std::move(model_);
   }
 
@@ -101,14 +102,34 @@ class Merger {
     model_.joints[*model_.find_joint(given.name)].mimic = mimic;
   }
 
+  void add_transmission(const UrdfTransmission& given) {
+    Transmission::Settings settings = given.settings;
+    for (const std::string& joint : given.joints) settings.joints.push_back(*model_.find_joint(joint));
+    if (settings.joints.size() == 2 && !model_.on_one_path(settings.joints[0], settings.joints[1]))
+      return document_.warn(given.at, "this transmission is not used: one of its two joints must carry the other");
+    model_.transmissions.emplace_back(settings);
+  }
+
   const UrdfDescription& robot_;
+  UrdfDocument& document_;
   std::map<std::string, const UrdfLink*> links_;
   std::map<std::string, const UrdfJoint*> joints_, joint_above_;  // joint_above_: by child link
   std::map<std::string, Place> places_;
   RobotModel model_;
 };
 
+void tell_motors(const RobotModel& model, UrdfDocument& document) {
+  if (!model.joints.empty() && std::ranges::all_of(model.joints, &Joint::passive))
+    document.warn(0, "no joint of this robot has a motor: each 'effort' is 0 or missing");
+}
+
 }  // namespace
+
+Pose motion_of(const Joint& joint, double position) noexcept {
+  if (joint.type != JointType::prismatic) return {{0, 0, 0}, from_axis_angle(joint.axis, position)};
+  const Vec3& axis = joint.axis;
+  return {{axis[0] * position, axis[1] * position, axis[2] * position}, {1, 0, 0, 0}};
+}
 
 RobotModel read_urdf(const std::string& file, const UrdfOptions& options, std::vector<InputProblem>* warnings) {
   return read_urdf_text(read_input_file(file, max_size), file, options, warnings);
@@ -122,9 +143,12 @@ RobotModel read_urdf_text(const std::string& text, const std::string& file, cons
   UrdfDocument document(text, file);
   UrdfDescription robot = read_description(document);
   check_description(document, robot, options);
+  if (file.ends_with(".URDF")) document.warn(0, "the file's name ends in .URDF: what looks for .urdf will not find it");
   document.throw_if_refused();
+  RobotModel model = Merger(robot, document).run();
+  tell_motors(model, document);
+  document.throw_if_refused(options.strict);
   if (warnings != nullptr) *warnings = document.warnings();
-  RobotModel model = Merger(robot).run();
   model.file = file;
   return model;
 }
@@ -142,12 +166,7 @@ std::vector<UrdfFrame> urdf_frames(const RobotModel& model, const std::string& t
 
 Pose frame_pose(const UrdfFrame& frame, const RobotModel& model, std::span<const double> position_rad) noexcept {
   if (!frame.joint) return frame.origin;
-  const Joint& joint = model.joints[*frame.joint];
-  const double position = position_rad[*frame.joint];
-  if (joint.type != JointType::prismatic)
-    return compose(frame.origin, {{0, 0, 0}, from_axis_angle(joint.axis, position)});
-  const Vec3& axis = joint.axis;
-  return compose(frame.origin, {{axis[0] * position, axis[1] * position, axis[2] * position}, {1, 0, 0, 0}});
+  return compose(frame.origin, motion_of(model.joints[*frame.joint], position_rad[*frame.joint]));
 }
 
 }  // namespace kadans

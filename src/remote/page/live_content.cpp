@@ -10,6 +10,7 @@
 
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
+#include "kadans/model/urdf.h"
 #include "signal/byte_order.h"
 #include "telemetry/record/recorder.h"
 
@@ -150,19 +151,6 @@ bool is_mesh(const fs::path& file) {
   return std::ranges::find(kinds, kind) != kinds.end();
 }
 
-// As the reader of the URDF finds it: from the file's folder, a package's folder from there up.
-std::string place_of(const std::string& name, const fs::path& folder) {
-  if (name.starts_with("file://")) return name.substr(7);
-  if (!name.starts_with(package)) return (folder / name).string();
-  const fs::path inside = name.substr(package.size());
-  for (fs::path at = folder;; at = at.parent_path()) {
-    if (fs::exists(at / inside)) return (at / inside).string();
-    if (at.filename() == *inside.begin() && fs::exists(at.parent_path() / inside))
-      return (at.parent_path() / inside).string();
-    if (at == at.parent_path()) return "";
-  }
-}
-
 }  // namespace
 
 LiveAssets::LiveAssets(const RobotTexts& texts, const std::string& urdf_file)
@@ -173,12 +161,11 @@ LiveAssets::LiveAssets(const RobotTexts& texts, const std::string& urdf_file)
 }
 
 void LiveAssets::add_meshes(const std::string& urdf, const std::string& urdf_file) {
-  const fs::path folder = fs::absolute(urdf_file).parent_path();
   constexpr std::string_view key = "filename=\"";
   for (std::size_t at = urdf.find(key); at != std::string::npos; at = urdf.find(key, at)) {
     at += key.size();
     const std::string name = urdf.substr(at, urdf.find('"', at) - at);
-    files_.emplace(name, place_of(name, folder));
+    files_.emplace(name, find_urdf_file(name, urdf_file).value_or(""));
   }
 }
 

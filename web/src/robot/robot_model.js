@@ -1,6 +1,6 @@
 // The robot from its URDF, posed from the signals of a session: joints as measured, the base as the model knows it or,
 // on a real robot, as it is estimated. Also its centre of mass, from the inertias of the same URDF.
-import { Box3, Euler, Group, MeshLambertMaterial, Quaternion, Sphere, Vector3 } from 'three';
+import { Box3, BoxGeometry, Euler, Group, Mesh, MeshLambertMaterial, Quaternion, Sphere, Vector3 } from 'three';
 import URDFLoader from 'urdf-loader';
 
 const gravity_m_s2 = 9.81;
@@ -18,12 +18,24 @@ function masses_of(robot) {
   return masses;
 }
 
+// In place of a mesh that is not there, or of a kind that nothing here reads. Whatever that mesh's scale is.
+const marker_m = 0.05;
+function mark(material, done) {
+  const marker = new Mesh(new BoxGeometry(marker_m, marker_m, marker_m), material ?? new MeshLambertMaterial());
+  done(marker);
+  if (marker.parent) marker.scale.set(1, 1, 1).divide(marker.parent.scale);
+}
+
 export class RobotModel {
   // `mesh_base`: where package:// leads to. Not `fine`: without gloss. `prefix`: with which the robot's signals begin.
   constructor(urdf, mesh_base, fine, prefix = '') {
     this.prefix = prefix;
     const loader = new URDFLoader();
     loader.packages = (name) => `${mesh_base}${name}`;
+    loader.loadMeshCb = (path, manager, material, done) => {
+      if (!/\.(stl|dae)$/i.test(path)) return mark(material, done);
+      return loader.defaultMeshLoader(path, manager, material, (mesh) => (mesh ? done(mesh) : mark(material, done)));
+    };
     this.robot = loader.parse(urdf);
     this.root = new Group();
     this.root.add(this.robot);
