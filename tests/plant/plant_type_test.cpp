@@ -39,7 +39,7 @@ class MiddleFields final : public PlantFields {
 }  // namespace
 
 TEST_CASE("The types of plants are those whose folders stand in the tree, and those of the program") {
-  CHECK(plant_type_names() == std::vector<std::string>{"bullet", "ideal", "udp", "bench"});
+  CHECK(plant_type_names() == std::vector<std::string>{"bullet", "dynamixel", "ideal", "udp", "bench"});
   CHECK(plant_type_names(&PlantType::is_model) == std::vector<std::string>{"bullet", "ideal"});
   CHECK(plant_type_names(&PlantType::has_objects) == std::vector<std::string>{"bullet"});
   CHECK(plant_type_names(&PlantType::is_protocol) == std::vector<std::string>{"udp"});
