@@ -33,6 +33,10 @@ class MiddleFields final : public PlantFields {
     seen[std::string(name)] = 0;
     value = "127.0.0.1:9";
   }
+  void map(std::string_view, const ReadEntry&, std::string_view) override {}
+  bool reading() const noexcept override { return true; }
+  std::span<const std::string> drives() const noexcept override { return {}; }
+  void refuse(std::string_view, const std::string& why) override { FAIL_CHECK(why); }
   std::map<std::string, double> seen;
 };
 
@@ -80,7 +84,7 @@ TEST_CASE("Types that others make come last") {
   };
   const MakePlantType others[] = {[]() -> std::unique_ptr<PlantType> { return std::make_unique<OtherType>(); }};
   CHECK(plant_type_names(plant_types(others)) ==
-        std::vector<std::string>{"bullet", "ideal", "udp", "bench", "another"});
+        std::vector<std::string>{"bullet", "dynamixel", "ideal", "udp", "bench", "another"});
   CHECK(plant_type_names(plant_types(others), &PlantType::is_protocol) == std::vector<std::string>{"udp"});
 }
 

@@ -7,7 +7,7 @@ namespace kadans::dynamixel {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> header{0xFF, 0xFF, 0xFD, 0x00};
-constexpr std::size_t length_at = 5, instruction_at = 7, block_overhead = 4;  // error, id, CRC
+constexpr std::size_t length_at = 5, instruction_at = 7;
 constexpr std::size_t length_min = 3;
 
 constexpr std::array<std::uint16_t, 256> make_crc_table() {
@@ -171,7 +171,7 @@ bool PacketScanner::next(ReceivedPacket& packet) noexcept {
 
 FastAnswer::FastAnswer(const ReceivedPacket& packet, Octets ids, std::size_t bytes) noexcept
     : raw_(packet.raw), bytes_(bytes) {
-  const std::size_t stride = bytes + block_overhead;
+  const std::size_t stride = bytes + fast_block_overhead;
   if (ids.empty() || packet.id != broadcast_id ||
       packet.instruction != static_cast<std::uint8_t>(Instruction::status) ||
       raw_.size() != instruction_at + 1 + ids.size() * stride)
@@ -187,7 +187,7 @@ FastAnswer::FastAnswer(const ReceivedPacket& packet, Octets ids, std::size_t byt
 }
 
 FastBlock FastAnswer::block(std::size_t index) const noexcept {
-  const Octets block = raw_.subspan(instruction_at + 1 + index * (bytes_ + block_overhead), bytes_ + 2);
+  const Octets block = raw_.subspan(instruction_at + 1 + index * (bytes_ + fast_block_overhead), bytes_ + 2);
   return {.error = block[0], .data = block.subspan(2)};
 }
 

@@ -26,6 +26,8 @@ inline constexpr std::size_t packet_bytes_max = 1024;
 inline constexpr std::uint8_t id_max = 252, broadcast_id = 0xFE;
 // Of a packet without parameters, and of a status without data.
 inline constexpr std::size_t packet_bytes_min = 10, status_bytes_min = 11;
+// Of each block in the answer to a fast sync read, beside its data: error, id, CRC.
+inline constexpr std::size_t fast_block_overhead = 4;
 
 enum class Instruction : std::uint8_t {
   ping = 0x01,

@@ -1,4 +1,7 @@
-#include "kadans/plant/plant_type.h"
+#include <algorithm>
+
+#include "dynamixel_plant.h"
+#include "kadans/signal/input_error.h"
 
 namespace kadans {
 namespace {
@@ -7,6 +10,32 @@ class DynamixelType final : public PlantType {
  public:
   std::string_view name() const noexcept override { return "dynamixel"; }
   std::string_view doc() const noexcept override { return "Dynamixel servos on serial ports, protocol 2.0"; }
+  bool has_fields() const noexcept override { return true; }
+  void fields(PlantFields& f) override { settings_.fields(f); }
+
+  std::unique_ptr<Plant> make_plant(const PlantSite& site) const override {
+    return std::make_unique<dynamixel::DynamixelPlant>(settings_at(site, site.peer), site,
+                                                       std::vector<std::unique_ptr<dynamixel::SerialPort>>(),
+                                                       dynamixel::DynamixelPlant::Threads::own);
+  }
+  DriveWords drive_words() const noexcept override { return dynamixel::drive_code_words; }
+
+ private:
+  // The configuration's, with the device that the command line names.
+  dynamixel::DynamixelSettings settings_at(const PlantSite& site, const std::string& device) const {
+    dynamixel::DynamixelSettings settings = settings_;
+    if (settings.servos.empty())
+      throw InputError(
+          {.file = site.file,
+           .message = "says no plant.dynamixel.servos: which servo moves which joint (docs/dynamixel.md)"});
+    if (!device.empty() && settings.ports.size() > 1)
+      throw InputError(
+          {.file = "--peer", .message = "the robot has several serial ports: write their devices in " + site.file});
+    if (!device.empty()) settings.ports.front().device = device;
+    return settings;
+  }
+
+  dynamixel::DynamixelSettings settings_;
 };
 
 }  // namespace
