@@ -122,6 +122,18 @@ class PlantType {
   // Not a model: make_plant makes the plant that reaches the drives. It is not open yet. Throws InputError.
   virtual std::unique_ptr<Plant> make_plant(const PlantSite& site) const;
 
+  // What helps or hinders these drives on this machine, for `kadans doctor ROBOT`: nothing is opened and nothing moves.
+  // Without a configuration of the type there is nothing to say.
+  struct Finding {
+    std::string topic;
+    bool good = false;
+    std::string is, should, how;  // the last two say what to do where it is not good
+  };
+  virtual std::vector<Finding> examine(const PlantSite& site) const {
+    (void)site;
+    return {};
+  }
+
   // The maker's words for the codes of its drives; nullptr: codes are told as numbers.
   virtual DriveWords drive_words() const noexcept { return nullptr; }
 

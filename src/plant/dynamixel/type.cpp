@@ -1,7 +1,9 @@
 #include <algorithm>
 
 #include "dynamixel_plant.h"
+#include "emulator/servo_server.h"
 #include "kadans/signal/input_error.h"
+#include "port_check.h"
 
 namespace kadans {
 namespace {
@@ -17,6 +19,14 @@ class DynamixelType final : public PlantType {
     return std::make_unique<dynamixel::DynamixelPlant>(settings_at(site, site.peer), site,
                                                        std::vector<std::unique_ptr<dynamixel::SerialPort>>(),
                                                        dynamixel::DynamixelPlant::Threads::own);
+  }
+  bool is_protocol() const noexcept override { return true; }
+  std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const override {
+    return std::make_unique<dynamixel::ServoServer>(settings_at(site, ""), site, listen);
+  }
+  std::vector<Finding> examine(const PlantSite& site) const override {
+    return settings_.servos.empty() ? std::vector<Finding>()
+                                    : dynamixel::examine_ports(settings_, site.layout.period_ns);
   }
   DriveWords drive_words() const noexcept override { return dynamixel::drive_code_words; }
 

@@ -109,6 +109,14 @@ void EmulatedRobot::pass(std::int64_t dt_ns) noexcept {
   }
 }
 
+void EmulatedRobot::switch_power() noexcept {
+  for (const auto& bus : buses_) {
+    bus->drop_answers();
+    for (EmulatedServo& servo : bus->servos) servo.switch_power();
+  }
+  last_ns_ = 0;
+}
+
 bool EmulatedRobot::any_torque() const noexcept {
   return std::ranges::any_of(wired_, [&](const Wired& w) { return buses_[w.bus]->servos[w.servo].torque(); });
 }

@@ -29,6 +29,8 @@ class EmulatedRobot {
   void drive(WorldRobot& robot);
   // Time passes for the servos.
   void pass(std::int64_t dt_ns) noexcept;
+  void switch_power() noexcept;  // off and on again
+  const std::vector<std::unique_ptr<EmulatedBus>>& buses() const noexcept { return buses_; }
   bool any_torque() const noexcept;
   bool any_watchdog_tripped() const noexcept;
 

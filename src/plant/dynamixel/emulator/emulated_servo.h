@@ -51,6 +51,7 @@ class EmulatedServo {
   Error write(unsigned address, std::span<const std::uint8_t> bytes);
   void heard() noexcept { silent_ns_ = 0; }  // any instruction, to whomever
   void reboot() noexcept;
+  void switch_power() noexcept { ram_defaults(); }  // off and on again, long enough ago
   void factory_reset(bool keep_id, bool keep_baud);
 
   // Its shaft. Positions and torques are the drive's, in the robot's coordinates.
