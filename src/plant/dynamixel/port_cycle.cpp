@@ -59,8 +59,7 @@ void PortCycle::check_servo(const Servo& servo, const std::string& where) {
              ". Is it powered, and does `kadans dynamixel scan` find it at another baud rate or id?");
   const ServoModel* const model = find_model(is.model);
   const std::string found = model != nullptr ? std::string(model->name) : "model " + std::to_string(is.model);
-  const bool twin = servo.model().name == "2XL430-W250" && is.model == 1090;
-  if (model != &servo.model() && !twin)
+  if (model != &servo.model())
     fail(servo, where, "is " + found + ", the configuration says " + std::string(servo.model().name));
   if (is.firmware < servo.model().fast_read_from) fast_ = false;
   std::uint32_t error = 0;
