@@ -1,5 +1,6 @@
 // `kadans dynamixel`: finds servos on a serial port, shows what they are, and gives them ids and baud rates, one by one
 // on the bench. None of it gives torque.
+#include <algorithm>
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -13,9 +14,8 @@
 #include "terminal.h"
 
 namespace kadans {
+namespace dynamixel {
 namespace {
-
-using namespace dynamixel;
 
 constexpr std::int64_t bench_patience_ns = 20'000'000;
 constexpr int bench_tries = 3;
@@ -179,6 +179,7 @@ int reboot(const DynamixelOptions& options) {
 }
 
 }  // namespace
+}  // namespace dynamixel
 
 void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
   CLI::App* bench = app.add_subcommand("dynamixel", "Find Dynamixel servos on a serial port, and set them up");
@@ -192,7 +193,7 @@ void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
       command->add_option("id", options.id, "The servo's id")
           ->required()
           ->type_name("ID")
-          ->check(whole_within(0, id_max));
+          ->check(whole_within(0, dynamixel::id_max));
     }
     command->add_option("--baud", options.baud, "Baud rate of the servos (default: 1000000; scan tries all)")
         ->type_name("BD")
@@ -207,7 +208,7 @@ void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
       ->add_option("new_id", options.new_id, "Its new id")
       ->required()
       ->type_name("ID")
-      ->check(whole_within(0, id_max));
+      ->check(whole_within(0, dynamixel::id_max));
   add("baud", "Let a servo speak at another baud rate", true)
       ->add_option("new_baud", options.new_baud, "Its new baud rate")
       ->required()
@@ -218,10 +219,10 @@ void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
 
 int run_dynamixel(const CLI::App& app, const DynamixelOptions& options) {
   const CLI::App* bench = app.get_subcommand("dynamixel");
-  if (bench->got_subcommand("scan")) return scan(options);
-  if (bench->got_subcommand("info")) return info(options);
-  if (bench->got_subcommand("set-id")) return set_id(options);
-  return bench->got_subcommand("baud") ? set_baud(options) : reboot(options);
+  if (bench->got_subcommand("scan")) return dynamixel::scan(options);
+  if (bench->got_subcommand("info")) return dynamixel::info(options);
+  if (bench->got_subcommand("set-id")) return dynamixel::set_id(options);
+  return bench->got_subcommand("baud") ? dynamixel::set_baud(options) : dynamixel::reboot(options);
 }
 
 }  // namespace kadans

@@ -38,24 +38,25 @@ std::string said(const char* find, const char* replace) {
 TEST_CASE("Servos that do not fit the robot, each other or their port are refused at their place") {
   REQUIRE(servos_refusal(servos_text()).empty());
   CHECK(said("\"pan\": { \"id\"", "\"pam\": { \"id\"") ==
-        "plant.dynamixel.servos: drive 'pan' has no servo\nconfig/..."
-        "");
-  CHECK(said("\"id\": 2", "\"id\": 1") ==
-        "plant.dynamixel.servos[\"tilt\"].id: servo 1 of port 'bus' already moves 'pan'");
+        "plant.dynamixel.servos: drive 'pan' has no servo\n12:9: plant.dynamixel.servos.pam: no drive 'pam', did you "
+        "mean 'pan'?");
+  CHECK(said("\"id\": 2", "\"id\": 1") == "plant.dynamixel.servos.tilt.id: servo 1 of port 'bus' already moves 'pan'");
   CHECK(said("\"id\": 2", "\"id\": 253") ==
-        "plant.dynamixel.servos[\"tilt\"].id is 253, must be 0..252: its id on that port");
+        "plant.dynamixel.servos.tilt.id is 253, must be 0..252: its id on that port\n13:25: "
+        "plant.dynamixel.servos.tilt.id: needs an id of 0..252");
+  CHECK(said("\"id\": 2, ", "") == "plant.dynamixel.servos.tilt: needs an id of 0..252");
   CHECK(said("XM430-W210", "XM430-W21O") ==
-        "plant.dynamixel.servos[\"pan\"].model: unknown servo model 'XM430-W21O', did you mean 'XM430-W210'?");
+        "plant.dynamixel.servos.pan.model: unknown servo model 'XM430-W21O', did you mean 'XM430-W210'?");
   CHECK(said("\"id\": 2", "\"port\": \"arm\", \"id\": 2") ==
-        "plant.dynamixel.servos[\"tilt\"].port: no port 'arm' in plant.dynamixel.ports");
+        "plant.dynamixel.servos.tilt.port: no port 'arm' in plant.dynamixel.ports");
   CHECK(said("3000000", "2500000") ==
-        "plant.dynamixel.ports[\"bus\"].baud: no servo knows 2500000 baud: 9600, 57600, 115200, 1000000, 2000000, "
+        "plant.dynamixel.ports.bus.baud: no servo knows 2500000 baud: 9600, 57600, 115200, 1000000, 2000000, "
         "3000000, 4000000 or 4500000");
-  CHECK(said("\"device\": \"/dev/ttyUSB0\", ", "") == "plant.dynamixel.ports[\"bus\"]: port 'bus' names no device");
+  CHECK(said("\"device\": \"/dev/ttyUSB0\", ", "") == "plant.dynamixel.ports.bus: port 'bus' names no device");
   CHECK(said("\"bus\": {", "\"other\": { \"device\": \"/dev/ttyUSB1\" }, \"bus\": {").find("names no port") !=
         std::string::npos);
   CHECK(said("XM430-W210\", \"reversed", "XL330-M288\", \"reversed") ==
-        "plant.dynamixel.servos[\"tilt\"].model: XL330-M288 and XM430-W210 have their indirect data at different "
+        "plant.dynamixel.servos.tilt.model: XL330-M288 and XM430-W210 have their indirect data at different "
         "addresses: they need two ports");
   CHECK(said("\"reversed\": true", "\"revesed\": true").find("did you mean 'reversed'?") != std::string::npos);
 }

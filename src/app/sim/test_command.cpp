@@ -27,6 +27,7 @@
 #include "campaign/work/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
+#include "input_files.h"
 #include "kadans/signal/input_error.h"
 #include "played_behaviors.h"
 #include "script/check/check_behavior.h"

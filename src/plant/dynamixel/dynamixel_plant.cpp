@@ -158,10 +158,11 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
   sensors.time_ns = ports_.empty() ? 0 : ports_.front()->serial.now_ns();
   sensors.supply_V = std::numeric_limits<double>::quiet_NaN();
   counts_ = {};
-  age_ms_ = 0;
+  age_ms_ = cycle_ms_ = 0;
   for (const auto& port : ports_) {
     const auto sample = port->sample.read();
     add_counts(counts_, sample->counts);
+    cycle_ms_ = std::max(cycle_ms_, sample->cycle_ms);
     for (std::size_t i = 0; i < port->joints.size() && i < sample->count; ++i) {
       const ServoReading& is = sample->servos[i];
       sensors.joints[port->joints[i]] = {.position_rad = is.position_rad,
@@ -211,6 +212,7 @@ void DynamixelPlant::declare_signals(SignalTable& table) const {
   add("strange", counts_.strange, "readings that no servo with its settings gives: not used");
   add("late", counts_.late, "cycles that took longer than their period");
   add("limited", counts_.limited, "goals beyond the servos' own limits, cut to these");
+  table.add({"plant.bus.cycle_ms", "ms", "time that the last cycle of the slowest port took"}, &cycle_ms_);
   table.add({"plant.bus.age_ms", "ms", "age of the oldest servo's newest reading"}, &age_ms_);
 }
 

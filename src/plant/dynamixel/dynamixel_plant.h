@@ -54,8 +54,9 @@ class DynamixelPlant final : public Plant {
   std::vector<std::unique_ptr<Port>> ports_;
   bool open_ = false;
   ActuationFrame drives_;
-  PortCounts counts_;  // of all ports, as of the last read
-  double age_ms_ = 0;  // of the oldest reading
+  PortCounts counts_;    // of all ports, as of the last read
+  double age_ms_ = 0;    // of the oldest reading
+  double cycle_ms_ = 0;  // of the slowest port
 };
 
 }  // namespace kadans::dynamixel

@@ -274,6 +274,7 @@ void PortCycle::run(const ActuationFrame& drives) noexcept {
       ++(good ? counts_.answers : counts_.strange);
     });
     counts_.lost += static_cast<std::uint32_t>(working_) - (counts_.answers + counts_.strange - came_before);
+    sample_.cycle_ms = 1e-6 * static_cast<double>(port_.now_ns() - begin_ns);
     change_modes();
   }
   serve_one();

@@ -33,11 +33,13 @@ struct PortSample {
   std::uint32_t count = 0;
   std::array<ServoReading, max_joints> servos{};
   PortCounts counts;
+  double cycle_ms = 0;  // what the last exchange of goals and readings took
 };
 inline void copy_used(const PortSample& from, PortSample& to) noexcept {
   to.count = from.count;
   copy_first(from.servos, from.count, to.servos);
   to.counts = from.counts;
+  to.cycle_ms = from.cycle_ms;
 }
 
 class PortCycle {

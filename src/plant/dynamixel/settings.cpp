@@ -11,7 +11,8 @@
 namespace kadans::dynamixel {
 namespace {
 
-constexpr std::size_t ports_max = 8;
+constexpr std::uint32_t no_id = id_max + 1;
+constexpr std::size_t servos_max = 48;  // of one port: their answer must fit into a packet
 
 std::string milliseconds(std::int64_t ns) {
   std::array<char, 32> text{};
@@ -55,8 +56,9 @@ void DynamixelSettings::fields(PlantFields& f) {
     if (port == ports.end())
       return entry.refuse("port", servo.port.empty() ? "names no port, and there are several: " + servo.drive
                                                      : "no port '" + servo.port + "' in plant.dynamixel.ports");
+    if (servo.id > id_max) entry.refuse("id", "needs an id of 0..252");
     for (const ServoSettings& other : servos) {
-      if (other.port == servo.port && other.id == servo.id)
+      if (servo.id <= id_max && other.port == servo.port && other.id == servo.id)
         entry.refuse("id", "servo " + std::to_string(servo.id) + " of port '" + servo.port + "' already moves '" +
                                other.drive + "'");
       const bool mixed = servo.model != nullptr && other.model != nullptr && other.port == servo.port &&
@@ -75,6 +77,7 @@ void DynamixelSettings::fields(PlantFields& f) {
       [&](PlantFields& entry, const std::string& key) {
         ServoSettings servo{.drive = key, .port = ports.size() == 1 ? ports[0].name : ""};
         std::string model;
+        if (entry.reading()) servo.id = no_id;
         entry.string("port", servo.port, "its port (default: the only one)");
         entry.integer("id", servo.id, {0, id_max, ""}, "its id on that port");
         entry.string("model", model, "what it is, such as XM430-W350");
@@ -107,6 +110,9 @@ void DynamixelSettings::fields(PlantFields& f) {
       continue;
     }
     const CycleNeed need = cycle_need(*this, port);
+    if (need.servos > servos_max)
+      f.refuse("ports", "port '" + port.name + "' has " + std::to_string(need.servos) + " servos, at most " +
+                            std::to_string(servos_max) + " fit into one answer");
     if (period_s > 0 && need.needed_ns > std::llround(1e9 * period_s))
       f.refuse("period_s", "port '" + port.name + "' cannot hold " + milliseconds(std::llround(1e9 * period_s)) +
                                ": its " + std::to_string(need.servos) + " servos need " + milliseconds(need.needed_ns) +

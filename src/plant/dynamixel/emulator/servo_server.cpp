@@ -10,6 +10,7 @@
 #include <asm/termbits.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <pthread.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -21,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t session_over_ns = 1'000'000'000;
+constexpr int bus_priority = 85;              // servos answer whatever else this machine does
 constexpr std::int64_t look_ns = 50'000'000;  // how soon the thread sees that it shall end
 
 [[noreturn]] void no_terminal(const std::string& link, const std::string& why) {
@@ -92,6 +94,9 @@ bool ServoServer::await(int milliseconds) noexcept {
 }
 
 void ServoServer::serve() noexcept {
+  sched_param parameter{};
+  parameter.sched_priority = bus_priority;
+  (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);  // without the right it is a usual thread
   std::vector<pollfd> wanted;
   for (const int master : masters_) wanted.push_back({master, POLLIN, 0});
   std::array<std::uint8_t, 4096> bytes;
