@@ -10,7 +10,8 @@ namespace {
 constexpr std::int64_t slack_ns = 1'000'000;   // beyond the line's own time and the adapter's
 constexpr std::uint32_t missed_max = 3;        // reads in a row before a servo is asked alone
 constexpr std::uint32_t missed_alone_max = 6;  // before it counts as silent
-constexpr int pings = 5;
+constexpr int pings = 50;                      // of a servo whose supply was just switched on
+constexpr int looks = 5;                       // at where it stands
 
 std::string id_and_drive(const Servo& servo) {
   return "servo " + std::to_string(servo.id()) + " ('" + servo.settings().drive + "')";
@@ -47,7 +48,7 @@ void PortCycle::check_servo(const Servo& servo, const std::string& where) {
   }
   // Two of the same kind may answer a ping as one. Where they stand, they differ.
   std::uint32_t position = 0;
-  for (int i = 0; i < pings && answer == Answer::good; ++i)
+  for (int i = 0; i < looks && answer == Answer::good; ++i)
     disturbed = bus_.read(servo.id(), present_position, position) == Answer::garbage || disturbed;
   if (disturbed)
     fail(servo, where,
